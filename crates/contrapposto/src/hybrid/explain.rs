@@ -1,0 +1,55 @@
+//! Why was this decided? One plain sentence.
+
+use super::{Carrier, Case, Decision, Equilibrium, Outcome, Problem, Strategy};
+
+/// The decision in words, angles in degrees.
+pub fn explain(problem: &Problem, decision: &Decision) -> String {
+    let torque = decision.active_torque;
+    let at_goal = decision.active_torque_at_goal.unwrap_or(torque);
+    let goal = decision.goal.unwrap_or(problem.angle).to_degrees();
+    let tolerance = problem.torque_tolerance;
+    let strategy = match problem.accepted.unwrap_or(problem.strategy) {
+        Strategy::Active => "active",
+        Strategy::Passive => "passive",
+    };
+    let body = match decision.outcome {
+        Outcome::Stay if torque.abs() <= tolerance => {
+            format!("active torque {torque:.3} N m is within {tolerance} N m: stay")
+        }
+        Outcome::Stay => format!("active torque {torque:.3} N m is the least in reach: stay"),
+        Outcome::None => {
+            let (from, to) = decision.interval.unwrap_or(problem.curve.range());
+            format!(
+                "the printed table searches {:.2}..{:.2} deg, where active torque {torque:.3} N m does not change sign",
+                from.to_degrees(),
+                to.to_degrees()
+            )
+        }
+        Outcome::AtLimit => format!(
+            "passive torque at the limit is too weak for a balance; {goal:.2} deg leaves {at_goal:.3} of {torque:.3} N m"
+        ),
+        Outcome::Active if decision.case == Case::C31 => {
+            let share = 100.0 * decision.decrease_ratio.unwrap_or(0.0);
+            format!("mid-range at {goal:.2} deg removes {share:.0} percent of {torque:.3} N m")
+        }
+        Outcome::Active if decision.equilibrium.is_none() => {
+            format!("no balance in reach; {goal:.2} deg leaves the least, {at_goal:.3} of {torque:.3} N m")
+        }
+        Outcome::Active => format!("mid-range balance at {goal:.2} deg"),
+        Outcome::Passive => match (decision.case, decision.decrease_ratio) {
+            (Case::C32, Some(ratio)) if problem.strategy == Strategy::Active => format!(
+                "mid-range would remove only {:.0} percent of {torque:.3} N m; balance at {goal:.2} deg instead",
+                100.0 * ratio.max(0.0)
+            ),
+            _ => format!("balance at {goal:.2} deg takes {torque:.3} N m off the muscles"),
+        },
+    };
+    let kind = match decision.equilibrium {
+        Some(Equilibrium::Stable(Carrier::Ligaments)) => ", stable by ligaments",
+        Some(Equilibrium::Stable(Carrier::Gravity)) => ", stable by the load, as a pendulum",
+        Some(Equilibrium::Unstable) => ", an unstable balance held by attention",
+        None => "",
+    };
+    let beyond = if decision.beyond_tables { "; the printed table has no such answer" } else { "" };
+    format!("case {} ({strategy} strategy): {body}{kind}{beyond}", decision.case)
+}

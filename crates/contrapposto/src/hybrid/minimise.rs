@@ -1,0 +1,290 @@
+//! Table 1 of Rodriguez & Boulic 2007, and what is done where its text has no answer.
+//!
+//! `table_1` below is the printed table, branch by branch. [`minimise_literal`] carries it out as it stands.
+//! [`minimise`] carries it out and then closes its gaps (docs/deviations.md, D3 to D6): where the table searches an
+//! interval without a root, the root that does exist is taken, and where none exists the angle of least torque.
+
+use super::case::{Carrier, Case, Decision, Equilibrium, Outcome, Strategy};
+use super::extrapolation::Extrapolation;
+use super::interval::{opposite_sign, same_sign};
+use super::problem::{Problem, ProblemError};
+use crate::passive::SlopeAngles;
+
+/// What a branch of Table 1 asks for.
+enum Request {
+    /// `theta_g := theta_c`.
+    Stay,
+    /// `theta_g := Dichotomy(interval)`.
+    Root((f64, f64)),
+    /// `theta_g := angle`, the least torque between the slopes.
+    Least(f64),
+}
+
+/// What was found.
+#[derive(Clone, Copy)]
+enum Goal {
+    /// The present angle.
+    Stay,
+    /// An angle without active torque.
+    Root(f64),
+    /// An angle with the least torque, but some.
+    Least(f64),
+}
+
+/// How the printed conditions are read.
+#[derive(Clone, Copy, PartialEq)]
+enum Reading {
+    Literal,
+    Total,
+}
+
+/// Decides where relief lies. Total: the goal is always set, lies in the range, and its extrapolated active torque is
+/// never larger than the present one.
+///
+/// ```
+/// use contrapposto::hybrid::{Case, Outcome, Problem, Strategy, minimise};
+/// use contrapposto::passive::{DoubleExponential, End, PassiveCurve};
+/// let range = (0.0, 150f64.to_radians());
+/// let elbow = DoubleExponential {
+///     lower: End { torque: 12.67, rate: 19.92, angle: 0.0 },
+///     upper: End { torque: 9.324, rate: 3.811, angle: range.1 },
+///     stiffness: 0.0,
+///     neutral: 0.0,
+/// };
+/// let curve = PassiveCurve::new(elbow.form()?, range, None)?;
+/// let decision = minimise(&Problem {
+///     curve: &curve,
+///     angle: 20f64.to_radians(),
+///     external_torque: -2.7,
+///     external_slope: 0.9,
+///     strategy: Strategy::Active,
+///     minimum_decrease_ratio: 0.9,
+///     torque_tolerance: 0.05,
+///     accepted: None,
+/// })?;
+/// assert_eq!((decision.case, decision.outcome), (Case::C32, Outcome::Passive));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`ProblemError`] for numbers that are not finite, an angle outside the range, a ratio outside 0..=1, a negative tolerance.
+pub fn minimise(problem: &Problem) -> Result<Decision, ProblemError> {
+    problem.check()?;
+    let active = Extrapolation::new(problem);
+    let (mut decision, request) = table_1(problem, &active, Reading::Total);
+    let goal = match request {
+        Request::Stay => Goal::Stay,
+        Request::Least(angle) => Goal::Least(angle),
+        Request::Root(interval) => {
+            match one_slope_active(problem, &active, &mut decision).or_else(|| active.root(interval)) {
+                Some(root) => Goal::Root(root),
+                None => {
+                    decision.beyond_tables = true;
+                    match nearest_root(problem, &active, &mut decision) {
+                        Some(root) => Goal::Root(root),
+                        None => least_torque(problem, &active, decision.active_torque),
+                    }
+                }
+            }
+        }
+    };
+    describe(problem, &active, &mut decision, goal);
+    if decision.active_torque_at_goal.is_some_and(|torque| torque.abs() > decision.active_torque.abs()) {
+        describe(problem, &active, &mut decision, Goal::Stay); // nothing left to gain but rounding
+    }
+    Ok(decision)
+}
+
+/// Decides as the printed Tables 1 and 2 do; an interval whose ends have the same sign gives [`Outcome::None`].
+///
+/// # Errors
+/// As [`minimise`].
+pub fn minimise_literal(problem: &Problem) -> Result<Decision, ProblemError> {
+    problem.check()?;
+    let active = Extrapolation::new(problem);
+    let (mut decision, request) = table_1(problem, &active, Reading::Literal);
+    let goal = match request {
+        Request::Stay => Some(Goal::Stay),
+        Request::Least(angle) => Some(Goal::Least(angle)),
+        Request::Root(interval) => active.root(interval).map(Goal::Root),
+    };
+    if let Some(goal) = goal {
+        describe(problem, &active, &mut decision, goal);
+    }
+    Ok(decision)
+}
+
+/// The printed table.
+fn table_1(problem: &Problem, active: &Extrapolation, reading: Reading) -> (Decision, Request) {
+    let angle = problem.angle;
+    let eps = problem.torque_tolerance;
+    let range = problem.curve.range();
+    let tau_a = active.active(angle);
+    // The total reading counts torque equal to the tolerance as within it, so that a tolerance of 0 means something.
+    let within = tau_a.abs() < eps || (reading == Reading::Total && tau_a.abs() == eps);
+    let slopes = problem.curve.slope_angles(-active.external_slope());
+    let mut ratio = None;
+
+    let (case, request) = match (slopes.lower, slopes.upper) {
+        (Some(s_min), Some(s_max)) => {
+            let at_min = sign(active.active(s_min));
+            let at_max = sign(active.active(s_max));
+            if within {
+                let between = s_min < angle && angle < s_max;
+                // On a slope angle itself the printed strict inequalities hold on neither side; the total reading does.
+                let outside = angle < s_min || angle > s_max || reading == Reading::Total;
+                if between || (outside && at_min == at_max) {
+                    (Case::C21, Request::Stay)
+                } else if wants_active(problem, reading) {
+                    (Case::C22, Request::Root((s_min, s_max)))
+                } else {
+                    (Case::C23, Request::Stay)
+                }
+            } else if sign(tau_a) == at_min && sign(tau_a) == at_max {
+                let least = if tau_a > 0.0 { s_max } else { s_min };
+                let decrease = (tau_a - active.active(least)) / tau_a;
+                ratio = Some(decrease);
+                if wants_active(problem, reading) && enough(problem, decrease, reading) {
+                    (Case::C31, Request::Least(least))
+                } else {
+                    (Case::C32, Request::Root(same_sign(tau_a, eps, range, (s_min, s_max))))
+                }
+            } else if wants_active(problem, reading) {
+                (Case::C33, Request::Root((s_min, s_max)))
+            } else {
+                (Case::C34, Request::Root(opposite_sign(tau_a, eps, angle, range, (s_min, s_max))))
+            }
+        }
+        // None or one slope.
+        _ if within => (Case::C11, Request::Stay),
+        _ if tau_a > eps => (Case::C12, Request::Root((range.0, angle))),
+        _ => (Case::C13, Request::Root((angle, range.1))),
+    };
+    let interval = if let Request::Root(interval) = request { Some(interval) } else { None };
+    let decision = Decision {
+        case,
+        outcome: Outcome::None,
+        goal: None,
+        active_torque: tau_a,
+        active_torque_at_goal: None,
+        decrease_ratio: ratio,
+        slope_angles: slopes,
+        interval,
+        equilibrium: None,
+        beyond_tables: false,
+    };
+    (decision, request)
+}
+
+/// The strategy in force: one accepted earlier in this recovery is kept (D4).
+fn wants_active(problem: &Problem, reading: Reading) -> bool {
+    let kept = if reading == Reading::Total { problem.accepted } else { None };
+    kept.unwrap_or(problem.strategy) == Strategy::Active
+}
+
+/// Is the active solution of case 3.1 good enough? `R > R_min`; once accepted, as long as it does not worsen (D4).
+fn enough(problem: &Problem, decrease: f64, reading: Reading) -> bool {
+    let kept = reading == Reading::Total && problem.accepted == Some(Strategy::Active);
+    // At the goal itself R is zero but for rounding.
+    if kept { decrease > -1e-9 } else { decrease > problem.minimum_decrease_ratio }
+}
+
+/// With one slope in the range the torque falls on one side of it only; if it changes sign there, that root is the
+/// active solution, which the printed cases 1.2 and 1.3 overlook (D5).
+fn one_slope_active(problem: &Problem, active: &Extrapolation, decision: &mut Decision) -> Option<f64> {
+    let range = problem.curve.range();
+    let falling = match decision.slope_angles {
+        SlopeAngles { lower: Some(s), upper: None } => (s, range.1),
+        SlopeAngles { lower: None, upper: Some(s) } => (range.0, s),
+        _ => return None,
+    };
+    if !wants_active(problem, Reading::Total) {
+        return None;
+    }
+    let root = active.root(falling)?;
+    decision.interval = Some(falling);
+    decision.beyond_tables = true;
+    Some(root)
+}
+
+/// Of all roots in the range the one that suits the strategy in force, the nearest first; the other kind if there is
+/// none. Searches every piece on which the extrapolated torque is monotone, so no root is missed.
+fn nearest_root(problem: &Problem, active: &Extrapolation, decision: &mut Decision) -> Option<f64> {
+    let wants_stable = !wants_active(problem, Reading::Total);
+    let mut best: Option<(bool, f64, f64, (f64, f64))> = None;
+    for_each_piece(problem, active, |piece| {
+        let Some(root) = active.root(piece) else { return };
+        let stable = active.active(piece.1) > active.active(piece.0);
+        let (misfit, distance) = (stable != wants_stable, (root - problem.angle).abs());
+        if best.is_none_or(|(m, d, ..)| (misfit, distance) < (m, d)) {
+            best = Some((misfit, distance, root, piece));
+        }
+    });
+    let (.., root, piece) = best?;
+    decision.interval = Some(piece);
+    Some(root)
+}
+
+/// Where no balance exists: the angle of least torque, which is a limit or one of the slope angles. Ties go to the
+/// present angle.
+fn least_torque(problem: &Problem, active: &Extrapolation, present: f64) -> Goal {
+    let mut best = (present.abs(), Goal::Stay);
+    for_each_piece(problem, active, |piece| {
+        for angle in [piece.0, piece.1] {
+            let size = active.active(angle).abs();
+            if size < best.0 {
+                best = (size, Goal::Least(angle));
+            }
+        }
+    });
+    best.1
+}
+
+/// The pieces of the range on which the extrapolated torque is monotone, from below.
+fn for_each_piece(problem: &Problem, active: &Extrapolation, mut visit: impl FnMut((f64, f64))) {
+    let (min, max) = problem.curve.range();
+    let mut turns = vec![min, max];
+    problem.curve.crossings(-active.external_slope(), |angle| turns.push(angle));
+    turns.sort_by(f64::total_cmp);
+    for pair in turns.windows(2) {
+        visit((pair[0], pair[1]));
+    }
+}
+
+/// Fills in goal, outcome, torque and kind of balance.
+fn describe(problem: &Problem, active: &Extrapolation, decision: &mut Decision, goal: Goal) {
+    let range = problem.curve.range();
+    let angle = match goal {
+        Goal::Stay => problem.angle,
+        Goal::Root(angle) | Goal::Least(angle) => angle,
+    };
+    let (torque, slope) = active.active_and_slope(angle);
+    let stable = slope > 0.0;
+    let balance = match goal {
+        Goal::Stay => torque.abs() <= problem.torque_tolerance,
+        Goal::Root(_) => true,
+        Goal::Least(_) => false,
+    };
+    decision.goal = Some(angle);
+    decision.active_torque_at_goal = Some(torque);
+    decision.equilibrium = balance.then(|| {
+        if !stable {
+            Equilibrium::Unstable
+        } else if -problem.curve.slope(angle) >= -active.external_slope() {
+            Equilibrium::Stable(Carrier::Ligaments)
+        } else {
+            Equilibrium::Stable(Carrier::Gravity)
+        }
+    });
+    decision.outcome = match goal {
+        _ if angle == problem.angle => Outcome::Stay,
+        Goal::Root(_) if stable => Outcome::Passive,
+        Goal::Least(_) if decision.case != Case::C31 && (angle == range.0 || angle == range.1) => Outcome::AtLimit,
+        _ => Outcome::Active,
+    };
+}
+
+/// Sign with zero as its own: the printed comparisons of signs treat it so.
+fn sign(x: f64) -> i8 {
+    i8::from(x > 0.0) - i8::from(x < 0.0)
+}

@@ -1,0 +1,4 @@
+//! Ready and relaxed human postures.
+pub mod hybrid;
+pub mod math;
+pub mod passive;

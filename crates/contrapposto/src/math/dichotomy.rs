@@ -1,0 +1,110 @@
+//! Where is a continuous function zero, given an interval at whose ends its sign differs?
+//!
+//! The paper's `Dichotomy` (Rodriguez & Boulic 2007, Table 1): the bracket is halved until it cannot be halved any more.
+//! Newton steps are taken where they stay inside the bracket and shrink fast enough, so the usual cost is a handful of
+//! evaluations instead of fifty.
+
+/// Residual below which a converged Newton iterate is accepted as a root; else the bracket is narrowed to the last bit.
+const RESIDUAL: f64 = 1e-9;
+
+/// Root of `f` in `[lo, hi]`, or `None` when both ends have the same sign.
+///
+/// `f` returns value and slope. An end where `f` is exactly zero is the root. The answer either has `|f| < 1e-9` and a
+/// Newton step below the spacing of `f64`, or is an end of the narrowest bracket that `f64` allows (the end with the
+/// smaller `|f|`).
+///
+/// ```
+/// let cube_root = contrapposto::math::dichotomy(|x| (x * x * x - 2.0, 3.0 * x * x), 0.0, 2.0);
+/// assert_eq!(cube_root, Some(2f64.cbrt()));
+/// assert_eq!(contrapposto::math::dichotomy(|x| (x + 3.0, 1.0), 0.0, 2.0), None);
+/// ```
+pub fn dichotomy(f: impl Fn(f64) -> (f64, f64), lo: f64, hi: f64) -> Option<f64> {
+    let (f_lo, _) = f(lo);
+    let (f_hi, _) = f(hi);
+    if f_lo == 0.0 {
+        return Some(lo);
+    }
+    if f_hi == 0.0 {
+        return Some(hi);
+    }
+    if (f_lo > 0.0) == (f_hi > 0.0) {
+        return None;
+    }
+    // `below` is the end where f is negative, `above` the one where it is positive.
+    let (mut below, mut above) = if f_lo < 0.0 { (lo, hi) } else { (hi, lo) };
+    let (mut f_below, mut f_above) = if f_lo < 0.0 { (f_lo, f_hi) } else { (f_hi, f_lo) };
+    let mut x = false_position(below, f_below, above, f_above);
+    let mut last_step = (hi - lo).abs();
+    // Each halving shrinks the bracket, and Newton steps must shrink as fast, so the bound is never reached.
+    for _ in 0..4096 {
+        let (value, slope) = f(x);
+        if value == 0.0 {
+            return Some(x);
+        }
+        if value < 0.0 {
+            (below, f_below) = (x, value);
+        } else {
+            (above, f_above) = (x, value);
+        }
+        let newton = x - value / slope;
+        let step = newton - x;
+        let inside = newton > below.min(above) && newton < below.max(above);
+        if inside && step.abs() < 0.5 * last_step {
+            last_step = step.abs();
+            if value.abs() < RESIDUAL && newton == x {
+                return Some(x);
+            }
+            if newton != x {
+                x = newton;
+                continue;
+            }
+        } else if value.abs() < RESIDUAL && step.abs() <= 2.0 * f64::EPSILON * x.abs() {
+            return Some(x); // the step is below the spacing of f64: rounding noise points elsewhere
+        }
+        let middle = 0.5 * (below + above);
+        if middle == below || middle == above {
+            break;
+        }
+        last_step = (above - below).abs();
+        x = middle;
+    }
+    Some(if f_below.abs() < f_above.abs() { below } else { above })
+}
+
+/// First guess: where the chord crosses zero, kept away from the ends.
+fn false_position(a: f64, f_a: f64, b: f64, f_b: f64) -> f64 {
+    let t = f_a / (f_a - f_b);
+    a + t.clamp(0.01, 0.99) * (b - a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::dichotomy;
+
+    #[test]
+    fn steep_and_flat_roots_reach_the_last_bit() {
+        for (scale, rate) in [(1.0, 1.0), (1e150, 40.0), (1e-12, 0.1), (1.0, 300.0)] {
+            let f = |x: f64| {
+                let e = (-rate * x).exp();
+                (scale * (0.3 - e), scale * rate * e)
+            };
+            let exact = -(0.3f64.ln()) / rate;
+            let root = dichotomy(f, 0.0, 100.0).unwrap();
+            assert!((root - exact).abs() <= 4.0 * f64::EPSILON * exact, "{scale} {rate}: {root} {exact}");
+        }
+    }
+
+    #[test]
+    fn wrong_slopes_still_end_in_the_narrowest_bracket() {
+        for slope in [0.0, -1.0, f64::INFINITY, f64::NAN, 1e-300] {
+            let root = dichotomy(|x| (x - 0.1, slope), -1.0, 1.0).unwrap();
+            assert!((root - 0.1).abs() <= 2.0 * f64::EPSILON, "{slope}: {root}");
+        }
+    }
+
+    #[test]
+    fn a_jump_is_bracketed() {
+        let root = dichotomy(|x| (if x < 0.7 { -1.0 } else { 2.0 }, 0.0), 0.0, 1.0).unwrap();
+        assert!((root - 0.7).abs() <= f64::EPSILON);
+    }
+}

@@ -1,0 +1,7 @@
+//! Numerical ground floor: root finding and monotone curves. Knows nothing of bodies.
+
+mod dichotomy;
+mod monotone_cubic;
+
+pub use dichotomy::dichotomy;
+pub use monotone_cubic::{MonotoneCubic, Piece};

@@ -1,0 +1,72 @@
+//! How is a curve made strong enough near both limits?
+//!
+//! Rodriguez & Boulic 2007, section 4.1, add two linear terms close to both extremes, so that passive torque there always
+//! outweighs the external one; the paper gives no coefficients. Here: inside a zone of stated width at each limit a linear
+//! term is added that starts at zero (hence the kink of Figures 7 and 9). It may be applied to every curve.
+
+use super::PassiveError;
+
+/// Linear terms near both limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reshape {
+    /// Width of each zone, rad, positive, at most half the range.
+    pub zone: f64,
+    /// Stiffness added inside the lower zone, N m/rad, not negative.
+    pub lower_stiffness: f64,
+    /// Stiffness added inside the upper zone, N m/rad, not negative.
+    pub upper_stiffness: f64,
+}
+
+impl Reshape {
+    /// Linear terms that bring `torque` (the unreshaped torque at the lower and upper limit, N m) to at least
+    /// `end_torque` in size.
+    pub fn reaching(end_torque: f64, zone: f64, torque: (f64, f64)) -> Self {
+        Self {
+            zone,
+            lower_stiffness: (end_torque - torque.0).max(0.0) / zone,
+            upper_stiffness: (end_torque + torque.1).max(0.0) / zone,
+        }
+    }
+
+    pub(super) fn check(&self, (min, max): (f64, f64)) -> Result<(), PassiveError> {
+        let check = |ok: bool, name, value, accepted| {
+            if ok { Ok(()) } else { Err(PassiveError::Parameter { name, value, accepted }) }
+        };
+        let fits = self.zone > 0.0 && self.zone <= 0.5 * (max - min);
+        check(fits, "reshape zone (rad)", self.zone, "positive and at most half the range")?;
+        for stiffness in [self.lower_stiffness, self.upper_stiffness] {
+            let ok = stiffness.is_finite() && stiffness >= 0.0;
+            check(ok, "reshape stiffness (N m/rad)", stiffness, "finite and not negative")?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn torque_and_slope(&self, (min, max): (f64, f64), q: f64) -> (f64, f64) {
+        let below = min + self.zone - q;
+        let above = q - (max - self.zone);
+        if below > 0.0 {
+            (self.lower_stiffness * below, -self.lower_stiffness)
+        } else if above > 0.0 {
+            (-self.upper_stiffness * above, -self.upper_stiffness)
+        } else {
+            (0.0, 0.0)
+        }
+    }
+
+    pub(super) fn energy(&self, (min, max): (f64, f64), q: f64) -> f64 {
+        let below = (min + self.zone - q).max(0.0);
+        let above = (q - (max - self.zone)).max(0.0);
+        0.5 * (self.lower_stiffness * below * below + self.upper_stiffness * above * above)
+    }
+
+    /// The three zones as (from, to, added slope).
+    pub(super) fn zones(&self, (min, max): (f64, f64)) -> [(f64, f64, f64); 3] {
+        let (a, b) = (min + self.zone, max - self.zone);
+        [(min, a, -self.lower_stiffness), (a, b, 0.0), (b, max, -self.upper_stiffness)]
+    }
+
+    /// The two kinks as (angle, added slope on its left, on its right).
+    pub(super) fn kinks(&self, (min, max): (f64, f64)) -> [(f64, f64, f64); 2] {
+        [(min + self.zone, -self.lower_stiffness, 0.0), (max - self.zone, 0.0, -self.upper_stiffness)]
+    }
+}

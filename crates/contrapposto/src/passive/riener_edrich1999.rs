@@ -1,0 +1,71 @@
+//! Which torque do the two-joint muscles and ligaments of the leg give at hip, knee and ankle together?
+//!
+//! Riener & Edrich 1999 (J. Biomech. 32:539-544), ten healthy adults, relaxed muscles included:
+//! `tau = sum_i sign_i exp(c0_i + c_hip,i hip + c_knee,i knee + c_ankle,i ankle) + constant`, hip and knee flexion and ankle
+//! plantarflexion positive. The coefficients live in the data files. With the neighbours held it is a sum of falling
+//! exponentials in the joint's own angle; it has no energy, because the cross derivatives of the published laws differ.
+
+use super::{Exponentials, PassiveError};
+
+/// One term `sign * exp(c0 + rates . (hip, knee, ankle))`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledTerm {
+    /// +1 or -1, N m.
+    pub sign: f64,
+    /// Exponent at zero angles.
+    pub c0: f64,
+    /// Growth with hip, knee and ankle angle, 1/rad.
+    pub rates: [f64; 3],
+}
+
+/// Passive torque of one leg joint as a function of hip, knee and ankle angle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RienerEdrich1999 {
+    /// The joint the torque acts on: 0 hip, 1 knee, 2 ankle.
+    pub joint: usize,
+    /// The exponential terms.
+    pub terms: Vec<CoupledTerm>,
+    /// Constant torque, N m.
+    pub constant: f64,
+}
+
+impl RienerEdrich1999 {
+    /// Torque (N m) and its derivative with respect to hip, knee and ankle angle (N m/rad).
+    ///
+    /// `angles`: hip flexion, knee flexion, ankle plantarflexion, rad.
+    pub fn torque_and_gradient(&self, angles: [f64; 3]) -> (f64, [f64; 3]) {
+        let mut torque = self.constant;
+        let mut gradient = [0.0; 3];
+        for term in &self.terms {
+            let value = term.sign * term.exponent(angles).exp();
+            torque += value;
+            for (slope, rate) in gradient.iter_mut().zip(term.rates) {
+                *slope += rate * value;
+            }
+        }
+        (torque, gradient)
+    }
+
+    /// The law in the joint's own angle with the neighbours held at `angles`. With `mirrored` the coordinate runs the
+    /// other way (OpenSim's ankle counts dorsiflexion positive): angle and torque change sign.
+    ///
+    /// # Errors
+    /// [`PassiveError::Parameter`] where the exponents overflow.
+    pub fn held(&self, angles: [f64; 3], mirrored: bool) -> Result<Exponentials, PassiveError> {
+        let sign = if mirrored { -1.0 } else { 1.0 };
+        let mut others = angles;
+        others[self.joint] = 0.0;
+        let terms: Vec<_> = self
+            .terms
+            .iter()
+            .map(|term| (sign * term.sign * term.exponent(others).exp(), sign * term.rates[self.joint], 0.0))
+            .collect();
+        Exponentials::new(&terms, 0.0, 0.0, sign * self.constant)
+    }
+}
+
+impl CoupledTerm {
+    fn exponent(&self, angles: [f64; 3]) -> f64 {
+        self.c0 + self.rates[0] * angles[0] + self.rates[1] * angles[1] + self.rates[2] * angles[2]
+    }
+}
