@@ -6,8 +6,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use contrapposto_plot::{
-    Figure, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, passive_curve,
-    time_line, torque_balance,
+    Figure, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, passive_curve, time_line, torque_balance,
 };
 
 const RANGE_DEG: (f64, f64) = (0.0, 150.0);
@@ -47,10 +46,7 @@ fn arm(label: &str, degrees: f64, role: SketchRole) -> PostureSketch {
     PostureSketch {
         label: label.to_owned(),
         angle_deg: degrees,
-        polylines: vec![
-            vec![[0.0, -0.45], [0.0, 0.1]],
-            vec![[0.0, 0.0], [0.28, 0.0], along(0.27), along(0.35)],
-        ],
+        polylines: vec![vec![[0.0, -0.45], [0.0, 0.1]], vec![[0.0, 0.0], [0.28, 0.0], along(0.27), along(0.35)]],
         role,
     }
 }
@@ -83,8 +79,8 @@ fn figure_1() -> Figure {
     panel.postures = vec![
         arm("goal 4.3°", 4.3, SketchRole::Goal),
         arm("start 20°", 20.0, SketchRole::Start),
-        arm("active = 0 at 94.6°", 94.6, SketchRole::Zero),
-        arm("active = 0 at 123.5°", 123.5, SketchRole::Zero),
+        arm("mid-range 94.6°", 94.6, SketchRole::Zero),
+        arm("limit 123.5°", 123.5, SketchRole::Zero),
     ];
     torque_balance(&[with_path(panel, 20.0, 4.3)])
 }
@@ -113,10 +109,8 @@ fn elbow_passive() -> Figure {
 
 fn elbow_in_time() -> Figure {
     let time_s: Vec<f64> = (0..=1200).map(|i| f64::from(i) * 0.1).collect();
-    let angle_deg: Vec<f64> = time_s
-        .iter()
-        .map(|t| if *t < 40.0 { 20.0 } else { 4.3 + 15.7 * (-(t - 40.0) / 8.0).exp() })
-        .collect();
+    let angle_deg: Vec<f64> =
+        time_s.iter().map(|t| if *t < 40.0 { 20.0 } else { 4.3 + 15.7 * (-(t - 40.0) / 8.0).exp() }).collect();
     let at_time = |f: fn(f64) -> f64| angle_deg.iter().map(|a| f(a.to_radians())).collect();
     let fatigue = |t: f64| if t < 40.0 { 0.6 * t / 40.0 } else { 0.6 * (-(t - 40.0) / 50.0).exp() };
     time_line(&TimeLine {

@@ -3,8 +3,8 @@
 use crate::canvas::{Align, Canvas, fit};
 use crate::geometry::{Point, Rect, clip};
 use crate::style::{
-    FRAME_LEFT, FRAME_PEN, FRAME_WIDTH, GRID_PEN, Ink, LABEL_SIZE, LEADER_PEN, PAPER, Pen,
-    QUIET_TEXT, SMALL_SIZE, TEXT, ZERO_PEN,
+    FRAME_LEFT, FRAME_PEN, FRAME_WIDTH, GRID_PEN, Ink, LABEL_SIZE, LEADER_PEN, PAPER, Pen, QUIET_TEXT, SMALL_SIZE,
+    TEXT, ZERO_PEN,
 };
 
 /// Largest size of a number that is drawn; anything beyond is treated like a missing value.
@@ -20,10 +20,7 @@ pub(crate) fn drawable(value: f64) -> bool {
 
 /// Greatest size of the numbers that can be drawn, 0 without any.
 pub(crate) fn extreme(values: impl IntoIterator<Item = f64>) -> f64 {
-    values
-        .into_iter()
-        .filter(|v| drawable(*v))
-        .fold(0.0, |most, v| most.max(v.abs()))
+    values.into_iter().filter(|v| drawable(*v)).fold(0.0, |most, v| most.max(v.abs()))
 }
 
 /// The interval of values that an axis shows; never empty.
@@ -39,9 +36,7 @@ impl Range {
         let (low, high) = values
             .into_iter()
             .filter(|v| drawable(*v))
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-                (low.min(v), high.max(v))
-            });
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         if low > high {
             return Self { low: 0.0, high: 1.0 };
         }
@@ -49,10 +44,7 @@ impl Range {
         let least_span = 1e-6 * low.abs().max(high.abs()).max(1e-3);
         if high - low < least_span {
             let half = (0.1 * low.abs().max(high.abs())).max(0.5);
-            return Self {
-                low: low - half,
-                high: high + half,
-            };
+            return Self { low: low - half, high: high + half };
         }
         Self { low, high }
     }
@@ -60,10 +52,7 @@ impl Range {
     /// The range made longer at both ends by a share of its length.
     pub(crate) fn padded(self, share: f64) -> Self {
         let extra = share * (self.high - self.low);
-        Self {
-            low: self.low - extra,
-            high: self.high + extra,
-        }
+        Self { low: self.low - extra, high: self.high + extra }
     }
 
     /// About `count` round values inside the range: multiples of 1, 2 or 5 times a power of ten.
@@ -77,11 +66,7 @@ impl Range {
             .unwrap_or(10.0 * power);
         let first = (self.low / step - 1e-6).ceil();
         let last = (self.high / step + 1e-6).floor();
-        let values = (0..=50)
-            .map(|i| first + f64::from(i))
-            .take_while(|n| *n <= last)
-            .map(|n| n * step)
-            .collect();
+        let values = (0..=50).map(|i| first + f64::from(i)).take_while(|n| *n <= last).map(|n| n * step).collect();
         Ticks { step, values }
     }
 }
@@ -97,7 +82,7 @@ impl Ticks {
             return "0".to_owned();
         }
         let decimals = (-self.step.log10().floor()).clamp(0.0, 9.0) as usize;
-        if value.abs() >= 1e5 {
+        if value.abs() >= 1e5 || decimals > 4 {
             number_text(&format!("{value:.2e}"))
         } else {
             number_text(&format!("{value:.decimals$}"))
@@ -110,6 +95,13 @@ pub(crate) fn number_text(digits: &str) -> String {
     digits.replace('-', "\u{2212}")
 }
 
+/// An angle in degrees with at most one decimal, e.g. "4.3°" or "150°".
+pub(crate) fn degrees_text(angle: f64) -> String {
+    let digits = format!("{angle:.1}");
+    let digits = digits.strip_suffix(".0").unwrap_or(&digits);
+    number_text(&format!("{digits}°"))
+}
+
 /// A rectangle on the paper with a horizontal and a vertical axis.
 pub(crate) struct Frame {
     pub(crate) area: Rect,
@@ -119,12 +111,7 @@ pub(crate) struct Frame {
 
 impl Frame {
     pub(crate) fn new(top: f64, height: f64, x: Range, y: Range) -> Self {
-        let area = Rect {
-            left: FRAME_LEFT,
-            top,
-            width: FRAME_WIDTH,
-            height,
-        };
+        let area = Rect { left: FRAME_LEFT, top, width: FRAME_WIDTH, height };
         Self { area, x, y }
     }
 
@@ -177,20 +164,14 @@ impl Frame {
             canvas.text(at, &label, LABEL_SIZE, Align::Middle, TEXT);
         }
         let label = fit(y_label, LABEL_SIZE, self.area.height);
-        canvas.upward_text((16.0, top + self.area.height / 2.0), &label, LABEL_SIZE);
+        canvas.upward_text((20.0, top + self.area.height / 2.0), &label, LABEL_SIZE);
     }
 
     /// The outline, drawn after the curves so that their ends are neat.
     pub(crate) fn outline(&self, canvas: &mut Canvas) {
         let Rect { left, top, .. } = self.area;
         let (right, bottom) = (self.area.right(), self.area.bottom());
-        let corners = [
-            (left, top),
-            (right, top),
-            (right, bottom),
-            (left, bottom),
-            (left, top),
-        ];
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
         canvas.line(&corners, FRAME_PEN);
     }
 
@@ -198,10 +179,8 @@ impl Frame {
     pub(crate) fn curve(&self, canvas: &mut Canvas, xs: &[f64], ys: &[f64], pen: Pen) -> bool {
         let count = xs.len().min(ys.len());
         let stride = count.div_ceil(MOST_POINTS).max(1);
-        let points: Vec<(f64, f64)> = (0..count)
-            .filter(|i| i % stride == 0 || i + 1 == count)
-            .map(|i| (xs[i], ys[i]))
-            .collect();
+        let points: Vec<(f64, f64)> =
+            (0..count).filter(|i| i % stride == 0 || i + 1 == count).map(|i| (xs[i], ys[i])).collect();
         let mut any = false;
         for run in points.split(|(x, y)| !(drawable(*x) && drawable(*y))) {
             let run: Vec<Point> = run.iter().map(|&(x, y)| self.place(x, y)).collect();
@@ -242,10 +221,7 @@ impl Frame {
 
     /// Says in the middle of the frame that there is nothing to see.
     pub(crate) fn say_empty(&self, canvas: &mut Canvas) {
-        let (x, y) = (
-            self.area.left + self.area.width / 2.0,
-            self.area.top + self.area.height / 2.0,
-        );
+        let (x, y) = (self.area.left + self.area.width / 2.0, self.area.top + self.area.height / 2.0);
         canvas.block((x - 60.0, y - 14.0), 120.0, 20.0, PAPER);
         canvas.text((x, y), "nothing to draw", LABEL_SIZE, Align::Middle, QUIET_TEXT);
     }

@@ -2,9 +2,10 @@
 //!
 //! Coordinates are SVG units (px), x right, y down. Dashes are cut here into separate lines, because the library
 //! starts the dash pattern anew at every point in PNG but not in SVG: cut lines look the same in both.
+//! (All the dashes of a line are one path of the SVG.)
 
 use kuva::render::color::Color;
-use kuva::render::render::{Primitive, Scene, TextAnchor, TextSpan};
+use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan};
 
 use crate::figure::Figure;
 use crate::geometry::{Point, dashes};
@@ -26,8 +27,7 @@ pub(crate) struct Canvas {
 impl Canvas {
     pub(crate) fn new() -> Self {
         let mut scene = Scene::new(WIDTH, 0.0);
-        scene.font_family =
-            Some("'DejaVu Sans', Verdana, Helvetica, Arial, sans-serif".to_owned());
+        scene.font_family = Some("'DejaVu Sans', Verdana, Helvetica, Arial, sans-serif".to_owned());
         Self { scene }
     }
 
@@ -37,19 +37,28 @@ impl Canvas {
         Figure::new(self.scene)
     }
 
+    /// A line through points; of fewer than two points, nothing.
     pub(crate) fn line(&mut self, points: &[Point], pen: Pen) {
-        let pieces = match pen.dash {
-            Some((dash, gap)) => dashes(points, dash, gap),
-            None => vec![points.to_vec()],
-        };
-        for points in pieces {
-            self.scene.add(Primitive::PolyLine {
-                points,
-                stroke: color(pen.ink),
+        if points.len() < 2 {
+            return;
+        }
+        let stroke = color(pen.ink);
+        let Some((dash, gap)) = pen.dash else {
+            return self.scene.add(Primitive::PolyLine {
+                points: points.to_vec(),
+                stroke,
                 stroke_width: pen.width,
                 stroke_dasharray: None,
             });
-        }
+        };
+        self.scene.add(Primitive::Path(Box::new(PathData {
+            d: path_data(&dashes(points, dash, gap)),
+            fill: None,
+            stroke,
+            stroke_width: pen.width,
+            opacity: None,
+            stroke_dasharray: None,
+        })));
     }
 
     /// A round dot with a thin rim.
@@ -120,6 +129,16 @@ impl Canvas {
             color: Some(color(ink)),
         });
     }
+}
+
+/// Several lines as one SVG path.
+fn path_data(lines: &[Vec<Point>]) -> String {
+    let mut data = String::new();
+    for (i, (x, y)) in lines.iter().flat_map(|line| line.iter().enumerate()) {
+        let command = if i == 0 { 'M' } else { 'L' };
+        data.push_str(&format!("{command}{x:.2} {y:.2}"));
+    }
+    data
 }
 
 fn color(ink: Ink) -> Color {

@@ -3,8 +3,7 @@
 use crate::axes::Frame;
 use crate::canvas::{Align, Canvas, fit};
 use crate::style::{
-    FRAME_LEFT, Ink, LABEL_SIZE, LEGEND_LEFT, MARGIN, Pen, QUIET_TEXT, SMALL_SIZE, TEXT,
-    TITLE_SIZE, WIDTH,
+    FRAME_LEFT, Ink, LABEL_SIZE, LEGEND_LEFT, MARGIN, Pen, QUIET_TEXT, SMALL_SIZE, TEXT, TITLE_SIZE, WIDTH,
 };
 
 /// Vertical distance of two entries, px.
@@ -40,7 +39,7 @@ pub(crate) enum Mark {
 
 /// The entries, from the upper edge of the frame downwards.
 pub(crate) fn legend(canvas: &mut Canvas, frame: &Frame, entries: &[(Mark, &str)]) {
-    let text_left = LEGEND_LEFT + SAMPLE + 6.0;
+    let text_left = LEGEND_LEFT + SAMPLE + 9.0;
     for (i, (mark, label)) in entries.iter().enumerate() {
         let y = frame.area.top + 8.0 + LINE_HEIGHT * i as f64;
         match *mark {

@@ -43,11 +43,10 @@ impl Figure {
     #[must_use]
     pub fn svg(&self) -> String {
         let (width, height) = (self.scene.width, self.scene.height);
-        let opening = format!(r#"<svg viewBox="0 0 {width} {height}" "#);
-        SvgBackend::new()
-            .with_pretty(true)
-            .render_scene(&self.scene)
-            .replacen("<svg ", &opening, 1)
+        // Round ends and joints are what the PNG renderer draws.
+        let round = r#"stroke-linecap="round" stroke-linejoin="round""#;
+        let opening = format!(r#"<svg viewBox="0 0 {width} {height}" {round} "#);
+        SvgBackend::new().with_pretty(true).render_scene(&self.scene).replacen("<svg ", &opening, 1)
     }
 
     /// The picture as the bytes of a PNG file, 1600 pixels wide, drawn with bundled fonts.
@@ -57,14 +56,8 @@ impl Figure {
     /// [`PlotError::TooTall`] if the figure has too many panels for one image; [`PlotError::Encode`] if encoding fails.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
         if self.scene.height > MAX_PNG_HEIGHT {
-            return Err(PlotError::TooTall {
-                height: self.scene.height,
-                limit: MAX_PNG_HEIGHT,
-            });
+            return Err(PlotError::TooTall { height: self.scene.height, limit: MAX_PNG_HEIGHT });
         }
-        PngBackend::new()
-            .with_scale(PNG_SCALE)
-            .render_scene(&self.scene)
-            .map_err(PlotError::Encode)
+        PngBackend::new().with_scale(PNG_SCALE).render_scene(&self.scene).map_err(PlotError::Encode)
     }
 }

@@ -47,12 +47,9 @@ fn clip_segment(a: Point, b: Point, window: Rect) -> Option<(Point, Point)> {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     // Each edge as (speed towards the outside, distance to the edge on the inside).
-    for (speed, room) in [
-        (-dx, a.0 - window.left),
-        (dx, window.right() - a.0),
-        (-dy, a.1 - window.top),
-        (dy, window.bottom() - a.1),
-    ] {
+    for (speed, room) in
+        [(-dx, a.0 - window.left), (dx, window.right() - a.0), (-dy, a.1 - window.top), (dy, window.bottom() - a.1)]
+    {
         if speed == 0.0 {
             if room < 0.0 {
                 return None;
@@ -85,10 +82,7 @@ pub(crate) fn dashes(points: &[Point], dash: f64, gap: f64) -> Vec<Vec<Point>> {
         let mut length = (there.0 - here.0).hypot(there.1 - here.1);
         while length > left {
             let share = left / length;
-            here = (
-                here.0 + share * (there.0 - here.0),
-                here.1 + share * (there.1 - here.1),
-            );
+            here = (here.0 + share * (there.0 - here.0), here.1 + share * (there.1 - here.1));
             length -= left;
             if drawing {
                 open.push(here);
@@ -134,11 +128,7 @@ pub(crate) fn spread(slots: &[Slot], low: f64, high: f64) -> Vec<f64> {
     };
     let mut blocks: Vec<Block> = Vec::new();
     for slot in slots {
-        let mut block = Block {
-            members: 1,
-            width: slot.width,
-            lefts: slot.wanted - slot.width / 2.0,
-        };
+        let mut block = Block { members: 1, width: slot.width, lefts: slot.wanted - slot.width / 2.0 };
         while let Some(before) = blocks.pop_if(|b| left_of(b) + b.width > left_of(&block)) {
             block = Block {
                 members: before.members + block.members,
@@ -164,43 +154,23 @@ pub(crate) fn spread(slots: &[Slot], low: f64, high: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    const WINDOW: Rect = Rect {
-        left: 0.0,
-        top: 0.0,
-        width: 10.0,
-        height: 10.0,
-    };
+    const WINDOW: Rect = Rect { left: 0.0, top: 0.0, width: 10.0, height: 10.0 };
 
     #[test]
     fn a_line_that_leaves_and_returns_has_two_parts() {
         let parts = clip(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (8.0, 20.0), (8.0, 2.0)], WINDOW);
-        assert_eq!(
-            parts,
-            [
-                vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)],
-                vec![(8.0, 10.0), (8.0, 2.0)]
-            ]
-        );
+        assert_eq!(parts, [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)], vec![(8.0, 10.0), (8.0, 2.0)]]);
     }
 
     #[test]
     fn dashes_go_on_around_a_corner() {
         let parts = dashes(&[(0.0, 0.0), (3.0, 0.0), (3.0, 4.0)], 2.0, 2.0);
-        assert_eq!(
-            parts,
-            [
-                vec![(0.0, 0.0), (2.0, 0.0)],
-                vec![(3.0, 1.0), (3.0, 3.0)],
-            ]
-        );
+        assert_eq!(parts, [vec![(0.0, 0.0), (2.0, 0.0)], vec![(3.0, 1.0), (3.0, 3.0)],]);
     }
 
     #[test]
     fn spread_labels_stay_in_order_in_bounds_and_apart() {
-        let slots = [1.0, 2.0, 2.0, 50.0, 99.0].map(|wanted| Slot {
-            wanted,
-            width: 10.0,
-        });
+        let slots = [1.0, 2.0, 2.0, 50.0, 99.0].map(|wanted| Slot { wanted, width: 10.0 });
         let centers = spread(&slots, 0.0, 100.0);
         assert_eq!(centers, [5.0, 15.0, 25.0, 50.0, 95.0]);
     }

@@ -2,9 +2,9 @@
 //!
 //! | Picture | Function | What it shows |
 //! |---|---|---|
-//! | Torque balance | [`torque_balance`] | Figures 1 and 7-14 of Rodriguez & Boulic (2007): torques against the angle, the path of the active torque, the arm |
-//! | Passive curve | [`passive_curve`] | passive torque and its slope over the range of a coordinate |
-//! | Time line | [`time_line`] | angle, torques and fatigue of one coordinate against time |
+//! | Torque balance | [`torque_balance()`] | Figures 1 and 7-14 of Rodriguez & Boulic (2007): torques against the angle, the path of the active torque, the arm |
+//! | Passive curve | [`passive_curve()`] | passive torque and its slope over the range of a coordinate |
+//! | Time line | [`time_line()`] | angle, torques and fatigue of one coordinate against time |
 //!
 //! Every function takes any input without panicking: numbers that are not finite (or beyond 1e9 in size) leave a gap
 //! in their curve, lists of unequal length are read up to the shortest, and a picture of nothing says so.

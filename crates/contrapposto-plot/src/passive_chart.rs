@@ -3,14 +3,12 @@
 //! The slope (`d tau_p / d theta`, stiffness with a minus sign) is what Table 1 of the paper compares with the slope
 //! of the external torque; its flattest angle divides the range in two.
 
-use crate::axes::{Frame, Range, drawable, number_text};
+use crate::axes::{Frame, Range, degrees_text, drawable};
 use crate::canvas::{Align, Canvas, wrap};
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
-use crate::style::{
-    BELOW_FRAME, FLAT_ZONE, FRAME_LEFT, MARGIN, PASSIVE_PEN, QUIET_TEXT, SMALL_SIZE, TEXT, WIDTH,
-};
-use crate::tags::{Tag, draw_tags, tags_height};
+use crate::style::{BELOW_FRAME, FLAT_ZONE, FRAME_LEFT, MARGIN, PASSIVE_PEN, QUIET_TEXT, SMALL_SIZE, TEXT, WIDTH};
+use crate::tags::{Tag, draw_tags, draw_uprights, tags_height};
 
 const TORQUE_HEIGHT: f64 = 220.0;
 const SLOPE_HEIGHT: f64 = 150.0;
@@ -62,13 +60,11 @@ pub fn passive_curve(chart: &PassiveChart) -> Figure {
     torque.axes(&mut canvas, None, "passive torque, N m");
     slope.axes(&mut canvas, Some(&chart.angle_label), "slope, N m/rad");
     draw_tags(&mut canvas, &torque, &tags);
-    for tag in &tags {
-        slope.upright(&mut canvas, tag.at);
-    }
-    for (frame, values, label) in [
-        (&torque, &chart.torque_nm, "passive torque"),
-        (&slope, &chart.slope_nm_per_rad, "its slope"),
-    ] {
+    draw_uprights(&mut canvas, &torque, &tags);
+    draw_uprights(&mut canvas, &slope, &tags);
+    for (frame, values, label) in
+        [(&torque, &chart.torque_nm, "passive torque"), (&slope, &chart.slope_nm_per_rad, "its slope")]
+    {
         if frame.curve(&mut canvas, &chart.angles_deg, values, PASSIVE_PEN) {
             legend(&mut canvas, frame, &[(Mark::Line(PASSIVE_PEN), label)]);
         } else {
@@ -88,17 +84,16 @@ pub fn passive_curve(chart: &PassiveChart) -> Figure {
 
 /// Notes above the chart: both limits, and the flattest angle or zone.
 fn tags(chart: &PassiveChart) -> Vec<Tag<'static>> {
-    let degrees = |angle: f64| number_text(&format!("{angle:.1}°"));
     let (low, high) = chart.range_deg;
     let mut tags = vec![
-        Tag::note(low, format!("limit {}", degrees(low)), TEXT),
-        Tag::note(high, format!("limit {}", degrees(high)), TEXT),
+        Tag::note(low, format!("limit {}", degrees_text(low)), TEXT),
+        Tag::note(high, format!("limit {}", degrees_text(high)), TEXT),
     ];
     if let Some((from, to)) = chart.flattest_deg {
         let label = if (to - from).abs() < 0.05 {
-            format!("flattest {}", degrees(from))
+            format!("flattest {}", degrees_text(from))
         } else {
-            format!("flattest {} to {}", degrees(from), degrees(to))
+            format!("flattest {} to {}", degrees_text(from), degrees_text(to))
         };
         tags.push(Tag::note(0.5 * (from + to), label, TEXT));
     }

@@ -35,9 +35,9 @@ pub(crate) const SMALL_SIZE: u32 = 11;
 /// Width of every figure, px.
 pub(crate) const WIDTH: f64 = 800.0;
 /// Left edge of the frames: room for the tick labels and the vertical axis label.
-pub(crate) const FRAME_LEFT: f64 = 72.0;
+pub(crate) const FRAME_LEFT: f64 = 80.0;
 /// Width of the frames; the legend stands to the right of them.
-pub(crate) const FRAME_WIDTH: f64 = 576.0;
+pub(crate) const FRAME_WIDTH: f64 = 568.0;
 /// Left edge of the legend.
 pub(crate) const LEGEND_LEFT: f64 = FRAME_LEFT + FRAME_WIDTH + 16.0;
 /// Room below a frame for the numbers and the label of its horizontal axis.
@@ -57,19 +57,11 @@ pub(crate) struct Pen {
 
 impl Pen {
     pub(crate) const fn solid(ink: Ink, width: f64) -> Self {
-        Self {
-            ink,
-            width,
-            dash: None,
-        }
+        Self { ink, width, dash: None }
     }
 
     pub(crate) const fn dashed(ink: Ink, width: f64, dash: f64, gap: f64) -> Self {
-        Self {
-            ink,
-            width,
-            dash: Some((dash, gap)),
-        }
+        Self { ink, width, dash: Some((dash, gap)) }
     }
 }
 

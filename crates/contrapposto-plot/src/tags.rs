@@ -8,11 +8,15 @@ use crate::style::{ACTIVE, GOAL, Ink, LEADER, Pen, SMALL_SIZE, START, TRUNK};
 
 /// Size of a drawing of a posture, px.
 const SKETCH_WIDTH: f64 = 100.0;
-const SKETCH_HEIGHT: f64 = 72.0;
+const SKETCH_HEIGHT: f64 = 80.0;
 /// Height of the line of text below a drawing, px.
 const TEXT_HEIGHT: f64 = 15.0;
 /// Height of the leading lines between the notes and the frame, px.
 const LEADER_HEIGHT: f64 = 14.0;
+/// Longest text of a note without drawing, px.
+const NOTE_WIDTH: f64 = 200.0;
+/// Most notes of one frame that get an upright line.
+pub(crate) const MOST_TAGS: usize = 60;
 /// Most drawings above one frame; more would not be readable.
 const MOST_SKETCHES: usize = 5;
 
@@ -40,7 +44,7 @@ impl SketchRole {
 /// A small drawing of the posture, in the place of the photographs of the paper's Figure 1.
 #[derive(Clone, Debug)]
 pub struct PostureSketch {
-    /// Text below the drawing, e.g. "goal 4.3°"; cut if it is too long.
+    /// Text below the drawing, e.g. "goal 4.3°"; cut beyond about 16 characters.
     pub label: String,
     /// Where on the horizontal axis the posture belongs, degrees.
     pub angle_deg: f64,
@@ -62,32 +66,28 @@ pub(crate) struct Tag<'a> {
 
 impl<'a> Tag<'a> {
     pub(crate) fn note(at: f64, label: impl Into<String>, ink: Ink) -> Self {
-        Self {
-            at,
-            label: label.into(),
-            ink,
-            sketch: None,
-        }
+        Self { at, label: label.into(), ink, sketch: None }
     }
 
     pub(crate) fn sketch(sketch: &'a PostureSketch) -> Self {
-        Self {
-            at: sketch.angle_deg,
-            label: sketch.label.clone(),
-            ink: sketch.role.ink(),
-            sketch: Some(sketch),
-        }
+        Self { at: sketch.angle_deg, label: sketch.label.clone(), ink: sketch.role.ink(), sketch: Some(sketch) }
     }
 
+    /// Width of the note with some air around it, px.
     fn width(&self) -> f64 {
+        let text = text_width(&self.shown_label(), SMALL_SIZE) + 10.0;
         match self.sketch {
-            Some(_) => SKETCH_WIDTH + 8.0,
-            None => text_width(&self.shown_label(), SMALL_SIZE) + 10.0,
+            Some(_) => text.max(SKETCH_WIDTH),
+            None => text,
         }
     }
 
     fn shown_label(&self) -> String {
-        fit(&self.label, SMALL_SIZE, SKETCH_WIDTH)
+        let most = match self.sketch {
+            Some(_) => SKETCH_WIDTH,
+            None => NOTE_WIDTH,
+        };
+        fit(&self.label, SMALL_SIZE, most)
     }
 }
 
@@ -102,8 +102,15 @@ pub(crate) fn tags_height(tags: &[Tag]) -> f64 {
         }
 }
 
-/// Draws the notes above the frame and a faint upright line in the frame for each. Notes outside the axis are left
-/// out, and so are those for which there is no room: the last ones, and drawings beyond the fifth.
+/// Draws a faint upright line in the frame for every note.
+pub(crate) fn draw_uprights(canvas: &mut Canvas, frame: &Frame, tags: &[Tag]) {
+    for tag in tags.iter().take(MOST_TAGS) {
+        frame.upright(canvas, tag.at);
+    }
+}
+
+/// Draws the notes above the frame. Notes outside the axis are left out, and so are those for which there is no room:
+/// the last ones, and drawings beyond the fifth.
 pub(crate) fn draw_tags(canvas: &mut Canvas, frame: &Frame, tags: &[Tag]) {
     let mut room = frame.area.width;
     let mut sketches = 0;
@@ -121,13 +128,7 @@ pub(crate) fn draw_tags(canvas: &mut Canvas, frame: &Frame, tags: &[Tag]) {
         .collect();
     shown.sort_by(|a, b| a.at.total_cmp(&b.at));
 
-    let slots: Vec<Slot> = shown
-        .iter()
-        .map(|tag| Slot {
-            wanted: frame.across(tag.at),
-            width: tag.width(),
-        })
-        .collect();
+    let slots: Vec<Slot> = shown.iter().map(|tag| Slot { wanted: frame.across(tag.at), width: tag.width() }).collect();
     let centers = spread(&slots, frame.area.left, frame.area.right());
     let scale = Scale::around(shown.iter().filter_map(|tag| tag.sketch));
     let text_bottom = frame.area.top - LEADER_HEIGHT;
@@ -137,7 +138,6 @@ pub(crate) fn draw_tags(canvas: &mut Canvas, frame: &Frame, tags: &[Tag]) {
         canvas.text(at, &label, SMALL_SIZE, Align::Middle, tag.ink);
         let foot = (frame.across(tag.at), frame.area.top);
         canvas.line(&[(center, text_bottom), foot], Pen::solid(LEADER, 1.0));
-        frame.upright(canvas, tag.at);
         if let Some(sketch) = tag.sketch {
             let middle = (center, text_bottom - TEXT_HEIGHT - SKETCH_HEIGHT / 2.0);
             draw_sketch(canvas, sketch, &scale, middle);
@@ -148,18 +148,13 @@ pub(crate) fn draw_tags(canvas: &mut Canvas, frame: &Frame, tags: &[Tag]) {
 fn draw_sketch(canvas: &mut Canvas, sketch: &PostureSketch, scale: &Scale, middle: Point) {
     for (i, line) in sketch.polylines.iter().enumerate() {
         let ink = if i == 0 { TRUNK } else { sketch.role.ink() };
-        let points: Vec<Point> = drawable_points(line)
-            .map(|point| scale.place(point, middle))
-            .collect();
+        let points: Vec<Point> = drawable_points(line).map(|point| scale.place(point, middle)).collect();
         canvas.line(&points, Pen::solid(ink, 4.0));
     }
 }
 
 fn drawable_points(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> + '_ {
-    line.iter()
-        .copied()
-        .filter(|[x, y]| drawable(*x) && drawable(*y))
-        .take(1_000)
+    line.iter().copied().filter(|[x, y]| drawable(*x) && drawable(*y)).take(1_000)
 }
 
 /// How metres become pixels, the same for all drawings of a panel.
@@ -172,10 +167,7 @@ struct Scale {
 impl Scale {
     fn around<'a>(sketches: impl Iterator<Item = &'a PostureSketch>) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in sketches
-            .flat_map(|sketch| &sketch.polylines)
-            .flat_map(|line| drawable_points(line))
-        {
+        for point in sketches.flat_map(|sketch| &sketch.polylines).flat_map(|line| drawable_points(line)) {
             for axis in 0..2 {
                 low[axis] = low[axis].min(point[axis]);
                 high[axis] = high[axis].max(point[axis]);

@@ -8,14 +8,12 @@ use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::style::{
-    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, MARGIN, NEGATIVE_PEN,
-    PASSIVE_PEN, POSITIVE_PEN, Pen, RECOVERY_PEN, TEXT,
+    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, MARGIN, NEGATIVE_PEN, PASSIVE_PEN, POSITIVE_PEN,
+    Pen, RECOVERY_PEN, TEXT,
 };
-use crate::tags::{Tag, draw_tags, tags_height};
+use crate::tags::{Tag, draw_tags, draw_uprights, tags_height};
 
 const GAP: f64 = 18.0;
-/// Most events marked by an upright line.
-const MOST_EVENTS: usize = 60;
 
 /// One coordinate through time.
 #[derive(Clone, Debug, Default)]
@@ -62,10 +60,7 @@ struct Part<'a> {
 #[must_use]
 pub fn time_line(line: &TimeLine) -> Figure {
     let mut canvas = Canvas::new();
-    let events = line.events.iter().take(MOST_EVENTS);
-    let tags: Vec<Tag> = events
-        .map(|(time, label)| Tag::note(*time, label.as_str(), TEXT))
-        .collect();
+    let tags: Vec<Tag> = line.events.iter().map(|(time, label)| Tag::note(*time, label.as_str(), TEXT)).collect();
     let mut top = heading(&mut canvas, &line.title, &line.subtitle, MARGIN) + tags_height(&tags);
     let times = Range::around(line.time_s.iter().copied());
 
@@ -77,9 +72,7 @@ pub fn time_line(line: &TimeLine) -> Figure {
         if i == 0 {
             draw_tags(&mut canvas, &frame, &tags);
         }
-        for tag in &tags {
-            frame.upright(&mut canvas, tag.at);
-        }
+        draw_uprights(&mut canvas, &frame, &tags);
         draw_part(&mut canvas, &frame, part, &line.time_s);
         frame.outline(&mut canvas);
         top = frame.area.bottom() + GAP;

@@ -3,15 +3,15 @@
 //! Where minus the passive torque (blue) crosses the external torque (red), the active torque (brown) is zero:
 //! `tau_a = -(tau_p + tau_e)`, Eq. 1 and 2.
 
-use crate::axes::{Frame, Range, drawable, extreme, number_text};
+use crate::axes::{Frame, Range, degrees_text, drawable, extreme, number_text};
 use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::style::{
-    ACTIVE, ACTIVE_PEN, BELOW_FRAME, EXTERNAL_PEN, GOAL, MARGIN, MINUS_ACTIVE_PEN, PAPER,
-    PASSIVE_PEN, PATH_PEN, START, TOLERANCE_PEN,
+    ACTIVE, ACTIVE_PEN, BELOW_FRAME, EXTERNAL_PEN, GOAL, MARGIN, MINUS_ACTIVE_PEN, PAPER, PASSIVE_PEN, PATH_PEN, START,
+    TOLERANCE_PEN,
 };
-use crate::tags::{PostureSketch, SketchRole, Tag, draw_tags, tags_height};
+use crate::tags::{MOST_TAGS, PostureSketch, SketchRole, Tag, draw_tags, draw_uprights, tags_height};
 
 const FRAME_HEIGHT: f64 = 290.0;
 /// How far the vertical axis reaches beyond the greatest external torque: the passive torque grows steeply towards
@@ -78,6 +78,7 @@ fn draw_panel(canvas: &mut Canvas, panel: &TorqueBalance, top: f64) -> f64 {
     let frame = Frame::new(frame_top, FRAME_HEIGHT, angles(panel), torques(panel));
     frame.axes(canvas, Some(&panel.angle_label), "joint torque, N m");
     draw_tags(canvas, &frame, &tags);
+    draw_uprights(canvas, &frame, &tags);
     draw_curves(canvas, &frame, panel);
     frame.outline(canvas);
     draw_points(canvas, &frame, panel);
@@ -92,10 +93,7 @@ fn tags(panel: &TorqueBalance) -> Vec<Tag<'_>> {
     };
     let sketches = panel.postures.iter().map(Tag::sketch);
     let zeros = panel.zero_torque_deg.iter().filter(|zero| !drawn(**zero));
-    let notes = zeros.map(|&zero| {
-        let label = number_text(&format!("{zero:.1}°"));
-        Tag::note(zero, label, ACTIVE)
-    });
+    let notes = zeros.map(|&zero| Tag::note(zero, degrees_text(zero), ACTIVE));
     sketches.chain(notes).collect()
 }
 
@@ -167,13 +165,13 @@ fn draw_curves(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
 }
 
 fn draw_points(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
-    for &zero in panel.zero_torque_deg.iter().filter(|zero| drawable(**zero)).take(100) {
+    for &zero in panel.zero_torque_deg.iter().filter(|zero| drawable(**zero)).take(MOST_TAGS) {
         frame.dot(canvas, (zero, 0.0), 4.0, PAPER, ACTIVE);
     }
     if let Some(start) = panel.start {
         frame.dot(canvas, start, 6.0, START, PAPER);
     }
     if let Some(goal) = panel.goal {
-        frame.dot(canvas, goal, 5.0, GOAL, PAPER);
+        frame.dot(canvas, goal, 5.5, GOAL, PAPER);
     }
 }

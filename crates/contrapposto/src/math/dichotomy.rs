@@ -4,14 +4,18 @@
 //! Newton steps are taken where they stay inside the bracket and shrink fast enough, so the usual cost is a handful of
 //! evaluations instead of fifty.
 
-/// Residual below which a converged Newton iterate is accepted as a root; else the bracket is narrowed to the last bit.
+/// Residual below which a Newton iterate that no longer moves is accepted as a root; else the bracket is narrowed to the
+/// last bit.
 const RESIDUAL: f64 = 1e-9;
+
+/// Evaluations after which only halving is done: it ends for certain, Newton steps usually end long before.
+const NEWTON_EVALUATIONS: usize = 60;
 
 /// Root of `f` in `[lo, hi]`, or `None` when both ends have the same sign.
 ///
-/// `f` returns value and slope. An end where `f` is exactly zero is the root. The answer either has `|f| < 1e-9` and a
-/// Newton step below the spacing of `f64`, or is an end of the narrowest bracket that `f64` allows (the end with the
-/// smaller `|f|`).
+/// `f` returns value and slope; the slope may be wrong or NaN, which only costs time. An end where `f` is exactly zero is
+/// the root. The answer either has `|f| < 1e-9` and a Newton step below the spacing of `f64`, or is an end of the narrowest
+/// bracket that `f64` allows (the end with the smaller `|f|`).
 ///
 /// ```
 /// let cube_root = contrapposto::math::dichotomy(|x| (x * x * x - 2.0, 3.0 * x * x), 0.0, 2.0);
@@ -19,8 +23,23 @@ const RESIDUAL: f64 = 1e-9;
 /// assert_eq!(contrapposto::math::dichotomy(|x| (x + 3.0, 1.0), 0.0, 2.0), None);
 /// ```
 pub fn dichotomy(f: impl Fn(f64) -> (f64, f64), lo: f64, hi: f64) -> Option<f64> {
-    let (f_lo, _) = f(lo);
-    let (f_hi, _) = f(hi);
+    let ends = ((lo, f(lo).0), (hi, f(hi).0));
+    dichotomy_between(f, ends.0, ends.1, 0.0)
+}
+
+/// As [`dichotomy`], where the values at the ends `(x, f(x))` are known already; stops as soon as `|f| <= enough`.
+///
+/// ```
+/// let near = contrapposto::math::dichotomy_between(|x| (x * x - 2.0, 2.0 * x), (0.0, -2.0), (2.0, 2.0), 1e-3);
+/// assert!((near.unwrap().powi(2) - 2.0).abs() <= 1e-3);
+/// ```
+#[inline]
+pub fn dichotomy_between(
+    f: impl Fn(f64) -> (f64, f64),
+    (lo, f_lo): (f64, f64),
+    (hi, f_hi): (f64, f64),
+    enough: f64,
+) -> Option<f64> {
     if f_lo == 0.0 {
         return Some(lo);
     }
@@ -34,11 +53,10 @@ pub fn dichotomy(f: impl Fn(f64) -> (f64, f64), lo: f64, hi: f64) -> Option<f64>
     let (mut below, mut above) = if f_lo < 0.0 { (lo, hi) } else { (hi, lo) };
     let (mut f_below, mut f_above) = if f_lo < 0.0 { (f_lo, f_hi) } else { (f_hi, f_lo) };
     let mut x = false_position(below, f_below, above, f_above);
-    let mut last_step = (hi - lo).abs();
-    // Each halving shrinks the bracket, and Newton steps must shrink as fast, so the bound is never reached.
-    for _ in 0..4096 {
+    let mut last_step = f64::INFINITY;
+    for evaluations in 1.. {
         let (value, slope) = f(x);
-        if value == 0.0 {
+        if value.abs() <= enough {
             return Some(x);
         }
         if value < 0.0 {
@@ -47,21 +65,17 @@ pub fn dichotomy(f: impl Fn(f64) -> (f64, f64), lo: f64, hi: f64) -> Option<f64>
             (above, f_above) = (x, value);
         }
         let newton = x - value / slope;
-        let step = newton - x;
+        let step = (newton - x).abs();
         let inside = newton > below.min(above) && newton < below.max(above);
-        if inside && step.abs() < 0.5 * last_step {
-            last_step = step.abs();
-            if value.abs() < RESIDUAL && newton == x {
-                return Some(x);
-            }
-            if newton != x {
-                x = newton;
-                continue;
-            }
-        } else if value.abs() < RESIDUAL && step.abs() <= 2.0 * f64::EPSILON * x.abs() {
+        if inside && step < 0.5 * last_step && evaluations < NEWTON_EVALUATIONS {
+            last_step = step;
+            x = newton;
+            continue;
+        }
+        if value.abs() < RESIDUAL && step <= 2.0 * f64::EPSILON * x.abs() {
             return Some(x); // the step is below the spacing of f64: rounding noise points elsewhere
         }
-        let middle = 0.5 * (below + above);
+        let middle = f64::midpoint(below, above);
         if middle == below || middle == above {
             break;
         }
@@ -73,8 +87,8 @@ pub fn dichotomy(f: impl Fn(f64) -> (f64, f64), lo: f64, hi: f64) -> Option<f64>
 
 /// First guess: where the chord crosses zero, kept away from the ends.
 fn false_position(a: f64, f_a: f64, b: f64, f_b: f64) -> f64 {
-    let t = f_a / (f_a - f_b);
-    a + t.clamp(0.01, 0.99) * (b - a)
+    let t = (f_a / (f_a - f_b)).clamp(0.01, 0.99);
+    (1.0 - t) * a + t * b
 }
 
 #[cfg(test)]
@@ -106,5 +120,11 @@ mod tests {
     fn a_jump_is_bracketed() {
         let root = dichotomy(|x| (if x < 0.7 { -1.0 } else { 2.0 }, 0.0), 0.0, 1.0).unwrap();
         assert!((root - 0.7).abs() <= f64::EPSILON);
+    }
+
+    #[test]
+    fn a_jump_at_zero_in_the_widest_interval_is_bracketed() {
+        let root = dichotomy(|x| (if x < 1e-320 { -1.0 } else { 2.0 }, f64::NAN), -f64::MAX, f64::MAX).unwrap();
+        assert!((0.0..=1e-320).contains(&root), "{root:e}");
     }
 }

@@ -3,5 +3,5 @@
 mod dichotomy;
 mod monotone_cubic;
 
-pub use dichotomy::dichotomy;
+pub use dichotomy::{dichotomy, dichotomy_between};
 pub use monotone_cubic::{MonotoneCubic, Piece};

@@ -12,6 +12,8 @@ pub struct Piece {
     pub end: f64,
     /// Coefficients from constant to cubic.
     pub coefficients: [f64; 4],
+    /// Slope at the right data point.
+    pub end_slope: f64,
 }
 
 impl Piece {
@@ -36,28 +38,29 @@ impl Piece {
         (c3 != 0.0 && x > self.start && x < self.end).then_some(x)
     }
 
-    /// Calls `visit` with each angle of the piece where the slope passes through `slope`, in rising order.
+    /// Calls `visit` with each abscissa of the piece where the slope passes through `slope`, in rising order.
+    ///
+    /// Judged by the signs of `slope(x) - slope` at both ends and at the vertex, with the tangent that a piece shares with
+    /// its neighbour, so no passage falls between two pieces by rounding.
     pub fn crossings(&self, slope: f64, mut visit: impl FnMut(f64)) {
         let [_, c1, c2, c3] = self.coefficients;
-        let (a, b, c) = (3.0 * c3, 2.0 * c2, c1 - slope);
-        let width = self.end - self.start;
-        let mut roots = [f64::NAN; 2];
-        if a == 0.0 {
-            roots[0] = -c / b;
-        } else {
-            let discriminant = b * b - 4.0 * a * c;
-            if discriminant > 0.0 {
-                let q = -0.5 * (b + b.signum() * discriminant.sqrt());
-                roots = [q / a, c / q];
-                if roots[0] > roots[1] {
-                    roots.swap(0, 1);
-                }
+        let (start, end) = ((self.start, c1 - slope), (self.end, self.end_slope - slope));
+        let mut between = |a: (f64, f64), b: (f64, f64)| {
+            if (a.1 < 0.0) != (b.1 < 0.0) {
+                // The root of c1 - slope + 2 c2 t + 3 c3 t^2 on the falling or the rising branch of the parabola.
+                let root = (c2 * c2 - 3.0 * c3 * (c1 - slope)).max(0.0).sqrt();
+                let root = if b.1 > a.1 { root } else { -root };
+                let t = if (c2 < 0.0) == (root < 0.0) { (slope - c1) / (c2 + root) } else { (root - c2) / (3.0 * c3) };
+                visit(if t.is_finite() { (self.start + t).clamp(a.0, b.0) } else { b.0 });
             }
-        }
-        for t in roots {
-            if t >= 0.0 && t <= width {
-                visit((self.start + t).min(self.end));
+        };
+        match self.slope_vertex() {
+            Some(x) => {
+                let vertex = (x, self.value_and_slope(x).1 - slope);
+                between(start, vertex);
+                between(vertex, end);
             }
+            None => between(start, end),
         }
     }
 }
@@ -71,7 +74,15 @@ pub struct MonotoneCubic {
 impl MonotoneCubic {
     /// Interpolates `points` (abscissa, ordinate), abscissas strictly rising, at least two of them.
     ///
-    /// Returns `None` if they are not, or if a number is not finite.
+    /// Returns `None` if they are not, if a number is not finite, or if they lie so far apart that a coefficient would not be.
+    ///
+    /// ```
+    /// use contrapposto::math::MonotoneCubic;
+    /// let curve = MonotoneCubic::new(&[(0.0, 5.0), (1.0, 1.0), (2.0, 0.0)]).unwrap();
+    /// let (value, slope) = curve.piece_at(1.0).value_and_slope(1.0);
+    /// assert_eq!((value, slope), (1.0, -2.5));
+    /// assert!(MonotoneCubic::new(&[(1.0, 5.0), (0.0, 1.0)]).is_none());
+    /// ```
     pub fn new(points: &[(f64, f64)]) -> Option<Self> {
         let usable = points.len() >= 2
             && points.iter().all(|(x, y)| x.is_finite() && y.is_finite())
@@ -85,8 +96,8 @@ impl MonotoneCubic {
         tangents[0] = secants[0];
         tangents[n - 1] = secants[n - 2];
         for i in 1..n - 1 {
-            if secants[i - 1] * secants[i] > 0.0 {
-                tangents[i] = 0.5 * (secants[i - 1] + secants[i]);
+            if (secants[i - 1] > 0.0) == (secants[i] > 0.0) {
+                tangents[i] = f64::midpoint(secants[i - 1], secants[i]);
             }
         }
         // Fritsch & Carlson: pull the tangent pair of each piece into the circle of radius 3.
@@ -99,19 +110,22 @@ impl MonotoneCubic {
             let (alpha, beta) = (tangents[i] / secants[i], tangents[i + 1] / secants[i]);
             let radius = alpha.hypot(beta);
             if radius > 3.0 {
-                tangents[i] = 3.0 / radius * alpha * secants[i];
-                tangents[i + 1] = 3.0 / radius * beta * secants[i];
+                tangents[i] *= 3.0 / radius;
+                tangents[i + 1] *= 3.0 / radius;
             }
         }
-        let pieces = (0..n - 1)
+        let pieces: Vec<Piece> = (0..n - 1)
             .map(|i| {
                 let h = points[i + 1].0 - points[i].0;
                 let (d, m0, m1) = (secants[i], tangents[i], tangents[i + 1]);
-                let coefficients = [points[i].1, m0, (3.0 * d - 2.0 * m0 - m1) / h, (m0 + m1 - 2.0 * d) / (h * h)];
-                Piece { start: points[i].0, end: points[i + 1].0, coefficients }
+                // Written in differences, so that a straight piece has no trace of curvature.
+                let (bend0, bend1) = (d - m0, d - m1);
+                let coefficients = [points[i].1, m0, (2.0 * bend0 + bend1) / h, -(bend0 + bend1) / h / h];
+                Piece { start: points[i].0, end: points[i + 1].0, coefficients, end_slope: m1 }
             })
             .collect();
-        Some(Self { pieces })
+        let finite = pieces.iter().all(|p| p.end_slope.is_finite() && p.coefficients.iter().all(|c| c.is_finite()));
+        finite.then_some(Self { pieces })
     }
 
     /// The cubic pieces from left to right.

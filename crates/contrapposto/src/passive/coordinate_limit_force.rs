@@ -9,7 +9,7 @@
 //! met at four angles, and at none in the exactly flat middle.
 
 use super::{Form, PassiveError};
-use crate::math::dichotomy;
+use crate::math::dichotomy_between;
 
 /// Two one-sided springs with a smooth start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,69 +58,79 @@ impl CoordinateLimitForce {
     }
 
     pub(super) fn torque_and_slope(&self, q: f64) -> (f64, f64) {
-        let w = self.transition;
         if q > self.upper_limit {
-            let (force, slope) = spring((q - self.upper_limit) / w);
-            (-self.upper_stiffness * w * force, -self.upper_stiffness * slope)
+            let (force, slope) = spring(q - self.upper_limit, self.transition);
+            (-self.upper_stiffness * force, -self.upper_stiffness * slope)
         } else if q < self.lower_limit {
-            let (force, slope) = spring((self.lower_limit - q) / w);
-            (self.lower_stiffness * w * force, -self.lower_stiffness * slope)
+            let (force, slope) = spring(self.lower_limit - q, self.transition);
+            (self.lower_stiffness * force, -self.lower_stiffness * slope)
         } else {
             (0.0, 0.0)
         }
     }
 
     pub(super) fn energy(&self, q: f64) -> f64 {
-        let w2 = self.transition * self.transition;
         if q > self.upper_limit {
-            self.upper_stiffness * w2 * spring_energy((q - self.upper_limit) / self.transition)
+            self.upper_stiffness * spring_energy(q - self.upper_limit, self.transition)
         } else if q < self.lower_limit {
-            self.lower_stiffness * w2 * spring_energy((self.lower_limit - q) / self.transition)
+            self.lower_stiffness * spring_energy(self.lower_limit - q, self.transition)
         } else {
             0.0
         }
     }
 
     pub(super) fn flattest_zone(&self, from: f64, to: f64) -> (f64, f64) {
-        let zone = (self.lower_limit.max(from), self.upper_limit.min(to));
-        if zone.0 <= zone.1 {
-            return zone;
+        // A side without stiffness belongs to the flat middle.
+        let lower = if self.lower_stiffness == 0.0 { from } else { self.lower_limit.max(from) };
+        let upper = if self.upper_stiffness == 0.0 { to } else { self.upper_limit.min(to) };
+        if lower <= upper {
+            return (lower, upper);
         }
-        // The range lies on one side. The slope is least steep at one of its ends, or all along where it is straight.
-        let (a, b) = (self.torque_and_slope(from).1, self.torque_and_slope(to).1);
-        if a == b && (from >= self.upper_limit + self.transition || to <= self.lower_limit - self.transition) {
-            (from, to)
-        } else if a > b {
-            (from, from)
+        // The range lies on one side: least steep where it comes nearest the limit, or where the spring is straight.
+        let above = from > self.upper_limit;
+        let (near, far) = if above { (from, to) } else { (to, from) };
+        let straight =
+            if above { self.upper_limit + self.transition } else { self.lower_limit - self.transition }.clamp(from, to);
+        if self.torque_and_slope(near).1 > self.torque_and_slope(straight).1 {
+            (near, near)
         } else {
-            (to, to)
+            (straight.min(far), straight.max(far))
         }
     }
 
+    /// Calls `visit` with every angle where the slope passes through `slope`, wherever it is.
     pub(super) fn crossings(&self, slope: f64, mut visit: impl FnMut(f64)) {
         let w = self.transition;
-        let mut offsets = |stiffness: f64, visit: &mut dyn FnMut(f64)| {
-            let level = -slope / stiffness;
-            let miss = |x: f64| {
-                let (s, ds) = steepness(x);
-                (s - level, ds)
-            };
-            if level > 0.0 {
-                for (from, to) in [(0.0, STEEPEST), (STEEPEST, 1.0)] {
-                    if let Some(x) = dichotomy(miss, from, to) {
-                        visit(x);
-                    }
-                }
-            }
-        };
-        offsets(self.lower_stiffness, &mut |x| visit(self.lower_limit - w * x));
-        offsets(self.upper_stiffness, &mut |x| visit(self.upper_limit + w * x));
+        offsets(-slope / self.lower_stiffness, |x| visit(self.lower_limit - w * x));
+        offsets(-slope / self.upper_stiffness, |x| visit(self.upper_limit + w * x));
     }
 }
 
-/// `S(x) x` and its derivative, `x >= 0` in transition widths.
-fn spring(x: f64) -> (f64, f64) {
-    if x >= 1.0 { (x, 1.0) } else { (x * x * x * x * (10.0 + x * (-15.0 + 6.0 * x)), steepness(x).0) }
+/// Calls `visit` with each distance from the limit, in transition widths, where the steepness passes through `level`.
+fn offsets(level: f64, mut visit: impl FnMut(f64)) {
+    let peak = steepness(STEEPEST).0;
+    if !(level > 0.0 && level <= peak) {
+        return;
+    }
+    let miss = |x: f64| {
+        let (steep, bend) = steepness(x);
+        (steep - level, bend)
+    };
+    // 6 x^3 <= steepness(x) <= 40 x^3 before the peak.
+    let foot = (level / 40.0).cbrt();
+    let rising = (0.99 * foot, (1.9 * foot).min(STEEPEST));
+    for (from, to) in [rising, (STEEPEST, 1.0)] {
+        let ends = ((from, miss(from).0), (to, miss(to).0));
+        if let Some(x) = dichotomy_between(miss, ends.0, ends.1, 1e-15 * level) {
+            visit(x);
+        }
+    }
+}
+
+/// `S(d/w) d` and its derivative, `d >= 0`.
+fn spring(d: f64, w: f64) -> (f64, f64) {
+    let x = d / w;
+    if x >= 1.0 { (d, 1.0) } else { (d * (x * x * x * (10.0 + x * (-15.0 + 6.0 * x))), steepness(x).0) }
 }
 
 /// Derivative of `S(x) x` and its own derivative, `0 <= x <= 1`.
@@ -128,8 +138,12 @@ fn steepness(x: f64) -> (f64, f64) {
     (x * x * x * (40.0 + x * (-75.0 + 36.0 * x)), x * x * (120.0 + x * (-300.0 + 180.0 * x)))
 }
 
-/// Integral of `S(x) x` from zero.
-fn spring_energy(x: f64) -> f64 {
-    let inside = |x: f64| x.powi(5) * (2.0 + x * (-2.5 + x * 6.0 / 7.0));
-    if x >= 1.0 { inside(1.0) + 0.5 * (x * x - 1.0) } else { inside(x) }
+/// Integral of `S(d/w) d` from zero.
+fn spring_energy(d: f64, w: f64) -> f64 {
+    let x = d / w;
+    if x >= 1.0 {
+        0.5 * d * d - w * w / 7.0 // the transition holds 5/14 w^2
+    } else {
+        d * d * (x * x * x * (2.0 + x * (-2.5 + x * (6.0 / 7.0))))
+    }
 }

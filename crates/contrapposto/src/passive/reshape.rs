@@ -9,7 +9,7 @@ use super::PassiveError;
 /// Linear terms near both limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reshape {
-    /// Width of each zone, rad, positive, at most half the range.
+    /// Width of each zone, rad, positive, less than half the range.
     pub zone: f64,
     /// Stiffness added inside the lower zone, N m/rad, not negative.
     pub lower_stiffness: f64,
@@ -32,8 +32,8 @@ impl Reshape {
         let check = |ok: bool, name, value, accepted| {
             if ok { Ok(()) } else { Err(PassiveError::Parameter { name, value, accepted }) }
         };
-        let fits = self.zone > 0.0 && self.zone <= 0.5 * (max - min);
-        check(fits, "reshape zone (rad)", self.zone, "positive and at most half the range")?;
+        let fits = self.zone > 0.0 && min + self.zone < max - self.zone;
+        check(fits, "reshape zone (rad)", self.zone, "positive and less than half the range")?;
         for stiffness in [self.lower_stiffness, self.upper_stiffness] {
             let ok = stiffness.is_finite() && stiffness >= 0.0;
             check(ok, "reshape stiffness (N m/rad)", stiffness, "finite and not negative")?;
@@ -59,9 +59,10 @@ impl Reshape {
         0.5 * (self.lower_stiffness * below * below + self.upper_stiffness * above * above)
     }
 
-    /// The three zones as (from, to, added slope).
+    /// The three zones as (from, to, added slope); a zone to which nothing is added belongs to the middle one.
     pub(super) fn zones(&self, (min, max): (f64, f64)) -> [(f64, f64, f64); 3] {
-        let (a, b) = (min + self.zone, max - self.zone);
+        let a = if self.lower_stiffness > 0.0 { min + self.zone } else { min };
+        let b = if self.upper_stiffness > 0.0 { max - self.zone } else { max };
         [(min, a, -self.lower_stiffness), (a, b, 0.0), (b, max, -self.upper_stiffness)]
     }
 

@@ -1,0 +1,232 @@
+//! Do the pictures hold whatever they are given? Hostile numbers and texts, the same bytes twice, the marks that must be there.
+
+use contrapposto_plot::{
+    Figure, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, passive_curve, time_line, torque_balance,
+};
+
+const HOSTILE_TEXT: &str = "<script>alert(\"&'\")</script> $\\frac{a}{b}$ \u{0} \u{ffff} 関節 \u{202e}";
+
+const HOSTILE_NUMBERS: [f64; 12] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1e-300,
+    1e9,
+    -1e9,
+    1e308,
+    -f64::MAX,
+    f64::MIN_POSITIVE,
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+];
+
+/// Lists of numbers that break careless drawing code.
+fn hostile_lists() -> Vec<Vec<f64>> {
+    let mut lists = vec![
+        vec![],
+        vec![5.0; 3],
+        HOSTILE_NUMBERS.to_vec(),
+        HOSTILE_NUMBERS.iter().rev().copied().collect(),
+        vec![1.0, 1.0 + f64::EPSILON],
+        (0..20_000).map(|i| f64::from(i % 7) * 1e8).collect(),
+    ];
+    lists.extend(HOSTILE_NUMBERS.map(|number| vec![number]));
+    lists
+}
+
+fn balance(xs: &[f64], ys: &[f64], text: &str) -> TorqueBalance {
+    let points = || xs.iter().copied().zip(ys.iter().copied());
+    let sketch = |&angle_deg: &f64| PostureSketch {
+        label: text.to_owned(),
+        angle_deg,
+        polylines: vec![vec![], points().map(|(x, y)| [x, y]).collect()],
+        role: SketchRole::Zero,
+    };
+    TorqueBalance {
+        title: text.to_owned(),
+        subtitle: text.to_owned(),
+        angle_label: text.to_owned(),
+        angles_deg: xs.to_vec(),
+        external_nm: ys.to_vec(),
+        minus_passive_nm: xs.to_vec(),
+        active_nm: ys.to_vec(),
+        tolerance_nm: ys.first().copied().unwrap_or(0.1),
+        start: points().next(),
+        path: points().collect(),
+        goal: points().next_back(),
+        zero_torque_deg: xs.to_vec(),
+        postures: xs.iter().take(20).map(sketch).collect(),
+    }
+}
+
+fn passive(xs: &[f64], ys: &[f64], text: &str) -> PassiveChart {
+    let first = xs.first().copied().unwrap_or(f64::NAN);
+    let last = ys.last().copied().unwrap_or(f64::NAN);
+    PassiveChart {
+        title: text.to_owned(),
+        angle_label: text.to_owned(),
+        angles_deg: xs.to_vec(),
+        torque_nm: ys.to_vec(),
+        slope_nm_per_rad: ys.to_vec(),
+        range_deg: (first, last),
+        flattest_deg: Some((last, first)),
+        source: text.repeat(20),
+    }
+}
+
+fn line(xs: &[f64], ys: &[f64], text: &str) -> TimeLine {
+    TimeLine {
+        title: text.to_owned(),
+        subtitle: text.to_owned(),
+        angle_label: text.to_owned(),
+        time_s: xs.to_vec(),
+        angle_deg: ys.to_vec(),
+        external_nm: ys.to_vec(),
+        passive_nm: xs.to_vec(),
+        active_nm: ys.to_vec(),
+        fatigue_positive: ys.to_vec(),
+        fatigue_negative: vec![],
+        critical_level: ys.first().copied().unwrap_or(f64::NAN),
+        recovery_level: f64::INFINITY,
+        events: xs.iter().map(|x| (*x, text.to_owned())).collect(),
+    }
+}
+
+fn all_pictures(xs: &[f64], ys: &[f64], text: &str) -> [Figure; 3] {
+    [torque_balance(&[balance(xs, ys, text)]), passive_curve(&passive(xs, ys, text)), time_line(&line(xs, ys, text))]
+}
+
+fn ramp() -> (Vec<f64>, Vec<f64>) {
+    (0..=50).map(|i| (f64::from(i), f64::from(i - 25))).unzip()
+}
+
+fn count(text: &str, what: &str) -> usize {
+    text.matches(what).count()
+}
+
+/// Every tag closed in order, no bare ampersand, no character that XML forbids, every coordinate a number.
+fn assert_well_formed(svg: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    for piece in svg.split('<').skip(1) {
+        let (tag, text) = piece.split_once('>').expect("an end of the tag");
+        let name = tag.split_whitespace().next().expect("a name");
+        if let Some(closed) = name.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(closed));
+        } else if !tag.ends_with('/') && !tag.starts_with('!') {
+            open.push(name);
+        }
+        for entity in text.split('&').skip(1) {
+            let known = ["amp;", "lt;", "gt;", "quot;", "apos;"];
+            assert!(known.iter().any(|k| entity.starts_with(k)), "{entity}");
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+    assert!(!svg.contains(|c: char| c.is_control() && c != '\n' || c == '\u{ffff}'));
+    assert!(!svg.contains("NaN") && !svg.contains("inf\""));
+}
+
+#[test]
+fn hostile_numbers_give_well_formed_pictures() {
+    let lists = hostile_lists();
+    for xs in &lists {
+        for ys in &lists {
+            for figure in all_pictures(xs, ys, "text") {
+                assert_well_formed(&figure.svg());
+            }
+        }
+        for figure in all_pictures(xs, xs, "text") {
+            assert!(figure.png().unwrap().starts_with(b"\x89PNG"));
+        }
+    }
+}
+
+#[test]
+fn hostile_texts_are_escaped() {
+    let (xs, ys) = ramp();
+    for figure in all_pictures(&xs, &ys, HOSTILE_TEXT) {
+        let svg = figure.svg();
+        assert_well_formed(&svg);
+        assert!(!svg.contains("<script"));
+        assert!(svg.contains("&lt;script&gt;alert(&quot;&amp;&apos;&quot;)"));
+        assert!(svg.contains("$\\frac{a}{b}$"), "a dollar is no mathematics");
+        figure.png().unwrap();
+    }
+}
+
+#[test]
+fn long_texts_are_cut() {
+    let (xs, ys) = ramp();
+    let text = "very long words ".repeat(100_000);
+    for figure in all_pictures(&xs, &ys, &text) {
+        assert!(figure.svg().len() < text.len() / 3);
+    }
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let (xs, ys) = ramp();
+    let twice = [0, 1].map(|_| all_pictures(&xs, &ys, "text"));
+    for (a, b) in twice[0].iter().zip(&twice[1]) {
+        assert_eq!(a.svg(), b.svg());
+        assert_eq!(a.png().unwrap(), b.png().unwrap());
+    }
+}
+
+#[test]
+fn the_balance_shows_the_colours_and_marks_of_the_paper() {
+    let (xs, ys) = ramp();
+    let mut panel = balance(&xs, &ys, "text");
+    panel.zero_torque_deg = vec![25.0];
+    panel.postures.truncate(2);
+    let svg = torque_balance(&[panel]).svg();
+    for (colour, what) in [("#1f5fbf", "passive"), ("#cc2222", "external"), ("#854a1e", "active"), ("#f7c42e", "path")]
+    {
+        assert!(svg.contains(&format!("stroke=\"{colour}\"")), "{what}");
+    }
+    // Start, goal and one zero; each once in the picture and once in the legend.
+    assert_eq!(count(&svg, "<circle"), 6);
+    // Each drawing has one line that is not empty.
+    assert_eq!(count(&svg, "stroke-width=\"4\""), 2);
+}
+
+#[test]
+fn curves_end_at_the_frame() {
+    let (xs, _) = ramp();
+    let panel = TorqueBalance {
+        external_nm: vec![1.0; xs.len()],
+        minus_passive_nm: xs.iter().map(|x| 1e6 * (x - 25.0)).collect(),
+        angles_deg: xs,
+        ..TorqueBalance::default()
+    };
+    let svg = torque_balance(&[panel]).svg();
+    let passive = svg.lines().find(|line| line.contains("#1f5fbf")).unwrap();
+    let path = passive.split('"').nth(1).unwrap();
+    let numbers: Vec<f64> = path.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    assert!(!numbers.is_empty() && numbers.iter().all(|n| (0.0..=800.0).contains(n)));
+}
+
+#[test]
+fn panels_stand_below_each_other_until_a_png_would_be_too_tall() {
+    let (xs, ys) = ramp();
+    let panel = balance(&xs, &ys, "text");
+    let one = torque_balance(std::slice::from_ref(&panel));
+    let two = torque_balance(&[panel.clone(), panel.clone()]);
+    assert!(two.svg().len() > one.svg().len() + one.svg().len() / 2);
+    let many = torque_balance(&vec![panel; 100]);
+    assert!(many.png().unwrap_err().to_string().contains("fewer panels"));
+}
+
+#[test]
+fn a_picture_of_nothing_says_so() {
+    let empty = [
+        torque_balance(&[]),
+        torque_balance(&[TorqueBalance::default()]),
+        passive_curve(&PassiveChart::default()),
+        time_line(&TimeLine::default()),
+    ];
+    for figure in empty {
+        assert!(figure.svg().contains("nothing to draw"));
+        figure.png().unwrap();
+    }
+}

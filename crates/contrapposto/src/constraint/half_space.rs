@@ -1,0 +1,71 @@
+//! Which side of a plane must the posture stay on? `a^T theta <= b` (Eq. 4).
+
+/// A hard linear inequality `normal . posture <= offset` on the coordinates, normal of unit length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HalfSpace {
+    /// `a`, one entry a coordinate (Eq. 5).
+    pub normal: Vec<f64>,
+    /// `b` (Eq. 6).
+    pub offset: f64,
+}
+
+impl HalfSpace {
+    /// The half-space that asks for `step` from `posture`: `a = -step/|step|`, `b = a . (posture + step)` (Eqs. 5, 6).
+    ///
+    /// `None` for a zero step: there is no direction to ask for.
+    pub fn from_step(posture: &[f64], step: &[f64]) -> Option<Self> {
+        let length = step.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length.is_nan() || length <= 0.0 {
+            return None;
+        }
+        let normal: Vec<f64> = step.iter().map(|x| -x / length).collect();
+        let offset = normal.iter().zip(posture.iter().zip(step)).map(|(a, (q, d))| a * (q + d)).sum();
+        Some(Self { normal, offset })
+    }
+
+    /// How far `posture` lies outside; not positive inside.
+    pub fn violation(&self, posture: &[f64]) -> f64 {
+        self.normal.iter().zip(posture).map(|(a, q)| a * q).sum::<f64>() - self.offset
+    }
+
+    /// Moves `posture` to the nearest point of the half-space, changing only the coordinates marked `free`.
+    ///
+    /// Returns `false` when no free coordinate enters the inequality and the posture stays outside.
+    pub fn project(&self, posture: &mut [f64], free: &[bool]) -> bool {
+        let excess = self.violation(posture);
+        if excess <= 0.0 {
+            return true;
+        }
+        let size: f64 = self.normal.iter().zip(free).filter(|(_, free)| **free).map(|(a, _)| a * a).sum();
+        if size <= 0.0 {
+            return false;
+        }
+        for ((q, a), _) in posture.iter_mut().zip(&self.normal).zip(free).filter(|(_, free)| **free) {
+            *q -= a * excess / size;
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::HalfSpace;
+
+    #[test]
+    fn projection_lands_on_the_wanted_plane() {
+        let posture = [0.3, -1.0, 2.0];
+        let step = [0.1, 0.0, -0.2];
+        let plane = HalfSpace::from_step(&posture, &step).unwrap();
+        assert!((plane.violation(&posture) - 0.05f64.sqrt()).abs() < 1e-15);
+        let mut moved = posture;
+        assert!(plane.project(&mut moved, &[true; 3]));
+        for i in 0..3 {
+            assert!((moved[i] - posture[i] - step[i]).abs() < 1e-15);
+        }
+        let mut held = posture;
+        assert!(plane.project(&mut held, &[true, true, false]));
+        assert!(plane.violation(&held).abs() < 1e-15 && held[2] == posture[2]);
+        assert!(!plane.project(&mut posture.clone(), &[false, true, false]));
+        assert_eq!(HalfSpace::from_step(&posture, &[0.0; 3]), None);
+    }
+}

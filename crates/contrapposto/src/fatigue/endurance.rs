@@ -1,0 +1,113 @@
+//! How long can a constant load be held, and how does fatigue add up when it changes?
+//!
+//! Published endurance curves give the time `T(f)` to exhaustion at relative load `f`; fatigue grows by `dt / T(f)` and is
+//! exhausted at 1. The integral knows no recovery, so a named one is added: at rest fatigue falls as `exp(-k t)`.
+
+use super::REST_LOAD;
+
+/// The published shapes, times in s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EnduranceForm {
+    /// `T = b0 f^b1` (Frey-Law & Avin 2010 and others).
+    Power {
+        /// Time at full load, s.
+        b0: f64,
+        /// Exponent, negative.
+        b1: f64,
+    },
+    /// `T = a exp(-k f)` (Manenica 1986 and others).
+    Exponential {
+        /// Time at no load, s.
+        a: f64,
+        /// Decay.
+        k: f64,
+    },
+    /// `T = a (f - f0)^p`, for ever up to `f0` (Monod & Scherrer; Sato).
+    ShiftedPower {
+        /// Scale, s.
+        a: f64,
+        /// Load that can be held for ever.
+        f0: f64,
+        /// Exponent, negative.
+        p: f64,
+    },
+    /// `T = c0 + c1/f + c2/f^2 + c3/f^3` (Rohmert 1960).
+    InversePolynomial {
+        /// The four coefficients, s.
+        c: [f64; 4],
+    },
+    /// `T = a ((1 - f)/(f - f0))^p`, for ever up to `f0` (Huijgens 1981).
+    Huijgens {
+        /// Scale, s.
+        a: f64,
+        /// Load that can be held for ever.
+        f0: f64,
+        /// Exponent.
+        p: f64,
+    },
+    /// `T = a / (100 f - 15)^p - c`, for ever up to 0.15 (consumed endurance).
+    ConsumedEndurance {
+        /// Scale, s.
+        a: f64,
+        /// Exponent.
+        p: f64,
+        /// Offset, s.
+        c: f64,
+    },
+    /// `T = -60 m ln(f) / f` (Ma et al. 2009).
+    Ma {
+        /// Factor, min.
+        m: f64,
+    },
+}
+
+/// A named endurance curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnduranceCurve {
+    /// Name in the data files, e.g. `freylaw_avin_2010_elbow`.
+    pub name: String,
+    /// Its shape.
+    pub form: EnduranceForm,
+}
+
+/// Endurance-time integral with a recovery law of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Endurance {
+    /// Which curve.
+    pub curve: EnduranceCurve,
+    /// Recovery rate at rest, 1/s.
+    pub recovery_rate: f64,
+}
+
+impl EnduranceCurve {
+    /// Endurance time at relative load `load`, s: infinite where the curve ends (or at rest), never negative.
+    pub fn time(&self, load: f64) -> f64 {
+        if load <= 0.0 {
+            return f64::INFINITY;
+        }
+        let f = load.min(1.0);
+        let seconds = match self.form {
+            EnduranceForm::Power { b0, b1 } => b0 * f.powf(b1),
+            EnduranceForm::Exponential { a, k } => a * (-k * f).exp(),
+            EnduranceForm::ShiftedPower { f0, .. } | EnduranceForm::Huijgens { f0, .. } if f <= f0 => f64::INFINITY,
+            EnduranceForm::ShiftedPower { a, f0, p } => a * (f - f0).powf(p),
+            EnduranceForm::Huijgens { a, f0, p } => a * ((1.0 - f) / (f - f0)).powf(p),
+            EnduranceForm::InversePolynomial { c } => c[0] + (c[1] + (c[2] + c[3] / f) / f) / f,
+            EnduranceForm::ConsumedEndurance { .. } if f <= 0.15 => f64::INFINITY,
+            EnduranceForm::ConsumedEndurance { a, p, c } => a / (100.0 * f - 15.0).powf(p) - c,
+            EnduranceForm::Ma { m } => -60.0 * m * f.ln() / f,
+        };
+        seconds.max(0.0)
+    }
+}
+
+impl Endurance {
+    /// Fatigue after `seconds` under relative load `load`.
+    pub fn advance(&self, share: f64, load: f64, seconds: f64) -> f64 {
+        if load <= REST_LOAD {
+            return share * (-self.recovery_rate * seconds).exp();
+        }
+        let time = self.curve.time(load);
+        if time > 0.0 { (share + seconds / time).min(1.0) } else { 1.0 }
+    }
+}

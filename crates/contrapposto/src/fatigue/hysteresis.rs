@@ -1,0 +1,20 @@
+//! When does relief begin, and when does it end?
+//!
+//! Rodriguez & Boulic 2007, section 3: the constraint switches on at a critical level and off at a lower one, which forces
+//! a least duration of recovery. The paper gives no numbers.
+
+/// The two thresholds, `recovery_level < critical_level`, both in 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hysteresis {
+    /// Fatigue at which a group asks for relief.
+    pub critical_level: f64,
+    /// Fatigue below which it no longer does.
+    pub recovery_level: f64,
+}
+
+impl Hysteresis {
+    /// Is the group recovering, given whether it was and how tired it is?
+    pub fn recovering(self, was_recovering: bool, fatigue: f64) -> bool {
+        if was_recovering { fatigue > self.recovery_level } else { fatigue >= self.critical_level }
+    }
+}

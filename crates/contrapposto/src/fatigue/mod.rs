@@ -1,0 +1,83 @@
+//! How tired is a muscle group, and when must it rest?
+//!
+//! Two laws, one scale: fatigue is 0 rested and 1 when the present load can no longer be held, so thresholds mean the same
+//! for both. Load is relative: |active torque| over strength at the present angle. This module knows nothing of posture.
+
+mod endurance;
+mod hysteresis;
+mod three_compartment;
+
+pub use endurance::{Endurance, EnduranceCurve, EnduranceForm};
+pub use hysteresis::Hysteresis;
+pub use three_compartment::{Compartments, ThreeCompartment};
+
+/// Relative load at or below which a group counts as resting (3CC-r: Looft et al. 2018; the same for the integral).
+pub const REST_LOAD: f64 = 0.01;
+
+/// How a muscle group tires and recovers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FatigueLaw {
+    /// Three-compartment controller with rest recovery (3CC-r).
+    ThreeCompartment(ThreeCompartment),
+    /// Integral of time over endurance time.
+    Endurance(Endurance),
+}
+
+/// How tired a group is now. Depends on the history of its load; filled by [`FatigueLaw::advance`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FatigueState {
+    /// State of 3CC-r.
+    Compartments(Compartments),
+    /// State of the integral, 0..=1.
+    Share(f64),
+}
+
+impl FatigueLaw {
+    /// A group with fatigue `level` (0..=1) under relative load `load`.
+    pub fn start(&self, level: f64, load: f64) -> FatigueState {
+        match self {
+            Self::ThreeCompartment(_) => FatigueState::Compartments(Compartments::with_fatigue(level, load)),
+            Self::Endurance(_) => FatigueState::Share(level),
+        }
+    }
+
+    /// The state after `seconds` under relative load `load` (>= 0).
+    pub fn advance(&self, state: FatigueState, load: f64, seconds: f64) -> FatigueState {
+        match (self, state) {
+            (Self::ThreeCompartment(law), FatigueState::Compartments(c)) => {
+                FatigueState::Compartments(law.advance(c, load, seconds))
+            }
+            (Self::Endurance(law), FatigueState::Share(share)) => {
+                FatigueState::Share(law.advance(share, load, seconds))
+            }
+            // A state of the other law can only come from a caller's mix-up: it starts rested.
+            (law, _) => law.advance(law.start(0.0, load), load, seconds),
+        }
+    }
+
+    /// Time a rested group can hold a constant relative load, s; infinite if for ever.
+    pub fn endurance_time(&self, load: f64) -> f64 {
+        match self {
+            Self::ThreeCompartment(law) => law.endurance_time(load),
+            Self::Endurance(law) => law.curve.time(load),
+        }
+    }
+}
+
+impl FatigueState {
+    /// Fatigue under relative load `load`: 0 rested, 1 when the load can no longer be held.
+    pub fn level(self, load: f64) -> f64 {
+        match self {
+            Self::Compartments(c) => c.level(load),
+            Self::Share(share) => share,
+        }
+    }
+
+    /// Torque still available as a share of strength.
+    pub fn capacity(self) -> f64 {
+        match self {
+            Self::Compartments(c) => 1.0 - c.fatigued,
+            Self::Share(share) => 1.0 - share,
+        }
+    }
+}

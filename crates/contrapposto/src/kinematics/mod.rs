@@ -1,0 +1,115 @@
+//! Where is every part of the body in a posture?
+
+use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
+
+use crate::model::{Model, Motion, Placement};
+use crate::posture::{Posture, PostureError};
+
+/// Frames and axes of a posture. Depends on the posture only; filled by [`Kinematics::update`].
+#[derive(Clone, Debug)]
+pub struct Kinematics {
+    /// Rotation of each mobility's moved frame in ground.
+    pub(crate) rotations: Vec<Matrix3<f64>>,
+    /// Its origin in ground, m: the point hinges and balls turn about.
+    pub(crate) origins: Vec<Vector3<f64>>,
+    /// Unit axis of each rate in ground.
+    pub(crate) axes: Vec<Vector3<f64>>,
+}
+
+impl Kinematics {
+    /// Space for `model`, at its default posture.
+    pub fn new(model: &Model) -> Self {
+        let mut kinematics = Self {
+            rotations: vec![Matrix3::identity(); model.mobilities.len()],
+            origins: vec![Vector3::zeros(); model.mobilities.len()],
+            axes: vec![Vector3::zeros(); model.rates.len()],
+        };
+        kinematics.fill(model, model.default_posture().values());
+        kinematics
+    }
+
+    /// Brings all frames to `posture`. Does not allocate.
+    ///
+    /// # Errors
+    /// [`PostureError`] when the posture does not fit the model; nothing is changed then.
+    pub fn update(&mut self, model: &Model, posture: &Posture) -> Result<(), PostureError> {
+        posture.check(model)?;
+        self.fill(model, posture.values());
+        Ok(())
+    }
+
+    fn fill(&mut self, model: &Model, values: &[f64]) {
+        for (i, mobility) in model.mobilities.iter().enumerate() {
+            let (rotation, origin) = match mobility.parent {
+                None => (mobility.rotation, mobility.translation),
+                Some(p) => {
+                    (self.rotations[p] * mobility.rotation, self.rotations[p] * mobility.translation + self.origins[p])
+                }
+            };
+            let value = &values[mobility.coordinate..];
+            match mobility.motion {
+                Motion::Hinge(axis) => {
+                    self.axes[mobility.rate] = rotation * axis.into_inner();
+                    self.rotations[i] = rotation * nalgebra::Rotation3::from_axis_angle(&axis, value[0]).into_inner();
+                    self.origins[i] = origin;
+                }
+                Motion::Slide(axis) => {
+                    let axis = rotation * axis.into_inner();
+                    self.axes[mobility.rate] = axis;
+                    self.rotations[i] = rotation;
+                    self.origins[i] = origin + value[0] * axis;
+                }
+                Motion::Ball => {
+                    let quaternion = nalgebra::Quaternion::new(value[0], value[1], value[2], value[3]);
+                    let turn = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().into_inner();
+                    let rotation = rotation * turn;
+                    for axis in 0..3 {
+                        self.axes[mobility.rate + axis] = rotation.column(axis).into_owned();
+                    }
+                    self.rotations[i] = rotation;
+                    self.origins[i] = origin;
+                }
+            }
+        }
+    }
+
+    /// Pose of a segment in ground.
+    pub fn placement(&self, model: &Model, segment: usize) -> Placement {
+        let segment = &model.segments[segment];
+        match segment.mobility {
+            None => segment.offset,
+            Some(m) => {
+                let rotation = UnitQuaternion::from_matrix(&self.rotations[m]);
+                Placement::from_parts(self.origins[m].into(), rotation) * segment.offset
+            }
+        }
+    }
+
+    /// A point fixed in a segment (m, its frame), in ground.
+    pub fn station(&self, model: &Model, segment: usize, point: Vector3<f64>) -> Vector3<f64> {
+        let segment = &model.segments[segment];
+        let point = (segment.offset * Point3::from(point)).coords;
+        segment.mobility.map_or(point, |m| self.rotations[m] * point + self.origins[m])
+    }
+
+    /// A direction fixed in a segment, in ground.
+    pub fn direction(&self, model: &Model, segment: usize, direction: Vector3<f64>) -> Vector3<f64> {
+        let segment = &model.segments[segment];
+        let direction = segment.offset.rotation * direction;
+        segment.mobility.map_or(direction, |m| self.rotations[m] * direction)
+    }
+
+    /// Unit axis of a rate in ground.
+    pub fn axis(&self, rate: usize) -> Vector3<f64> {
+        self.axes[rate]
+    }
+
+    /// Centre of mass of the whole body in ground, m; `None` for a body without mass.
+    pub fn center_of_mass(&self, model: &Model) -> Option<Vector3<f64>> {
+        let mass = model.mass();
+        let moment: Vector3<f64> = (0..model.segments.len())
+            .map(|s| model.segments[s].mass * self.station(model, s, model.segments[s].center_of_mass))
+            .sum();
+        (mass > 0.0).then(|| moment / mass)
+    }
+}

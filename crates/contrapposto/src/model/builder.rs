@@ -1,0 +1,243 @@
+//! How is a model put together, and what is refused?
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Coordinate, CoordinateKind, CoordinateSpec, JointKind, Mobility, Model, Motion, Placement, Rate, Segment};
+
+/// A segment and its joint as given to the builder.
+#[derive(Clone, Debug)]
+pub struct SegmentSpec {
+    /// Unique name.
+    pub name: String,
+    /// Name of the parent segment; `None` joins it to ground.
+    pub parent: Option<String>,
+    /// Mass, kg, not negative.
+    pub mass: f64,
+    /// Centre of mass in the segment's frame, m.
+    pub center_of_mass: Vector3<f64>,
+    /// Inertia about the centre of mass, kg m^2.
+    pub inertia: Matrix3<f64>,
+    /// Name of the joint.
+    pub joint: String,
+    /// Its kind.
+    pub kind: JointKind,
+    /// The joint's resting frame in the parent's frame.
+    pub in_parent: Placement,
+    /// The joint's moved frame in this segment's frame.
+    pub in_segment: Placement,
+    /// One spec for every coordinate of the joint, in the order of its motions. Balls may leave theirs out: they are
+    /// named `{joint}_qw` and so on.
+    pub coordinates: Vec<CoordinateSpec>,
+}
+
+/// Why a model was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// Two things have one name.
+    #[error("two {what}s are named `{name}`; names must be unique")]
+    Duplicate {
+        /// Segment or coordinate.
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A parent does not come before its child.
+    #[error("segment `{segment}` has parent `{parent}`, which is not among the segments before it")]
+    Parent {
+        /// The child.
+        segment: String,
+        /// The missing parent.
+        parent: String,
+    },
+    /// A number has no meaning.
+    #[error("{what} of `{name}` is {value}; it must be {accepted}")]
+    Number {
+        /// Segment or coordinate.
+        name: String,
+        /// The quantity with its unit.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+    /// The joint has another number of coordinates.
+    #[error("joint `{joint}` has {given} coordinates; its kind needs {needed}")]
+    Coordinates {
+        /// The joint.
+        joint: String,
+        /// Number given.
+        given: usize,
+        /// Number needed.
+        needed: usize,
+    },
+}
+
+/// Collects segments, parents before children.
+#[derive(Clone, Debug)]
+pub struct ModelBuilder {
+    model: Model,
+}
+
+impl ModelBuilder {
+    /// An empty model in a field of gravity (ground axes, m/s^2).
+    pub fn new(name: &str, gravity: Vector3<f64>) -> Self {
+        let model = Model {
+            name: name.to_owned(),
+            gravity,
+            segments: vec![],
+            coordinates: vec![],
+            mobilities: vec![],
+            rates: vec![],
+        };
+        Self { model }
+    }
+
+    /// Adds a segment with its joint.
+    ///
+    /// # Errors
+    /// [`ModelError`] names what is wrong; the builder is then unchanged.
+    pub fn segment(&mut self, spec: SegmentSpec) -> Result<(), ModelError> {
+        let model = &mut self.model;
+        if model.segment(&spec.name).is_some() {
+            return Err(ModelError::Duplicate { what: "segment", name: spec.name });
+        }
+        let parent = match &spec.parent {
+            None => None,
+            Some(name) => Some(
+                model
+                    .segment(name)
+                    .ok_or_else(|| ModelError::Parent { segment: spec.name.clone(), parent: name.clone() })?,
+            ),
+        };
+        check_segment(&spec)?;
+        let motions = spec.kind.motions();
+        let specs = coordinate_specs(&spec, &motions)?;
+        for (i, (coordinate, kind)) in specs.iter().enumerate() {
+            let taken = model.coordinate(&coordinate.name).is_some()
+                || specs[..i].iter().any(|(other, _)| other.name == coordinate.name);
+            if taken {
+                return Err(ModelError::Duplicate { what: "coordinate", name: coordinate.name.clone() });
+            }
+            check_coordinate(coordinate, *kind)?;
+        }
+
+        let (mut mobility, mut rest) = match parent {
+            None => (None, spec.in_parent),
+            Some(p) => (model.segments[p].mobility, model.segments[p].offset * spec.in_parent),
+        };
+        let mut specs = specs.into_iter();
+        for motion in motions {
+            model.mobilities.push(Mobility {
+                parent: mobility,
+                rotation: rest.rotation.to_rotation_matrix().into_inner(),
+                translation: rest.translation.vector,
+                motion,
+                coordinate: model.coordinates.len(),
+                rate: model.rates.len(),
+                mass: 0.0,
+                first_moment: Vector3::zeros(),
+            });
+            mobility = Some(model.mobilities.len() - 1);
+            rest = Placement::identity();
+            for (c, kind) in specs.by_ref().take(motion.coordinates()) {
+                let rate = (kind != CoordinateKind::Quaternion).then_some(model.rates.len());
+                if rate.is_some() {
+                    model.rates.push(Rate {
+                        name: c.name.clone(),
+                        rotational: kind == CoordinateKind::Rotation,
+                        coordinate: Some(model.coordinates.len()),
+                    });
+                }
+                let (name, range, default) = (c.name, c.range, c.default);
+                let (positive, passive, groups) = (c.positive, c.passive, c.groups);
+                model.coordinates.push(Coordinate { name, kind, range, default, positive, passive, groups, rate });
+            }
+            if motion == Motion::Ball {
+                for axis in ["mx", "my", "mz"] {
+                    let name = format!("{}_{axis}", spec.joint);
+                    model.rates.push(Rate { name, rotational: true, coordinate: None });
+                }
+            }
+        }
+        let offset = rest * spec.in_segment.inverse();
+        if let Some(m) = mobility {
+            model.mobilities[m].mass += spec.mass;
+            model.mobilities[m].first_moment +=
+                spec.mass * (offset * nalgebra::Point3::from(spec.center_of_mass)).coords;
+        }
+        model.segments.push(Segment {
+            name: spec.name,
+            parent,
+            mass: spec.mass,
+            center_of_mass: spec.center_of_mass,
+            inertia: spec.inertia,
+            joint: spec.joint,
+            joint_kind: spec.kind,
+            mobility,
+            offset,
+        });
+        Ok(())
+    }
+
+    /// The finished model.
+    pub fn build(self) -> Model {
+        self.model
+    }
+}
+
+fn check_segment(spec: &SegmentSpec) -> Result<(), ModelError> {
+    let refuse = |what, value, accepted| Err(ModelError::Number { name: spec.name.clone(), what, value, accepted });
+    if !(spec.mass.is_finite() && spec.mass >= 0.0) {
+        return refuse("mass (kg)", spec.mass, "finite and not negative");
+    }
+    let placements = [spec.in_parent, spec.in_segment];
+    let coordinates = placements.iter().flat_map(|p| p.translation.vector.iter().chain(p.rotation.coords.iter()));
+    for &value in spec.center_of_mass.iter().chain(coordinates) {
+        if !value.is_finite() {
+            return refuse("centre of mass or joint frame", value, "finite");
+        }
+    }
+    Ok(())
+}
+
+fn check_coordinate(spec: &CoordinateSpec, kind: CoordinateKind) -> Result<(), ModelError> {
+    let refuse = |what, value, accepted| Err(ModelError::Number { name: spec.name.clone(), what, value, accepted });
+    let (min, max) = spec.range;
+    if min.is_nan() || max.is_nan() || min > max {
+        return refuse("lower limit of the range", min, "at or below the upper limit");
+    }
+    if !(spec.default.is_finite() && (min..=max).contains(&spec.default)) {
+        return refuse("default", spec.default, "finite and inside the range");
+    }
+    if kind == CoordinateKind::Quaternion && (spec.passive.is_some() || spec.groups.is_some()) {
+        return refuse("passive law", f64::NAN, "left out for a ball's components");
+    }
+    Ok(())
+}
+
+/// The coordinates with their kinds, balls filled in.
+fn coordinate_specs(
+    spec: &SegmentSpec,
+    motions: &[Motion],
+) -> Result<Vec<(CoordinateSpec, CoordinateKind)>, ModelError> {
+    let mut given = spec.coordinates.iter().cloned();
+    let axes = motions.iter().filter(|m| **m != Motion::Ball).count();
+    if spec.coordinates.len() != axes {
+        return Err(ModelError::Coordinates { joint: spec.joint.clone(), given: spec.coordinates.len(), needed: axes });
+    }
+    let mut all = vec![];
+    for motion in motions {
+        match motion {
+            Motion::Hinge(_) => all.extend(given.next().map(|c| (c, CoordinateKind::Rotation))),
+            Motion::Slide(_) => all.extend(given.next().map(|c| (c, CoordinateKind::Translation))),
+            Motion::Ball => all.extend(["qw", "qx", "qy", "qz"].into_iter().map(|axis| {
+                let mut component = CoordinateSpec::new(&format!("{}_{axis}", spec.joint), (-1.0, 1.0));
+                component.default = if axis == "qw" { 1.0 } else { 0.0 };
+                (component, CoordinateKind::Quaternion)
+            })),
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,130 @@
+//! What is a body? An immutable tree of rigid segments, joined at coordinates that have a range and two muscle groups.
+//!
+//! Ground axes of the built-in adult: x forward, y up, z right (ISB). Units: m, kg, rad, N m. A [`Model`] is built once
+//! with a [`ModelBuilder`] and never changes; everything computed lives elsewhere.
+
+mod adult;
+mod builder;
+mod coordinate;
+pub mod data;
+mod joint;
+
+pub use adult::{Adult, AdultError, CoordinateSources, Sex, adult};
+pub use builder::{ModelBuilder, ModelError, SegmentSpec};
+pub use coordinate::{Coordinate, CoordinateKind, CoordinateSpec, MuscleGroup, Side};
+pub use joint::{JointKind, Motion};
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+use crate::posture::Posture;
+
+/// Pose of one frame in another: rotation, then translation (m).
+pub type Placement = Isometry3<f64>;
+
+/// A rigid part of the body.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// Unique name, e.g. `hand_r`.
+    pub name: String,
+    /// Index of the segment it is joined to; `None` for ground.
+    pub parent: Option<usize>,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass in the segment's frame, m.
+    pub center_of_mass: Vector3<f64>,
+    /// Inertia about the centre of mass in the segment's axes, kg m^2 (statics does not need it; writers do).
+    pub inertia: Matrix3<f64>,
+    /// Name of the joint to the parent.
+    pub joint: String,
+    /// Kind of that joint.
+    pub joint_kind: JointKind,
+    /// The mobility that carries the segment; `None` when it is fixed to ground.
+    pub(crate) mobility: Option<usize>,
+    /// The segment's frame in the frame of that mobility (or in ground).
+    pub(crate) offset: Placement,
+}
+
+/// One elementary motion: a hinge or slide axis, or a ball. Joints are chains of them, welded segments share one.
+#[derive(Clone, Debug)]
+pub(crate) struct Mobility {
+    pub(crate) parent: Option<usize>,
+    /// Resting frame in the parent mobility's frame.
+    pub(crate) rotation: Matrix3<f64>,
+    pub(crate) translation: Vector3<f64>,
+    pub(crate) motion: Motion,
+    /// First coordinate that drives it, and first rate.
+    pub(crate) coordinate: usize,
+    pub(crate) rate: usize,
+    /// Mass of the segments fixed to it, and mass times their centre in the mobility's frame.
+    pub(crate) mass: f64,
+    pub(crate) first_moment: Vector3<f64>,
+}
+
+/// One direction of motion, and so one torque: hinges and slides have one, balls three.
+#[derive(Clone, Debug)]
+pub struct Rate {
+    /// The coordinate's name, or `{joint}_mx` and so on for a ball.
+    pub name: String,
+    /// Whether it turns (N m) or slides (N).
+    pub rotational: bool,
+    /// The coordinate it changes, for hinges and slides.
+    pub coordinate: Option<usize>,
+}
+
+/// An immutable body.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) name: String,
+    pub(crate) gravity: Vector3<f64>,
+    pub(crate) segments: Vec<Segment>,
+    pub(crate) coordinates: Vec<Coordinate>,
+    pub(crate) mobilities: Vec<Mobility>,
+    pub(crate) rates: Vec<Rate>,
+}
+
+impl Model {
+    /// Name of the body.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Acceleration of gravity in ground axes, m/s^2.
+    pub fn gravity(&self) -> Vector3<f64> {
+        self.gravity
+    }
+
+    /// All segments, parents before children.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// All coordinates, in the order of [`Posture`] values.
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    /// All rates, in the order of torques and gradients.
+    pub fn rates(&self) -> &[Rate] {
+        &self.rates
+    }
+
+    /// Index of the coordinate of that name.
+    pub fn coordinate(&self, name: &str) -> Option<usize> {
+        self.coordinates.iter().position(|c| c.name == name)
+    }
+
+    /// Index of the segment of that name.
+    pub fn segment(&self, name: &str) -> Option<usize> {
+        self.segments.iter().position(|s| s.name == name)
+    }
+
+    /// Every coordinate at its default.
+    pub fn default_posture(&self) -> Posture {
+        Posture::new(self.coordinates.iter().map(|c| c.default).collect())
+    }
+
+    /// Total mass, kg.
+    pub fn mass(&self) -> f64 {
+        self.segments.iter().map(|s| s.mass).sum()
+    }
+}

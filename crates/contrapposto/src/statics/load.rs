@@ -1,0 +1,92 @@
+//! What pulls on the body besides its own weight?
+
+use nalgebra::Vector3;
+
+use crate::model::Model;
+
+/// Which axes a force or couple keeps when the body moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FixedIn {
+    /// Ground axes: a held weight, a rope to a far point.
+    World,
+    /// The segment's axes: a thruster, a tool's reaction.
+    Segment,
+}
+
+/// Kinds of load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadKind {
+    /// A mass in kg, pulled by the model's gravity; may be zero.
+    Weight(f64),
+    /// A force in N.
+    Force(Vector3<f64>, FixedIn),
+    /// A pure couple in N m; its point does not matter.
+    Couple(Vector3<f64>, FixedIn),
+}
+
+/// Something that pulls on a point of a segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// Index of the segment.
+    pub segment: usize,
+    /// Where, in the segment's frame, m.
+    pub point: Vector3<f64>,
+    /// What.
+    pub kind: LoadKind,
+}
+
+/// Why a load was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// There is no such segment.
+    #[error("load on segment number {segment}; the model has {count} segments")]
+    Segment {
+        /// The index given.
+        segment: usize,
+        /// Number of segments.
+        count: usize,
+    },
+    /// A number is NaN or infinite, or a mass negative.
+    #[error("{what} of a load is {value}; it must be {accepted}")]
+    Number {
+        /// The quantity with its unit.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+}
+
+impl Load {
+    /// A weight at a segment's centre of mass.
+    pub fn weight(model: &Model, segment: usize, mass: f64) -> Self {
+        let point = model.segments()[segment].center_of_mass;
+        Self { segment, point, kind: LoadKind::Weight(mass) }
+    }
+
+    /// Does it fit `model`?
+    ///
+    /// # Errors
+    /// [`LoadError`] for a segment that is not there, or a number without meaning.
+    pub fn check(&self, model: &Model) -> Result<(), LoadError> {
+        let count = model.segments().len();
+        if self.segment >= count {
+            return Err(LoadError::Segment { segment: self.segment, count });
+        }
+        let finite = |what, v: &Vector3<f64>| match v.iter().find(|x| !x.is_finite()) {
+            Some(&value) => Err(LoadError::Number { what, value, accepted: "finite" }),
+            None => Ok(()),
+        };
+        finite("point (m)", &self.point)?;
+        match &self.kind {
+            LoadKind::Force(force, _) => finite("force (N)", force),
+            LoadKind::Couple(couple, _) => finite("couple (N m)", couple),
+            &LoadKind::Weight(mass) if mass.is_finite() && mass >= 0.0 => Ok(()),
+            &LoadKind::Weight(value) => {
+                Err(LoadError::Number { what: "mass (kg)", value, accepted: "finite and not negative" })
+            }
+        }
+    }
+}
