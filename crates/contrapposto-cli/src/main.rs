@@ -1,2 +1,35 @@
-//! The program.
-fn main() {}
+//! `contrapposto`: ready and relaxed human postures from the command line.
+//!
+//! Results go to standard output, progress and complaints to standard error. Exit codes: 0 done, 1 the job failed, 2 bad
+//! input. A closed pipe is no failure.
+
+mod args;
+mod chart;
+mod fail;
+mod figures;
+mod input;
+mod minimize;
+mod output;
+mod passive;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Args, Verb};
+
+fn main() -> ExitCode {
+    let result = match Args::parse().verb {
+        Verb::Simulate(args) => simulate::simulate(&args),
+        Verb::Demo(args) => simulate::demo(&args),
+        Verb::Figures(args) => figures::figures(&args),
+        Verb::Minimize(args) => minimize::minimize(&args),
+        Verb::Passive(args) => passive::passive(&args),
+        Verb::Schema => output::print(&format!("{:#}\n", contrapposto_formats::scenario_schema())),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fail) => fail.report(),
+    }
+}

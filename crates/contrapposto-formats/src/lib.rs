@@ -1,1 +1,22 @@
-//! Text in, text out.
+//! Text from outside, text to outside: scenario files, decision lines, tables and summaries.
+//!
+//! Everything here reads bytes of strangers and is total: any input gives a value or an [`InputError`] with its place. The
+//! crate opens no files; the program does.
+
+pub mod body;
+pub mod expression;
+pub mod numbers;
+pub mod urdf;
+pub mod xml;
+
+mod input_error;
+mod minimize;
+mod scenario;
+mod summary;
+mod trajectory_csv;
+
+pub use input_error::{InputError, nearest, utf8};
+pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
+pub use scenario::{MOST_BYTES, ScenarioText, read_scenario, scenario_schema};
+pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
+pub use trajectory_csv::{csv_header, csv_row};

@@ -1,4 +1,33 @@
-//! Ready and relaxed human postures.
+//! Ready and relaxed human postures: active, passive and external joint torque, fatigue, and the hybrid minimisation of
+//! Rodriguez & Boulic 2007 ("Simulating reactive/passive postures by means of a human active torque hybrid minimization").
+//!
+//! At rest, `active + passive + external = 0` at every joint (Eq. 1). A tired muscle group is relieved either where
+//! muscles work well (the active strategy: ready postures) or where ligaments carry the load (the passive strategy:
+//! relaxed ones). [`hybrid::minimise`] decides for one joint, [`simulation::run`] for a body over time.
+//!
+//! Pure functions on plain values: this crate reads no files, prints nothing and starts no threads. Units are rad, m, kg,
+//! N, N m and s; torques act in the direction of their coordinate.
+//!
+//! ```
+//! use contrapposto::model::{Adult, adult};
+//! use contrapposto::{kinematics::Kinematics, statics::ExternalTorque};
+//!
+//! // How heavy is a forearm, held level with the upper arm hanging?
+//! let model = adult(&Adult::default())?;
+//! let elbow = model.coordinate("elbow_flex_r").unwrap();
+//! let mut posture = model.default_posture();
+//! posture.values_mut()[elbow] = 90f64.to_radians();
+//! let mut kinematics = Kinematics::new(&model);
+//! kinematics.update(&model, &posture)?;
+//! let mut external = ExternalTorque::new(&model);
+//! external.update(&model, &kinematics, &[])?;
+//! assert!((external.torques()[elbow] + 2.90).abs() < 0.01); // N m, extending
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. Today relief moves each
+//! coordinate on its own; strict priorities, supports and contact come with later versions (see CHANGELOG.md).
+
 pub mod constraint;
 pub mod fatigue;
 pub mod hybrid;
@@ -7,5 +36,6 @@ pub mod math;
 pub mod model;
 pub mod passive;
 pub mod posture;
+pub mod simulation;
 pub mod statics;
 pub mod strength;

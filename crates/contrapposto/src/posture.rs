@@ -1,6 +1,6 @@
 //! Where does every coordinate stand?
 
-use crate::model::{CoordinateKind, Model};
+use crate::model::{LARGEST, Model, Motion};
 
 /// The values of all coordinates of a model, in its order: rad, m, or quaternion components.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +20,8 @@ pub enum PostureError {
         /// Coordinates of the model.
         needed: usize,
     },
-    /// A value is NaN or infinite.
-    #[error("coordinate `{coordinate}` is {value}; it must be finite")]
+    /// A value is NaN, infinite or beyond [`LARGEST`].
+    #[error("coordinate `{coordinate}` is {value}; it must be finite and at most {LARGEST:e} in size")]
     NotFinite {
         /// Name of the coordinate.
         coordinate: String,
@@ -64,18 +64,15 @@ impl Posture {
             return Err(PostureError::Length { given, needed });
         }
         for (value, coordinate) in self.values.iter().zip(model.coordinates()) {
-            if !value.is_finite() {
+            if value.is_nan() || value.abs() > LARGEST {
                 return Err(PostureError::NotFinite { coordinate: coordinate.name.clone(), value: *value });
             }
         }
-        let is_first = |i: usize| {
-            model.coordinates[i].kind == CoordinateKind::Quaternion
-                && model.mobilities.iter().any(|m| m.coordinate == i)
-        };
-        for i in (0..needed).filter(|&i| is_first(i)) {
-            let length = self.values[i..i + 4].iter().map(|v| v * v).sum::<f64>().sqrt();
+        for ball in model.mobilities.iter().filter(|m| m.motion == Motion::Ball) {
+            let first = ball.coordinate;
+            let length = self.values[first..first + 4].iter().map(|v| v * v).sum::<f64>().sqrt();
             if length < 1e-6 {
-                return Err(PostureError::Quaternion { coordinate: model.coordinates[i].name.clone(), length });
+                return Err(PostureError::Quaternion { coordinate: model.coordinates[first].name.clone(), length });
             }
         }
         Ok(())

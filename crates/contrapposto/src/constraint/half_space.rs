@@ -10,17 +10,26 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// The half-space that asks for `step` from `posture`: `a = -step/|step|`, `b = a . (posture + step)` (Eqs. 5, 6).
+    /// No inequality yet: space for `n` coordinates, to be filled by [`HalfSpace::ask_for`].
+    pub fn new(n: usize) -> Self {
+        Self { normal: vec![0.0; n], offset: 0.0 }
+    }
+
+    /// Asks for `step` from `posture`: `a = -step/|step|`, `b = a . (posture + step)` (Eqs. 5, 6). Does not allocate.
     ///
-    /// `None` for a zero step: there is no direction to ask for.
-    pub fn from_step(posture: &[f64], step: &[f64]) -> Option<Self> {
+    /// Returns `false` for a zero step, which has no direction to ask for; the half-space is then the whole space.
+    pub fn ask_for(&mut self, posture: &[f64], step: &[f64]) -> bool {
         let length = step.iter().map(|x| x * x).sum::<f64>().sqrt();
+        self.normal.fill(0.0);
+        self.offset = 0.0;
         if length.is_nan() || length <= 0.0 {
-            return None;
+            return false;
         }
-        let normal: Vec<f64> = step.iter().map(|x| -x / length).collect();
-        let offset = normal.iter().zip(posture.iter().zip(step)).map(|(a, (q, d))| a * (q + d)).sum();
-        Some(Self { normal, offset })
+        for ((a, q), d) in self.normal.iter_mut().zip(posture).zip(step) {
+            *a = -d / length;
+            self.offset += *a * (q + d);
+        }
+        true
     }
 
     /// How far `posture` lies outside; not positive inside.
@@ -55,7 +64,8 @@ mod tests {
     fn projection_lands_on_the_wanted_plane() {
         let posture = [0.3, -1.0, 2.0];
         let step = [0.1, 0.0, -0.2];
-        let plane = HalfSpace::from_step(&posture, &step).unwrap();
+        let mut plane = HalfSpace::new(3);
+        assert!(plane.ask_for(&posture, &step));
         assert!((plane.violation(&posture) - 0.05f64.sqrt()).abs() < 1e-15);
         let mut moved = posture;
         assert!(plane.project(&mut moved, &[true; 3]));
@@ -66,6 +76,6 @@ mod tests {
         assert!(plane.project(&mut held, &[true, true, false]));
         assert!(plane.violation(&held).abs() < 1e-15 && held[2] == posture[2]);
         assert!(!plane.project(&mut posture.clone(), &[false, true, false]));
-        assert_eq!(HalfSpace::from_step(&posture, &[0.0; 3]), None);
+        assert!(!plane.ask_for(&posture, &[0.0; 3]) && plane.project(&mut posture.clone(), &[true; 3]));
     }
 }

@@ -80,7 +80,8 @@ pub struct Endurance {
 }
 
 impl EnduranceCurve {
-    /// Endurance time at relative load `load`, s: infinite where the curve ends (or at rest), never negative.
+    /// Endurance time at relative load `load`, s: infinite where the curve ends (or at rest), never negative. A load above
+    /// strength counts as 1, the end of every published curve.
     pub fn time(&self, load: f64) -> f64 {
         if load <= 0.0 {
             return f64::INFINITY;

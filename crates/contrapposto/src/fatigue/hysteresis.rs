@@ -8,7 +8,7 @@
 pub struct Hysteresis {
     /// Fatigue at which a group asks for relief.
     pub critical_level: f64,
-    /// Fatigue below which it no longer does.
+    /// Fatigue at or below which it no longer does.
     pub recovery_level: f64,
 }
 

@@ -37,7 +37,7 @@ impl FatigueLaw {
     pub fn start(&self, level: f64, load: f64) -> FatigueState {
         match self {
             Self::ThreeCompartment(_) => FatigueState::Compartments(Compartments::with_fatigue(level, load)),
-            Self::Endurance(_) => FatigueState::Share(level),
+            Self::Endurance(_) => FatigueState::Share(level.clamp(0.0, 1.0)),
         }
     }
 
@@ -73,11 +73,11 @@ impl FatigueState {
         }
     }
 
-    /// Torque still available as a share of strength.
-    pub fn capacity(self) -> f64 {
+    /// Torque still available as a share of strength, under relative load `load`: 1 rested, the load itself at exhaustion.
+    pub fn capacity(self, load: f64) -> f64 {
         match self {
             Self::Compartments(c) => 1.0 - c.fatigued,
-            Self::Share(share) => 1.0 - share,
+            Self::Share(share) => 1.0 - share * (1.0 - load.clamp(0.0, 1.0)),
         }
     }
 }

@@ -14,6 +14,9 @@ const DRIVE: f64 = 10.0;
 /// Longest integration step, s: half of the controller's time constant.
 const STEP: f64 = 0.05;
 
+/// Longest time under one load, s: more than a day, after which every group stands at its steady state.
+const LONGEST: f64 = 1e5;
+
 /// Rates of one muscle group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreeCompartment {
@@ -39,10 +42,15 @@ pub struct Compartments {
 impl Compartments {
     /// Fatigue `level` (0..=1) under relative load `load`: `MF = level (1 - TL)`, the load already carried as far as it can be.
     pub fn with_fatigue(level: f64, load: f64) -> Self {
-        let load = load.min(1.0);
-        let fatigued = level * (1.0 - load);
-        let active = load.min(1.0 - fatigued);
-        Self { active, resting: 1.0 - fatigued - active, fatigued }
+        let load = load.clamp(0.0, 1.0);
+        Self::of(load, level.clamp(0.0, 1.0) * (1.0 - load))
+    }
+
+    /// The rest of one rests; rounding and the last step of the integration leave no share outside 0..=1.
+    fn of(active: f64, fatigued: f64) -> Self {
+        let fatigued = fatigued.clamp(0.0, 1.0);
+        let active = active.clamp(0.0, 1.0 - fatigued);
+        Self { active, resting: (1.0 - active - fatigued).max(0.0), fatigued }
     }
 
     /// `MF / (1 - TL)`, at most 1: the load fails when `MA + MR < TL`.
@@ -54,8 +62,10 @@ impl Compartments {
 
 impl ThreeCompartment {
     /// The shares after `seconds` under relative load `load`. Runge-Kutta of fourth order, steps of 0.05 s at most.
+    /// More than 1e5 s count as that.
     pub fn advance(&self, start: Compartments, load: f64, seconds: f64) -> Compartments {
         let load = load.clamp(0.0, 1.0);
+        let seconds = seconds.clamp(0.0, LONGEST);
         let steps = (seconds / STEP).ceil().max(1.0);
         let h = seconds / steps;
         let (mut active, mut fatigued) = (start.active, start.fatigued);
@@ -67,9 +77,7 @@ impl ThreeCompartment {
             active += h / 6.0 * (k1.0 + 2.0 * (k2.0 + k3.0) + k4.0);
             fatigued += h / 6.0 * (k1.1 + 2.0 * (k2.1 + k3.1) + k4.1);
         }
-        let fatigued = fatigued.clamp(0.0, 1.0);
-        let active = active.clamp(0.0, 1.0 - fatigued);
-        Compartments { active, resting: 1.0 - active - fatigued, fatigued }
+        Compartments::of(active, fatigued)
     }
 
     /// `(MA', MF')`; `MR` follows from the sum.

@@ -8,7 +8,8 @@ pub fn explain(problem: &Problem, decision: &Decision) -> String {
     let at_goal = decision.active_torque_at_goal.unwrap_or(torque);
     let goal = decision.goal.unwrap_or(problem.angle).to_degrees();
     let tolerance = problem.torque_tolerance;
-    let strategy = match problem.accepted.unwrap_or(problem.strategy) {
+    let in_force = problem.accepted.unwrap_or(problem.strategy);
+    let strategy = match in_force {
         Strategy::Active => "active",
         Strategy::Passive => "passive",
     };
@@ -37,9 +38,10 @@ pub fn explain(problem: &Problem, decision: &Decision) -> String {
         }
         Outcome::Active => format!("mid-range balance at {goal:.2} deg"),
         Outcome::Passive => match (decision.case, decision.decrease_ratio) {
-            (Case::C32, Some(ratio)) if problem.strategy == Strategy::Active => format!(
-                "mid-range would remove only {:.0} percent of {torque:.3} N m; balance at {goal:.2} deg instead",
-                100.0 * ratio.max(0.0)
+            (Case::C32, Some(ratio)) if in_force == Strategy::Active => format!(
+                "mid-range would remove {:.0} percent of {torque:.3} N m, not more than {:.0}; balance at {goal:.2} deg instead",
+                100.0 * ratio.max(0.0),
+                100.0 * problem.minimum_decrease_ratio
             ),
             _ => format!("balance at {goal:.2} deg takes {torque:.3} N m off the muscles"),
         },

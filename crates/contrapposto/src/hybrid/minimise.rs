@@ -5,7 +5,7 @@
 //! interval without a root, the root that does exist is taken, and where none exists the angle of least torque.
 
 use super::case::{Carrier, Case, Decision, Equilibrium, Outcome, Strategy};
-use super::extrapolation::Extrapolation;
+use super::extrapolation::{Extrapolation, Point};
 use super::interval::{opposite_sign, same_sign};
 use super::problem::{Problem, ProblemError};
 use crate::passive::SlopeAngles;
@@ -15,7 +15,7 @@ enum Request {
     /// `theta_g := theta_c`.
     Stay,
     /// `theta_g := Dichotomy(interval)`.
-    Root((f64, f64)),
+    Root((Point, Point)),
     /// `theta_g := angle`, the least torque between the slopes.
     Least(f64),
 }
@@ -116,23 +116,25 @@ pub fn minimise_literal(problem: &Problem) -> Result<Decision, ProblemError> {
 
 /// The printed table.
 fn table_1(problem: &Problem, active: &Extrapolation, reading: Reading) -> (Decision, Request) {
-    let angle = problem.angle;
     let eps = problem.torque_tolerance;
-    let range = problem.curve.range();
-    let tau_a = active.active(angle);
+    let here = active.at(problem.angle);
+    let tau_a = here.torque;
+    let range = active.limits();
     // The total reading counts torque equal to the tolerance as within it, so that a tolerance of 0 means something.
     let within = tau_a.abs() < eps || (reading == Reading::Total && tau_a.abs() == eps);
-    let slopes = problem.curve.slope_angles(-active.external_slope());
+    let slope_angles = problem.curve.slope_angles(-active.external_slope());
     let mut ratio = None;
 
-    let (case, request) = match (slopes.lower, slopes.upper) {
+    let (case, request) = match (slope_angles.lower, slope_angles.upper) {
         (Some(s_min), Some(s_max)) => {
-            let at_min = sign(active.active(s_min));
-            let at_max = sign(active.active(s_max));
+            let (s_min, s_max) = (active.at(s_min), active.at(s_max));
+            let (at_min, at_max) = (sign(s_min.torque), sign(s_max.torque));
             if within {
-                let between = s_min < angle && angle < s_max;
-                // On a slope angle itself the printed strict inequalities hold on neither side; the total reading does.
-                let outside = angle < s_min || angle > s_max || reading == Reading::Total;
+                let between = s_min.angle < here.angle && here.angle < s_max.angle;
+                // On a slope angle itself the printed strict inequalities hold on neither side; the total reading counts it
+                // as outside, unless the tables find the balance that lies on both slope angles.
+                let on_slope = here.angle == s_min.angle || here.angle == s_max.angle;
+                let outside = if on_slope { reading == Reading::Total && at_min != 0 } else { !between };
                 if between || (outside && at_min == at_max) {
                     (Case::C21, Request::Stay)
                 } else if wants_active(problem, reading) {
@@ -142,25 +144,25 @@ fn table_1(problem: &Problem, active: &Extrapolation, reading: Reading) -> (Deci
                 }
             } else if sign(tau_a) == at_min && sign(tau_a) == at_max {
                 let least = if tau_a > 0.0 { s_max } else { s_min };
-                let decrease = (tau_a - active.active(least)) / tau_a;
+                let decrease = ((tau_a - least.torque) / tau_a).max(-f64::MAX);
                 ratio = Some(decrease);
                 if wants_active(problem, reading) && enough(problem, decrease, reading) {
-                    (Case::C31, Request::Least(least))
+                    (Case::C31, Request::Least(least.angle))
                 } else {
-                    (Case::C32, Request::Root(same_sign(tau_a, eps, range, (s_min, s_max))))
+                    (Case::C32, Request::Root(same_sign(here, eps, range, (s_min, s_max))))
                 }
             } else if wants_active(problem, reading) {
                 (Case::C33, Request::Root((s_min, s_max)))
             } else {
-                (Case::C34, Request::Root(opposite_sign(tau_a, eps, angle, range, (s_min, s_max))))
+                (Case::C34, Request::Root(opposite_sign(here, eps, range, (s_min, s_max))))
             }
         }
         // None or one slope.
         _ if within => (Case::C11, Request::Stay),
-        _ if tau_a > eps => (Case::C12, Request::Root((range.0, angle))),
-        _ => (Case::C13, Request::Root((angle, range.1))),
+        _ if tau_a > eps => (Case::C12, Request::Root((range.0, here))),
+        _ => (Case::C13, Request::Root((here, range.1))),
     };
-    let interval = if let Request::Root(interval) = request { Some(interval) } else { None };
+    let interval = if let Request::Root((from, to)) = request { Some((from.angle, to.angle)) } else { None };
     let decision = Decision {
         case,
         outcome: Outcome::None,
@@ -168,7 +170,7 @@ fn table_1(problem: &Problem, active: &Extrapolation, reading: Reading) -> (Deci
         active_torque: tau_a,
         active_torque_at_goal: None,
         decrease_ratio: ratio,
-        slope_angles: slopes,
+        slope_angles,
         interval,
         equilibrium: None,
         beyond_tables: false,
@@ -192,17 +194,17 @@ fn enough(problem: &Problem, decrease: f64, reading: Reading) -> bool {
 /// With one slope in the range the torque falls on one side of it only; if it changes sign there, that root is the
 /// active solution, which the printed cases 1.2 and 1.3 overlook (D5).
 fn one_slope_active(problem: &Problem, active: &Extrapolation, decision: &mut Decision) -> Option<f64> {
-    let range = problem.curve.range();
+    let (min, max) = active.limits();
     let falling = match decision.slope_angles {
-        SlopeAngles { lower: Some(s), upper: None } => (s, range.1),
-        SlopeAngles { lower: None, upper: Some(s) } => (range.0, s),
+        SlopeAngles { lower: Some(s), upper: None } => (active.at(s), max),
+        SlopeAngles { lower: None, upper: Some(s) } => (min, active.at(s)),
         _ => return None,
     };
     if !wants_active(problem, Reading::Total) {
         return None;
     }
     let root = active.root(falling)?;
-    decision.interval = Some(falling);
+    decision.interval = Some((falling.0.angle, falling.1.angle));
     decision.beyond_tables = true;
     Some(root)
 }
@@ -211,17 +213,17 @@ fn one_slope_active(problem: &Problem, active: &Extrapolation, decision: &mut De
 /// none. Searches every piece on which the extrapolated torque is monotone, so no root is missed.
 fn nearest_root(problem: &Problem, active: &Extrapolation, decision: &mut Decision) -> Option<f64> {
     let wants_stable = !wants_active(problem, Reading::Total);
-    let mut best: Option<(bool, f64, f64, (f64, f64))> = None;
+    let mut best: Option<((bool, f64), f64, (Point, Point))> = None;
     for_each_piece(problem, active, |piece| {
         let Some(root) = active.root(piece) else { return };
-        let stable = active.active(piece.1) > active.active(piece.0);
-        let (misfit, distance) = (stable != wants_stable, (root - problem.angle).abs());
-        if best.is_none_or(|(m, d, ..)| (misfit, distance) < (m, d)) {
-            best = Some((misfit, distance, root, piece));
+        let stable = piece.1.torque > piece.0.torque;
+        let rank = (stable != wants_stable, (root - problem.angle).abs());
+        if best.is_none_or(|(least, ..)| rank < least) {
+            best = Some((rank, root, piece));
         }
     });
-    let (.., root, piece) = best?;
-    decision.interval = Some(piece);
+    let (_, root, piece) = best?;
+    decision.interval = Some((piece.0.angle, piece.1.angle));
     Some(root)
 }
 
@@ -230,10 +232,9 @@ fn nearest_root(problem: &Problem, active: &Extrapolation, decision: &mut Decisi
 fn least_torque(problem: &Problem, active: &Extrapolation, present: f64) -> Goal {
     let mut best = (present.abs(), Goal::Stay);
     for_each_piece(problem, active, |piece| {
-        for angle in [piece.0, piece.1] {
-            let size = active.active(angle).abs();
-            if size < best.0 {
-                best = (size, Goal::Least(angle));
+        for end in [piece.0, piece.1] {
+            if end.torque.abs() < best.0 {
+                best = (end.torque.abs(), Goal::Least(end.angle));
             }
         }
     });
@@ -241,12 +242,12 @@ fn least_torque(problem: &Problem, active: &Extrapolation, present: f64) -> Goal
 }
 
 /// The pieces of the range on which the extrapolated torque is monotone, from below.
-fn for_each_piece(problem: &Problem, active: &Extrapolation, mut visit: impl FnMut((f64, f64))) {
-    let (min, max) = problem.curve.range();
-    let mut turns = vec![min, max];
-    problem.curve.crossings(-active.external_slope(), |angle| turns.push(angle));
-    turns.sort_by(f64::total_cmp);
-    for pair in turns.windows(2) {
+fn for_each_piece(problem: &Problem, active: &Extrapolation, mut visit: impl FnMut((Point, Point))) {
+    let (min, max) = active.limits();
+    let mut ends = vec![min, max];
+    problem.curve.crossings(-active.external_slope(), |angle| ends.push(active.at(angle)));
+    ends.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+    for pair in ends.windows(2) {
         visit((pair[0], pair[1]));
     }
 }
@@ -260,6 +261,7 @@ fn describe(problem: &Problem, active: &Extrapolation, decision: &mut Decision, 
     };
     let (torque, slope) = active.active_and_slope(angle);
     let stable = slope > 0.0;
+    let (by_load, by_tissue) = (-active.external_slope(), slope + active.external_slope());
     let balance = match goal {
         Goal::Stay => torque.abs() <= problem.torque_tolerance,
         Goal::Root(_) => true,
@@ -270,7 +272,7 @@ fn describe(problem: &Problem, active: &Extrapolation, decision: &mut Decision, 
     decision.equilibrium = balance.then(|| {
         if !stable {
             Equilibrium::Unstable
-        } else if -problem.curve.slope(angle) >= -active.external_slope() {
+        } else if by_tissue >= by_load {
             Equilibrium::Stable(Carrier::Ligaments)
         } else {
             Equilibrium::Stable(Carrier::Gravity)

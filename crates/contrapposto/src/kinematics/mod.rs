@@ -1,6 +1,6 @@
 //! Where is every part of the body in a posture?
 
-use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::model::{Model, Motion, Placement};
 use crate::posture::{Posture, PostureError};
@@ -50,7 +50,7 @@ impl Kinematics {
             match mobility.motion {
                 Motion::Hinge(axis) => {
                     self.axes[mobility.rate] = rotation * axis.into_inner();
-                    self.rotations[i] = rotation * nalgebra::Rotation3::from_axis_angle(&axis, value[0]).into_inner();
+                    self.rotations[i] = rotation * Rotation3::from_axis_angle(&axis, value[0]).into_inner();
                     self.origins[i] = origin;
                 }
                 Motion::Slide(axis) => {
@@ -79,7 +79,8 @@ impl Kinematics {
         match segment.mobility {
             None => segment.offset,
             Some(m) => {
-                let rotation = UnitQuaternion::from_matrix(&self.rotations[m]);
+                let rotation = Rotation3::from_matrix_unchecked(self.rotations[m]);
+                let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
                 Placement::from_parts(self.origins[m].into(), rotation) * segment.offset
             }
         }

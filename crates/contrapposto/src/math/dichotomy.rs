@@ -11,7 +11,7 @@ const RESIDUAL: f64 = 1e-9;
 /// Evaluations after which only halving is done: it ends for certain, Newton steps usually end long before.
 const NEWTON_EVALUATIONS: usize = 60;
 
-/// Root of `f` in `[lo, hi]`, or `None` when both ends have the same sign.
+/// Root of `f` in `[lo, hi]`, or `None` when both ends have the same sign or one is not finite.
 ///
 /// `f` returns value and slope; the slope may be wrong or NaN, which only costs time. An end where `f` is exactly zero is
 /// the root. The answer either has `|f| < 1e-9` and a Newton step below the spacing of `f64`, or is an end of the narrowest
@@ -40,6 +40,9 @@ pub fn dichotomy_between(
     (hi, f_hi): (f64, f64),
     enough: f64,
 ) -> Option<f64> {
+    if !(lo.is_finite() && hi.is_finite()) {
+        return None;
+    }
     if f_lo == 0.0 {
         return Some(lo);
     }

@@ -50,7 +50,8 @@ impl Piece {
                 // The root of c1 - slope + 2 c2 t + 3 c3 t^2 on the falling or the rising branch of the parabola.
                 let root = (c2 * c2 - 3.0 * c3 * (c1 - slope)).max(0.0).sqrt();
                 let root = if b.1 > a.1 { root } else { -root };
-                let t = if (c2 < 0.0) == (root < 0.0) { (slope - c1) / (c2 + root) } else { (root - c2) / (3.0 * c3) };
+                // Without cancellation, whichever signs meet.
+                let t = if c2 * root > 0.0 { (slope - c1) / (c2 + root) } else { (root - c2) / (3.0 * c3) };
                 visit(if t.is_finite() { (self.start + t).clamp(a.0, b.0) } else { b.0 });
             }
         };

@@ -2,7 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Coordinate, CoordinateKind, CoordinateSpec, JointKind, Mobility, Model, Motion, Placement, Rate, Segment};
+use super::{
+    Coordinate, CoordinateKind, CoordinateSpec, JointKind, LARGEST, Mobility, Model, Motion, Placement, Rate, Segment,
+};
 
 /// A segment and its joint as given to the builder.
 #[derive(Clone, Debug)]
@@ -25,8 +27,8 @@ pub struct SegmentSpec {
     pub in_parent: Placement,
     /// The joint's moved frame in this segment's frame.
     pub in_segment: Placement,
-    /// One spec for every coordinate of the joint, in the order of its motions. Balls may leave theirs out: they are
-    /// named `{joint}_qw` and so on.
+    /// One spec for every hinge and slide of the joint, in the order of its motions. Balls take none: their components
+    /// are named `{joint}_qw` and so on, so a joint has one ball at most.
     pub coordinates: Vec<CoordinateSpec>,
 }
 
@@ -53,7 +55,7 @@ pub enum ModelError {
     /// A number has no meaning.
     #[error("{what} of `{name}` is {value}; it must be {accepted}")]
     Number {
-        /// Segment or coordinate.
+        /// Segment, coordinate or model.
         name: String,
         /// The quantity with its unit.
         what: &'static str,
@@ -62,8 +64,8 @@ pub enum ModelError {
         /// What would be accepted.
         accepted: &'static str,
     },
-    /// The joint has another number of coordinates.
-    #[error("joint `{joint}` has {given} coordinates; its kind needs {needed}")]
+    /// The joint has another number of hinges and slides.
+    #[error("joint `{joint}` has {given} coordinates; its kind needs {needed}, one for each hinge and slide")]
     Coordinates {
         /// The joint.
         joint: String,
@@ -81,7 +83,7 @@ pub struct ModelBuilder {
 }
 
 impl ModelBuilder {
-    /// An empty model in a field of gravity (ground axes, m/s^2).
+    /// An empty model in a field of gravity (ground axes, m/s^2), which the first segment checks.
     pub fn new(name: &str, gravity: Vector3<f64>) -> Self {
         let model = Model {
             name: name.to_owned(),
@@ -111,16 +113,17 @@ impl ModelBuilder {
                     .ok_or_else(|| ModelError::Parent { segment: spec.name.clone(), parent: name.clone() })?,
             ),
         };
-        check_segment(&spec)?;
         let motions = spec.kind.motions();
+        check_size(&model.name, "gravity (m/s^2)", model.gravity.as_slice())?;
+        check_segment(&spec, &motions)?;
         let specs = coordinate_specs(&spec, &motions)?;
-        for (i, (coordinate, kind)) in specs.iter().enumerate() {
+        for (i, (coordinate, _)) in specs.iter().enumerate() {
             let taken = model.coordinate(&coordinate.name).is_some()
                 || specs[..i].iter().any(|(other, _)| other.name == coordinate.name);
             if taken {
                 return Err(ModelError::Duplicate { what: "coordinate", name: coordinate.name.clone() });
             }
-            check_coordinate(coordinate, *kind)?;
+            check_coordinate(coordinate)?;
         }
 
         let (mut mobility, mut rest) = match parent {
@@ -187,34 +190,52 @@ impl ModelBuilder {
     }
 }
 
-fn check_segment(spec: &SegmentSpec) -> Result<(), ModelError> {
+fn check_segment(spec: &SegmentSpec, motions: &[Motion]) -> Result<(), ModelError> {
     let refuse = |what, value, accepted| Err(ModelError::Number { name: spec.name.clone(), what, value, accepted });
-    if !(spec.mass.is_finite() && spec.mass >= 0.0) {
-        return refuse("mass (kg)", spec.mass, "finite and not negative");
+    if !(0.0..=LARGEST).contains(&spec.mass) {
+        return refuse("mass (kg)", spec.mass, "between 0 and 1e9");
     }
-    let placements = [spec.in_parent, spec.in_segment];
-    let coordinates = placements.iter().flat_map(|p| p.translation.vector.iter().chain(p.rotation.coords.iter()));
-    for &value in spec.center_of_mass.iter().chain(coordinates) {
-        if !value.is_finite() {
-            return refuse("centre of mass or joint frame", value, "finite");
+    for (what, values) in [
+        ("centre of mass (m)", spec.center_of_mass.as_slice()),
+        ("inertia (kg m^2)", spec.inertia.as_slice()),
+        ("joint's place in the parent (m)", spec.in_parent.translation.vector.as_slice()),
+        ("joint's place in the segment (m)", spec.in_segment.translation.vector.as_slice()),
+    ] {
+        check_size(&spec.name, what, values)?;
+    }
+    let rotations = [&spec.in_parent, &spec.in_segment].map(|p| p.rotation.coords.norm());
+    let axes = motions.iter().filter_map(|motion| match motion {
+        Motion::Hinge(axis) | Motion::Slide(axis) => Some(axis.norm()),
+        Motion::Ball => None,
+    });
+    let lengths = rotations.map(|length| ("length of a joint frame's quaternion", length));
+    for (what, length) in lengths.into_iter().chain(axes.map(|length| ("length of a joint axis", length))) {
+        if length.is_nan() || (length - 1.0).abs() > 1e-6 {
+            return refuse(what, length, "1");
         }
     }
     Ok(())
 }
 
-fn check_coordinate(spec: &CoordinateSpec, kind: CoordinateKind) -> Result<(), ModelError> {
+fn check_size(name: &str, what: &'static str, values: &[f64]) -> Result<(), ModelError> {
+    match values.iter().find(|value| value.is_nan() || value.abs() > LARGEST) {
+        Some(&value) => {
+            Err(ModelError::Number { name: name.to_owned(), what, value, accepted: "finite and at most 1e9 in size" })
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_coordinate(spec: &CoordinateSpec) -> Result<(), ModelError> {
     let refuse = |what, value, accepted| Err(ModelError::Number { name: spec.name.clone(), what, value, accepted });
     let (min, max) = spec.range;
     if min.is_nan() || max.is_nan() || min > max {
         return refuse("lower limit of the range", min, "at or below the upper limit");
     }
-    if !(spec.default.is_finite() && (min..=max).contains(&spec.default)) {
-        return refuse("default", spec.default, "finite and inside the range");
+    if !(min..=max).contains(&spec.default) {
+        return refuse("default", spec.default, "inside the range");
     }
-    if kind == CoordinateKind::Quaternion && (spec.passive.is_some() || spec.groups.is_some()) {
-        return refuse("passive law", f64::NAN, "left out for a ball's components");
-    }
-    Ok(())
+    check_size(&spec.name, "default", &[spec.default])
 }
 
 /// The coordinates with their kinds, balls filled in.

@@ -16,7 +16,13 @@ pub use joint::{JointKind, Motion};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
+use crate::fatigue::FatigueLaw;
+use crate::passive::PassiveCurve;
 use crate::posture::Posture;
+
+/// Largest size of any number of a model, posture or load, in SI units. Far beyond every body, and small enough that no
+/// product of them overflows: what is accepted gives finite torques and gradients.
+pub const LARGEST: f64 = 1e9;
 
 /// Pose of one frame in another: rotation, then translation (m).
 pub type Placement = Isometry3<f64>;
@@ -116,6 +122,22 @@ impl Model {
     /// Index of the segment of that name.
     pub fn segment(&self, name: &str) -> Option<usize> {
         self.segments.iter().position(|s| s.name == name)
+    }
+
+    /// The same body with another passive curve at one coordinate.
+    #[must_use]
+    pub fn with_passive(mut self, coordinate: usize, curve: PassiveCurve) -> Self {
+        self.coordinates[coordinate].passive = Some(curve);
+        self
+    }
+
+    /// The same body with another fatigue law in both groups of one coordinate, if it has groups.
+    #[must_use]
+    pub fn with_fatigue(mut self, coordinate: usize, law: &FatigueLaw) -> Self {
+        for group in self.coordinates[coordinate].groups.iter_mut().flatten() {
+            group.fatigue = law.clone();
+        }
+        self
     }
 
     /// Every coordinate at its default.

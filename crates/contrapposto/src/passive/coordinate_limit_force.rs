@@ -98,32 +98,36 @@ impl CoordinateLimitForce {
         }
     }
 
-    /// Calls `visit` with every angle where the slope passes through `slope`, wherever it is.
-    pub(super) fn crossings(&self, slope: f64, mut visit: impl FnMut(f64)) {
+    /// Calls `visit` with every angle of about `from..=to` where the slope passes through `slope`.
+    pub(super) fn crossings(&self, slope: f64, from: f64, to: f64, mut visit: impl FnMut(f64)) {
         let w = self.transition;
-        offsets(-slope / self.lower_stiffness, |x| visit(self.lower_limit - w * x));
-        offsets(-slope / self.upper_stiffness, |x| visit(self.upper_limit + w * x));
+        let reach = ((self.lower_limit - from) / w, (to - self.upper_limit) / w);
+        offsets(-slope / self.lower_stiffness, reach.0, |x| visit(self.lower_limit - w * x));
+        offsets(-slope / self.upper_stiffness, reach.1, |x| visit(self.upper_limit + w * x));
     }
 }
 
-/// Calls `visit` with each distance from the limit, in transition widths, where the steepness passes through `level`.
-fn offsets(level: f64, mut visit: impl FnMut(f64)) {
-    let peak = steepness(STEEPEST).0;
-    if !(level > 0.0 && level <= peak) {
+/// Calls `visit` with each distance from the limit, in transition widths and up to about `reach`, where the steepness
+/// passes through `level`.
+fn offsets(level: f64, reach: f64, mut visit: impl FnMut(f64)) {
+    let steepest = steepness(reach.clamp(0.0, STEEPEST)).0;
+    if !(level > 0.0 && level <= steepest * (1.0 + 1e-12)) {
         return;
     }
     let miss = |x: f64| {
         let (steep, bend) = steepness(x);
         (steep - level, bend)
     };
-    // 6 x^3 <= steepness(x) <= 40 x^3 before the peak.
-    let foot = (level / 40.0).cbrt();
-    let rising = (0.99 * foot, (1.9 * foot).min(STEEPEST));
-    for (from, to) in [rising, (STEEPEST, 1.0)] {
-        let ends = ((from, miss(from).0), (to, miss(to).0));
-        if let Some(x) = dichotomy_between(miss, ends.0, ends.1, 1e-15 * level) {
+    let mut search = |from: f64, to: f64| {
+        if let Some(x) = dichotomy_between(miss, (from, miss(from).0), (to, miss(to).0), 1e-15 * level) {
             visit(x);
         }
+    };
+    // 6 x^3 <= steepness(x) <= 40 x^3 before the peak.
+    let foot = (level / 40.0).cbrt();
+    search(0.99 * foot, (1.9 * foot).min(STEEPEST));
+    if reach > STEEPEST && level >= 1.0 {
+        search(STEEPEST, 1.0);
     }
 }
 

@@ -1,13 +1,13 @@
 //! Which torque do tissues give that stiffen exponentially toward both ends of a range?
 //!
-//! `tau(q) = sum_i a_i exp(r_i (q - q_i)) - k (q - q_mid) + c`, every term falling (`a_i r_i <= 0`, `k >= 0`). With one term
+//! `tau(q) = sum_i a_i exp(r_i (q - q_i)) - k (q - q_mid) + c`, every exponential term falling (`a_i r_i <= 0`). With one term
 //! a side it is the canonical double exponential (Anderson & Pandy 1999; OpenSim's `ExponentialCoordinateLimitForce`);
 //! Riener & Edrich's laws take this form when the neighbouring joints are held.
 //!
 //! Its slope is concave, so a given slope is met at most twice, once on each side of one flattest angle: the case split
 //! of the paper's Table 1.
 
-use super::{Form, PassiveError};
+use super::{Form, PassiveError, Zone};
 use crate::math::dichotomy;
 
 /// One exponential term `torque * exp(rate * (q - angle))`; torque and rate have opposite signs.
@@ -29,8 +29,6 @@ pub struct Exponentials {
     stiffness: f64,
     neutral: f64,
     constant: f64,
-    /// Flattest angle of the unrestricted curve; `None` when no term, or only terms of one side, exist.
-    flattest: Option<f64>,
 }
 
 /// One end of the double exponential.
@@ -51,7 +49,7 @@ pub struct DoubleExponential {
     pub lower: End,
     /// Resists at the upper end of the range (negative torque).
     pub upper: End,
-    /// Mid-range stiffness, N m/rad, not negative.
+    /// Mid-range stiffness, N m/rad; may be negative where the exponentials outweigh it over the whole range.
     pub stiffness: f64,
     /// Angle where the linear term is zero, rad.
     pub neutral: f64,
@@ -61,8 +59,8 @@ impl DoubleExponential {
     /// The evaluable form.
     ///
     /// # Errors
-    /// [`PassiveError::Parameter`] for a number that is not finite or a rate that is not positive. A negative torque or
-    /// stiffness is left to [`super::PassiveCurve::new`], which knows the range and names the angle where the curve rises.
+    /// [`PassiveError::Parameter`] for a number that is not finite or a rate that is not positive. Where a negative
+    /// torque or stiffness makes the curve rise is found by [`super::PassiveCurve::new`], which knows the range and names the angle where the curve rises.
     pub fn form(self) -> Result<Form, PassiveError> {
         let terms = [
             (self.lower.torque, -self.lower.rate, self.lower.angle),
@@ -95,7 +93,6 @@ impl Exponentials {
             stiffness,
             neutral,
             constant,
-            flattest: None,
         };
         for &(torque, rate, angle) in terms {
             finite("torque (N m)", torque)?;
@@ -116,7 +113,6 @@ impl Exponentials {
             sum.terms[sum.count] = Term { torque, rate, angle };
             sum.count += 1;
         }
-        sum.flattest = sum.find_flattest();
         Ok(sum)
     }
 
@@ -145,113 +141,104 @@ impl Exponentials {
         energy
     }
 
-    /// Second derivative of the torque; falls with the angle, so its only zero is the flattest angle.
-    fn curvature(&self, q: f64) -> f64 {
-        self.terms().iter().map(|t| t.torque * t.rate * t.rate * (t.rate * (q - t.angle)).exp()).sum()
-    }
-
-    fn find_flattest(&self) -> Option<f64> {
-        let lower = self.terms().iter().filter(|t| t.rate < 0.0);
-        let upper = self.terms().iter().filter(|t| t.rate > 0.0);
-        // Where one lower and one upper term bend equally, in closed form; of three terms the extremes bracket the answer.
-        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-        for l in lower {
-            for u in upper.clone() {
-                let ratio = (l.torque * l.rate * l.rate / (-u.torque * u.rate * u.rate)).ln();
-                let angle = (ratio - l.rate * l.angle + u.rate * u.angle) / (u.rate - l.rate);
-                from = from.min(angle);
-                to = to.max(angle);
-            }
+    /// Second derivative of the torque and its own derivative. The second derivative falls, so it has one zero at most.
+    fn curvature(&self, q: f64) -> (f64, f64) {
+        let (mut curvature, mut change) = (0.0, 0.0);
+        for term in self.terms() {
+            let value = term.torque * term.rate * term.rate * (term.rate * (q - term.angle)).exp();
+            curvature += value;
+            change += term.rate * value;
         }
-        if from == to {
-            return Some(from);
-        }
-        if from < to {
-            // Two terms on one side bend more than each alone: widen the bracket by their factor of at most two.
-            let margin =
-                2.0 * std::f64::consts::LN_2 / self.terms().iter().map(|t| t.rate.abs()).fold(f64::INFINITY, f64::min);
-            return dichotomy(|q| (self.curvature(q), f64::NAN), from - margin, to + margin);
-        }
-        None
+        (curvature, change)
     }
 
     pub(super) fn flattest_zone(&self, from: f64, to: f64) -> (f64, f64) {
         if self.count == 0 {
             return (from, to);
         }
-        let angle = match self.flattest {
-            Some(angle) => angle.clamp(from, to),
-            None if self.terms[0].rate < 0.0 => to,
-            None => from,
+        let angle = if self.curvature(from).0 <= 0.0 {
+            from
+        } else if self.curvature(to).0 >= 0.0 {
+            to
+        } else {
+            dichotomy(|q| self.curvature(q), from, to).unwrap_or(from)
         };
         (angle, angle)
     }
 
-    /// Both angles where the slope is `slope`, lower one first, wherever they are.
-    pub(super) fn crossings(&self, slope: f64, mut visit: impl FnMut(f64)) {
+    /// The angles of the zone where the slope passes through `slope`: at most one on each side of the flattest angle.
+    pub(super) fn crossings(&self, slope: f64, zone: &Zone, mut visit: impl FnMut(f64)) {
         // steepness(q) = sum |a r| exp(r (q - q_i)) must reach `level`; it is convex.
         let level = -(slope + self.stiffness);
         if level <= 0.0 {
             return;
         }
-        for side in [-1.0, 1.0] {
-            // Where the strongest single term of this side reaches the level, the sum lies above it: start there,
-            // outside the wanted angle, and Newton's method on a convex function runs inward without overshooting.
-            let mut start = f64::NAN;
-            for term in self.terms().iter().filter(|t| t.rate * side > 0.0) {
-                let angle = term.angle + (level / (term.torque * term.rate).abs()).ln() / term.rate;
-                start = if side < 0.0 { start.max(angle) } else { start.min(angle) };
-            }
-            if start.is_nan() {
-                continue; // no term on this side
-            }
-            if let Some(angle) = self.newton(level, start, side) {
-                visit(angle);
+        let steep = (zone.form_slopes.0 < slope, zone.form_slopes.1 < slope);
+        let flattest_inside = zone.from < zone.flattest.0 && zone.flattest.1 < zone.to;
+        if !flattest_inside && steep.0 == steep.1 {
+            return;
+        }
+        for (side, present) in [(-1.0, steep.0), (1.0, steep.1)] {
+            if let Some(angle) = present.then(|| self.newton(level, side)).flatten() {
+                visit(angle.clamp(zone.from, zone.to));
             }
         }
     }
 
-    /// Runs inward from `start` (steepness above `level`) to where the steepness is `level`.
-    fn newton(&self, level: f64, start: f64, side: f64) -> Option<f64> {
-        let mut q = start;
+    /// The angle on one side of the flattest one where the steepness is `level`; `None` where it is nowhere so flat.
+    fn newton(&self, level: f64, side: f64) -> Option<f64> {
+        // Where the strongest single term of this side reaches the level, the sum lies above it: start there, outside the
+        // wanted angle, and Newton's method on a convex function runs inward without overshooting.
+        let mut q = f64::NAN;
+        for term in self.terms().iter().filter(|t| t.rate * side > 0.0) {
+            let angle = term.angle + (level / (term.torque * term.rate).abs()).ln() / term.rate;
+            q = if side < 0.0 { q.max(angle) } else { q.min(angle) };
+        }
+        if q.is_nan() {
+            return None; // no term on this side
+        }
         for _ in 0..200 {
-            let (mut excess, mut rise) = (-level, 0.0);
+            let (mut excess, mut rise, mut bend) = (-level, 0.0, 0.0);
             for term in self.terms() {
                 let steep = -term.torque * term.rate * (term.rate * (q - term.angle)).exp();
                 excess += steep;
                 rise += term.rate * steep;
+                bend += term.rate * term.rate * steep;
             }
             if rise * side <= 0.0 {
                 return None; // past the flattest angle: the level is never met
             }
-            let next = q - excess / rise;
+            let step = excess / rise;
             // Inward is toward -side; no step, or one outward, is rounding: converged.
-            if (next - q) * side >= 0.0 {
+            if step * side <= 0.0 {
                 return Some(q);
             }
-            q = next;
-        }
-        Some(q)
-    }
-
-    /// Refuses a term that rises, naming the angle of the range where the curve is least steep or rises.
-    pub(super) fn check_falls(&self, (min, max): (f64, f64)) -> Result<(), PassiveError> {
-        if self.stiffness >= 0.0 && self.terms().iter().all(|t| t.torque * t.rate < 0.0) {
-            return Ok(());
-        }
-        let (mut angle, mut slope) = (min, f64::NEG_INFINITY);
-        for i in 0..=1000 {
-            let q = min + (max - min) * f64::from(i) / 1000.0;
-            let s = self.torque_and_slope(q).1;
-            if s > slope {
-                (angle, slope) = (q, s);
+            q -= step;
+            if bend * step * step < f64::EPSILON * level {
+                return Some(q); // what is left is less than rounding
             }
         }
+        q.is_finite().then_some(q)
+    }
+
+    /// Refuses a curve that rises, naming the angle of the range where it does so most.
+    pub(super) fn check_falls(&self, (min, max): (f64, f64)) -> Result<(), PassiveError> {
+        let rising_term = self.terms().iter().find(|t| t.torque * t.rate > 0.0);
+        let angle = match rising_term {
+            None => self.flattest_zone(min, max).0, // every term falls: the slope is concave
+            Some(_) => (0..=1000u32)
+                .map(|i| min + (max - min) * f64::from(i) / 1000.0)
+                .max_by(|a, b| self.torque_and_slope(*a).1.total_cmp(&self.torque_and_slope(*b).1))
+                .unwrap_or(min),
+        };
+        let slope = self.torque_and_slope(angle).1;
         if slope > 0.0 {
             return Err(PassiveError::Rises { angle, slope });
         }
-        let rising = self.terms().iter().find(|t| t.torque * t.rate > 0.0);
-        let (name, value) = rising.map_or(("stiffness (N m/rad)", self.stiffness), |t| ("torque (N m)", t.torque));
-        Err(PassiveError::Parameter { name, value, accepted: "such that every term falls with the angle" })
+        // A curve that falls although one of its terms rises: its slope is not concave.
+        rising_term.map_or(Ok(()), |term| {
+            let accepted = "such that every exponential term falls with the angle";
+            Err(PassiveError::Parameter { name: "torque (N m)", value: term.torque, accepted })
+        })
     }
 }

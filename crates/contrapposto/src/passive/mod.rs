@@ -50,15 +50,15 @@ pub enum PassiveError {
         /// Slope there, N m/rad.
         slope: f64,
     },
-    /// The torque is not a finite number at a limit of the range.
-    #[error("passive torque is {torque} N m at {:.4} deg; it must be finite over the whole range", angle.to_degrees())]
+    /// Torque, slope or energy at a limit of the range is not a number, or beyond 1e150.
+    #[error("passive torque is {torque} N m at {:.4} deg; torque, slope and energy must stay within 1e150 over the whole range", angle.to_degrees())]
     NotFinite {
         /// Angle, rad.
         angle: f64,
         /// Torque there.
         torque: f64,
     },
-    /// The table's angles are not in order, or too few.
+    /// The table's angles are not in order, or too few, or do not cover the range.
     #[error("row {row} of the table: {problem}")]
     Table {
         /// Row, counted from 1.
@@ -100,37 +100,80 @@ pub struct PassiveCurve {
     range: (f64, f64),
     reshape: Option<Reshape>,
     // Computed once from the above.
+    zones: Vec<Zone>,
+    limit_torques: (f64, f64),
     flattest: (f64, f64),
     flattest_slope: f64,
 }
 
+/// A part of the range without kink: the whole of it, or what reshaping makes of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Zone {
+    from: f64,
+    to: f64,
+    /// What reshaping adds to the slope, N m/rad.
+    added_slope: f64,
+    /// The form's slope at both ends, without what is added.
+    form_slopes: (f64, f64),
+    /// Where the form is least steep in it, rad.
+    flattest: (f64, f64),
+}
+
+/// Greatest size of torque, slope and energy that is accepted: far beyond any body, and no sum of them overflows.
+const GREATEST: f64 = 1e150;
+
+/// Greatest size of a limit of the range, rad.
+const GREATEST_ANGLE: f64 = 1e6;
+
 impl PassiveCurve {
-    /// A curve over `range` (rad, lower limit first), reshaped near both limits if asked for.
+    /// A curve over `range` (rad, lower limit first, at most 1e6 in size), reshaped near both limits if asked for.
     ///
     /// # Errors
     /// [`PassiveError::Rises`] with the angle if the torque rises anywhere in the range, and the other variants for
     /// parameters without meaning.
     pub fn new(form: Form, range: (f64, f64), reshape: Option<Reshape>) -> Result<Self, PassiveError> {
         let (min, max) = range;
-        if !(min.is_finite() && max.is_finite() && min < max) {
-            let value = if min.is_finite() { max } else { min };
-            return Err(PassiveError::Parameter { name: "range", value, accepted: "finite, lower limit below upper" });
+        for value in [min, max] {
+            if value.is_nan() || value.abs() > GREATEST_ANGLE {
+                let accepted = "a number between -1e6 and 1e6";
+                return Err(PassiveError::Parameter { name: "limit of the range (rad)", value, accepted });
+            }
+        }
+        if min >= max {
+            let accepted = "above the lower limit";
+            return Err(PassiveError::Parameter { name: "upper limit of the range (rad)", value: max, accepted });
         }
         if let Form::Tabulated(table) = &form {
             table.check_covers(range)?;
         }
-        let mut curve = Self { form, range, reshape, flattest: range, flattest_slope: 0.0 };
-        if let Some(reshape) = &curve.reshape {
+        if let Some(reshape) = &reshape {
             reshape.check(range)?;
         }
+        let unknown = (0.0, 0.0);
+        let mut curve = Self {
+            form,
+            range,
+            reshape,
+            zones: Vec::new(),
+            limit_torques: unknown,
+            flattest: unknown,
+            flattest_slope: 0.0,
+        };
         for angle in [min, max] {
-            let torque = curve.torque(angle);
-            if !torque.is_finite() || !curve.slope(angle).is_finite() {
+            let (torque, slope) = curve.torque_and_slope(angle);
+            if [torque, slope, curve.energy(angle)].iter().any(|x| x.is_nan() || x.abs() > GREATEST) {
                 return Err(PassiveError::NotFinite { angle, torque });
             }
         }
         if let Form::Exponentials(exponentials) = &curve.form {
             exponentials.check_falls(range)?;
+        }
+        curve.limit_torques = (curve.torque(min), curve.torque(max));
+        let zones = reshape.map_or_else(|| vec![(min, max, 0.0)], |reshape| reshape.zones(range).to_vec());
+        for (from, to, added_slope) in zones {
+            let form_slopes = (curve.form.torque_and_slope(from).1, curve.form.torque_and_slope(to).1);
+            let flattest = curve.form.flattest_zone(from, to);
+            curve.zones.push(Zone { from, to, added_slope, form_slopes, flattest });
         }
         (curve.flattest, curve.flattest_slope) = curve.find_flattest();
         Ok(curve)
@@ -139,6 +182,11 @@ impl PassiveCurve {
     /// The closed range (lower, upper), rad.
     pub fn range(&self) -> (f64, f64) {
         self.range
+    }
+
+    /// Torque at the lower and the upper limit, N m.
+    pub fn limit_torques(&self) -> (f64, f64) {
+        self.limit_torques
     }
 
     /// The form without reshaping.
@@ -164,28 +212,19 @@ impl PassiveCurve {
     /// Torque (N m) and slope (N m/rad) at `angle`.
     #[inline]
     pub fn torque_and_slope(&self, angle: f64) -> (f64, f64) {
-        let (torque, slope) = match &self.form {
-            Form::Exponentials(form) => form.torque_and_slope(angle),
-            Form::CoordinateLimitForce(form) => form.torque_and_slope(angle),
-            Form::Tabulated(form) => form.torque_and_slope(angle),
-        };
+        let (torque, slope) = self.form.torque_and_slope(angle);
         match &self.reshape {
             None => (torque, slope),
             Some(reshape) => {
-                let (extra, extra_slope) = reshape.torque_and_slope(self.range, angle);
-                (torque + extra, slope + extra_slope)
+                let (added_torque, added_slope) = reshape.torque_and_slope(self.range, angle);
+                (torque + added_torque, slope + added_slope)
             }
         }
     }
 
     /// Elastic energy `U` with `torque = -dU/d angle`, J, up to a constant.
     pub fn energy(&self, angle: f64) -> f64 {
-        let energy = match &self.form {
-            Form::Exponentials(form) => form.energy(angle),
-            Form::CoordinateLimitForce(form) => form.energy(angle),
-            Form::Tabulated(form) => form.energy(angle),
-        };
-        energy + self.reshape.as_ref().map_or(0.0, |reshape| reshape.energy(self.range, angle))
+        self.form.energy(angle) + self.reshape.as_ref().map_or(0.0, |reshape| reshape.energy(self.range, angle))
     }
 
     /// The angle of least stiffness inside the range (`theta_d tau_p min` of the paper), rad: the middle of the flattest zone.
@@ -203,11 +242,10 @@ impl PassiveCurve {
     /// `slope` counts.
     pub fn slope_angles(&self, slope: f64) -> SlopeAngles {
         let (lower_end, upper_end) = self.flattest;
-        if slope == self.flattest_slope && lower_end < upper_end {
-            return SlopeAngles { lower: Some(lower_end), upper: Some(upper_end) };
-        }
         let mut found = SlopeAngles::default();
-        if slope < self.flattest_slope {
+        if slope == self.flattest_slope && lower_end < upper_end {
+            found = SlopeAngles { lower: Some(lower_end), upper: Some(upper_end) };
+        } else if slope < self.flattest_slope {
             self.crossings(slope, |angle| {
                 if angle <= lower_end {
                     found.lower = Some(found.lower.map_or(angle, |best| best.max(angle)));
@@ -219,63 +257,81 @@ impl PassiveCurve {
         found
     }
 
-    /// Calls `visit` with every angle of the closed range where the slope passes through `slope` (N m/rad).
+    /// Calls `visit` with every angle of the closed range where the slope passes through `slope` (N m/rad), in no fixed
+    /// order and some perhaps twice; a limit of the range counts where the slope there is `slope`.
     ///
     /// Between two neighbouring ones the torque minus `slope * angle` is monotone, which is what makes root searches
     /// complete.
     pub fn crossings(&self, slope: f64, mut visit: impl FnMut(f64)) {
-        let (min, max) = self.range;
-        match &self.reshape {
-            None => self.form_crossings(slope, min, max, &mut visit),
-            Some(reshape) => {
-                for (from, to, extra_slope) in reshape.zones(self.range) {
-                    self.form_crossings(slope - extra_slope, from, to, &mut visit);
-                }
-                for (kink, left, right) in reshape.kinks(self.range) {
-                    let base = self.slope(kink) - reshape.torque_and_slope(self.range, kink).1;
-                    if (base + left < slope) != (base + right < slope) {
-                        visit(kink);
-                    }
+        let mut before: Option<&Zone> = None;
+        for zone in &self.zones {
+            let steeper = |form_slope: f64, zone: &Zone| form_slope + zone.added_slope < slope;
+            if before.is_some_and(|b| steeper(b.form_slopes.1, b) != steeper(zone.form_slopes.0, zone)) {
+                visit(zone.from);
+            }
+            self.form.crossings(slope - zone.added_slope, zone, &mut visit);
+            for (angle, form_slope) in [(zone.from, zone.form_slopes.0), (zone.to, zone.form_slopes.1)] {
+                let at_limit = angle == self.range.0 || angle == self.range.1;
+                if at_limit && form_slope + zone.added_slope == slope {
+                    visit(angle);
                 }
             }
-        }
-    }
-
-    fn form_crossings(&self, slope: f64, from: f64, to: f64, visit: &mut impl FnMut(f64)) {
-        let inside = |angle: f64| {
-            if angle >= from && angle <= to {
-                visit(angle);
-            }
-        };
-        match &self.form {
-            Form::Exponentials(form) => form.crossings(slope, inside),
-            Form::CoordinateLimitForce(form) => form.crossings(slope, inside),
-            Form::Tabulated(form) => form.crossings(slope, inside),
+            before = Some(zone);
         }
     }
 
     /// The zone of the greatest (least steep) slope and that slope.
     fn find_flattest(&self) -> ((f64, f64), f64) {
-        let (min, max) = self.range;
-        let whole = [(min, max, 0.0)];
-        let zones = self.reshape.as_ref().map(|reshape| reshape.zones(self.range));
-        let mut best = ((min, min), f64::NEG_INFINITY);
-        for &(from, to, extra) in zones.as_ref().map_or(&whole[..], |zones| &zones[..]) {
-            let zone = match &self.form {
-                Form::Exponentials(form) => form.flattest_zone(from, to),
-                Form::CoordinateLimitForce(form) => form.flattest_zone(from, to),
-                Form::Tabulated(form) => form.flattest_zone(from, to),
-            };
-            let middle = 0.5 * (zone.0 + zone.1);
-            let slope = match &self.form {
-                Form::Exponentials(form) => form.torque_and_slope(middle).1,
-                Form::CoordinateLimitForce(form) => form.torque_and_slope(middle).1,
-                Form::Tabulated(form) => form.torque_and_slope(middle).1,
-            } + extra;
+        let mut best = (self.range, f64::NEG_INFINITY);
+        for zone in &self.zones {
+            let angle = f64::midpoint(zone.flattest.0, zone.flattest.1);
+            let slope = self.form.torque_and_slope(angle).1 + zone.added_slope;
             if slope > best.1 {
-                best = (zone, slope);
+                best = (zone.flattest, slope);
             }
         }
         best
+    }
+}
+
+impl Form {
+    #[inline]
+    fn torque_and_slope(&self, angle: f64) -> (f64, f64) {
+        match self {
+            Self::Exponentials(form) => form.torque_and_slope(angle),
+            Self::CoordinateLimitForce(form) => form.torque_and_slope(angle),
+            Self::Tabulated(form) => form.torque_and_slope(angle),
+        }
+    }
+
+    fn energy(&self, angle: f64) -> f64 {
+        match self {
+            Self::Exponentials(form) => form.energy(angle),
+            Self::CoordinateLimitForce(form) => form.energy(angle),
+            Self::Tabulated(form) => form.energy(angle),
+        }
+    }
+
+    fn flattest_zone(&self, from: f64, to: f64) -> (f64, f64) {
+        match self {
+            Self::Exponentials(form) => form.flattest_zone(from, to),
+            Self::CoordinateLimitForce(form) => form.flattest_zone(from, to),
+            Self::Tabulated(form) => form.flattest_zone(from, to),
+        }
+    }
+
+    /// The crossings inside the closed zone. One that rounding puts just outside is moved to its end.
+    fn crossings(&self, slope: f64, zone: &Zone, visit: &mut impl FnMut(f64)) {
+        let margin = 1e-12 * (zone.to - zone.from);
+        let inside = |angle: f64| {
+            if angle >= zone.from - margin && angle <= zone.to + margin {
+                visit(angle.clamp(zone.from, zone.to));
+            }
+        };
+        match self {
+            Self::Exponentials(form) => form.crossings(slope, zone, visit),
+            Self::CoordinateLimitForce(form) => form.crossings(slope, zone.from, zone.to, inside),
+            Self::Tabulated(form) => form.crossings(slope, inside),
+        }
     }
 }

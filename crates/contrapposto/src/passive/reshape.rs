@@ -65,9 +65,4 @@ impl Reshape {
         let b = if self.upper_stiffness > 0.0 { max - self.zone } else { max };
         [(min, a, -self.lower_stiffness), (a, b, 0.0), (b, max, -self.upper_stiffness)]
     }
-
-    /// The two kinks as (angle, added slope on its left, on its right).
-    pub(super) fn kinks(&self, (min, max): (f64, f64)) -> [(f64, f64, f64); 2] {
-        [(min + self.zone, -self.lower_stiffness, 0.0), (max - self.zone, 0.0, -self.upper_stiffness)]
-    }
 }

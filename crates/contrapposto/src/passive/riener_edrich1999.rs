@@ -50,11 +50,15 @@ impl RienerEdrich1999 {
     /// other way (OpenSim's ankle counts dorsiflexion positive): angle and torque change sign.
     ///
     /// # Errors
-    /// [`PassiveError::Parameter`] where the exponents overflow.
+    /// [`PassiveError::Parameter`] where the exponents overflow, or for a joint other than 0, 1 and 2.
     pub fn held(&self, angles: [f64; 3], mirrored: bool) -> Result<Exponentials, PassiveError> {
         let sign = if mirrored { -1.0 } else { 1.0 };
         let mut others = angles;
-        others[self.joint] = 0.0;
+        let Some(own) = others.get_mut(self.joint) else {
+            let value = self.joint as f64;
+            return Err(PassiveError::Parameter { name: "joint", value, accepted: "0 hip, 1 knee or 2 ankle" });
+        };
+        *own = 0.0;
         let terms: Vec<_> = self
             .terms
             .iter()

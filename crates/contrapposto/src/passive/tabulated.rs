@@ -31,8 +31,13 @@ impl Tabulated {
                 return Err(PassiveError::Rises { angle: before.0, slope: (row.1 - before.1) / (row.0 - before.0) });
             }
         }
-        let cubic = MonotoneCubic::new(rows)
-            .ok_or(PassiveError::Table { row: rows.len(), problem: "a table needs two rows at least" })?;
+        if rows.len() < 2 {
+            return Err(PassiveError::Table { row: rows.len(), problem: "a table needs two rows at least" });
+        }
+        let cubic = MonotoneCubic::new(rows).ok_or(PassiveError::Table {
+            row: 1,
+            problem: "the steps between rows are too steep for numbers to hold",
+        })?;
         let mut energies = Vec::with_capacity(cubic.pieces().len());
         let mut energy = 0.0;
         for piece in cubic.pieces() {
@@ -78,7 +83,7 @@ impl Tabulated {
         let mut best = ((from, from), f64::NEG_INFINITY);
         for piece in self.cubic.pieces().iter().filter(|p| p.end >= from && p.start <= to) {
             let (a, b) = (piece.start.max(from), piece.end.min(to));
-            let at = |q| (q, q, piece.value_and_slope(q).1);
+            let at = |q| (q, q, if q == piece.end { piece.end_slope } else { piece.value_and_slope(q).1 }.min(0.0));
             let straight = piece.coefficients[2] == 0.0 && piece.coefficients[3] == 0.0;
             let candidates = [
                 Some(at(a)),
@@ -87,6 +92,8 @@ impl Tabulated {
                 straight.then(|| (a, b, piece.coefficients[1])),
             ];
             for (lower, upper, slope) in candidates.into_iter().flatten() {
+                // Straight pieces side by side make one zone.
+                let lower = if slope == best.1 && lower == best.0.1 { best.0.0 } else { lower };
                 let longer = upper - lower > best.0.1 - best.0.0;
                 if slope > best.1 || (slope == best.1 && longer) {
                     best = ((lower, upper), slope);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::model::Model;
+use crate::model::{LARGEST, Model};
 
 /// Which axes a force or couple keeps when the body moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +47,7 @@ pub enum LoadError {
         /// Number of segments.
         count: usize,
     },
-    /// A number is NaN or infinite, or a mass negative.
+    /// A number is NaN, infinite or beyond [`LARGEST`], or a mass negative.
     #[error("{what} of a load is {value}; it must be {accepted}")]
     Number {
         /// The quantity with its unit.
@@ -60,9 +60,9 @@ pub enum LoadError {
 }
 
 impl Load {
-    /// A weight at a segment's centre of mass.
+    /// A weight at a segment's centre of mass. A segment that is not there is refused by [`Load::check`].
     pub fn weight(model: &Model, segment: usize, mass: f64) -> Self {
-        let point = model.segments()[segment].center_of_mass;
+        let point = model.segments().get(segment).map_or(Vector3::zeros(), |s| s.center_of_mass);
         Self { segment, point, kind: LoadKind::Weight(mass) }
     }
 
@@ -75,17 +75,17 @@ impl Load {
         if self.segment >= count {
             return Err(LoadError::Segment { segment: self.segment, count });
         }
-        let finite = |what, v: &Vector3<f64>| match v.iter().find(|x| !x.is_finite()) {
-            Some(&value) => Err(LoadError::Number { what, value, accepted: "finite" }),
+        let within = |what, v: &Vector3<f64>| match v.iter().find(|x| x.is_nan() || x.abs() > LARGEST) {
+            Some(&value) => Err(LoadError::Number { what, value, accepted: "finite and at most 1e9 in size" }),
             None => Ok(()),
         };
-        finite("point (m)", &self.point)?;
+        within("point (m)", &self.point)?;
         match &self.kind {
-            LoadKind::Force(force, _) => finite("force (N)", force),
-            LoadKind::Couple(couple, _) => finite("couple (N m)", couple),
-            &LoadKind::Weight(mass) if mass.is_finite() && mass >= 0.0 => Ok(()),
+            LoadKind::Force(force, _) => within("force (N)", force),
+            LoadKind::Couple(couple, _) => within("couple (N m)", couple),
+            &LoadKind::Weight(mass) if (0.0..=LARGEST).contains(&mass) => Ok(()),
             &LoadKind::Weight(value) => {
-                Err(LoadError::Number { what: "mass (kg)", value, accepted: "finite and not negative" })
+                Err(LoadError::Number { what: "mass (kg)", value, accepted: "between 0 and 1e9" })
             }
         }
     }

@@ -1,0 +1,214 @@
+//! From scenarios and runs to the plain numbers that charts are drawn from.
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::math::dichotomy;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto::simulation::{Sample, Scenario};
+use contrapposto::statics::ExternalTorque;
+use contrapposto_plot::{PostureSketch, SketchRole, TimeLine, TorqueBalance};
+use nalgebra::Vector3;
+
+use crate::fail::Fail;
+
+/// Most points of a curve that are kept; a longer run keeps every second one, fourth one, and so on.
+const MOST_POINTS: usize = 4096;
+
+/// Number of intervals of a torque curve over the range.
+const INTERVALS: usize = 720;
+
+/// The torques of one coordinate over its range, everything else held.
+pub(crate) struct Sweep<'a> {
+    scenario: &'a Scenario,
+    coordinate: usize,
+    posture: Posture,
+    kinematics: Kinematics,
+    external: ExternalTorque,
+}
+
+impl<'a> Sweep<'a> {
+    pub(crate) fn new(scenario: &'a Scenario, coordinate: usize, posture: &[f64]) -> Self {
+        Self {
+            scenario,
+            coordinate,
+            posture: Posture::new(posture.to_vec()),
+            kinematics: Kinematics::new(&scenario.model),
+            external: ExternalTorque::new(&scenario.model),
+        }
+    }
+
+    fn model(&self) -> &'a Model {
+        &self.scenario.model
+    }
+
+    /// External and passive torque at `angle` (rad), N m.
+    fn torques(&mut self, angle: f64) -> Result<(f64, f64), Fail> {
+        self.posture.values_mut()[self.coordinate] = angle;
+        let model = self.model();
+        self.kinematics.update(model, &self.posture).map_err(|error| Fail::job("posture", error))?;
+        let loads = &self.scenario.loads;
+        self.external.update(model, &self.kinematics, loads).map_err(|error| Fail::job("load", error))?;
+        let coordinate = &model.coordinates()[self.coordinate];
+        let external = coordinate.rate.map_or(0.0, |rate| self.external.torques()[rate]);
+        Ok((external, coordinate.passive.as_ref().map_or(0.0, |curve| curve.torque(angle))))
+    }
+
+    /// Angles (deg) where the true active torque is zero.
+    pub(crate) fn zeros(&mut self) -> Result<Vec<f64>, Fail> {
+        let (min, max) = self.model().coordinates()[self.coordinate].range;
+        let mut zeros: Vec<f64> = vec![];
+        let mut before = (min, self.active(min)?);
+        for i in 1..=INTERVALS {
+            let angle = min + (max - min) * i as f64 / INTERVALS as f64;
+            let torque = self.active(angle)?;
+            if torque == 0.0 || (torque > 0.0) != (before.1 > 0.0) {
+                let sweep = std::cell::RefCell::new(&mut *self);
+                // Errors cannot occur here: the posture was checked above.
+                let f = |angle: f64| (sweep.borrow_mut().active(angle).unwrap_or(f64::NAN), f64::NAN);
+                zeros.extend(dichotomy(f, before.0, angle).map(f64::to_degrees));
+            }
+            before = (angle, torque);
+        }
+        Ok(zeros)
+    }
+
+    fn active(&mut self, angle: f64) -> Result<f64, Fail> {
+        let (external, passive) = self.torques(angle)?;
+        Ok(-(external + passive))
+    }
+
+    /// The chart's curves; path, start, goal and sketches are the caller's.
+    pub(crate) fn balance(&mut self, title: &str, subtitle: &str) -> Result<TorqueBalance, Fail> {
+        let coordinate = &self.model().coordinates()[self.coordinate];
+        let (min, max) = coordinate.range;
+        let mut chart = TorqueBalance {
+            title: title.to_owned(),
+            subtitle: subtitle.to_owned(),
+            angle_label: angle_label(&coordinate.name, &coordinate.positive),
+            tolerance_nm: self.scenario.relief.torque_tolerance,
+            zero_torque_deg: self.zeros()?,
+            ..TorqueBalance::default()
+        };
+        for i in 0..=INTERVALS {
+            let angle = min + (max - min) * i as f64 / INTERVALS as f64;
+            let (external, passive) = self.torques(angle)?;
+            chart.angles_deg.push(angle.to_degrees());
+            chart.external_nm.push(external);
+            chart.minus_passive_nm.push(-passive);
+            chart.active_nm.push(-(external + passive));
+        }
+        Ok(chart)
+    }
+
+    /// A small drawing of the body with the coordinate at `angle_deg`.
+    pub(crate) fn sketch(&mut self, label: &str, angle_deg: f64, role: SketchRole) -> Result<PostureSketch, Fail> {
+        self.torques(angle_deg.to_radians())?;
+        let model = self.model();
+        let rate = model.coordinates()[self.coordinate].rate;
+        let axis = rate.map_or(Vector3::z(), |rate| self.kinematics.axis(rate));
+        // Look along the ground axis nearest the joint's: from the right, from behind, or from above.
+        let view = |p: Vector3<f64>| match axis.iamax() {
+            0 => [p.z, p.y],
+            1 => [p.z, p.x],
+            _ => [p.x, p.y],
+        };
+        let polylines = sticks(model, &self.kinematics).into_iter().map(|line| line.into_iter().map(view).collect());
+        Ok(PostureSketch { label: label.to_owned(), angle_deg, polylines: polylines.collect(), role })
+    }
+}
+
+/// `elbow_flex_r, deg (flexion positive)`.
+pub(crate) fn angle_label(name: &str, positive: &str) -> String {
+    if positive.is_empty() { format!("{name}, deg") } else { format!("{name}, deg ({positive} positive)") }
+}
+
+/// One line a segment: from its joint to the joints of its children, or through its centre of mass to its end.
+fn sticks(model: &Model, kinematics: &Kinematics) -> Vec<Vec<Vector3<f64>>> {
+    let origin = |segment| kinematics.placement(model, segment).translation.vector;
+    let mut lines = vec![];
+    for (s, segment) in model.segments().iter().enumerate() {
+        let mut children = (0..model.segments().len()).filter(|&c| model.segments()[c].parent == Some(s)).peekable();
+        if children.peek().is_none() {
+            lines.push(vec![origin(s), kinematics.station(model, s, 2.0 * segment.center_of_mass)]);
+        }
+        for child in children {
+            if (origin(child) - origin(s)).norm() > 1e-9 {
+                lines.push(vec![origin(s), origin(child)]);
+            }
+        }
+    }
+    lines
+}
+
+/// One coordinate over time, thinned as the run grows.
+#[derive(Default)]
+pub(crate) struct Course {
+    stride: u64,
+    seen: u64,
+    pub(crate) line: TimeLine,
+    last_case: &'static str,
+    /// The latest instant, so that the end is always drawn.
+    latest: Option<[f64; 7]>,
+}
+
+impl Course {
+    pub(crate) fn take(&mut self, i: usize, sample: &Sample) {
+        let [positive, negative] = sample.fatigue[i];
+        let angle = sample.posture[i].to_degrees();
+        let row = [sample.time, angle, sample.external[i], sample.passive[i], sample.active[i], positive, negative];
+        let case = sample.decisions[i].as_ref().map_or("", |decision| decision.case.number());
+        if case != self.last_case {
+            self.last_case = case;
+            if self.line.events.len() < MOST_POINTS {
+                let label = if case.is_empty() { "rested" } else { case };
+                self.line.events.push((sample.time, label.to_owned()));
+            }
+        }
+        self.stride = self.stride.max(1);
+        if self.seen.is_multiple_of(self.stride) {
+            if self.line.time_s.len() == MOST_POINTS {
+                self.stride *= 2;
+                self.for_each(|column| {
+                    let mut keep = false;
+                    column.retain(|_| {
+                        keep = !keep;
+                        keep
+                    });
+                });
+            }
+            self.push(row);
+            self.latest = None;
+        } else {
+            self.latest = Some(row);
+        }
+        self.seen += 1;
+    }
+
+    /// The columns with the very last instant.
+    pub(crate) fn finish(mut self) -> TimeLine {
+        if let Some(row) = self.latest.take() {
+            self.push(row);
+        }
+        self.line
+    }
+
+    fn push(&mut self, row: [f64; 7]) {
+        let mut values = row.into_iter();
+        self.for_each(|column| column.extend(values.next()));
+    }
+
+    fn for_each(&mut self, mut f: impl FnMut(&mut Vec<f64>)) {
+        let line = &mut self.line;
+        for column in [
+            &mut line.time_s,
+            &mut line.angle_deg,
+            &mut line.external_nm,
+            &mut line.passive_nm,
+            &mut line.active_nm,
+            &mut line.fatigue_positive,
+            &mut line.fatigue_negative,
+        ] {
+            f(column);
+        }
+    }
+}

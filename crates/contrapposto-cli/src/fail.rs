@@ -1,0 +1,48 @@
+//! How does a failure reach the user and the shell?
+
+use std::fmt::Display;
+use std::io::Write;
+use std::process::ExitCode;
+
+use contrapposto_formats::InputError;
+
+/// Why the program stops.
+pub(crate) enum Fail {
+    /// The input is at fault: exit code 2, with file, line and column.
+    Input(Box<InputError>),
+    /// The input is at fault, no place to point at: exit code 2.
+    Refused(String),
+    /// The job failed: exit code 1.
+    Job(String),
+    /// Complaints were already printed: exit code 2.
+    Told,
+    /// The reader of our output went away: no failure.
+    BrokenPipe,
+}
+
+impl Fail {
+    /// The job could not do `what`.
+    pub(crate) fn job(what: impl Display, error: impl Display) -> Self {
+        Self::Job(format!("{what}: {error}"))
+    }
+
+    /// Tells standard error, and the shell by the exit code.
+    pub(crate) fn report(self) -> ExitCode {
+        let (text, code) = match self {
+            Self::Input(error) => (format!("{:?}", miette::Report::new(*error)), 2),
+            Self::Refused(message) => (format!("error: {message}\n"), 2),
+            Self::Job(message) => (format!("error: {message}\n"), 1),
+            Self::Told => (String::new(), 2),
+            Self::BrokenPipe => return ExitCode::SUCCESS,
+        };
+        // Nothing is left to try when standard error is closed, too.
+        let _ = std::io::stderr().write_all(text.as_bytes());
+        ExitCode::from(code)
+    }
+}
+
+impl From<InputError> for Fail {
+    fn from(error: InputError) -> Self {
+        Self::Input(Box::new(error))
+    }
+}

@@ -1,0 +1,100 @@
+//! Results: standard output that survives a closed pipe, and files that appear whole or not at all.
+
+use std::fs::File;
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::fail::Fail;
+
+/// Writes text to standard output.
+pub(crate) fn print(text: &str) -> Result<(), Fail> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(stdout_failed)
+}
+
+/// What a failed write to standard output means.
+pub(crate) fn stdout_failed(error: std::io::Error) -> Fail {
+    match error.kind() {
+        ErrorKind::BrokenPipe => Fail::BrokenPipe,
+        _ => Fail::job("standard output", error),
+    }
+}
+
+/// A folder into which files are put.
+pub(crate) struct Folder {
+    path: PathBuf,
+}
+
+/// A file that is not visible under its name yet.
+pub(crate) struct Pending {
+    file: BufWriter<NamedTempFile>,
+    path: PathBuf,
+}
+
+impl Folder {
+    /// The folder, made if it is not there.
+    pub(crate) fn open(path: &Path) -> Result<Self, Fail> {
+        std::fs::create_dir_all(path).map_err(|error| Fail::Refused(format!("--out {}: {error}", path.display())))?;
+        Ok(Self { path: path.to_owned() })
+    }
+
+    /// Begins a file of that name.
+    pub(crate) fn begin(&self, name: &str) -> Result<Pending, Fail> {
+        let path = self.path.join(name);
+        let temporary = tempfile::Builder::new().prefix(".contrapposto-").tempfile_in(&self.path);
+        let file = temporary.map_err(|error| Fail::job(path.display(), error))?;
+        Ok(Pending { file: BufWriter::new(file), path })
+    }
+
+    /// Writes a whole file.
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Fail> {
+        let mut pending = self.begin(name)?;
+        pending.append(bytes)?;
+        self.commit(vec![pending])
+    }
+
+    /// Makes all files visible: everything is on the disk before the first name changes.
+    pub(crate) fn commit(&self, files: Vec<Pending>) -> Result<(), Fail> {
+        let mut ready = vec![];
+        for pending in files {
+            let path = pending.path;
+            let failed = |error: std::io::Error| Fail::job(path.display(), error);
+            let file = pending.file.into_inner().map_err(|error| failed(error.into_error()))?;
+            permit_like_others(file.as_file()).map_err(failed)?;
+            file.as_file().sync_all().map_err(failed)?;
+            ready.push((file, path));
+        }
+        for (file, path) in ready {
+            file.persist(&path).map_err(|error| Fail::job(path.display(), error.error))?;
+        }
+        // A folder cannot be synced on every system; the files themselves are safe.
+        let _ = File::open(&self.path).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+
+    /// Where a file of that name stands.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+}
+
+impl Pending {
+    /// Adds bytes.
+    pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), Fail> {
+        self.file.write_all(bytes).map_err(|error| Fail::job(self.path.display(), error))
+    }
+}
+
+/// Temporary files are private; results are for everybody the user's mask allows.
+#[cfg(unix)]
+fn permit_like_others(file: &File) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    file.set_permissions(std::fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn permit_like_others(_: &File) -> std::io::Result<()> {
+    Ok(())
+}

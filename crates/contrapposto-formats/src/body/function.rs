@@ -1,0 +1,231 @@
+//! Functions of one variable that files use to drive joints and couple coordinates: value, first and second derivative.
+//!
+//! The spline is SIMM's, as OpenSim has it: a cubic with continuous second derivative whose third derivative at either end is
+//! that of the cubic through the four outermost points (Forsythe, Malcolm & Moler 1977, chapter 4); beyond its ends it goes
+//! on straight.
+
+/// A function of one variable.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Function {
+    /// Always the same.
+    Constant(f64),
+    /// `slope * x + intercept`.
+    Linear {
+        /// Slope.
+        slope: f64,
+        /// Value at 0.
+        intercept: f64,
+    },
+    /// `c[0] + c[1] x + c[2] x^2 + ...`: lowest power first, whatever the file's order is.
+    Polynomial(Vec<f64>),
+    /// `amplitude * sin(omega * x + phase) + offset`.
+    Sine {
+        /// Height of the wave.
+        amplitude: f64,
+        /// Angular frequency, per unit of x.
+        omega: f64,
+        /// Angle at 0, rad.
+        phase: f64,
+        /// What is added.
+        offset: f64,
+    },
+    /// SIMM's natural cubic through points, and other piecewise cubics.
+    Spline(Spline),
+}
+
+/// Cubic pieces between knots, straight beyond the ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spline {
+    knots: Vec<f64>,
+    /// Of each knot the value, slope, half the second and a sixth of the third derivative to its right; of the last knot to
+    /// its left.
+    pieces: Vec<[f64; 4]>,
+}
+
+/// Why points make no spline.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SplineError {
+    /// Too few points.
+    #[error("{found} points; at least 2 are needed")]
+    TooFew {
+        /// How many there are.
+        found: usize,
+    },
+    /// As many x as y are needed.
+    #[error("{x} values of x and {y} of y; as many of one as of the other are needed")]
+    Unequal {
+        /// Number of x.
+        x: usize,
+        /// Number of y.
+        y: usize,
+    },
+    /// x must not fall.
+    #[error("x falls from {before} to {after}; it must rise from point to point")]
+    Falls {
+        /// The value before.
+        before: f64,
+        /// The smaller one after it.
+        after: f64,
+    },
+}
+
+/// OpenSim takes this for the distance of points that are nearer to each other.
+const LEAST_DISTANCE: f64 = 1e-7;
+
+impl Function {
+    /// Value, first and second derivative.
+    #[must_use]
+    pub fn value_slope_curvature(&self, x: f64) -> [f64; 3] {
+        match self {
+            Self::Constant(value) => [*value, 0.0, 0.0],
+            Self::Linear { slope, intercept } => [slope * x + intercept, *slope, 0.0],
+            Self::Polynomial(coefficients) => coefficients
+                .iter()
+                .rev()
+                .fold([0.0; 3], |[p, d, c], k| [p * x + k, d * x + p, c * x + 2.0 * d]),
+            Self::Sine { amplitude, omega, phase, offset } => {
+                let (sin, cos) = (omega * x + phase).sin_cos();
+                [amplitude * sin + offset, amplitude * omega * cos, -amplitude * omega * omega * sin]
+            }
+            Self::Spline(spline) => spline.value_slope_curvature(x),
+        }
+    }
+
+    /// Value.
+    #[must_use]
+    pub fn value(&self, x: f64) -> f64 {
+        self.value_slope_curvature(x)[0]
+    }
+
+    /// First derivative.
+    #[must_use]
+    pub fn slope(&self, x: f64) -> f64 {
+        self.value_slope_curvature(x)[1]
+    }
+
+    /// Second derivative.
+    #[must_use]
+    pub fn curvature(&self, x: f64) -> f64 {
+        self.value_slope_curvature(x)[2]
+    }
+
+    /// The function times a number.
+    #[must_use]
+    pub fn scaled(self, by: f64) -> Self {
+        match self {
+            Self::Constant(value) => Self::Constant(value * by),
+            Self::Linear { slope, intercept } => Self::Linear { slope: slope * by, intercept: intercept * by },
+            Self::Polynomial(mut coefficients) => {
+                coefficients.iter_mut().for_each(|c| *c *= by);
+                Self::Polynomial(coefficients)
+            }
+            Self::Sine { amplitude, omega, phase, offset } => {
+                Self::Sine { amplitude: amplitude * by, omega, phase, offset: offset * by }
+            }
+            Self::Spline(mut spline) => {
+                spline.pieces.iter_mut().flatten().for_each(|c| *c *= by);
+                Self::Spline(spline)
+            }
+        }
+    }
+
+    /// Whether it gives back what it is given.
+    #[must_use]
+    pub fn is_identity(&self) -> bool {
+        *self == Self::Linear { slope: 1.0, intercept: 0.0 }
+    }
+}
+
+impl Spline {
+    /// OpenSim's `SimmSpline` (`natCubicSpline`, `NaturalCubicSpline` in older files) through the points.
+    ///
+    /// # Errors
+    /// [`SplineError`] for fewer than two points, lists of different length, or falling x.
+    pub fn simm(x: &[f64], y: &[f64]) -> Result<Self, SplineError> {
+        let (h, slopes) = Self::steps(x, y)?;
+        let n = x.len();
+        // A sixth of the second derivative at each point, from the tridiagonal system of continuous slopes:
+        //   h[i-1] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i] s[i+1] = slopes[i] - slopes[i-1].
+        let (mut diagonal, mut s) = (vec![0.0; n], vec![0.0; n]);
+        if n > 2 {
+            for i in 1..n - 1 {
+                diagonal[i] = 2.0 * (h[i - 1] + h[i]);
+                s[i] = slopes[i] - slopes[i - 1];
+            }
+            // Ends: the sixth of the third derivative there, (s[1] - s[0]) / h[0], is the third divided difference.
+            diagonal[0] = -h[0];
+            diagonal[n - 1] = -h[n - 2];
+            if n > 3 {
+                let span = |from: usize, to: usize| (x[to] - x[from]).max(LEAST_DISTANCE);
+                let third = |i: usize| (s[i + 2] / span(i + 1, i + 3) - s[i + 1] / span(i, i + 2)) / span(i, i + 3);
+                let (first, last) = (third(0), third(n - 4));
+                s[0] = h[0] * h[0] * first;
+                s[n - 1] = -h[n - 2] * h[n - 2] * last;
+            }
+            for i in 1..n {
+                let factor = h[i - 1] / diagonal[i - 1];
+                diagonal[i] -= factor * h[i - 1];
+                s[i] -= factor * s[i - 1];
+            }
+            s[n - 1] /= diagonal[n - 1];
+            for i in (0..n - 1).rev() {
+                s[i] = (s[i] - h[i] * s[i + 1]) / diagonal[i];
+            }
+        }
+        let mut pieces: Vec<[f64; 4]> = (0..n - 1)
+            .map(|i| [y[i], slopes[i] - h[i] * (s[i + 1] + 2.0 * s[i]), 3.0 * s[i], (s[i + 1] - s[i]) / h[i]])
+            .collect();
+        let end_slope = slopes[n - 2] + h[n - 2] * (s[n - 2] + 2.0 * s[n - 1]);
+        pieces.push([y[n - 1], end_slope, 3.0 * s[n - 1], pieces[n - 2][3]]);
+        Ok(Self { knots: x.to_vec(), pieces })
+    }
+
+    /// Straight lines between the points.
+    ///
+    /// # Errors
+    /// [`SplineError`] for fewer than two points, lists of different length, or falling x.
+    pub fn piecewise_linear(x: &[f64], y: &[f64]) -> Result<Self, SplineError> {
+        let (_, slopes) = Self::steps(x, y)?;
+        let last = slopes[slopes.len() - 1];
+        let pieces = y.iter().zip(slopes.iter().copied().chain([last])).map(|(&y, slope)| [y, slope, 0.0, 0.0]).collect();
+        Ok(Self { knots: x.to_vec(), pieces })
+    }
+
+    /// Distances of neighbours and slopes between them.
+    fn steps(x: &[f64], y: &[f64]) -> Result<(Vec<f64>, Vec<f64>), SplineError> {
+        if x.len() != y.len() {
+            return Err(SplineError::Unequal { x: x.len(), y: y.len() });
+        }
+        if x.len() < 2 {
+            return Err(SplineError::TooFew { found: x.len() });
+        }
+        if let Some(pair) = x.windows(2).find(|pair| pair[0] > pair[1]) {
+            return Err(SplineError::Falls { before: pair[0], after: pair[1] });
+        }
+        let h: Vec<f64> = x.windows(2).map(|pair| (pair[1] - pair[0]).max(LEAST_DISTANCE)).collect();
+        let slopes = y.windows(2).zip(&h).map(|(pair, h)| (pair[1] - pair[0]) / h).collect();
+        Ok((h, slopes))
+    }
+
+    /// First and last x of the points.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        (self.knots[0], self.knots[self.knots.len() - 1])
+    }
+
+    fn value_slope_curvature(&self, x: f64) -> [f64; 3] {
+        let last = self.knots.len() - 1;
+        let (first_x, last_x) = self.range();
+        if x < first_x || x > last_x {
+            let end = if x < first_x { 0 } else { last };
+            let [y, slope, ..] = self.pieces[end];
+            return [y + (x - self.knots[end]) * slope, slope, 0.0];
+        }
+        let k = self.knots.partition_point(|&knot| knot <= x).saturating_sub(1);
+        let [a, b, c, d] = self.pieces[k];
+        let dx = x - self.knots[k];
+        [a + dx * (b + dx * (c + dx * d)), b + dx * (2.0 * c + 3.0 * dx * d), 2.0 * c + 6.0 * dx * d]
+    }
+}

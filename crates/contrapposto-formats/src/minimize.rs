@@ -1,0 +1,103 @@
+//! One joint decision a line: JSON in, JSON out.
+
+use contrapposto::hybrid::{Decision, Equilibrium, Problem, Strategy, explain, minimise, minimise_literal};
+use contrapposto::passive::PassiveCurve;
+use contrapposto::simulation::Tables;
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::{DoubleExponentialText, StrategyKindText, double_exponential};
+
+/// Longest line that is read, bytes.
+pub const MOST_LINE_BYTES: usize = 1 << 16;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProblemLine {
+    passive: DoubleExponentialText,
+    range_deg: [f64; 2],
+    angle_deg: f64,
+    external_nm: f64,
+    external_slope_nm_per_rad: f64,
+    strategy: StrategyKindText,
+    minimum_decrease_ratio: f64,
+    tolerance_nm: f64,
+}
+
+/// A decision as it is printed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DecisionLine {
+    /// Case of Table 1.
+    pub case: &'static str,
+    /// `stay`, `active`, `passive`, `at_limit`; `none` in literal mode.
+    pub outcome: &'static str,
+    /// Goal angle, deg.
+    pub goal_deg: Option<f64>,
+    /// Active torque now, N m.
+    pub active_nm: f64,
+    /// Extrapolated active torque at the goal, N m.
+    pub active_at_goal_nm: Option<f64>,
+    /// `R` of the candidate of case 3.1.
+    pub decrease_ratio: Option<f64>,
+    /// Interval searched for a root, deg.
+    pub interval_deg: Option<[f64; 2]>,
+    /// Whether the balance at the goal is stable; null where it is none.
+    pub stable: Option<bool>,
+    /// One plain sentence.
+    pub why: String,
+}
+
+impl DecisionLine {
+    /// The decision in degrees.
+    pub fn new(problem: &Problem, decision: &Decision) -> Self {
+        Self {
+            case: decision.case.number(),
+            outcome: decision.outcome.word(),
+            goal_deg: decision.goal.map(f64::to_degrees),
+            active_nm: decision.active_torque,
+            active_at_goal_nm: decision.active_torque_at_goal,
+            decrease_ratio: decision.decrease_ratio,
+            interval_deg: decision.interval.map(|(from, to)| [from.to_degrees(), to.to_degrees()]),
+            stable: decision.equilibrium.map(|kind| kind != Equilibrium::Unstable),
+            why: explain(problem, decision),
+        }
+    }
+}
+
+/// Decides one line.
+///
+/// # Errors
+/// A message that says what is wrong with the line.
+pub fn minimize_line(line: &str, tables: Tables) -> Result<DecisionLine, String> {
+    let text: ProblemLine = serde_json::from_str(line).map_err(|error| {
+        let message = error.to_string();
+        // A line is a file of its own: its place is the column.
+        message.replace("at line 1 column", "at column")
+    })?;
+    // Degrees go to radians once, and the present angle with its limits, so that equal degrees stay equal.
+    let range = (text.range_deg[0].to_radians(), text.range_deg[1].to_radians());
+    let form = double_exponential(&text.passive).form().map_err(|error| format!("passive: {error}"))?;
+    let curve = PassiveCurve::new(form, range, None).map_err(|error| format!("passive: {error}"))?;
+    let problem = Problem {
+        curve: &curve,
+        angle: text.angle_deg.to_radians(),
+        external_torque: text.external_nm,
+        external_slope: text.external_slope_nm_per_rad,
+        strategy: match text.strategy {
+            StrategyKindText::Active => Strategy::Active,
+            StrategyKindText::Passive => Strategy::Passive,
+        },
+        minimum_decrease_ratio: text.minimum_decrease_ratio,
+        torque_tolerance: text.tolerance_nm,
+        accepted: None,
+    };
+    let decision = match tables {
+        Tables::Total => minimise(&problem),
+        Tables::Literal => minimise_literal(&problem),
+    };
+    let mut line = DecisionLine::new(&problem, &decision.map_err(|error| error.to_string())?);
+    if let Some(goal) = &mut line.goal_deg {
+        // A stay is the angle that was given, to the digit; and no rounding of the conversion leaves the range.
+        *goal = if line.outcome == "stay" { text.angle_deg } else { goal.clamp(text.range_deg[0], text.range_deg[1]) };
+    }
+    Ok(line)
+}

@@ -1,0 +1,287 @@
+//! Names become indices, degrees radians, and every number is checked where it stands.
+
+use contrapposto::fatigue::Hysteresis;
+use contrapposto::hybrid::Strategy;
+use contrapposto::model::{Adult, CoordinateKind, Model, Sex, adult, data};
+use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveError, Tabulated};
+use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables};
+use contrapposto::statics::{FixedIn, Load, LoadKind};
+use nalgebra::Vector3;
+
+use super::Located;
+use super::text::{
+    DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PassiveText, ReshapeText, ScenarioText, SexText,
+    StrategyKindText, TablesText,
+};
+use crate::input_error::{InputError, suggestion};
+
+pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, InputError> {
+    if text.format != 1 {
+        let message = format!("format is {}; this program reads format 1", text.format);
+        return Err(at.error(&["format"], message, None));
+    }
+    let model = body(at, text)?;
+    let mut start = model.default_posture();
+    for (key, &value) in &text.posture {
+        let (index, value) = posture_value(at, &model, key, value)?;
+        start.values_mut()[index] = value;
+    }
+    let free = free(at, &model, text)?;
+    let loads = text.load.iter().enumerate().map(|(i, load)| self::load(at, &model, i, load)).collect::<Result<_, _>>()?;
+    let mut start_fatigue = vec![[0.0; 2]; model.coordinates().len()];
+    for (name, start) in &text.fatigue.start {
+        let index = coordinate(at, &model, &["fatigue", "start", name], name)?;
+        for (side, level) in [("positive", start.positive), ("negative", start.negative)] {
+            if !(0.0..=1.0).contains(&level) {
+                let message = format!("fatigue at the start is {level}; it must lie in 0 (rested) to 1 (exhausted)");
+                return Err(at.error(&["fatigue", "start", name, side], message, None));
+            }
+        }
+        start_fatigue[index] = [start.positive, start.negative];
+    }
+    let scenario = Scenario {
+        title: text.title.clone(),
+        model,
+        start,
+        free,
+        loads,
+        strategy: StrategySettings {
+            kind: match text.strategy.kind {
+                StrategyKindText::Active => Strategy::Active,
+                StrategyKindText::Passive => Strategy::Passive,
+            },
+            minimum_decrease_ratio: text.strategy.minimum_decrease_ratio,
+        },
+        relief: ReliefSettings {
+            step_gain: text.relief.step_gain,
+            max_step: text.relief.max_step_deg.to_radians(),
+            torque_tolerance: text.relief.torque_tolerance_nm,
+            tables: match text.relief.tables {
+                TablesText::Total => Tables::Total,
+                TablesText::Literal => Tables::Literal,
+            },
+        },
+        hysteresis: Hysteresis {
+            critical_level: text.fatigue.critical_level,
+            recovery_level: text.fatigue.recovery_level,
+        },
+        start_fatigue,
+        run: RunSettings {
+            duration: text.run.duration_s,
+            step: text.run.step_s,
+            stop_when_settled: text.run.stop_when_settled,
+        },
+    };
+    scenario.check().map_err(|error| at.error(&place(&error), error.to_string(), None))?;
+    Ok(scenario)
+}
+
+/// Where a setting stands in the file.
+fn place(error: &ScenarioError) -> Vec<&'static str> {
+    let ScenarioError::Setting { name, .. } = error else { return vec![] };
+    match *name {
+        "minimum decrease ratio" => vec!["strategy", "minimum_decrease_ratio"],
+        "step gain" => vec!["relief", "step_gain"],
+        "greatest step (rad)" => vec!["relief", "max_step_deg"],
+        "torque tolerance (N m)" => vec!["relief", "torque_tolerance_nm"],
+        "critical level" => vec!["fatigue", "critical_level"],
+        "recovery level" => vec!["fatigue", "recovery_level"],
+        "duration (s)" | "number of steps" => vec!["run", "duration_s"],
+        "time step (s)" => vec!["run", "step_s"],
+        _ => vec![],
+    }
+}
+
+fn body(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
+    let size = &text.model.adult;
+    let sex = match size.sex {
+        SexText::Female => Sex::Female,
+        SexText::Male => Sex::Male,
+    };
+    let mut model = adult(&Adult { sex, stature: size.stature_m, mass: size.mass_kg }).map_err(|error| {
+        let key = if error.to_string().starts_with("mass") { "mass_kg" } else { "stature_m" };
+        at.error(&["model", "adult", key], error.to_string(), None)
+    })?;
+    if text.fatigue.law == LawText::Endurance {
+        for index in 0..model.coordinates().len() {
+            let sources = data::library().sources(&model.coordinates()[index].name);
+            let class = sources.map_or("general", |sources| sources.fatigue_class);
+            let name = text.fatigue.curve.clone().unwrap_or_else(|| data::library().default_endurance(class));
+            let Some((law, _)) = data::library().endurance(&name) else {
+                let help = suggestion(&name, data::library().endurance_names().collect::<Vec<_>>());
+                return Err(at.error(&["fatigue", "curve"], format!("there is no endurance curve `{name}`"), help));
+            };
+            model = model.with_fatigue(index, &law);
+        }
+    } else if text.fatigue.curve.is_some() {
+        let help = Some("add `law = \"endurance\"`, or leave `curve` out".to_owned());
+        return Err(at.key_error(&["fatigue", "curve"], "an endurance curve needs the endurance law", help));
+    }
+    for (name, passive) in &text.passive {
+        let index = coordinate(at, &model, &["passive", name], name)?;
+        let curve = curve(at, &model, index, name, passive)?;
+        model = model.with_passive(index, curve);
+    }
+    Ok(model)
+}
+
+fn coordinate(at: &Located, model: &Model, path: &[&str], name: &str) -> Result<usize, InputError> {
+    model.coordinate(name).ok_or_else(|| {
+        let help = suggestion(name, model.coordinates().iter().map(|c| c.name.as_str()));
+        at.key_error(path, format!("the body has no coordinate `{name}`"), help)
+    })
+}
+
+fn posture_value(at: &Located, model: &Model, key: &str, value: f64) -> Result<(usize, f64), InputError> {
+    let path = ["posture", key];
+    let (name, unit) = match key.rsplit_once('_') {
+        Some((name, "deg")) => (name, CoordinateKind::Rotation),
+        Some((name, "m")) => (name, CoordinateKind::Translation),
+        _ => {
+            let keys: Vec<String> = model.coordinates().iter().map(|c| format!("{}_deg", c.name)).collect();
+            let message = format!("posture key `{key}` names no unit; rotations end in _deg, slides in _m");
+            return Err(at.key_error(&path, message, suggestion(key, keys.iter().map(String::as_str))));
+        }
+    };
+    let index = model.coordinate(name).ok_or_else(|| {
+        let keys: Vec<String> = model.coordinates().iter().map(|c| format!("{}_deg", c.name)).collect();
+        let help = suggestion(key, keys.iter().map(String::as_str));
+        at.key_error(&path, format!("the body has no coordinate `{name}`"), help)
+    })?;
+    let found = &model.coordinates()[index];
+    if found.kind != unit {
+        let message = format!("`{name}` is not measured in the unit that `{key}` names");
+        return Err(at.key_error(&path, message, Some("rotations end in _deg, slides in _m".into())));
+    }
+    let inside = if unit == CoordinateKind::Rotation { value.to_radians() } else { value };
+    let (min, max) = found.range;
+    if inside < min || inside > max {
+        let show = |x: f64| if unit == CoordinateKind::Rotation { x.to_degrees() } else { x };
+        let word = if unit == CoordinateKind::Rotation { "deg" } else { "m" };
+        let (min, max) = (show(min), show(max));
+        let message = format!("`{name}` is {value} {word}, outside its range {min:.4}..{max:.4} {word}");
+        return Err(at.error(&path, message, Some(format!("give an angle from {min:.4} to {max:.4} {word}"))));
+    }
+    Ok((index, inside))
+}
+
+fn free(at: &Located, model: &Model, text: &ScenarioText) -> Result<Vec<bool>, InputError> {
+    let n = model.coordinates().len();
+    let (list, key, listed) = match (&text.coordinates.free, &text.coordinates.locked) {
+        (Some(_), Some(_)) => {
+            let help = Some("keep one of the two lists".to_owned());
+            return Err(at.key_error(&["coordinates", "locked"], "both `free` and `locked` are given", help));
+        }
+        (Some(list), None) => (list, "free", true),
+        (None, Some(list)) => (list, "locked", false),
+        (None, None) => return Ok(vec![true; n]),
+    };
+    let mut flags = vec![!listed; n];
+    for (i, name) in list.iter().enumerate() {
+        flags[coordinate(at, model, &["coordinates", key, &i.to_string()], name)?] = listed;
+    }
+    Ok(flags)
+}
+
+fn load(at: &Located, model: &Model, i: usize, text: &LoadText) -> Result<Load, InputError> {
+    let number = i.to_string();
+    let path = |key| ["load", &number, key];
+    let Some(segment) = model.segment(&text.segment) else {
+        let help = suggestion(&text.segment, model.segments().iter().map(|s| s.name.as_str()));
+        return Err(at.error(&path("segment"), format!("the body has no segment `{}`", text.segment), help));
+    };
+    let point = text.at_m.map_or(model.segments()[segment].center_of_mass, Vector3::from);
+    let kind = match (text.mass_kg, text.force_n) {
+        (Some(mass), None) if text.fixed_in.is_none() => LoadKind::Weight(mass),
+        (Some(_), None) => {
+            let help = Some("leave `fixed_in` out".to_owned());
+            return Err(at.key_error(&path("fixed_in"), "a weight always pulls along gravity", help));
+        }
+        (None, Some(force)) => {
+            let fixed_in = match text.fixed_in {
+                Some(FixedInText::Segment) => FixedIn::Segment,
+                _ => FixedIn::World,
+            };
+            LoadKind::Force(Vector3::from(force), fixed_in)
+        }
+        _ => {
+            let help = Some("give one of `mass_kg` and `force_n`".to_owned());
+            return Err(at.error(&["load", &number], "a load is either a weight or a force", help));
+        }
+    };
+    let load = Load { segment, point, kind };
+    load.check(model).map_err(|error| at.error(&["load", &number], error.to_string(), None))?;
+    Ok(load)
+}
+
+fn curve(
+    at: &Located,
+    model: &Model,
+    index: usize,
+    name: &str,
+    text: &PassiveText,
+) -> Result<PassiveCurve, InputError> {
+    let range = model.coordinates()[index].range;
+    let refuse = |key: &str, error: PassiveError| at.error(&["passive", name, key], error.to_string(), None);
+    let given = [
+        text.curve.is_some(),
+        text.double_exponential.is_some(),
+        text.coordinate_limit_force.is_some(),
+        text.table_deg_nm.is_some(),
+    ];
+    if given.iter().filter(|given| **given).count() > 1 {
+        let help = Some("keep one of curve, double_exponential, coordinate_limit_force, table_deg_nm".to_owned());
+        return Err(at.error(&["passive", name], "more than one curve is given", help));
+    }
+    let (key, curve) = if let Some(curve) = &text.curve {
+        let Some(row) = data::library().curve(curve) else {
+            let help = suggestion(curve, data::library().curve_names().collect::<Vec<_>>());
+            return Err(at.error(&["passive", name, "curve"], format!("there is no passive curve `{curve}`"), help));
+        };
+        // The built-in curve of this coordinate may run against its direction; others are taken as they are.
+        let sign = data::library().sources(name).filter(|s| s.curve == *curve).map_or(1.0, |s| s.curve_sign);
+        ("curve", row.over(range, sign))
+    } else if let Some(law) = &text.double_exponential {
+        let form = double_exponential(law).form();
+        ("double_exponential", form.and_then(|form| PassiveCurve::new(form, range, None)))
+    } else if let Some(law) = &text.coordinate_limit_force {
+        let law = CoordinateLimitForce {
+            upper_stiffness: law.upper_stiffness_nm_per_deg.to_degrees(),
+            upper_limit: law.upper_limit_deg.to_radians(),
+            lower_stiffness: law.lower_stiffness_nm_per_deg.to_degrees(),
+            lower_limit: law.lower_limit_deg.to_radians(),
+            transition: law.transition_deg.to_radians(),
+        };
+        ("coordinate_limit_force", law.form().and_then(|form| PassiveCurve::new(form, range, None)))
+    } else if let Some(rows) = &text.table_deg_nm {
+        let rows: Vec<(f64, f64)> = rows.iter().map(|[deg, nm]| (deg.to_radians(), *nm)).collect();
+        ("table_deg_nm", Tabulated::new(&rows).and_then(|table| PassiveCurve::new(table.form(), range, None)))
+    } else {
+        match &model.coordinates()[index].passive {
+            Some(curve) => ("reshape", Ok(curve.clone())),
+            None => return Err(at.error(&["passive", name], "no curve is given", None)),
+        }
+    };
+    let curve = curve.map_err(|error| refuse(key, error))?;
+    let (zone, end_torque) = match text.reshape {
+        None | Some(ReshapeText::Default(false)) => return Ok(curve),
+        Some(ReshapeText::Default(true)) => {
+            let (zone, torque, _) = data::library().reshape();
+            (zone, torque)
+        }
+        Some(ReshapeText::Stated(stated)) => (stated.zone_deg.to_radians(), stated.end_torque_nm),
+    };
+    data::reshaped(&curve, zone, end_torque).map_err(|error| refuse("reshape", error))
+}
+
+/// The law in rad.
+pub(crate) fn double_exponential(text: &DoubleExponentialText) -> DoubleExponential {
+    let end =
+        |end: &EndText| End { torque: end.torque_nm, rate: end.rate_per_rad, angle: end.angle_deg.to_radians() };
+    DoubleExponential {
+        lower: end(&text.lower),
+        upper: end(&text.upper),
+        stiffness: text.stiffness_nm_per_rad,
+        neutral: text.neutral_deg.to_radians(),
+    }
+}

@@ -1,0 +1,106 @@
+//! From the text of a scenario file to a checked experiment, or to a complaint with file, line and column.
+
+mod convert;
+mod text;
+
+pub use text::ScenarioText;
+pub(crate) use convert::double_exponential;
+pub(crate) use text::{DoubleExponentialText, StrategyKindText};
+
+use std::ops::Range;
+
+use contrapposto::simulation::Scenario;
+use toml::de::{DeTable, DeValue};
+
+use crate::input_error::{InputError, Source, suggestion, utf8};
+
+/// Largest scenario file, bytes.
+pub const MOST_BYTES: u64 = 1 << 20;
+
+/// Reads a scenario. `name` is the file's name for messages.
+///
+/// # Errors
+/// [`InputError`] says what is wrong, where, and what would be right.
+pub fn read_scenario(name: &str, bytes: &[u8]) -> Result<Scenario, InputError> {
+    let text = utf8(name, bytes)?;
+    let source = Source { name, text };
+    let tree = DeTable::parse(text)
+        .map_err(|error| source.error(error.span(), "the file is not TOML", error.message(), None))?;
+    refuse_non_finite(&source, tree.get_ref())?;
+    let scenario: ScenarioText = toml::from_str(text).map_err(|error| complaint(&source, &error))?;
+    convert::scenario(&Located { source, tree: tree.get_ref() }, &scenario)
+}
+
+/// JSON Schema of the scenario file.
+pub fn scenario_schema() -> serde_json::Value {
+    schemars::schema_for!(ScenarioText).to_value()
+}
+
+/// A parsed file in which a value's place can be looked up by its path.
+pub(crate) struct Located<'a> {
+    source: Source<'a>,
+    tree: &'a DeTable<'a>,
+}
+
+impl Located<'_> {
+    /// A complaint about the value at `path` (keys and array indices), or its nearest table that exists.
+    pub(crate) fn error(&self, path: &[&str], message: impl Into<String>, help: Option<String>) -> InputError {
+        self.source.error(self.span(path, false), message, "here", help)
+    }
+
+    /// A complaint about the key at the end of `path`.
+    pub(crate) fn key_error(&self, path: &[&str], message: impl Into<String>, help: Option<String>) -> InputError {
+        self.source.error(self.span(path, true), message, "here", help)
+    }
+
+    fn span(&self, path: &[&str], key: bool) -> Option<Range<usize>> {
+        let (first, rest) = path.split_first()?;
+        let (name, mut value) = self.tree.get_key_value(*first)?;
+        let mut span = if key && rest.is_empty() { name.span() } else { value.span() };
+        for (i, step) in rest.iter().enumerate() {
+            let last = i + 1 == rest.len();
+            let found = match value.get_ref() {
+                DeValue::Table(table) => table.get_key_value(*step).map(|(k, v)| (k.span(), v)),
+                DeValue::Array(array) => {
+                    step.parse().ok().and_then(|i: usize| array.get(i)).map(|v| (v.span(), v))
+                }
+                _ => None,
+            };
+            let Some((key_span, next)) = found else { break };
+            value = next;
+            span = if key && last { key_span } else { value.span() };
+        }
+        Some(span)
+    }
+}
+
+/// A message of the TOML reader, with a suggestion where it lists what it expected.
+fn complaint(source: &Source, error: &toml::de::Error) -> InputError {
+    let message = error.message();
+    let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let help = match words.split_first() {
+        Some((given, expected)) if message.starts_with("unknown") => suggestion(given, expected.iter().copied()),
+        _ => None,
+    };
+    source.error(error.span(), message, "here", help)
+}
+
+/// TOML knows `nan` and `inf`; no scenario does.
+fn refuse_non_finite(source: &Source, table: &DeTable) -> Result<(), InputError> {
+    let mut open: Vec<&toml::Spanned<DeValue>> = table.values().collect();
+    while let Some(value) = open.pop() {
+        match value.get_ref() {
+            DeValue::Table(table) => open.extend(table.values()),
+            DeValue::Array(array) => open.extend(array.iter()),
+            DeValue::Float(float) => {
+                let digits = float.as_str().replace('_', "");
+                if !digits.parse::<f64>().is_ok_and(f64::is_finite) {
+                    let message = format!("`{}` is not a finite number", float.as_str());
+                    return Err(source.error(Some(value.span()), message, "here", Some("write a finite number".into())));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! What a run's `summary.json` says.
+
+use std::collections::BTreeMap;
+
+use contrapposto::hybrid::Case;
+use contrapposto::model::Side;
+use contrapposto::simulation::{Scenario, Summary};
+use serde::Serialize;
+
+/// The whole file.
+#[derive(Clone, Debug, Serialize)]
+pub struct SummaryText {
+    /// Title of the scenario.
+    pub title: String,
+    /// Name of the body.
+    pub model: String,
+    /// `duration` or `settled`.
+    pub stopped: &'static str,
+    /// Time of the last sample, s.
+    pub end_s: f64,
+    /// Number of samples.
+    pub samples: u64,
+    /// The order of coordinates in tables.
+    pub coordinate_order: Vec<String>,
+    /// What happened to each.
+    pub coordinates: BTreeMap<String, CoordinateText>,
+    /// Files beside this one.
+    pub files: Vec<String>,
+}
+
+/// One coordinate.
+#[derive(Clone, Debug, Serialize)]
+pub struct CoordinateText {
+    /// Whether it could move.
+    pub free: bool,
+    /// Cases in the order they came, repetitions left out; the first two hundred.
+    pub cases: Vec<&'static str>,
+    /// How often the case changed.
+    pub case_changes: u64,
+    /// Decisions of each case.
+    pub iterations: BTreeMap<&'static str, u64>,
+    /// Last value, deg (m for slides).
+    pub final_deg: f64,
+    /// Last torques, N m.
+    pub final_external_nm: f64,
+    /// See above.
+    pub final_passive_nm: f64,
+    /// See above.
+    pub final_active_nm: f64,
+    /// Greatest |active torque| over strength.
+    pub peak_relative_load: f64,
+    /// The positive group.
+    pub positive: GroupText,
+    /// The negative group.
+    pub negative: GroupText,
+    /// Outcome of the last decision.
+    pub last_outcome: Option<&'static str>,
+}
+
+/// One muscle group.
+#[derive(Clone, Debug, Serialize)]
+pub struct GroupText {
+    /// Its movement.
+    pub name: Option<String>,
+    /// Greatest fatigue, 0 to 1.
+    pub peak_fatigue: f64,
+    /// When it could no longer hold its load, s.
+    pub exhausted_s: Option<f64>,
+}
+
+impl SummaryText {
+    /// From a finished run. `files`: names of the files written beside it.
+    pub fn new(scenario: &Scenario, summary: &Summary, files: Vec<String>) -> Self {
+        let model = &scenario.model;
+        let names = model.coordinates().iter().map(|c| c.name.clone());
+        let coordinates = model.coordinates().iter().zip(&summary.coordinates).enumerate().map(|(i, (c, s))| {
+            let [external, passive, active] = s.final_torques;
+            let group = |side: Side| GroupText {
+                name: c.groups.as_ref().map(|groups| groups[side.index()].name.clone()),
+                peak_fatigue: s.peak_fatigue[side.index()],
+                exhausted_s: s.exhausted_at[side.index()],
+            };
+            let text = CoordinateText {
+                free: scenario.free[i],
+                cases: s.cases.iter().map(|case| case.number()).collect(),
+                case_changes: s.case_changes,
+                iterations: iterations(&s.iterations),
+                final_deg: s.final_value.to_degrees(),
+                final_external_nm: external,
+                final_passive_nm: passive,
+                final_active_nm: active,
+                peak_relative_load: s.peak_load,
+                positive: group(Side::Positive),
+                negative: group(Side::Negative),
+                last_outcome: s.last_decision.map(|decision| decision.outcome.word()),
+            };
+            (c.name.clone(), text)
+        });
+        Self {
+            title: scenario.title.clone(),
+            model: model.name().to_owned(),
+            stopped: summary.reason.word(),
+            end_s: summary.end_time,
+            samples: summary.samples,
+            coordinate_order: names.collect(),
+            coordinates: coordinates.collect(),
+            files,
+        }
+    }
+}
+
+/// Counts by case number, those that occurred.
+pub fn iterations(counts: &[u64; 10]) -> BTreeMap<&'static str, u64> {
+    Case::ALL.iter().zip(counts).filter(|(_, n)| **n > 0).map(|(case, n)| (case.number(), *n)).collect()
+}

@@ -1,0 +1,145 @@
+//! One `<joint>`.
+
+use super::{Ignored, UrdfError, UrdfRule, name_place, number, origin, required, required_child, vector};
+use crate::body::{Body, BodyCoordinate, BodyCoordinateKind, BodyMotion, Drive};
+use crate::xml::Node;
+use nalgebra::{Isometry3, Unit, UnitQuaternion, Vector3};
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Hinge,
+    Slide,
+    Fixed,
+    Floating,
+    Planar,
+}
+
+pub(super) struct Joint<'a> {
+    pub(super) node: Node<'a>,
+    pub(super) name: &'a str,
+    pub(super) parent: (Node<'a>, &'a str),
+    pub(super) child: (Node<'a>, &'a str),
+    pub(super) origin: Isometry3<f64>,
+    pub(super) mimic: Option<Mimic<'a>>,
+    kind: Kind,
+    axis: Unit<Vector3<f64>>,
+    range: (f64, f64),
+}
+
+pub(super) struct Mimic<'a> {
+    pub(super) node: Node<'a>,
+    pub(super) joint: &'a str,
+    pub(super) multiplier: f64,
+    pub(super) offset: f64,
+}
+
+const UNLIMITED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+impl<'a> Joint<'a> {
+    pub(super) fn read(node: Node<'a>, ignored: &mut Ignored) -> Result<Self, UrdfError> {
+        let name = required(node, "name")?;
+        let (kind, limited) = match required(node, "type")? {
+            "revolute" => (Kind::Hinge, true),
+            "continuous" => (Kind::Hinge, false),
+            "prismatic" => (Kind::Slide, true),
+            "fixed" => (Kind::Fixed, false),
+            "floating" => (Kind::Floating, false),
+            "planar" => (Kind::Planar, false),
+            other => {
+                let value = crate::xml::shorten(other);
+                return Err(UrdfError::JointType { place: node.attribute_place("type"), value });
+            }
+        };
+        let end = |tag| -> Result<_, UrdfError> {
+            let end = required_child(node, tag)?;
+            Ok((end, required(end, "link")?))
+        };
+        let (parent, child) = (end("parent")?, end("child")?);
+        for part in node.children() {
+            if !matches!(part.name(), "parent" | "child" | "origin" | "axis" | "limit" | "mimic") {
+                ignored.add(part.name());
+            }
+        }
+        let mut axis = Vector3::x_axis();
+        if let Some(part) = node.child("axis")
+            && !matches!(kind, Kind::Fixed | Kind::Floating)
+        {
+            let given = vector(part, "xyz")?.unwrap_or(Vector3::x());
+            axis = crate::body::unit(given).ok_or_else(|| UrdfError::Invalid {
+                place: part.attribute_place("xyz"),
+                value: part.attribute("xyz").unwrap_or_default().trim().to_owned(),
+                needs: UrdfRule::AxisLength,
+            })?;
+        }
+        let range = if limited { limits(required_child(node, "limit")?)? } else { UNLIMITED };
+        let mimic = match node.child("mimic") {
+            None => None,
+            Some(part) if matches!(kind, Kind::Hinge | Kind::Slide) => Some(Mimic {
+                node: part,
+                joint: required(part, "joint")?,
+                multiplier: number(part, "multiplier")?.unwrap_or(1.0),
+                offset: number(part, "offset")?.unwrap_or(0.0),
+            }),
+            Some(part) => {
+                let value = name.to_owned();
+                return Err(UrdfError::Invalid { place: part.place(), value, needs: UrdfRule::MimicKind });
+            }
+        };
+        Ok(Self { node, name, parent, child, origin: origin(node)?, mimic, kind, axis, range })
+    }
+
+    /// Whether one coordinate moves it, so that another joint can mimic it.
+    pub(super) fn is_single(&self) -> bool {
+        matches!(self.kind, Kind::Hinge | Kind::Slide)
+    }
+
+    /// Adds the joint's coordinates and gives its motions.
+    pub(super) fn motions(&self, body: &mut Body, cap: usize) -> Result<Vec<BodyMotion>, UrdfError> {
+        let first = body.coordinates.len();
+        let mut add = |name: String, kind, range: (f64, f64)| {
+            let clamped = range != UNLIMITED;
+            body.coordinates.push(BodyCoordinate { name, kind, range, default: 0.0, locked: false, clamped });
+        };
+        let own = |i| Drive::Coordinate(first + i);
+        let axis = self.axis.into_inner();
+        let motions = match self.kind {
+            Kind::Fixed => vec![],
+            Kind::Hinge => {
+                add(self.name.to_owned(), BodyCoordinateKind::Rotation, self.range);
+                vec![BodyMotion::Hinge { axis, drive: own(0) }]
+            }
+            Kind::Slide => {
+                add(self.name.to_owned(), BodyCoordinateKind::Translation, self.range);
+                vec![BodyMotion::Slide { axis, drive: own(0) }]
+            }
+            Kind::Planar => {
+                // In the plane across the axis: for z, along x and y. Other axes by the shortest turn from z.
+                let turn = UnitQuaternion::rotation_between_axis(&Vector3::z_axis(), &self.axis)
+                    .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+                add(format!("{}_tx", self.name), BodyCoordinateKind::Translation, UNLIMITED);
+                add(format!("{}_ty", self.name), BodyCoordinateKind::Translation, UNLIMITED);
+                add(format!("{}_rz", self.name), BodyCoordinateKind::Rotation, UNLIMITED);
+                vec![
+                    BodyMotion::Slide { axis: turn * Vector3::x(), drive: own(0) },
+                    BodyMotion::Slide { axis: turn * Vector3::y(), drive: own(1) },
+                    BodyMotion::Hinge { axis, drive: own(2) },
+                ]
+            }
+            Kind::Floating => body.free_joint(self.name, &Isometry3::identity()),
+        };
+        if body.coordinates.len() > cap {
+            return Err(UrdfError::TooManyCoordinates { place: name_place(self.node), cap });
+        }
+        Ok(motions)
+    }
+}
+
+fn limits(limit: Node<'_>) -> Result<(f64, f64), UrdfError> {
+    let lower = number(limit, "lower")?.unwrap_or(0.0);
+    let upper = number(limit, "upper")?.unwrap_or(0.0);
+    if lower > upper {
+        let value = format!("{lower} {upper}");
+        return Err(UrdfError::Invalid { place: limit.attribute_place("lower"), value, needs: UrdfRule::LimitOrder });
+    }
+    Ok((lower, upper))
+}

@@ -1,0 +1,491 @@
+//! From bytes to the tree.
+
+use super::{Attribute, Document, Element, Limits, NONE, Position, Span, Text};
+use quick_xml::Reader;
+use quick_xml::errors::{Error, IllFormedError};
+use quick_xml::events::{BytesStart, Event};
+
+/// Why a text is not accepted as XML.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum XmlError {
+    /// The file is larger than accepted.
+    #[error("the file has {bytes} bytes; at most {cap} are read")]
+    FileTooLarge {
+        /// Its size.
+        bytes: usize,
+        /// The cap.
+        cap: usize,
+    },
+    /// A byte that does not belong to UTF-8.
+    #[error("{position}: byte {byte:#04x} is not UTF-8; save the file as UTF-8")]
+    NotUtf8 {
+        /// Where.
+        position: Position,
+        /// The first wrong byte.
+        byte: u8,
+    },
+    /// The XML declaration names another encoding and the text is not plain ASCII.
+    #[error("{position}: the file says its encoding is `{encoding}`; only UTF-8 is read")]
+    Encoding {
+        /// Of the declaration.
+        position: Position,
+        /// As declared.
+        encoding: String,
+    },
+    /// A control character.
+    #[error("{position}: character U+{code:04X} is not allowed in XML")]
+    Character {
+        /// Where.
+        position: Position,
+        /// Its code.
+        code: u32,
+    },
+    /// A DOCTYPE, with which a small file can grow without bound.
+    #[error("{position}: <!DOCTYPE> is not accepted; delete it (nothing of it is needed)")]
+    Doctype {
+        /// Where.
+        position: Position,
+    },
+    /// An entity that is not `lt`, `gt`, `amp`, `quot`, `apos` or a character reference.
+    #[error("{position}: `&{entity};` is unknown; accepted are &lt; &gt; &amp; &quot; &apos; and &#...;")]
+    Entity {
+        /// Where.
+        position: Position,
+        /// Without `&` and `;`, shortened.
+        entity: String,
+    },
+    /// Elements inside each other beyond the cap.
+    #[error("{position}: <{tag}> lies {depth} elements deep; at most {cap} are read")]
+    TooDeep {
+        /// Of the first element too deep.
+        position: Position,
+        /// Its name.
+        tag: String,
+        /// Its depth.
+        depth: usize,
+        /// The cap.
+        cap: usize,
+    },
+    /// More elements than the cap.
+    #[error("{position}: <{tag}> is one element too many; at most {cap} are read")]
+    TooManyElements {
+        /// Of the first element too many.
+        position: Position,
+        /// Its name.
+        tag: String,
+        /// The cap.
+        cap: usize,
+    },
+    /// More attributes on one element than the cap.
+    #[error("{position}: <{tag}> has more than {cap} attributes")]
+    TooManyAttributes {
+        /// Of the element.
+        position: Position,
+        /// Its name.
+        tag: String,
+        /// The cap.
+        cap: usize,
+    },
+    /// A name longer than the cap.
+    #[error("{position}: a name of {bytes} bytes; at most {cap} are read")]
+    NameTooLong {
+        /// Where.
+        position: Position,
+        /// Its length.
+        bytes: usize,
+        /// The cap.
+        cap: usize,
+    },
+    /// A name that XML does not allow.
+    #[error("{position}: `{name}` is not a name; a letter or `_`, then letters, digits, `_`, `-`, `.`, `:`")]
+    Name {
+        /// Where.
+        position: Position,
+        /// As written, shortened.
+        name: String,
+    },
+    /// An attribute twice on one element.
+    #[error("{position}: <{tag}> has the attribute `{attribute}` twice")]
+    DuplicateAttribute {
+        /// Of the second one.
+        position: Position,
+        /// Element.
+        tag: String,
+        /// Attribute.
+        attribute: String,
+    },
+    /// A start tag without its end.
+    #[error("{position}: <{tag}> is never closed; `</{tag}>` is missing")]
+    Unclosed {
+        /// Of the start tag.
+        position: Position,
+        /// Its name.
+        tag: String,
+    },
+    /// An end tag that does not belong to the open element.
+    #[error("{position}: `</{found}>` where `</{expected}>` is needed")]
+    Mismatched {
+        /// Of the end tag.
+        position: Position,
+        /// As written, shortened.
+        found: String,
+        /// What would close the open element; empty if none is open.
+        expected: String,
+    },
+    /// Another breach of XML's grammar.
+    #[error("{position}: {what}")]
+    Malformed {
+        /// Where.
+        position: Position,
+        /// Which.
+        what: Malformed,
+    },
+}
+
+/// A breach of XML's grammar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Malformed {
+    /// No element at all.
+    #[error("the file has no element")]
+    Empty,
+    /// A second outermost element.
+    #[error("a second outermost element; one is allowed")]
+    SecondRoot,
+    /// Text outside the outermost element.
+    #[error("text outside the outermost element")]
+    StrayText,
+    /// A tag, comment, CDATA section or instruction that the end of the file cuts off.
+    #[error("begins here and never ends")]
+    CutOff,
+    /// An attribute that is not `name="value"`.
+    #[error("attributes are written name=\"value\"")]
+    Attribute,
+    /// `&` without `;`.
+    #[error("`&` starts a reference and `;` is missing; write &amp;")]
+    Reference,
+    /// Something else that the grammar does not know.
+    #[error("not XML")]
+    Other,
+}
+
+/// Reads a file's bytes into a tree.
+///
+/// # Errors
+/// [`XmlError`] with the place.
+pub fn parse(bytes: &[u8], limits: &Limits) -> Result<Document, XmlError> {
+    let cap = limits.file_bytes.min(NONE as usize - 1);
+    if bytes.len() > cap {
+        return Err(XmlError::FileTooLarge { bytes: bytes.len(), cap });
+    }
+    let source = match std::str::from_utf8(bytes) {
+        Ok(text) => text.strip_prefix('\u{feff}').unwrap_or(text),
+        Err(error) => {
+            let valid = error.valid_up_to();
+            let before = std::str::from_utf8(&bytes[..valid]).unwrap_or_default();
+            let position = Cursor::new(before.strip_prefix('\u{feff}').unwrap_or(before)).end();
+            return Err(XmlError::NotUtf8 { position, byte: bytes[valid] });
+        }
+    };
+    if let Some(at) = source.bytes().position(|b| b < 0x20 && !matches!(b, b'\t' | b'\n' | b'\r')) {
+        let position = Cursor::new(source).at(at);
+        return Err(XmlError::Character { position, code: source.as_bytes()[at].into() });
+    }
+    Builder::new(source, limits).run()
+}
+
+/// Turns growing byte offsets into positions in one pass.
+struct Cursor<'a> {
+    source: &'a str,
+    offset: usize,
+    position: Position,
+}
+
+impl<'a> Cursor<'a> {
+    fn new(source: &'a str) -> Self {
+        Self { source, offset: 0, position: Position { line: 1, column: 1 } }
+    }
+
+    /// Position of `offset`, which must not lie before the last one asked for.
+    fn at(&mut self, offset: usize) -> Position {
+        let bytes = self.source.as_bytes();
+        let end = offset.min(bytes.len());
+        while self.offset < end {
+            match bytes[self.offset] {
+                b'\n' => self.position = Position { line: self.position.line + 1, column: 1 },
+                0x80..0xC0 => {} // continues a character
+                _ => self.position.column += 1,
+            }
+            self.offset += 1;
+        }
+        self.position
+    }
+
+    fn end(&mut self) -> Position {
+        self.at(self.source.len())
+    }
+}
+
+struct Builder<'a> {
+    source: &'a str,
+    limits: &'a Limits,
+    cursor: Cursor<'a>,
+    document: Document,
+    open: Vec<u32>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(source: &'a str, limits: &'a Limits) -> Self {
+        let document = Document { pool: String::new(), elements: vec![], attributes: vec![], texts: vec![] };
+        Self { source, limits, cursor: Cursor::new(source), document, open: vec![] }
+    }
+
+    fn run(mut self) -> Result<Document, XmlError> {
+        let mut reader = Reader::from_str(self.source);
+        loop {
+            let start = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
+            match reader.read_event() {
+                Err(error) => {
+                    let at = usize::try_from(reader.error_position()).unwrap_or(0);
+                    return Err(self.grammar_error(&error, at));
+                }
+                Ok(Event::Start(tag)) => self.start_tag(&tag, start, true)?,
+                Ok(Event::Empty(tag)) => self.start_tag(&tag, start, false)?,
+                Ok(Event::End(_)) => {
+                    self.open.pop();
+                }
+                Ok(Event::Text(text)) => self.text(&text.xml10_content(), start)?,
+                Ok(Event::CData(text)) => self.text(&text.xml10_content(), start)?,
+                Ok(Event::GeneralRef(name)) => {
+                    let c = resolve(&name).ok_or_else(|| self.entity(&name, start))?;
+                    self.text(c.encode_utf8(&mut [0; 4]), start)?;
+                }
+                Ok(Event::Decl(declaration)) => {
+                    if let Some(Ok(encoding)) = declaration.encoding()
+                        && !matches!(encoding.to_ascii_lowercase().as_str(), "utf-8" | "utf8")
+                        && !self.source.is_ascii()
+                    {
+                        let position = self.cursor.at(start);
+                        return Err(XmlError::Encoding { position, encoding: shorten(&encoding) });
+                    }
+                }
+                Ok(Event::DocType(_)) => return Err(XmlError::Doctype { position: self.cursor.at(start) }),
+                Ok(Event::Comment(_) | Event::PI(_)) => {}
+                Ok(Event::Eof) => break,
+            }
+        }
+        if let Some(&index) = self.open.last() {
+            let element = &self.document.elements[index as usize];
+            let tag = self.document.slice(element.name).to_owned();
+            return Err(XmlError::Unclosed { position: element.position, tag });
+        }
+        if self.document.elements.is_empty() {
+            return Err(self.malformed(Malformed::Empty, self.source.len()));
+        }
+        Ok(self.document)
+    }
+
+    fn malformed(&mut self, what: Malformed, at: usize) -> XmlError {
+        XmlError::Malformed { position: self.cursor.at(at), what }
+    }
+
+    fn entity(&mut self, name: &str, at: usize) -> XmlError {
+        XmlError::Entity { position: self.cursor.at(at), entity: shorten(name) }
+    }
+
+    /// Translates what the tokenizer found; its own texts name its own types.
+    fn grammar_error(&mut self, error: &Error, at: usize) -> XmlError {
+        let rest = self.source.get(at..).unwrap_or_default();
+        if rest.get(..9).is_some_and(|s| s.eq_ignore_ascii_case("<!doctype")) {
+            return XmlError::Doctype { position: self.cursor.at(at) };
+        }
+        match error {
+            Error::IllFormed(IllFormedError::MismatchedEndTag { expected, found }) => XmlError::Mismatched {
+                position: self.cursor.at(at),
+                found: shorten(found),
+                expected: shorten(expected),
+            },
+            Error::IllFormed(IllFormedError::UnmatchedEndTag(found)) => {
+                XmlError::Mismatched { position: self.cursor.at(at), found: shorten(found), expected: String::new() }
+            }
+            Error::IllFormed(IllFormedError::UnclosedReference) => self.malformed(Malformed::Reference, at),
+            Error::Syntax(_) => self.malformed(Malformed::CutOff, at),
+            Error::InvalidAttr(_) => self.malformed(Malformed::Attribute, at),
+            _ => self.malformed(Malformed::Other, at),
+        }
+    }
+
+    fn push(&mut self, text: &str) -> Span {
+        let start = self.document.pool.len() as u32;
+        self.document.pool.push_str(text);
+        Span { start, end: self.document.pool.len() as u32 }
+    }
+
+    fn name(&mut self, name: &str, at: usize) -> Result<Span, XmlError> {
+        let cap = self.limits.name_bytes;
+        if name.len() > cap {
+            return Err(XmlError::NameTooLong { position: self.cursor.at(at), bytes: name.len(), cap });
+        }
+        let first = |c: char| c.is_ascii_alphabetic() || matches!(c, '_' | ':') || !c.is_ascii();
+        let later = |c: char| first(c) || c.is_ascii_digit() || matches!(c, '-' | '.');
+        if !name.starts_with(first) || !name.chars().all(later) {
+            return Err(XmlError::Name { position: self.cursor.at(at), name: shorten(name) });
+        }
+        Ok(self.push(name))
+    }
+
+    fn start_tag(&mut self, tag: &BytesStart<'_>, start: usize, stays_open: bool) -> Result<(), XmlError> {
+        let position = self.cursor.at(start);
+        let parent = self.open.last().copied();
+        if parent.is_none() && !self.document.elements.is_empty() {
+            return Err(self.malformed(Malformed::SecondRoot, start));
+        }
+        let written = tag.name().into_inner();
+        let name = self.name(written, start)?;
+        let depth = self.open.len() + 1;
+        if depth > self.limits.depth {
+            return Err(XmlError::TooDeep { position, tag: written.to_owned(), depth, cap: self.limits.depth });
+        }
+        if self.document.elements.len() >= self.limits.elements {
+            let cap = self.limits.elements;
+            return Err(XmlError::TooManyElements { position, tag: written.to_owned(), cap });
+        }
+        let attributes = self.attributes(tag, start + 1, position)?;
+        let index = self.document.elements.len() as u32;
+        self.document.elements.push(Element {
+            name,
+            attributes,
+            position,
+            first_child: NONE,
+            last_child: NONE,
+            next_sibling: NONE,
+            first_text: NONE,
+            last_text: NONE,
+        });
+        if let Some(parent) = parent {
+            let elements = &mut self.document.elements;
+            match std::mem::replace(&mut elements[parent as usize].last_child, index) {
+                NONE => elements[parent as usize].first_child = index,
+                last => elements[last as usize].next_sibling = index,
+            }
+        }
+        if stays_open {
+            self.open.push(index);
+        }
+        Ok(())
+    }
+
+    /// Attributes of a tag whose content (after `<`) starts at `base`.
+    fn attributes(&mut self, tag: &BytesStart<'_>, base: usize, position: Position) -> Result<(u32, u32), XmlError> {
+        let first = self.document.attributes.len();
+        let content: &str = tag;
+        let mut attributes = tag.attributes();
+        attributes.with_checks(false); // its check for duplicates is quadratic and comes before our cap
+        for attribute in attributes {
+            let Ok(attribute) = attribute else {
+                return Err(XmlError::Malformed { position, what: Malformed::Attribute });
+            };
+            let offset = |part: &str| base + (part.as_ptr() as usize).saturating_sub(content.as_ptr() as usize);
+            let key = attribute.key.into_inner();
+            let at = offset(key);
+            let cap = self.limits.attributes;
+            if self.document.attributes.len() - first >= cap {
+                return Err(XmlError::TooManyAttributes { position, tag: tag.name().into_inner().to_owned(), cap });
+            }
+            let name = self.name(key, at)?;
+            let key_position = self.cursor.at(at);
+            if self.document.attributes[first..].iter().any(|a| self.document.slice(a.name) == key) {
+                return Err(XmlError::DuplicateAttribute {
+                    position: key_position,
+                    tag: tag.name().into_inner().to_owned(),
+                    attribute: key.to_owned(),
+                });
+            }
+            let value = self.value(&attribute.value, offset(&attribute.value))?;
+            self.document.attributes.push(Attribute { name, value, position: key_position });
+        }
+        Ok((first as u32, self.document.attributes.len() as u32))
+    }
+
+    /// An attribute's value: references resolved, each line end or tab a space, as XML says.
+    fn value(&mut self, raw: &str, base: usize) -> Result<Span, XmlError> {
+        let start = self.document.pool.len() as u32;
+        let mut rest = raw;
+        while let Some(at) = rest.find(['&', '\t', '\n', '\r']) {
+            self.document.pool.push_str(&rest[..at]);
+            let here = base + (raw.len() - rest.len()) + at;
+            let after = &rest[at..];
+            if let Some(reference) = after.strip_prefix('&') {
+                let end = reference.bytes().take(16).position(|b| b == b';');
+                let Some(end) = end else {
+                    let closed = reference.contains(';');
+                    return Err(if closed {
+                        self.entity(reference, here)
+                    } else {
+                        self.malformed(Malformed::Reference, here)
+                    });
+                };
+                let name = &reference[..end];
+                let resolved = resolve(name).ok_or_else(|| self.entity(name, here))?;
+                self.document.pool.push(resolved);
+                rest = &reference[end + 1..];
+            } else {
+                self.document.pool.push(' ');
+                rest = after.strip_prefix("\r\n").unwrap_or(&after[1..]);
+            }
+        }
+        self.document.pool.push_str(rest);
+        Ok(Span { start, end: self.document.pool.len() as u32 })
+    }
+
+    fn text(&mut self, text: &str, at: usize) -> Result<(), XmlError> {
+        let blank = text.trim_ascii().is_empty();
+        let Some(&owner) = self.open.last() else {
+            return if blank { Ok(()) } else { Err(self.malformed(Malformed::StrayText, at)) };
+        };
+        let owner = owner as usize;
+        if text.is_empty() || blank && self.document.elements[owner].first_text == NONE {
+            return Ok(());
+        }
+        let span = self.push(text);
+        let index = self.document.texts.len() as u32;
+        self.document.texts.push(Text { span, next: NONE });
+        match std::mem::replace(&mut self.document.elements[owner].last_text, index) {
+            NONE => self.document.elements[owner].first_text = index,
+            last => self.document.texts[last as usize].next = index,
+        }
+        Ok(())
+    }
+}
+
+/// One of the five entities or a character reference, without `&` and `;`.
+fn resolve(name: &str) -> Option<char> {
+    let code = match name {
+        "lt" => return Some('<'),
+        "gt" => return Some('>'),
+        "amp" => return Some('&'),
+        "quot" => return Some('"'),
+        "apos" => return Some('\''),
+        _ => name.strip_prefix('#')?,
+    };
+    let digits = |s: &str, radix| s.chars().all(|c| c.is_digit(radix)).then(|| u32::from_str_radix(s, radix).ok())?;
+    let code = match code.strip_prefix('x') {
+        Some(hex) => digits(hex, 16)?,
+        None => digits(code, 10)?,
+    };
+    char::from_u32(code).filter(|&c| c >= ' ' || matches!(c, '\t' | '\n' | '\r'))
+}
+
+/// At most 40 characters of foreign text for a message, control characters escaped.
+pub(crate) fn shorten(text: &str) -> String {
+    let mut short: String = text
+        .chars()
+        .take(40)
+        .flat_map(|c| if c.is_control() { c.escape_default().collect::<Vec<_>>() } else { vec![c] })
+        .collect();
+    if text.chars().nth(40).is_some() {
+        short.push_str("...");
+    }
+    short
+}

@@ -1,0 +1,160 @@
+//! What is the experiment? Body, start, loads, strategy and thresholds, all checked before the first step.
+
+use crate::fatigue::Hysteresis;
+use crate::hybrid::Strategy;
+use crate::model::Model;
+use crate::posture::{Posture, PostureError};
+use crate::statics::{Load, LoadError};
+
+/// Which reading of Tables 1 and 2 decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tables {
+    /// [`crate::hybrid::minimise`]: gaps closed, an accepted strategy kept.
+    Total,
+    /// [`crate::hybrid::minimise_literal`]: as printed.
+    Literal,
+}
+
+/// What kind of relief is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrategySettings {
+    /// Active or passive.
+    pub kind: Strategy,
+    /// `R_min`, 0..=1.
+    pub minimum_decrease_ratio: f64,
+}
+
+/// How relief is carried out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReliefSettings {
+    /// `beta` of Eq. 9, above 0, below 1.
+    pub step_gain: f64,
+    /// `delta theta_max` of Eq. 9, rad, positive.
+    pub max_step: f64,
+    /// `eps`, N m, not negative.
+    pub torque_tolerance: f64,
+    /// Which reading of the tables.
+    pub tables: Tables,
+}
+
+/// How long, and how finely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunSettings {
+    /// Simulated time, s, not negative.
+    pub duration: f64,
+    /// Time step, s, positive.
+    pub step: f64,
+    /// End as soon as relief no longer moves anything.
+    pub stop_when_settled: bool,
+}
+
+/// A complete experiment.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Its name.
+    pub title: String,
+    /// The body.
+    pub model: Model,
+    /// Where it starts, inside all ranges.
+    pub start: Posture,
+    /// Which coordinates may move, one flag each.
+    pub free: Vec<bool>,
+    /// What pulls on it besides its weight.
+    pub loads: Vec<Load>,
+    /// Relief wanted.
+    pub strategy: StrategySettings,
+    /// Relief carried out.
+    pub relief: ReliefSettings,
+    /// When relief begins and ends.
+    pub hysteresis: Hysteresis,
+    /// Fatigue at the start of the positive and negative group of every coordinate, 0..=1.
+    pub start_fatigue: Vec<[f64; 2]>,
+    /// How long.
+    pub run: RunSettings,
+}
+
+/// Why an experiment was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScenarioError {
+    /// The start does not fit the model.
+    #[error(transparent)]
+    Posture(#[from] PostureError),
+    /// A load does not fit the model.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A coordinate starts outside its range.
+    #[error("`{coordinate}` starts at {value}, outside its range {}..{} (rad or m)", range.0, range.1)]
+    OutsideRange {
+        /// Name of the coordinate.
+        coordinate: String,
+        /// Its value, rad or m.
+        value: f64,
+        /// Its range.
+        range: (f64, f64),
+    },
+    /// A setting has no meaning.
+    #[error("{name} is {value}; it must be {accepted}")]
+    Setting {
+        /// Its name with unit.
+        name: &'static str,
+        /// The value.
+        value: f64,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+    /// A coordinate is free but nothing is known of its passive torque, so no relief can be found for it.
+    #[error("`{0}` is free, but has no passive curve to find relief with; lock it or give it one")]
+    NoPassiveCurve(String),
+}
+
+/// Most steps of one run: 30 steps a second for four days.
+const MOST_STEPS: f64 = 1e7;
+
+impl Scenario {
+    /// Is everything in place?
+    ///
+    /// # Errors
+    /// [`ScenarioError`] names the first thing that is not.
+    pub fn check(&self) -> Result<(), ScenarioError> {
+        self.start.check(&self.model)?;
+        for load in &self.loads {
+            load.check(&self.model)?;
+        }
+        let count = self.model.coordinates().len() as f64;
+        let setting = |ok: bool, name, value, accepted| {
+            if ok { Ok(()) } else { Err(ScenarioError::Setting { name, value, accepted }) }
+        };
+        setting(self.free.len() as f64 == count, "number of free flags", self.free.len() as f64, "one a coordinate")?;
+        let given = self.start_fatigue.len() as f64;
+        setting(given == count, "number of fatigue pairs", given, "one a coordinate")?;
+        for ((coordinate, &value), &free) in self.model.coordinates().iter().zip(self.start.values()).zip(&self.free) {
+            let range = coordinate.range;
+            if value < range.0 || value > range.1 {
+                return Err(ScenarioError::OutsideRange { coordinate: coordinate.name.clone(), value, range });
+            }
+            if free && coordinate.passive.is_none() {
+                return Err(ScenarioError::NoPassiveCurve(coordinate.name.clone()));
+            }
+        }
+        for &value in self.start_fatigue.iter().flatten() {
+            setting((0.0..=1.0).contains(&value), "fatigue at the start", value, "in 0..1")?;
+        }
+        let ratio = self.strategy.minimum_decrease_ratio;
+        setting((0.0..=1.0).contains(&ratio), "minimum decrease ratio", ratio, "in 0..1")?;
+        let ReliefSettings { step_gain, max_step, torque_tolerance, .. } = self.relief;
+        setting(step_gain > 0.0 && step_gain < 1.0, "step gain", step_gain, "above 0 and below 1")?;
+        setting(max_step > 0.0 && max_step.is_finite(), "greatest step (rad)", max_step, "positive")?;
+        let tolerable = torque_tolerance >= 0.0 && torque_tolerance.is_finite();
+        setting(tolerable, "torque tolerance (N m)", torque_tolerance, "finite and not negative")?;
+        let Hysteresis { critical_level, recovery_level } = self.hysteresis;
+        let rising = 0.0 < critical_level && critical_level <= 1.0;
+        setting(rising, "critical level", critical_level, "above 0, at most 1")?;
+        let below = 0.0 <= recovery_level && recovery_level < critical_level;
+        setting(below, "recovery level", recovery_level, "not negative, below the critical level")?;
+        let RunSettings { duration, step, .. } = self.run;
+        setting(duration >= 0.0 && duration.is_finite(), "duration (s)", duration, "finite and not negative")?;
+        setting(step > 0.0 && step <= 60.0, "time step (s)", step, "above 0, at most 60")?;
+        setting(duration / step <= MOST_STEPS, "number of steps", duration / step, "ten million at most")
+    }
+}

@@ -1,0 +1,119 @@
+//! How did a run end, and what happened on the way?
+
+use super::{Sample, Scenario, ScenarioError, Simulation};
+use crate::hybrid::{Case, Decision};
+use crate::model::Side;
+
+/// Most changes of case that are kept in order; a chattering run has thousands.
+const MOST_CHANGES: usize = 200;
+
+/// Why a run stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopReason {
+    /// The whole duration was simulated.
+    Duration,
+    /// Relief no longer moved anything.
+    Settled,
+}
+
+impl StopReason {
+    /// `duration` or `settled`.
+    pub fn word(self) -> &'static str {
+        if self == Self::Duration { "duration" } else { "settled" }
+    }
+}
+
+/// What happened to one coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoordinateSummary {
+    /// Cases in the order they came, repetitions left out; the first two hundred changes.
+    pub cases: Vec<Case>,
+    /// How often the case changed in all.
+    pub case_changes: u64,
+    /// Number of decisions of each case, in the order of [`Case::ALL`].
+    pub iterations: [u64; 10],
+    /// Last value, rad or m.
+    pub final_value: f64,
+    /// Last torques: external, passive, active, N m.
+    pub final_torques: [f64; 3],
+    /// Greatest relative load.
+    pub peak_load: f64,
+    /// Greatest fatigue of the positive and negative group.
+    pub peak_fatigue: [f64; 2],
+    /// When each group was first exhausted, s.
+    pub exhausted_at: [Option<f64>; 2],
+    /// The last decision.
+    pub last_decision: Option<Decision>,
+}
+
+/// What happened in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Why it stopped.
+    pub reason: StopReason,
+    /// Time of the last sample, s.
+    pub end_time: f64,
+    /// Number of samples.
+    pub samples: u64,
+    /// One entry a coordinate.
+    pub coordinates: Vec<CoordinateSummary>,
+}
+
+/// Runs a scenario, showing every sample to `record`. Memory does not grow with the length of the run.
+///
+/// # Errors
+/// [`ScenarioError`] when the scenario is not in order.
+pub fn run(scenario: &Scenario, mut record: impl FnMut(&Sample)) -> Result<Summary, ScenarioError> {
+    let mut simulation = Simulation::new(scenario)?;
+    let blank = CoordinateSummary {
+        cases: vec![],
+        case_changes: 0,
+        iterations: [0; 10],
+        final_value: 0.0,
+        final_torques: [0.0; 3],
+        peak_load: 0.0,
+        peak_fatigue: [0.0; 2],
+        exhausted_at: [None; 2],
+        last_decision: None,
+    };
+    let mut coordinates = vec![blank; scenario.model.coordinates().len()];
+    // A whole number of steps that rounding must not lose.
+    let steps = (scenario.run.duration / scenario.run.step + 1e-9).floor() as u64;
+    let mut end_time = 0.0;
+    for samples in 1..=steps + 1 {
+        let sample = simulation.step()?;
+        record(&sample);
+        end_time = sample.time;
+        for (i, summary) in coordinates.iter_mut().enumerate() {
+            summary.take(i, &sample);
+        }
+        if sample.settled && scenario.run.stop_when_settled {
+            return Ok(Summary { reason: StopReason::Settled, end_time, samples, coordinates });
+        }
+    }
+    Ok(Summary { reason: StopReason::Duration, end_time, samples: steps + 1, coordinates })
+}
+
+impl CoordinateSummary {
+    fn take(&mut self, i: usize, sample: &Sample) {
+        self.final_value = sample.posture[i];
+        self.final_torques = [sample.external[i], sample.passive[i], sample.active[i]];
+        self.peak_load = self.peak_load.max(sample.load[i]);
+        for side in Side::BOTH.map(Side::index) {
+            let fatigue = sample.fatigue[i][side];
+            self.peak_fatigue[side] = self.peak_fatigue[side].max(fatigue);
+            if fatigue >= 1.0 && self.exhausted_at[side].is_none() {
+                self.exhausted_at[side] = Some(sample.time);
+            }
+        }
+        let Some(decision) = &sample.decisions[i] else { return };
+        self.iterations[decision.case as usize] += 1;
+        if self.last_decision.is_none_or(|last| last.case != decision.case) {
+            self.case_changes += 1;
+            if self.cases.len() < MOST_CHANGES {
+                self.cases.push(decision.case);
+            }
+        }
+        self.last_decision = Some(*decision);
+    }
+}

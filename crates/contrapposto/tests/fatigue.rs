@@ -1,0 +1,447 @@
+//! Does a muscle group tire and recover as the published laws say, on one scale for both?
+//!
+//! 3CC-r is compared with its closed form and with an Euler integration of the test's own, the endurance integral with
+//! the data sheet's check values, strength with differences. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
+
+use contrapposto::fatigue::{Compartments, FatigueLaw, FatigueState, Hysteresis, REST_LOAD, ThreeCompartment};
+use contrapposto::model::data::library;
+use contrapposto::strength::Strength;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Class, F, R, r, and endurance times at TL 0.15, 0.2, 0.3, 0.5, 0.8, 0.9 (data sheet B3).
+const CLASSES: [(&str, f64, f64, f64, [f64; 6]); 7] = [
+    ("ankle", 0.00589, 0.00058, 15.0, [1407.7, 863.3, 450.1, 178.7, 43.0, 19.0]),
+    ("knee", 0.015, 0.00149, 15.0, [555.4, 339.9, 177.0, 70.2, 16.9, 7.4]),
+    ("trunk", 0.00755, 0.00075, 15.0, [1103.5, 675.2, 351.6, 139.5, 33.5, 14.8]),
+    ("shoulder", 0.0182, 0.00168, 15.0, [440.7, 274.3, 144.4, 57.6, 13.9, 6.1]),
+    ("elbow", 0.00912, 0.00094, 15.0, [933.2, 565.4, 292.7, 115.7, 27.8, 12.3]),
+    ("grip", 0.0098, 0.00064, 30.0, [722.1, 473.1, 258.3, 105.5, 25.7, 11.4]),
+    ("general", 0.0097, 0.00091, 15.0, [833.5, 516.9, 271.5, 108.3, 26.1, 11.5]),
+];
+const LOADS: [f64; 6] = [0.15, 0.2, 0.3, 0.5, 0.8, 0.9];
+
+fn random(test: &str) -> Pcg64 {
+    let seed = std::env::var("CONTRAPPOSTO_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(20_070_711);
+    println!("{test}: seed {seed}");
+    Pcg64::seed_from_u64(seed)
+}
+
+fn three_compartment(class: &str) -> ThreeCompartment {
+    match library().three_compartment(class) {
+        Some((FatigueLaw::ThreeCompartment(law), _)) => law,
+        other => panic!("{class}: {other:?}"),
+    }
+}
+
+fn endurance(name: &str) -> FatigueLaw {
+    library().endurance(name).unwrap_or_else(|| panic!("no curve {name}")).0
+}
+
+fn share(state: FatigueState) -> f64 {
+    match state {
+        FatigueState::Share(share) => share,
+        FatigueState::Compartments(_) => panic!("not the integral's state"),
+    }
+}
+
+#[test]
+fn shares_stay_shares() {
+    let mut rng = random("shares_stay_shares");
+    let mut worst = 0.0;
+    for (class, ..) in CLASSES {
+        let law = three_compartment(class);
+        for step in [1e-3, 1.0 / 30.0, 0.07, 1.0, 10.0, 300.0] {
+            let mut state = Compartments::with_fatigue(rng.random_range(0.0..=1.0), rng.random_range(0.0..=1.0));
+            let mut load = 0.0;
+            for i in 0..500 {
+                if i % 10 == 0 {
+                    load = [0.0, 1.0, 1.7, rng.random_range(0.0..1.0)][rng.random_range(0..4)];
+                }
+                state = law.advance(state, load, step);
+                for part in [state.active, state.resting, state.fatigued] {
+                    assert!((0.0..=1.0).contains(&part), "{class}, step {step}: {state:?}");
+                }
+                worst = f64::max(worst, (state.active + state.resting + state.fatigued - 1.0).abs());
+                assert!((0.0..=1.0).contains(&state.level(load)));
+            }
+        }
+    }
+    println!("sum of the shares differs from 1 by {worst:.1e} at most");
+    assert!(worst < 1e-14);
+}
+
+/// Time at which a rested group fails a constant load, stepping by `step` and bisecting the step in which it fails.
+fn time_to_failure(law: &ThreeCompartment, load: f64, step: f64) -> f64 {
+    let fails = |c: Compartments| c.active + c.resting < load;
+    let mut state = Compartments::with_fatigue(0.0, load);
+    for i in 0.. {
+        let next = law.advance(state, load, step);
+        if fails(next) {
+            let (mut lo, mut hi) = (0.0, step);
+            for _ in 0..40 {
+                let middle = 0.5 * (lo + hi);
+                if fails(law.advance(state, load, middle)) { hi = middle } else { lo = middle }
+            }
+            return f64::from(i) * step + hi;
+        }
+        state = next;
+    }
+    unreachable!()
+}
+
+#[test]
+fn endurance_time_of_three_compartments() {
+    for (class, f, r, rest, times) in CLASSES {
+        let law = three_compartment(class);
+        assert_eq!(law, ThreeCompartment { fatigue_rate: f, recovery_rate: r, rest_multiplier: rest });
+        for (load, expected) in LOADS.into_iter().zip(times) {
+            let closed = law.endurance_time(load);
+            assert!((closed - expected).abs() < 0.051, "{class} {load}: {closed} {expected}");
+        }
+    }
+    for step in [1.0 / 30.0, 1.0, 10.0] {
+        let mut worst = 0.0;
+        for (class, ..) in CLASSES {
+            let law = three_compartment(class);
+            for load in [0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9] {
+                let (closed, stepped) = (law.endurance_time(load), time_to_failure(&law, load, step));
+                worst = f64::max(worst, (stepped / closed - 1.0).abs());
+            }
+        }
+        println!("steps of {step:.3} s: stepping differs from the closed form by {:.2} percent at most", 100.0 * worst);
+        assert!(worst < 0.01);
+    }
+}
+
+#[test]
+fn light_loads_are_held_for_ever() {
+    for (class, f, r, ..) in CLASSES {
+        let law = three_compartment(class);
+        let bound = r / (f + r);
+        assert!((0.06..0.095).contains(&bound));
+        assert_eq!(law.endurance_time(bound * 0.999_999), f64::INFINITY);
+        assert!(law.endurance_time(bound * 1.000_001).is_finite());
+        let load = bound * 0.999;
+        let mut state = Compartments::with_fatigue(0.0, load);
+        for _ in 0..3000 {
+            state = law.advance(state, load, 10.0);
+            assert!(state.active + state.resting >= load && state.level(load) < 1.0, "{class}: {state:?}");
+        }
+    }
+    let law = three_compartment("elbow");
+    for (load, time) in [(0.0, f64::INFINITY), (1.0, 0.0), (1.5, 0.0), (f64::INFINITY, 0.0)] {
+        assert_eq!(law.endurance_time(load), time);
+    }
+}
+
+/// Own integration of data sheet B3, Euler with a tiny step. `older` recovers by r R whenever MA >= TL, as older codes do.
+fn euler(law: &ThreeCompartment, profile: &[(f64, f64)], older: bool) -> Vec<[f64; 3]> {
+    let (mut ma, mut mr, mut mf) = (0.0, 1.0, 0.0);
+    let dt = 1e-4;
+    profile
+        .iter()
+        .map(|&(load, seconds)| {
+            for _ in 0..(seconds / dt).round() as u64 {
+                let drive = if ma >= load {
+                    10.0 * (load - ma)
+                } else if mr > load - ma {
+                    10.0 * (load - ma)
+                } else {
+                    10.0 * mr
+                };
+                let rests = if older { ma >= load } else { load <= 0.01 };
+                let recovery = if rests { law.rest_multiplier } else { 1.0 } * law.recovery_rate * mf;
+                let tires = law.fatigue_rate * ma;
+                (ma, mr, mf) = (ma + dt * (drive - tires), mr + dt * (recovery - drive), mf + dt * (tires - recovery));
+            }
+            [ma, mr, mf]
+        })
+        .collect()
+}
+
+#[test]
+fn hold_and_rest_agree_with_an_independent_integration() {
+    // Hold, rest, hold beyond failure, lighter hold (MA > TL at first), almost nothing (rest), hold again.
+    let profile = [(0.4, 60.0), (0.0, 30.0), (0.7, 40.0), (0.2, 30.0), (0.008, 20.0), (0.5, 10.0)];
+    for (class, ..) in CLASSES {
+        let law = three_compartment(class);
+        for step in [1.0 / 30.0, 1.0, 10.0] {
+            let mut state = Compartments { active: 0.0, resting: 1.0, fatigued: 0.0 };
+            let mut worst = 0.0;
+            for ((load, seconds), expected) in profile.into_iter().zip(euler(&law, &profile, false)) {
+                for _ in 0..f64::round(seconds / step) as u64 {
+                    state = law.advance(state, load, step);
+                }
+                let given = [state.active, state.resting, state.fatigued];
+                worst = given.iter().zip(expected).fold(worst, |w, (a, b)| f64::max(w, (a - b).abs()));
+            }
+            println!("{class}, steps of {step:.3} s: shares differ by {worst:.1e}");
+            assert!(worst < 1e-6);
+        }
+    }
+    // The test would notice the older rule.
+    let law = three_compartment("shoulder");
+    let (ours, older) = (euler(&law, &profile, false), euler(&law, &profile, true));
+    assert!((ours[3][2] - older[3][2]).abs() > 1e-3, "{ours:?} {older:?}");
+}
+
+#[test]
+fn recovery_is_fast_at_rest_only() {
+    for (class, f, r, rest, _) in CLASSES {
+        let law = three_compartment(class);
+        let rate = |load: f64, active: f64| {
+            let start = Compartments { active, resting: 0.7 - active, fatigued: 0.3 };
+            (law.advance(start, load, 1e-3).fatigued - 0.3) / 1e-3
+        };
+        assert!((rate(0.0, 0.0) + rest * r * 0.3).abs() < 1e-6, "{class}");
+        assert!((rate(REST_LOAD, 0.01) - (f * 0.01 - rest * r * 0.3)).abs() < 1e-5, "{class}");
+        // A constant hold, and one that has just become lighter.
+        for (load, active) in [(0.02, 0.02), (0.3, 0.3), (0.3, 0.5)] {
+            let middle = active + (load - active) * 0.005;
+            assert!((rate(load, active) - (f * middle - r * 0.3)).abs() < 1e-5, "{class} {load} {active}");
+        }
+    }
+}
+
+#[test]
+fn full_rest_recovers_fully() {
+    for (class, _, r, rest, _) in CLASSES {
+        let law = three_compartment(class);
+        let tired = Compartments { active: 0.0, resting: 0.5, fatigued: 0.5 };
+        let after = law.advance(tired, 0.0, 120.0);
+        assert!((after.fatigued - 0.5 * (-rest * r * 120.0).exp()).abs() < 1e-9, "{class}");
+        assert!(law.advance(tired, 0.0, 7200.0).fatigued < 1e-12);
+        assert_eq!(law.advance(tired, 0.3, 0.0), tired);
+        // However long the time: the steady state, and an end.
+        let (f, load) = (law.fatigue_rate, 0.05);
+        for seconds in [1e5, 1e9, 1e308, f64::INFINITY] {
+            let state = law.advance(tired, load, seconds);
+            assert!((state.fatigued - f * state.active / r).abs() < 1e-9, "{class}: {state:?}");
+            assert!((state.active - load).abs() < 0.002 * load, "{class}: {state:?}");
+        }
+    }
+}
+
+#[test]
+fn published_endurance_curves() {
+    // Data sheet B1 (verified) and B2 (recalled): T at 0.2, 0.3, 0.5, 0.8.
+    let rows = [
+        ("freylaw_avin_2010_general", [530.6, 237.8, 86.5, 34.1], 0.051),
+        ("freylaw_avin_2010_ankle", [955.7, 414.6, 144.7, 55.0], 0.051),
+        ("freylaw_avin_2010_trunk", [876.0, 349.0, 109.4, 37.7], 0.051),
+        ("freylaw_avin_2010_elbow", [630.3, 257.2, 83.2, 29.4], 0.051),
+        ("freylaw_avin_2010_grip", [447.7, 233.1, 102.4, 48.1], 0.051),
+        ("freylaw_avin_2010_knee", [399.4, 186.4, 71.3, 29.5], 0.051),
+        ("freylaw_avin_2010_shoulder", [282.6, 134.6, 52.8, 22.4], 0.051),
+        ("rohmert_general", [390.0, 152.0, 66.0, 23.0], 0.51),
+        ("monod_scherrer", [21400.0, 2033.0, 290.0, 68.0], 20.0),
+        ("huijgens", [376.0, 156.0, 67.0, 22.0], 0.51),
+        ("sato_general", [319.0, 159.0, 70.0, 34.0], 0.51),
+        ("manenica_general", [364.0, 233.0, 95.0, 25.0], 0.51),
+        ("sato_shoulder", [190.0, 113.0, 58.0, 32.0], 0.51),
+        ("mathiassen_ahsberg", [350.0, 133.0, 19.0, 1.0], 0.51),
+        ("garg", [568.0, 279.0, 114.0, 50.0], 0.51),
+        ("manenica_arm", [505.0, 322.0, 131.0, 34.0], 0.51),
+        ("rohmert_posture_5", [1477.0, 888.0, 467.0, 259.0], 0.51),
+    ];
+    for (name, times, tolerance) in rows {
+        for (load, expected) in [0.2, 0.3, 0.5, 0.8].into_iter().zip(times) {
+            let given = endurance(name).endurance_time(load);
+            assert!((given - expected).abs() < tolerance, "{name} at {load}: {given} {expected}");
+        }
+    }
+    for (class, time) in [("general", 938.0), ("elbow", 1190.2), ("shoulder", 478.4)] {
+        let given = endurance(&library().default_endurance(class)).endurance_time(0.15);
+        assert!((given - time).abs() < 0.051, "{class}: {given}");
+    }
+    // Consumed endurance at 0.5 and Ma at 0.3, by hand.
+    let given = endurance("consumed_endurance").endurance_time(0.5);
+    assert!((given - (1236.5 / 35f64.powf(0.618) - 72.5)).abs() < 1e-9);
+    assert!((endurance("ma_2009").endurance_time(0.3) - 60.0 * 1.203_972_804_325_936 / 0.3).abs() < 1e-9);
+}
+
+#[test]
+fn every_endurance_curve_is_defined_everywhere_and_falls() {
+    for name in library().endurance_names() {
+        let law = endurance(name);
+        for load in [-1.0, -0.0, 0.0] {
+            assert_eq!(law.endurance_time(load), f64::INFINITY, "{name}");
+        }
+        let mut before = f64::INFINITY;
+        for i in 1..=1000 {
+            let time = law.endurance_time(f64::from(i) / 1000.0);
+            assert!(time >= 0.0 && time <= before, "{name} at {i}: {time} after {before}");
+            before = time;
+        }
+        for load in [1.0, 1.5, 1e308, f64::INFINITY] {
+            assert_eq!(law.endurance_time(load), before, "{name} at {load}");
+            let state = law.advance(law.start(0.2, load), load, 0.1);
+            assert!((0.2..=1.0).contains(&share(state)), "{name}: {state:?}");
+        }
+    }
+}
+
+#[test]
+fn constant_load_is_exhausted_at_the_endurance_time() {
+    for name in library().endurance_names() {
+        let law = endurance(name);
+        for load in [0.2, 0.35, 0.5, 0.9] {
+            let time = law.endurance_time(load);
+            let mut state = law.start(0.0, load);
+            for _ in 0..999 {
+                state = law.advance(state, load, time / 1000.0);
+            }
+            assert!((state.level(load) - 0.999).abs() < 1e-10 && state.level(load) < 1.0, "{name} {load}");
+            state = law.advance(state, load, time / 1000.0 * 1.000_001);
+            assert_eq!(state.level(load), 1.0, "{name} {load}");
+        }
+    }
+}
+
+#[test]
+fn intermittent_loads_add_up_and_rest_recovers() {
+    let law = endurance("freylaw_avin_2010_elbow");
+    let time = |load| law.endurance_time(load);
+    let mut state = law.start(0.0, 0.0);
+    let mut expected = 0.0;
+    for (load, seconds) in [(0.5, 20.0), (0.3, 60.0), (0.02, 100.0), (0.8, 5.0)] {
+        state = law.advance(state, load, seconds);
+        expected += seconds / time(load);
+    }
+    assert!((share(state) - expected).abs() < 1e-12);
+    for (load, seconds) in [(0.0, 10.0), (REST_LOAD, 15.0)] {
+        state = law.advance(state, load, seconds);
+        expected *= f64::exp(-0.04 * seconds);
+        assert!((share(state) - expected).abs() < 1e-12);
+    }
+    // One long rest is many short ones.
+    let many = (0..300).fold(state, |state, _| law.advance(state, 0.0, 1.0 / 30.0));
+    assert!((share(many) - share(law.advance(state, 0.0, 10.0))).abs() < 1e-12);
+}
+
+#[test]
+fn level_means_the_same_for_both_laws() {
+    for (class, ..) in CLASSES {
+        for law in [library().three_compartment(class).unwrap().0, endurance(&library().default_endurance(class))] {
+            for load in [0.0, 0.1, 0.3, 0.5, 0.9, 0.999] {
+                assert_eq!(law.start(0.0, load).level(load), 0.0);
+                assert_eq!(law.start(1.0, load).level(load), 1.0);
+                assert!((law.start(0.0, load).capacity(load) - 1.0).abs() < 1e-15);
+                assert!((law.start(1.0, load).capacity(load) - load).abs() < 1e-15);
+                for level in [0.1, 0.3, 0.6, 0.7, 0.95] {
+                    let given = law.start(level, load).level(load);
+                    assert!((given - level).abs() < 1e-15 * (1.0 + 1.0 / (1.0 - load)), "{level} {load}: {given}");
+                }
+            }
+            // Exhausted exactly when the time is over.
+            for load in [0.2, 0.5, 0.9] {
+                let time = law.endurance_time(load);
+                let before = law.advance(law.start(0.0, load), load, 0.98 * time);
+                let after = law.advance(law.start(0.0, load), load, 1.01 * time);
+                assert!(before.level(load) < 1.0 && after.level(load) == 1.0, "{class} {load}");
+            }
+            // What is not a level or a load is brought to the nearest one.
+            for (level, load) in [(-1.0, 0.3), (2.0, 0.3), (0.5, -1.0), (0.5, 7.0)] {
+                let state = law.start(level, load);
+                assert!((0.0..=1.0).contains(&state.level(0.3)) && (0.0..=1.0).contains(&state.capacity(0.3)));
+            }
+        }
+    }
+}
+
+#[test]
+fn level_of_three_compartments_falls_with_the_load() {
+    // The scale is relative to the present load: the same fatigued share is half as far from failure without the load.
+    // Whoever compares levels over time must compare them at one load, or a relieved group looks rested at once.
+    let state = FatigueState::Compartments(Compartments::with_fatigue(0.6, 0.5));
+    assert!((state.level(0.5) - 0.6).abs() < 1e-15);
+    assert!((state.level(0.0) - 0.3).abs() < 1e-15);
+}
+
+#[test]
+fn a_state_of_the_other_law_starts_rested() {
+    let compartments = library().three_compartment("elbow").unwrap().0;
+    let integral = endurance("freylaw_avin_2010_elbow");
+    for (law, other) in [(&compartments, &integral), (&integral, &compartments)] {
+        let given = law.advance(other.start(0.9, 0.3), 0.3, 1.0);
+        assert_eq!(given, law.advance(law.start(0.0, 0.3), 0.3, 1.0));
+    }
+}
+
+#[test]
+fn hysteresis_holds_relief_between_its_levels() {
+    let hysteresis = Hysteresis { critical_level: 0.6, recovery_level: 0.3 };
+    let mut recovering = false;
+    let rows = [
+        (0.0, false),
+        (0.59, false),
+        (0.6, true),
+        (0.9, true),
+        (0.5, true),
+        (0.300_001, true),
+        (0.3, false),
+        (0.5, false),
+        (0.599, false),
+        (1.0, true),
+        (0.0, false),
+    ];
+    for (level, expected) in rows {
+        recovering = hysteresis.recovering(recovering, level);
+        assert_eq!(recovering, expected, "at {level}");
+    }
+}
+
+#[test]
+fn hysteresis_forces_a_rest() {
+    // Hold until 0.6, rest until 0.3: at one load, the rest lasts ln(2) / (r R).
+    let law = three_compartment("elbow");
+    let hysteresis = Hysteresis { critical_level: 0.6, recovery_level: 0.3 };
+    let (load, step) = (0.5, 1.0 / 30.0);
+    let mut state = Compartments::with_fatigue(0.0, load);
+    let (mut recovering, mut rest) = (false, 0.0);
+    while !hysteresis.recovering(recovering, state.level(load)) {
+        state = law.advance(state, load, step);
+    }
+    recovering = true;
+    while hysteresis.recovering(recovering, state.level(load)) {
+        state = law.advance(state, 0.0, step);
+        rest += step;
+    }
+    let expected = std::f64::consts::LN_2 / (15.0 * 0.00094);
+    println!("rest of {rest:.1} s, expected {expected:.1}");
+    assert!((rest - expected).abs() < 0.5, "{rest} {expected}");
+}
+
+#[test]
+fn strength_slope_and_floor() {
+    let mut rng = random("strength_slope_and_floor");
+    let (mut inside, mut worst) = (0, 0.0);
+    for _ in 0..10_000 {
+        let strength = Strength {
+            peak: rng.random_range(1.0..300.0),
+            best: rng.random_range(-2.0..2.0),
+            narrowness: rng.random_range(0.0..2.0),
+            floor: rng.random_range(0.01..0.5),
+        };
+        let angle = rng.random_range(-4.0..4.0);
+        let (torque, slope) = strength.torque_and_slope(angle);
+        assert_eq!(torque, strength.torque(angle));
+        assert!((strength.peak * strength.floor..=strength.peak).contains(&torque));
+        assert_eq!(strength.torque(strength.best), strength.peak);
+        let h = 1e-5;
+        // The kink where the floor begins has no slope to compare with.
+        let lowest = strength.peak * strength.floor;
+        let kink = [-h, h].map(|h| strength.torque(angle + h) == lowest);
+        if kink[0] != kink[1] {
+            continue;
+        }
+        let difference = (strength.torque(angle + h) - strength.torque(angle - h)) / (2.0 * h);
+        worst = f64::max(worst, (slope - difference).abs() / strength.peak);
+        inside += u32::from(!kink[0]);
+    }
+    println!("{inside} angles above the floor: slope differs by {worst:.1e} of the peak at most");
+    assert!(worst < 1e-9 && inside > 4000);
+    let constant = Strength::constant(42.0);
+    assert_eq!((constant.torque_and_slope(-7.0), constant.torque(1e9)), ((42.0, 0.0), 42.0));
+}
