@@ -11,7 +11,7 @@ use contrapposto_plot::{SketchRole, time_line, torque_balance};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::{DemoArgs, SimulateArgs};
-use crate::chart::{Course, Sweep, angle_label};
+use crate::chart::{Course, Sweep};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::output::{Folder, print};
@@ -74,7 +74,7 @@ fn carry_out(scenario: &Scenario, out: &Path, json: bool) -> Result<(), Fail> {
     let mut line = courses.swap_remove(main).finish();
     line.title = scenario.title.clone();
     line.subtitle.clone_from(&subtitle);
-    line.angle_label = angle_label(&coordinate.name, &coordinate.positive);
+    line.coordinate.clone_from(&coordinate.name);
     line.critical_level = scenario.hysteresis.critical_level;
     line.recovery_level = scenario.hysteresis.recovery_level;
 
@@ -145,7 +145,7 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
 
 fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) -> String {
     let mut table = Table::new();
-    table.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY);
+    table.load_style(comfy_table::presets::NOTHING);
     table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
     for ((coordinate, summary), free) in
         scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free)

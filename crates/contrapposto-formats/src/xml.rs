@@ -139,6 +139,11 @@ impl Document {
         self.elements.len()
     }
 
+    /// All elements in the file's order.
+    pub fn nodes(&self) -> impl Iterator<Item = Node<'_>> {
+        (0..self.elements.len() as u32).map(|index| Node { document: self, index })
+    }
+
     fn slice(&self, span: Span) -> &str {
         &self.pool[span.start as usize..span.end as usize]
     }

@@ -116,7 +116,7 @@ fn elbow_in_time() -> Figure {
     time_line(&TimeLine {
         title: "Elbow, passive strategy".to_owned(),
         subtitle: "relief begins at fatigue 0.6 and ends at 0.2".to_owned(),
-        angle_label: "elbow_flex_r, deg".to_owned(),
+        coordinate: "elbow_flex_r".to_owned(),
         external_nm: at_time(external),
         passive_nm: at_time(passive),
         active_nm: angle_deg.iter().map(|a| active(*a)).collect(),

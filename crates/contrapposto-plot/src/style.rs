@@ -65,8 +65,8 @@ impl Pen {
     }
 }
 
-pub(crate) const PASSIVE_PEN: Pen = Pen::solid(PASSIVE, 2.0);
-pub(crate) const TOLERANCE_PEN: Pen = Pen::dashed(PASSIVE, 1.0, 2.0, 3.0);
+pub(crate) const PASSIVE_PEN: Pen = Pen::solid(PASSIVE, 1.6);
+pub(crate) const TOLERANCE_PEN: Pen = Pen::dashed(PASSIVE, 0.9, 2.0, 3.0);
 pub(crate) const EXTERNAL_PEN: Pen = Pen::solid(EXTERNAL, 2.0);
 pub(crate) const ACTIVE_PEN: Pen = Pen::solid(ACTIVE, 2.0);
 pub(crate) const MINUS_ACTIVE_PEN: Pen = Pen::dashed(ACTIVE, 1.6, 2.0, 4.0);

@@ -22,8 +22,8 @@ pub struct TimeLine {
     pub title: String,
     /// Second line above the chart; may be empty.
     pub subtitle: String,
-    /// Label of the angle axis, e.g. "elbow_flex_r, deg".
-    pub angle_label: String,
+    /// Name of the coordinate, for the legend.
+    pub coordinate: String,
     /// Times of all curves, s, in increasing order.
     pub time_s: Vec<f64>,
     /// Angle at each time, degrees.
@@ -83,9 +83,9 @@ pub fn time_line(line: &TimeLine) -> Figure {
 fn parts(line: &TimeLine) -> [Part<'_>; 3] {
     let angle = Part {
         height: 130.0,
-        y_label: &line.angle_label,
+        y_label: "angle, deg",
         range: Range::around(line.angle_deg.iter().copied()).padded(0.08),
-        curves: vec![(&line.angle_deg, ANGLE_PEN, "angle")],
+        curves: vec![(&line.angle_deg, ANGLE_PEN, line.coordinate.as_str())],
         levels: vec![],
     };
     let torques = [&line.external_nm, &line.passive_nm, &line.active_nm];

@@ -13,12 +13,12 @@ use crate::style::{
 };
 use crate::tags::{MOST_TAGS, PostureSketch, SketchRole, Tag, draw_tags, draw_uprights, tags_height};
 
-const FRAME_HEIGHT: f64 = 290.0;
+const FRAME_HEIGHT: f64 = 320.0;
 /// How far the vertical axis reaches beyond the greatest external torque: the passive torque grows steeply towards
 /// the limits and is cut at the frame, so that the middle of the range stays readable.
 const HEADROOM: f64 = 1.6;
 /// The tolerance is drawn if it is at least this far from its curve, px; closer it would hide in the line.
-const LEAST_TOLERANCE: f64 = 2.5;
+const LEAST_TOLERANCE: f64 = 1.2;
 
 /// One panel: torques of a joint coordinate against its angle, and how the active torque was reduced.
 #[derive(Clone, Debug, Default)]

@@ -79,7 +79,7 @@ fn line(xs: &[f64], ys: &[f64], text: &str) -> TimeLine {
     TimeLine {
         title: text.to_owned(),
         subtitle: text.to_owned(),
-        angle_label: text.to_owned(),
+        coordinate: text.to_owned(),
         time_s: xs.to_vec(),
         angle_deg: ys.to_vec(),
         external_nm: ys.to_vec(),

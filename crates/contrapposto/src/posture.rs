@@ -38,6 +38,13 @@ pub enum PostureError {
     },
 }
 
+impl Model {
+    /// Every coordinate at its default.
+    pub fn default_posture(&self) -> Posture {
+        Posture::new(self.coordinates.iter().map(|c| c.default).collect())
+    }
+}
+
 impl Posture {
     /// From values in the model's order.
     pub fn new(values: Vec<f64>) -> Self {

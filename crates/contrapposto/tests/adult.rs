@@ -1,5 +1,7 @@
 //! Is the built-in adult the body of the data sheet, and does every coordinate turn the way its name says?
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::data::library;
 use contrapposto::model::{Adult, AdultError, CoordinateKind, Model, Sex, Side, adult};

@@ -25,7 +25,7 @@ fn slope_is_the_derivative_of_torque_and_torque_minus_that_of_energy() {
             let (curve, breaks) = support::curve(kind, &mut random);
             let (min, max) = curve.range();
             for _ in 0..40 {
-                let step = 1e-4;
+                let step = 5e-5;
                 let q = random.random_range(min + 2.0 * step..max - 2.0 * step);
                 if breaks.iter().any(|b| (q - b).abs() < 3.0 * step) {
                     continue;
@@ -177,8 +177,12 @@ fn check_slope_angles(curve: &PassiveCurve, target: f64, crossings: &[f64]) -> u
     if target == flattest && zone.0 < zone.1 {
         assert_eq!((found.lower, found.upper), (Some(zone.0), Some(zone.1)), "{curve:?}");
     } else if target < flattest {
-        let lower = crossings.iter().copied().filter(|c| *c <= zone.0).reduce(f64::max);
-        let upper = crossings.iter().copied().filter(|c| *c >= zone.1).reduce(f64::min);
+        // A kink may be the flattest angle itself: steeper than the target just above it, it is the upper one.
+        let upper_kink = |c: f64| c == zone.0 && c == zone.1 && c < max && curve.slope(c.next_up()) < target;
+        let lower = crossings.iter().copied().filter(|c| *c <= zone.0 && !upper_kink(*c)).reduce(f64::max);
+        let upper =
+            crossings.iter().copied().filter(|c| *c > zone.1 || (*c == zone.1 && (zone.0 < zone.1 || upper_kink(*c))));
+        let upper = upper.reduce(f64::min);
         assert_eq!((found.lower, found.upper), (lower, upper), "{target} {curve:?}");
         // Nothing steeper between the pair, so the nearest is what it says.
         let (from, to) = (lower.unwrap_or(min), upper.unwrap_or(max));
@@ -300,7 +304,7 @@ fn tables_never_overshoot() {
             .collect();
         let cubic = MonotoneCubic::new(&points).unwrap();
         for (piece, ends) in cubic.pieces().iter().zip(points.windows(2)) {
-            let slack = 1e-13 * (1.0 + ends[0].1.abs());
+            let slack = 1e-13 * (1.0 + ends[0].1.abs() + ends[1].1.abs());
             for i in 0..=50 {
                 let x = piece.start + (piece.end - piece.start) * f64::from(i) / 50.0;
                 let (value, _) = piece.value_and_slope(x);
@@ -316,7 +320,10 @@ fn tables_never_overshoot() {
             let [_, c1, c2, c3] = pair[0].coefficients.map(f64::abs);
             let width = pair[0].end - pair[0].start;
             let spacing = 1e-15 * (width + pair[0].end);
-            assert!(jump < 1e-14 * (c1 + width * (c2 + width * c3)) + 10.0 * spacing * (c2 + width * c3), "{points:?}");
+            assert!(
+                jump <= 1e-14 * (c1 + width * (c2 + width * c3)) + 10.0 * spacing * (c2 + width * c3),
+                "{jump:e} {points:?}"
+            );
         }
     }
 }

@@ -20,6 +20,40 @@ pub(crate) fn unique_coordinates(body: &Body) -> Result<(), String> {
     }
 }
 
+/// Index of the first segment with a number that is not finite; one past the last for a spring or coupling.
+pub(crate) fn first_not_finite(body: &Body) -> Option<usize> {
+    let finite = |s: &super::BodySegment| {
+        let pose = |p: &nalgebra::Isometry3<f64>| {
+            p.translation.vector.iter().chain(p.rotation.coords.iter()).all(|x| x.is_finite())
+        };
+        let motion = |m: &super::BodyMotion| match m {
+            super::BodyMotion::Hinge { axis, drive } | super::BodyMotion::Slide { axis, drive } => {
+                let drive = if let super::Drive::Constant(value) = drive { *value } else { 0.0 };
+                drive.is_finite() && axis.iter().all(|x| x.is_finite())
+            }
+            super::BodyMotion::Ball { .. } => true,
+        };
+        let numbers = s.center_of_mass.iter().chain(s.inertia.iter());
+        s.mass.is_finite()
+            && numbers.copied().all(f64::is_finite)
+            && pose(&s.in_parent)
+            && pose(&s.in_segment)
+            && s.motions.iter().all(motion)
+    };
+    if let Some(segment) = body.segments.iter().position(|s| !finite(s)) {
+        return Some(segment);
+    }
+    let coupled = body.couplings.iter().all(|c| powers(&c.function).is_none_or(|k| k.iter().all(|x| x.is_finite())));
+    let sprung = body.passive.iter().all(|p| match &p.law {
+        super::PassiveLawText::Spring { stiffness, rest } => stiffness.is_finite() && rest.is_finite(),
+        super::PassiveLawText::Polynomial { coefficients, rest } => {
+            rest.is_finite() && coefficients.iter().all(|x| x.is_finite())
+        }
+        _ => true,
+    });
+    (!coupled || !sprung).then_some(body.segments.len())
+}
+
 /// The name that `given` was probably meant to be, among those short enough to compare quickly.
 pub(crate) fn near<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
     const MOST_BYTES: usize = 64;

@@ -9,7 +9,7 @@ mod root;
 pub use function::Function;
 pub use root::{BodyRoot, FREE_ENDINGS};
 
-pub(crate) use build::{compose_couplings, near, polynomial, unique_coordinates, unit};
+pub(crate) use build::{compose_couplings, first_not_finite, near, polynomial, unique_coordinates, unit};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 

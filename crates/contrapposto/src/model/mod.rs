@@ -18,7 +18,6 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use crate::fatigue::FatigueLaw;
 use crate::passive::PassiveCurve;
-use crate::posture::Posture;
 
 /// Largest size of any number of a model, posture or load, in SI units. Far beyond every body, and small enough that no
 /// product of them overflows: what is accepted gives finite torques and gradients.
@@ -104,7 +103,7 @@ impl Model {
         &self.segments
     }
 
-    /// All coordinates, in the order of [`Posture`] values.
+    /// All coordinates, in the order of [`crate::posture::Posture`] values.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
     }
@@ -138,11 +137,6 @@ impl Model {
             group.fatigue = law.clone();
         }
         self
-    }
-
-    /// Every coordinate at its default.
-    pub fn default_posture(&self) -> Posture {
-        Posture::new(self.coordinates.iter().map(|c| c.default).collect())
     }
 
     /// Total mass, kg.

@@ -110,6 +110,9 @@ impl CoordinateLimitForce {
 /// Calls `visit` with each distance from the limit, in transition widths and up to about `reach`, where the steepness
 /// passes through `level`.
 fn offsets(level: f64, reach: f64, mut visit: impl FnMut(f64)) {
+    if level == 0.0 {
+        return visit(0.0); // the end of the flat middle
+    }
     let steepest = steepness(reach.clamp(0.0, STEEPEST)).0;
     if !(level > 0.0 && level <= steepest * (1.0 + 1e-12)) {
         return;

@@ -247,7 +247,9 @@ impl PassiveCurve {
             found = SlopeAngles { lower: Some(lower_end), upper: Some(upper_end) };
         } else if slope < self.flattest_slope {
             self.crossings(slope, |angle| {
-                if angle <= lower_end {
+                // At a kink that is itself the flattest angle the side is told by where the curve is steeper.
+                let kink = lower_end == upper_end && angle == upper_end && self.steeper_beyond(angle, slope);
+                if angle <= lower_end && !kink {
                     found.lower = Some(found.lower.map_or(angle, |best| best.max(angle)));
                 } else if angle >= upper_end {
                     found.upper = Some(found.upper.map_or(angle, |best| best.min(angle)));
@@ -255,6 +257,11 @@ impl PassiveCurve {
             });
         }
         found
+    }
+
+    /// Does a zone begin at `angle` whose slope there is steeper than `slope`?
+    fn steeper_beyond(&self, angle: f64, slope: f64) -> bool {
+        self.zones.iter().any(|zone| zone.from == angle && zone.form_slopes.0 + zone.added_slope < slope)
     }
 
     /// Calls `visit` with every angle of the closed range where the slope passes through `slope` (N m/rad), in no fixed

@@ -1,0 +1,130 @@
+//! MJCF: MuJoCo's model files as a [`Body`].
+//!
+//! Defaults and classes, includes, frames, degrees, Euler sequences, orientations of five kinds and masses from geoms are
+//! resolved as MuJoCo 4.0 resolves them. What matters to quasi-static torque and is not supported is refused with its place;
+//! the rest is counted in [`Body::ignored`].
+
+mod attributes;
+mod compiler;
+mod defaults;
+mod equality;
+mod error;
+mod files;
+mod geom;
+mod inertial;
+mod joint;
+mod orientation;
+mod schema;
+mod springdamper;
+mod tree;
+
+pub use error::{IncludeRule, MjcfError, MjcfRule, Unsupported};
+
+use crate::body::{Body, BodyRoot, first_not_finite, unique_coordinates};
+use crate::xml::Limits;
+use attributes::Attributes;
+use compiler::Settings;
+use defaults::Classes;
+use files::{Files, Item};
+use std::collections::BTreeMap;
+
+/// What the file does not say.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// How the outermost body is attached to the ground; `None`: as the file says. `Free` adds `root_tx` ... `root_qz`.
+    pub root: Option<BodyRoot>,
+    /// Caps.
+    pub limits: Limits,
+}
+
+/// Reads an MJCF file. `include` gives the bytes of an included file, named relative to the main file's folder; names that
+/// lead out of it never reach `include`. `file_name` serves as the body's name if the model has none.
+///
+/// # Errors
+/// [`MjcfError`] with the place.
+pub fn read(
+    bytes: &[u8],
+    file_name: &str,
+    include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    options: &Options,
+) -> Result<Body, MjcfError> {
+    let files = Files::load(bytes, file_name, include, &options.limits)?;
+    let root = files.root();
+    if root.name() != "mujoco" {
+        return Err(MjcfError::Root { place: root.place() });
+    }
+    let mut body = Body { name: file_name.to_owned(), ..Body::default() };
+    if let Some(name) = root.attribute("model").filter(|n| !n.is_empty()) {
+        name.clone_into(&mut body.name);
+    }
+    let settings = Settings::read(root)?;
+    body.gravity = settings.gravity;
+    let classes = Classes::read(root, &options.limits)?;
+    let mut ignored = Ignored::default();
+    let mut walk = tree::Walk::new(&mut body, &settings, &classes, options, &mut ignored);
+    for section in root.children() {
+        if section.name() == "worldbody" {
+            walk.world(section)?;
+        }
+    }
+    let built = walk.finish(root)?;
+    for section in root.children() {
+        match section.name() {
+            "worldbody" | "compiler" | "option" | "default" => {}
+            "equality" => equality::read(section, &mut body, &settings, &classes, &built, &mut ignored)?,
+            "tendon" => tendons(section, &settings, &classes, &mut ignored)?,
+            "deformable" => {
+                for child in section.children() {
+                    match child.name() {
+                        "skin" => ignored.add("skin", 1),
+                        _ => return Err(Unsupported::Deformable.at(child)),
+                    }
+                }
+            }
+            name if schema::SECTIONS.contains(&name) => ignored.add(name, section.children().len()),
+            _ => return Err(MjcfError::unknown_element(section, schema::SECTIONS)),
+        }
+    }
+    equality::close(&mut body, &built)?;
+    springdamper::apply(&mut body, &built, root)?;
+    unique_coordinates(&body).map_err(|value| MjcfError::DuplicateName { place: root.place(), value })?;
+    if let Some(segment) = first_not_finite(&body) {
+        let value = body.segments.get(segment).map_or_else(String::new, |s| s.name.clone());
+        let place = built.places.get(segment).cloned().unwrap_or_else(|| root.place());
+        return Err(MjcfError::Invalid { place, value, needs: MjcfRule::Overflow });
+    }
+    body.ignored = ignored.0.into_iter().collect();
+    Ok(body)
+}
+
+/// Springs of tendons act on several joints and are not represented.
+fn tendons<'a>(
+    section: Item<'a>,
+    settings: &Settings,
+    classes: &Classes<'a>,
+    ignored: &mut Ignored,
+) -> Result<(), MjcfError> {
+    for tendon in section.children() {
+        if !matches!(tendon.name(), "spatial" | "fixed") {
+            return Err(MjcfError::unknown_element(tendon, &["spatial", "fixed"]));
+        }
+        let attributes = Attributes::new(tendon, schema::Tag::Tendon, classes, 0)?;
+        if settings.springs && attributes.merged("stiffness")?.iter().any(|&k| k != 0.0) {
+            return Err(Unsupported::TendonSpring.at_attribute(tendon, "stiffness"));
+        }
+        ignored.add("tendon", 1);
+    }
+    Ok(())
+}
+
+/// What was read past, by kind.
+#[derive(Debug, Default)]
+struct Ignored(BTreeMap<String, usize>);
+
+impl Ignored {
+    fn add(&mut self, kind: &str, count: usize) {
+        if count > 0 {
+            *self.0.entry(kind.to_owned()).or_default() += count;
+        }
+    }
+}
