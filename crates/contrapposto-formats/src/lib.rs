@@ -5,6 +5,7 @@
 
 pub mod body;
 pub mod expression;
+pub mod mjcf;
 pub mod numbers;
 pub mod urdf;
 pub mod xml;

@@ -61,17 +61,18 @@ pub fn read(
     body.gravity = settings.gravity;
     let classes = Classes::read(root, &options.limits)?;
     let mut ignored = Ignored::default();
-    let mut walk = tree::Walk::new(&mut body, &settings, &classes, options, &mut ignored);
+    let mut walk = tree::Walk::new(&mut body, &settings, &classes, options, &mut ignored, root);
     for section in root.children() {
         if section.name() == "worldbody" {
             walk.world(section)?;
         }
     }
     let built = walk.finish(root)?;
+    let mut couplings = vec![];
     for section in root.children() {
         match section.name() {
             "worldbody" | "compiler" | "option" | "default" => {}
-            "equality" => equality::read(section, &mut body, &settings, &classes, &built, &mut ignored)?,
+            "equality" => equality::read(section, &mut body, &settings, &classes, &built, &mut couplings, &mut ignored)?,
             "tendon" => tendons(section, &settings, &classes, &mut ignored)?,
             "deformable" => {
                 for child in section.children() {
@@ -85,7 +86,7 @@ pub fn read(
             _ => return Err(MjcfError::unknown_element(section, schema::SECTIONS)),
         }
     }
-    equality::close(&mut body, &built)?;
+    equality::close(&mut body, couplings)?;
     springdamper::apply(&mut body, &built, root)?;
     unique_coordinates(&body).map_err(|value| MjcfError::DuplicateName { place: root.place(), value })?;
     if let Some(segment) = first_not_finite(&body) {

@@ -3,6 +3,8 @@
 //! The rival scans 33 points of the same extrapolated active torque and refines each bracket by Illinois false position to
 //! 1e-12 N m: all roots, but no case, no strategy and no answer where there is no root. Both run over the same 512 problems.
 
+#![allow(missing_docs, clippy::unwrap_used)]
+
 use contrapposto::hybrid::{Extrapolation, Problem, Strategy, minimise};
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End, PassiveCurve, Tabulated};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

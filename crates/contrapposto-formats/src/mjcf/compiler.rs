@@ -114,7 +114,7 @@ impl Settings {
 
     fn options(&mut self, options: &[Item<'_>]) -> Result<(), MjcfError> {
         let (mut wind, mut density, mut viscosity) = (None, 0.0, 0.0);
-        let mut has_gravity = true;
+        let (mut has_gravity, mut constraints) = (true, true);
         for &option in options {
             if let Some(value) = Value::of(option, "gravity") {
                 self.gravity = Vector3::from(value.numbers::<3>()?);
@@ -128,18 +128,15 @@ impl Settings {
             for flag in option.children().into_iter().filter(|c| c.name() == "flag") {
                 for (name, _) in flag.attributes() {
                     let Some(value) = Value::of(flag, name) else { continue };
-                    let setting: &mut [&mut bool] = match name {
-                        "gravity" => &mut [&mut has_gravity],
-                        "spring" => &mut [&mut self.springs],
-                        // Files before MuJoCo 3.3: springs and dampers together.
-                        "passive" => &mut [&mut self.springs],
-                        "limit" => &mut [&mut self.limits],
-                        "equality" => &mut [&mut self.equality],
-                        "constraint" => &mut [&mut self.limits, &mut self.equality],
+                    let setting = match name {
+                        "gravity" => &mut has_gravity,
+                        "spring" | "passive" => &mut self.springs, // `passive`: springs and dampers, in older files
+                        "limit" => &mut self.limits,
+                        "equality" => &mut self.equality,
+                        "constraint" => &mut constraints,
                         _ => continue,
                     };
-                    let enabled = value.keyword(&["disable", "enable"])? == 1;
-                    setting.iter_mut().for_each(|s| **s = enabled);
+                    *setting = value.keyword(&["disable", "enable"])? == 1;
                 }
             }
         }
@@ -148,6 +145,8 @@ impl Settings {
         {
             return Err(Unsupported::Wind.at_attribute(item, "wind"));
         }
+        self.limits &= constraints;
+        self.equality &= constraints;
         if !has_gravity {
             self.gravity = Vector3::zeros();
         }

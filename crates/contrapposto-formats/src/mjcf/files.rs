@@ -139,6 +139,12 @@ impl<'a> Item<'a> {
         self.files.files[self.file].name.clone()
     }
 
+    /// The names of all elements of these kinds in all files.
+    pub(super) fn names_of(self, tags: &[&str]) -> BTreeSet<&'a str> {
+        let nodes = self.files.files.iter().flat_map(|f| f.document.nodes());
+        nodes.filter(|n| tags.contains(&n.name())).filter_map(|n| n.attribute("name")).collect()
+    }
+
     /// Child elements, includes replaced by what they include.
     pub(super) fn children(self) -> Vec<Item<'a>> {
         let mut children = vec![];

@@ -2,7 +2,31 @@
 
 use super::{Carrier, Case, Decision, Equilibrium, Outcome, Problem, Strategy};
 
-/// The decision in words, angles in degrees.
+/// The decision in words, angles in degrees, torques in N m.
+///
+/// ```
+/// use contrapposto::hybrid::{Problem, Strategy, explain, minimise};
+/// use contrapposto::passive::{DoubleExponential, End, PassiveCurve};
+/// let end = |angle| End { torque: 10.0, rate: 10.0, angle };
+/// let form = DoubleExponential { lower: end(0.0), upper: end(2.0), stiffness: 0.0, neutral: 0.0 }.form()?;
+/// let curve = PassiveCurve::new(form, (0.0, 2.0), None)?;
+/// let problem = Problem {
+///     curve: &curve,
+///     angle: 0.5,
+///     external_torque: -2.0,
+///     external_slope: 0.5,
+///     strategy: Strategy::Passive,
+///     minimum_decrease_ratio: 0.9,
+///     torque_tolerance: 0.05,
+///     accepted: None,
+/// };
+/// let sentence = explain(&problem, &minimise(&problem)?);
+/// assert_eq!(
+///     sentence,
+///     "case 3.2 (passive strategy): balance at 8.74 deg takes 1.933 N m off the muscles, stable by ligaments"
+/// );
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn explain(problem: &Problem, decision: &Decision) -> String {
     let torque = decision.active_torque;
     let at_goal = decision.active_torque_at_goal.unwrap_or(torque);

@@ -22,7 +22,8 @@ pub(super) struct Point {
     pub(super) torque: f64,
 }
 
-/// Active torque over the range, with the external torque continued as a straight line.
+/// Active torque over the range, with the external torque continued as a straight line. [`super::minimise`] works on it;
+/// charts draw it.
 #[derive(Clone, Copy, Debug)]
 pub struct Extrapolation<'a> {
     curve: &'a PassiveCurve,

@@ -1,7 +1,7 @@
 //! Table 1 of Rodriguez & Boulic 2007, and what is done where its text has no answer.
 //!
 //! `table_1` below is the printed table, branch by branch. [`minimise_literal`] carries it out as it stands.
-//! [`minimise`] carries it out and then closes its gaps (docs/deviations.md, D3 to D6): where the table searches an
+//! [`minimise`] carries it out and then closes its gaps (docs/deviations.md, D3 to D6, D11, D12): where the table searches an
 //! interval without a root, the root that does exist is taken, and where none exists the angle of least torque.
 
 use super::case::{Carrier, Case, Decision, Equilibrium, Outcome, Strategy};
@@ -96,6 +96,28 @@ pub fn minimise(problem: &Problem) -> Result<Decision, ProblemError> {
 }
 
 /// Decides as the printed Tables 1 and 2 do; an interval whose ends have the same sign gives [`Outcome::None`].
+/// [`Problem::accepted`] plays no part.
+///
+/// ```
+/// use contrapposto::hybrid::{Outcome, Problem, Strategy, minimise, minimise_literal};
+/// use contrapposto::passive::{DoubleExponential, End, PassiveCurve};
+/// let end = |angle| End { torque: 10.0, rate: 10.0, angle };
+/// let form = DoubleExponential { lower: end(0.0), upper: end(2.0), stiffness: 0.0, neutral: 0.0 }.form()?;
+/// let curve = PassiveCurve::new(form, (0.0, 2.0), None)?;
+/// let too_heavy = Problem {
+///     curve: &curve,
+///     angle: 1.0,
+///     external_torque: -25.0,
+///     external_slope: 0.0,
+///     strategy: Strategy::Passive,
+///     minimum_decrease_ratio: 0.9,
+///     torque_tolerance: 0.05,
+///     accepted: None,
+/// };
+/// assert_eq!(minimise_literal(&too_heavy)?.outcome, Outcome::None);
+/// assert_eq!((minimise(&too_heavy)?.outcome, minimise(&too_heavy)?.goal), (Outcome::AtLimit, Some(0.0)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// As [`minimise`].
@@ -213,18 +235,19 @@ fn one_slope_active(problem: &Problem, active: &Extrapolation, decision: &mut De
 /// none. Searches every piece on which the extrapolated torque is monotone, so no root is missed.
 fn nearest_root(problem: &Problem, active: &Extrapolation, decision: &mut Decision) -> Option<f64> {
     let wants_stable = !wants_active(problem, Reading::Total);
-    let mut best: Option<((bool, f64), f64, (Point, Point))> = None;
+    let mut best = (true, f64::INFINITY);
+    let mut nearest = None;
     for_each_piece(problem, active, |piece| {
         let Some(root) = active.root(piece) else { return };
         let stable = piece.1.torque > piece.0.torque;
         let rank = (stable != wants_stable, (root - problem.angle).abs());
-        if best.is_none_or(|(least, ..)| rank < least) {
-            best = Some((rank, root, piece));
+        if rank < best {
+            best = rank;
+            nearest = Some(root);
+            decision.interval = Some((piece.0.angle, piece.1.angle));
         }
     });
-    let (_, root, piece) = best?;
-    decision.interval = Some((piece.0.angle, piece.1.angle));
-    Some(root)
+    nearest
 }
 
 /// Where no balance exists: the angle of least torque, which is a limit or one of the slope angles. Ties go to the
@@ -262,6 +285,13 @@ fn describe(problem: &Problem, active: &Extrapolation, decision: &mut Decision, 
     let (torque, slope) = active.active_and_slope(angle);
     let stable = slope > 0.0;
     let (by_load, by_tissue) = (-active.external_slope(), slope + active.external_slope());
+    let kind = if !stable {
+        Equilibrium::Unstable
+    } else if by_tissue >= by_load {
+        Equilibrium::Stable(Carrier::Ligaments)
+    } else {
+        Equilibrium::Stable(Carrier::Gravity)
+    };
     let balance = match goal {
         Goal::Stay => torque.abs() <= problem.torque_tolerance,
         Goal::Root(_) => true,
@@ -269,15 +299,7 @@ fn describe(problem: &Problem, active: &Extrapolation, decision: &mut Decision, 
     };
     decision.goal = Some(angle);
     decision.active_torque_at_goal = Some(torque);
-    decision.equilibrium = balance.then(|| {
-        if !stable {
-            Equilibrium::Unstable
-        } else if by_tissue >= by_load {
-            Equilibrium::Stable(Carrier::Ligaments)
-        } else {
-            Equilibrium::Stable(Carrier::Gravity)
-        }
-    });
+    decision.equilibrium = balance.then_some(kind);
     decision.outcome = match goal {
         _ if angle == problem.angle => Outcome::Stay,
         Goal::Root(_) if stable => Outcome::Passive,

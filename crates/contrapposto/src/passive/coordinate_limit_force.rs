@@ -11,7 +11,25 @@
 use super::{Form, PassiveError};
 use crate::math::dichotomy_between;
 
-/// Two one-sided springs with a smooth start.
+/// Two one-sided springs with a smooth start. Positive torque below the lower limit, negative above the upper one.
+///
+/// OpenSim's files give degrees and N m/deg for rotations:
+///
+/// ```
+/// use contrapposto::passive::{CoordinateLimitForce, PassiveCurve};
+/// let knee = CoordinateLimitForce {
+///     upper_stiffness: 20f64.to_degrees(), // N m/deg to N m/rad
+///     upper_limit: -5f64.to_radians(),
+///     lower_stiffness: 10f64.to_degrees(),
+///     lower_limit: -120f64.to_radians(),
+///     transition: 10f64.to_radians(),
+/// };
+/// let curve = PassiveCurve::new(knee.form()?, (-133f64.to_radians(), 23f64.to_radians()), None)?;
+/// assert!((curve.torque(-133f64.to_radians()) - 130.0).abs() < 1e-9); // 13 deg at 10 N m/deg
+/// assert_eq!(curve.torque(-60f64.to_radians()), 0.0);
+/// assert_eq!(curve.flattest_zone(), (-120f64.to_radians(), -5f64.to_radians()));
+/// # Ok::<(), contrapposto::passive::PassiveError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoordinateLimitForce {
     /// Stiffness above `upper_limit`, N m/rad, not negative.

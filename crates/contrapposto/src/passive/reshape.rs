@@ -7,6 +7,19 @@
 use super::PassiveError;
 
 /// Linear terms near both limits.
+///
+/// ```
+/// use contrapposto::passive::{DoubleExponential, End, PassiveCurve, Reshape};
+/// let range = (0.0, 2.0);
+/// let end = |angle| End { torque: 3.0, rate: 8.0, angle };
+/// let form = DoubleExponential { lower: end(0.0), upper: end(2.0), stiffness: 0.0, neutral: 0.0 }.form()?;
+/// let plain = PassiveCurve::new(form.clone(), range, None)?;
+/// let strong = Reshape::reaching(12.0, 0.25, (plain.torque(0.0), plain.torque(2.0)));
+/// let curve = PassiveCurve::new(form, range, Some(strong))?;
+/// assert!((curve.torque(0.0) - 12.0).abs() < 1e-12 && (curve.torque(2.0) + 12.0).abs() < 1e-12);
+/// assert_eq!(curve.torque(1.0), plain.torque(1.0));
+/// # Ok::<(), contrapposto::passive::PassiveError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reshape {
     /// Width of each zone, rad, positive, less than half the range.
@@ -18,8 +31,8 @@ pub struct Reshape {
 }
 
 impl Reshape {
-    /// Linear terms that bring `torque` (the unreshaped torque at the lower and upper limit, N m) to at least
-    /// `end_torque` in size.
+    /// Linear terms over `zone` (rad) that bring `torque` (the unreshaped torque at the lower and upper limit, N m) to at
+    /// least `end_torque` (N m) in size. Numbers without meaning are refused by [`super::PassiveCurve::new`].
     pub fn reaching(end_torque: f64, zone: f64, torque: (f64, f64)) -> Self {
         Self {
             zone,

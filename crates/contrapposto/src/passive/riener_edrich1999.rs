@@ -19,6 +19,23 @@ pub struct CoupledTerm {
 }
 
 /// Passive torque of one leg joint as a function of hip, knee and ankle angle.
+///
+/// ```
+/// use contrapposto::passive::{CoupledTerm, Form, PassiveCurve, RienerEdrich1999};
+/// // The ankle: exp(2.1016 - 0.0843 A - 0.0176 K) - exp(-7.9763 + 0.1949 A + 0.0008 K) - 1.792, in degrees.
+/// let term = |sign, c0, knee: f64, ankle: f64| CoupledTerm { sign, c0, rates: [0.0, knee.to_degrees(), ankle.to_degrees()] };
+/// let ankle = RienerEdrich1999 {
+///     joint: 2,
+///     terms: vec![term(1.0, 2.1016, -0.0176, -0.0843), term(-1.0, -7.9763, 0.0008, 0.1949)],
+///     constant: -1.792,
+/// };
+/// let (torque, gradient) = ankle.torque_and_gradient([0.0; 3]);
+/// assert!((torque - 6.39).abs() < 0.005 && gradient[0] == 0.0 && gradient[1] < 0.0 && gradient[2] < 0.0);
+/// let straight_knee = Form::Exponentials(ankle.held([0.0; 3], false)?);
+/// let curve = PassiveCurve::new(straight_knee, (-0.5, 0.9), None)?;
+/// assert!((curve.torque(0.0) - torque).abs() < 1e-12);
+/// # Ok::<(), contrapposto::passive::PassiveError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct RienerEdrich1999 {
     /// The joint the torque acts on: 0 hip, 1 knee, 2 ankle.

@@ -6,6 +6,16 @@ use super::{Form, PassiveError};
 use crate::math::MonotoneCubic;
 
 /// Measured torque against angle.
+///
+/// ```
+/// use contrapposto::passive::{PassiveCurve, PassiveError, Tabulated};
+/// let rows = [(0.0, 6.0), (0.5, 1.0), (1.0, 0.0), (1.5, 0.0), (2.0, -4.0)]; // rad, N m
+/// let curve = PassiveCurve::new(Tabulated::new(&rows)?.form(), (0.0, 2.0), None)?;
+/// assert_eq!(curve.torque(0.5), 1.0);
+/// assert_eq!(curve.flattest_zone(), (1.0, 1.5));
+/// assert!(matches!(Tabulated::new(&[(0.0, 1.0), (1.0, 2.0)]), Err(PassiveError::Rises { angle: 0.0, .. })));
+/// # Ok::<(), PassiveError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
     cubic: MonotoneCubic,

@@ -1,0 +1,383 @@
+//! Bodies and frames: the walk through `<worldbody>`.
+
+use super::attributes::{Attributes, Value, check};
+use super::compiler::{MassFrom, Settings};
+use super::defaults::Classes;
+use super::error::{MjcfError, MjcfRule, Unsupported};
+use super::files::Item;
+use super::geom::middle;
+use super::joint::{Joint, Kind};
+use super::orientation::pose;
+use super::schema::{self, Tag};
+use super::springdamper::{Freedom, Motion, Pending};
+use super::{Ignored, Options, inertial};
+use crate::body::{Body, BodyMotion, BodyRoot, BodySegment, Drive};
+use crate::xml::{Place, shorten};
+use nalgebra::{Isometry3, Translation3, Vector3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What later steps need to know about the bodies.
+#[derive(Default)]
+pub(super) struct Built<'a> {
+    /// Where each segment stands in the file.
+    pub(super) places: Vec<Place>,
+    /// Hinges and slides by name: coordinate and reference value.
+    pub(super) joints: BTreeMap<&'a str, (usize, f64)>,
+    /// All degrees of freedom at the file's configuration.
+    pub(super) freedoms: Vec<Freedom>,
+    /// Springs whose stiffness is still to be found.
+    pub(super) pending: Vec<Pending>,
+    /// Segments' frames in the world at the file's configuration.
+    pub(super) poses: Vec<Isometry3<f64>>,
+    /// Whether each segment moves against the ground.
+    moves: Vec<bool>,
+    /// Names that the file gives to bodies and joints, so that made-up ones differ.
+    given: BTreeSet<&'a str>,
+    top: Vec<Item<'a>>,
+    /// An unnamed free joint has taken the name "root".
+    root_named: bool,
+    body_names: BTreeSet<&'a str>,
+    joint_names: BTreeSet<&'a str>,
+    site_names: BTreeSet<&'a str>,
+}
+
+/// The walk's state.
+pub(super) struct Walk<'a, 'w> {
+    body: &'w mut Body,
+    settings: &'w Settings,
+    classes: &'w Classes<'a>,
+    options: &'w Options,
+    ignored: &'w mut Ignored,
+    built: Built<'a>,
+}
+
+/// Where an element hangs.
+#[derive(Clone, Copy)]
+struct Context {
+    parent: Option<usize>,
+    /// Frames between the parent and here.
+    frame: Isometry3<f64>,
+    class: usize,
+    depth: usize,
+}
+
+/// A body's elements, frames resolved.
+#[derive(Default)]
+struct Contents<'a, 'c> {
+    inertial: Option<(Item<'a>, Isometry3<f64>)>,
+    joints: Vec<Joint<'a>>,
+    geoms: Vec<(Attributes<'a, 'c>, Isometry3<f64>)>,
+    stations: Vec<(String, Vector3<f64>)>,
+    bodies: Vec<(Item<'a>, Context)>,
+}
+
+impl<'a, 'w> Walk<'a, 'w> {
+    pub(super) fn new(
+        body: &'w mut Body,
+        settings: &'w Settings,
+        classes: &'w Classes<'a>,
+        options: &'w Options,
+        ignored: &'w mut Ignored,
+        root: Item<'a>,
+    ) -> Self {
+        let built = Built { given: root.names_of(&["body", "joint", "freejoint"]), ..Built::default() };
+        Self { body, settings, classes, options, ignored, built }
+    }
+
+    pub(super) fn world(&mut self, section: Item<'a>) -> Result<(), MjcfError> {
+        if let Some((name, _)) = section.attributes().next() {
+            return Err(MjcfError::invalid(section, name, MjcfRule::World));
+        }
+        let context = Context { parent: None, frame: Isometry3::identity(), class: 0, depth: 2 };
+        let mut contents = Contents::default();
+        self.collect(section, context, &mut contents)?;
+        if let Some(joint) = contents.joints.first() {
+            return Err(MjcfError::Invalid { place: joint.item.place(), value: "worldbody".to_owned(), needs: MjcfRule::World });
+        }
+        if let Some((item, _)) = contents.inertial {
+            return Err(MjcfError::Invalid { place: item.place(), value: "worldbody".to_owned(), needs: MjcfRule::World });
+        }
+        self.ignored.add("geom of the world", contents.geoms.len());
+        self.ignored.add("site of the world", contents.stations.len());
+        self.built.top.extend(contents.bodies.iter().map(|(item, _)| *item));
+        for (item, context) in contents.bodies {
+            self.segment(item, context)?;
+        }
+        Ok(())
+    }
+
+    /// Elements of a body or frame; frames are gone through in place.
+    fn collect(&mut self, item: Item<'a>, context: Context, into: &mut Contents<'a, 'w>) -> Result<(), MjcfError> {
+        let cap = self.options.limits.depth;
+        if context.depth > cap {
+            return Err(MjcfError::TooDeep { place: item.place(), cap });
+        }
+        let (classes, class) = (self.classes, context.class);
+        for child in item.children() {
+            match child.name() {
+                "body" => into.bodies.push((child, Context { depth: context.depth + 1, ..context })),
+                "frame" => {
+                    check(child, schema::FRAME)?;
+                    if let Some(name) = ["scale", "massscale"].into_iter().find(|n| child.attribute(n).is_some()) {
+                        return Err(Unsupported::FrameScale.at_attribute(child, name));
+                    }
+                    let inner = Context {
+                        frame: context.frame * pose(child, self.settings)?,
+                        class: classes.named(child, "childclass")?.unwrap_or(class),
+                        depth: context.depth + 1,
+                        ..context
+                    };
+                    self.collect(child, inner, into)?;
+                }
+                "inertial" => {
+                    if into.inertial.is_some() {
+                        return Err(MjcfError::Invalid {
+                            place: child.place(),
+                            value: "inertial".to_owned(),
+                            needs: MjcfRule::OneInertial,
+                        });
+                    }
+                    into.inertial = Some((child, context.frame));
+                }
+                "joint" => {
+                    let joint = Attributes::new(child, Tag::Joint, classes, class)?;
+                    for kind in ["damping", "frictionloss"] {
+                        self.ignored.add(&format!("joint {kind}"), usize::from(joint.get(kind).is_some()));
+                    }
+                    into.joints.push(Joint::read(&joint, &context.frame, self.settings)?);
+                }
+                "freejoint" => into.joints.push(Joint::free(child)?),
+                "geom" => into.geoms.push((Attributes::new(child, Tag::Geom, classes, class)?, context.frame)),
+                "site" => self.site(&Attributes::new(child, Tag::Site, classes, class)?, &context.frame, into)?,
+                "camera" | "light" => self.ignored.add(child.name(), 1),
+                "attach" | "replicate" => return Err(Unsupported::Generated.at(child)),
+                "composite" | "flexcomp" => return Err(Unsupported::Deformable.at(child)),
+                "plugin" => return Err(Unsupported::Plugin.at(child)),
+                _ => return Err(MjcfError::unknown_element(child, schema::BODY_CHILDREN)),
+            }
+        }
+        Ok(())
+    }
+
+    fn site(
+        &mut self,
+        site: &Attributes<'a, '_>,
+        frame: &Isometry3<f64>,
+        into: &mut Contents<'a, '_>,
+    ) -> Result<(), MjcfError> {
+        let at = match site.get("fromto") {
+            Some(fromto) => middle(&fromto, site)?.0,
+            None => Vector3::from(site.numbers::<3>("pos")?.unwrap_or_default()),
+        };
+        match site.item.attribute("name").filter(|n| !n.is_empty()) {
+            None => self.ignored.add("site without name", 1),
+            Some(name) if !self.built.site_names.insert(name) => return Err(duplicate(site.item, name)),
+            Some(name) => into.stations.push((name.to_owned(), (frame * nalgebra::Point3::from(at)).coords)),
+        }
+        Ok(())
+    }
+
+    /// A body and those inside it.
+    fn segment(&mut self, item: Item<'a>, context: Context) -> Result<(), MjcfError> {
+        check(item, schema::BODY)?;
+        let settings = self.settings;
+        let index = self.body.segments.len();
+        let name = match item.attribute("name").filter(|n| !n.is_empty()) {
+            Some(name) if name == "world" || !self.built.body_names.insert(name) => return Err(duplicate(item, name)),
+            Some(name) => name.to_owned(),
+            None => self.made_up(format!("body_{}", index + 1)),
+        };
+        if let Some(value) = Value::of(item, "gravcomp")
+            && value.number()? != 0.0
+        {
+            return Err(Unsupported::GravityCompensation.at_attribute(item, "gravcomp"));
+        }
+        let mut pose = context.frame * pose(item, settings)?;
+        let inner = Context {
+            parent: Some(index),
+            frame: Isometry3::identity(),
+            class: self.classes.named(item, "childclass")?.unwrap_or(context.class),
+            depth: context.depth,
+        };
+        let mut contents = Contents::default();
+        self.collect(item, inner, &mut contents)?;
+        let mut joints = std::mem::take(&mut contents.joints);
+        self.rules(item, context, &joints)?;
+        if self.options.root == Some(BodyRoot::Fixed) {
+            joints.retain(|j| j.kind != Kind::Free);
+        }
+        let freed = self.options.root == Some(BodyRoot::Free) && context.parent.is_none() && joints.is_empty();
+        let moves = !joints.is_empty() || freed;
+        let carried = context.parent.is_some_and(|p| self.built.moves[p]);
+        let solid = inertial::mass(item, contents.inertial, &contents.geoms, settings, moves || carried)?;
+        if contents.inertial.is_some() && settings.mass_from != MassFrom::Geoms {
+            self.ignored.add("geom", contents.geoms.len());
+        }
+        let world = context.parent.map_or(pose, |p| self.built.poses[p] * pose);
+        self.built.poses.push(world);
+        self.built.places.push(item.place());
+        self.built.moves.push(moves || carried);
+        let mut segment = BodySegment {
+            joint: format!("{name}_fixed"),
+            name,
+            parent: context.parent,
+            mass: solid.mass,
+            center_of_mass: solid.center,
+            inertia: solid.inertia,
+            in_parent: pose,
+            in_segment: Isometry3::identity(),
+            motions: vec![],
+        };
+        if freed {
+            "root".clone_into(&mut segment.joint);
+            segment.motions = self.body.free_joint("root", &pose);
+            segment.in_parent = Isometry3::identity();
+            self.push_freedoms(index, &Joint::new(item, Kind::Free));
+        }
+        let mut at = Vector3::zeros();
+        let mut turned = false;
+        for (number, joint) in joints.iter().enumerate() {
+            let joint_name = self.joint_name(joint, &segment.name, number)?;
+            if number == 0 {
+                segment.joint.clone_from(&joint_name);
+            }
+            if joint.kind == Kind::Free {
+                segment.motions = self.body.free_joint(&joint_name, &pose);
+                segment.in_parent = Isometry3::identity();
+            } else {
+                if joint.kind != Kind::Slide {
+                    let shift = joint.anchor - at;
+                    if !turned {
+                        pose *= Translation3::from(shift);
+                        segment.in_parent = pose;
+                    } else if shift != Vector3::zeros() {
+                        let length = shift.norm();
+                        let drive = Drive::Constant(length);
+                        segment.motions.push(BodyMotion::Slide { axis: shift / length, drive });
+                    }
+                    (at, turned) = (joint.anchor, true);
+                }
+                let (coordinate, springs) = (self.body.coordinates.len(), self.body.passive.len());
+                joint.add(&joint_name, self.body, settings, &mut segment.motions);
+                if joint.kind != Kind::Ball
+                    && let Some(name) = joint.item.attribute("name").filter(|n| !n.is_empty())
+                {
+                    self.built.joints.insert(name, (coordinate, joint.reference));
+                }
+                if let Some(wanted) = joint.springdamper {
+                    let place = joint.item.place();
+                    let freedom = self.built.freedoms.len();
+                    self.built.pending.push(Pending { freedom, spring: springs, wanted, place });
+                }
+            }
+            self.push_freedoms(index, joint);
+            if self.body.coordinates.len() > self.options.limits.coordinates {
+                let cap = self.options.limits.coordinates;
+                return Err(MjcfError::TooManyCoordinates { place: joint.item.place(), cap });
+            }
+        }
+        segment.in_segment = Isometry3::from(Translation3::from(at));
+        self.body.segments.push(segment);
+        self.body.stations.extend(contents.stations.into_iter().map(|(name, at)| (name, index, at)));
+        for (child, context) in contents.bodies {
+            self.segment(child, context)?;
+        }
+        Ok(())
+    }
+
+    /// What MuJoCo demands of a body's joints, and the caller of its root.
+    fn rules(&self, item: Item<'a>, context: Context, joints: &[Joint<'a>]) -> Result<(), MjcfError> {
+        let top = context.parent.is_none();
+        if let Some(mocap) = Value::of(item, "mocap")
+            && mocap.flag()?
+            && (!joints.is_empty() || !top)
+        {
+            return Err(mocap.invalid(MjcfRule::Mocap));
+        }
+        let name = item.attribute("name").unwrap_or_default();
+        let invalid = |at: Item<'_>, needs| MjcfError::Invalid { place: at.place(), value: shorten(name), needs };
+        if let Some(free) = joints.iter().find(|j| j.kind == Kind::Free)
+            && (!top || joints.len() > 1)
+        {
+            return Err(invalid(free.item, MjcfRule::FreeJoint));
+        }
+        if joints.iter().map(Joint::freedoms).sum::<usize>() > 6 {
+            return Err(invalid(item, MjcfRule::Freedoms));
+        }
+        if self.options.root == Some(BodyRoot::Free) && top && joints.first().is_some_and(|j| j.kind != Kind::Free) {
+            return Err(invalid(item, MjcfRule::Root));
+        }
+        Ok(())
+    }
+
+    fn made_up(&self, mut name: String) -> String {
+        while self.built.given.contains(name.as_str()) {
+            name.push('_');
+        }
+        name
+    }
+
+    fn joint_name(&mut self, joint: &Joint<'a>, segment: &str, number: usize) -> Result<String, MjcfError> {
+        match joint.item.attribute("name").filter(|n| !n.is_empty()) {
+            Some(name) if !self.built.joint_names.insert(name) => Err(duplicate(joint.item, name)),
+            Some(name) => Ok(name.to_owned()),
+            None if joint.kind != Kind::Free => Ok(self.made_up(format!("{segment}_joint{}", number + 1))),
+            None if std::mem::replace(&mut self.built.root_named, true) => Ok(self.made_up(format!("{segment}_free"))),
+            None => Ok(self.made_up("root".to_owned())),
+        }
+    }
+
+    fn push_freedoms(&mut self, segment: usize, joint: &Joint<'a>) {
+        let pose = self.built.poses[segment];
+        let turn = |axis: Vector3<f64>| {
+            Motion::Turn(pose.rotation * axis, (pose * nalgebra::Point3::from(joint.anchor)).coords)
+        };
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let motions: Vec<Motion> = match joint.kind {
+            Kind::Free => axes.into_iter().map(Motion::Slide).chain(axes.into_iter().map(turn)).collect(),
+            Kind::Ball => axes.into_iter().map(turn).collect(),
+            Kind::Hinge => vec![turn(joint.axis.into_inner())],
+            Kind::Slide => vec![Motion::Slide(pose.rotation * joint.axis.into_inner())],
+        };
+        let armature = joint.armature;
+        self.built.freedoms.extend(motions.into_iter().map(|motion| Freedom { segment, motion, armature }));
+    }
+
+    /// Scales the masses and checks what needs all bodies.
+    pub(super) fn finish(self, root: Item<'a>) -> Result<Built<'a>, MjcfError> {
+        let Self { body, settings, options, built, .. } = self;
+        if options.root == Some(BodyRoot::Free) && built.top.len() != 1 {
+            let at = built.top.get(1).unwrap_or(&root);
+            let value = shorten(at.attribute("name").unwrap_or_default());
+            return Err(MjcfError::Invalid { place: at.place(), value, needs: MjcfRule::Root });
+        }
+        let total: f64 = body.segments.iter().map(|s| s.mass).sum();
+        if settings.total_mass > 0.0 {
+            let scale = settings.total_mass / total.max(LEAST);
+            for segment in &mut body.segments {
+                segment.mass *= scale;
+                segment.inertia *= scale;
+            }
+        }
+        // A moving body may get its mass from bodies fixed to it.
+        let mut heavy: Vec<bool> = body.segments.iter().map(|s| s.mass >= LEAST && s.inertia.trace() >= LEAST).collect();
+        for (index, segment) in body.segments.iter().enumerate().rev() {
+            if segment.motions.is_empty() {
+                if let Some(parent) = segment.parent {
+                    heavy[parent] |= heavy[index];
+                }
+            } else if !heavy[index] {
+                let (place, value) = (built.places[index].clone(), shorten(&segment.name));
+                return Err(MjcfError::Invalid { place, value, needs: MjcfRule::MovingMass });
+            }
+        }
+        Ok(built)
+    }
+}
+
+/// What MuJoCo takes for no mass.
+const LEAST: f64 = 1e-15;
+
+fn duplicate(item: Item<'_>, name: &str) -> MjcfError {
+    MjcfError::DuplicateName { place: item.attribute_place("name"), value: shorten(name) }
+}

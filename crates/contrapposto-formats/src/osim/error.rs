@@ -1,0 +1,118 @@
+//! What may be wrong with an `.osim` file.
+
+use crate::body::SplineError;
+use crate::expression::ExpressionError;
+use crate::numbers::NumberError;
+use crate::xml::{Place, XmlError, shorten};
+
+/// A refused file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{file}: {problem}")]
+pub struct OsimError {
+    /// Name of the file.
+    pub file: String,
+    /// What is wrong, and where.
+    pub problem: Box<OsimProblem>,
+}
+
+/// Why a file was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OsimProblem {
+    /// No XML, or beyond a cap.
+    #[error(transparent)]
+    Xml(#[from] XmlError),
+    /// A number.
+    #[error(transparent)]
+    Number(#[from] NumberError),
+    /// Something is not there.
+    #[error("{place}: {what} is missing")]
+    Missing {
+        /// Where.
+        place: Place,
+        /// What.
+        what: String,
+    },
+    /// It matters to torque, and is not supported.
+    #[error("{place}: {what} is not supported; accepted: {accepted}")]
+    Unsupported {
+        /// Where.
+        place: Place,
+        /// What.
+        what: String,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+    /// A value that has no meaning.
+    #[error("{place}: `{value}`: {problem}")]
+    Invalid {
+        /// Where.
+        place: Place,
+        /// As written, shortened.
+        value: String,
+        /// What would be accepted.
+        problem: String,
+    },
+    /// A name of something that is not there.
+    #[error("{place}: there is no {what} `{name}`{}", did_you_mean(near))]
+    Unknown {
+        /// Where.
+        place: Place,
+        /// Kind of thing.
+        what: &'static str,
+        /// The name, shortened.
+        name: String,
+        /// A similar name that is there.
+        near: Option<String>,
+    },
+    /// Two things of one name.
+    #[error("{place}: a second {what} `{name}`; names must be unique")]
+    Twice {
+        /// Where.
+        place: Place,
+        /// Kind of thing.
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// Points of a function.
+    #[error("{place}: {problem}")]
+    Spline {
+        /// Where.
+        place: Place,
+        /// What is wrong.
+        problem: SplineError,
+    },
+    /// A formula; its columns count inside the formula.
+    #[error("{place}, in the expression, {problem}")]
+    Expression {
+        /// Where.
+        place: Place,
+        /// What is wrong.
+        problem: ExpressionError,
+    },
+    /// Too many of something.
+    #[error("{place}: more than {cap} {what}")]
+    TooMany {
+        /// Where.
+        place: Place,
+        /// Kind of thing.
+        what: &'static str,
+        /// The cap.
+        cap: usize,
+    },
+}
+
+fn did_you_mean(near: &Option<String>) -> String {
+    near.as_ref().map_or_else(String::new, |name| format!("; did you mean `{name}`?"))
+}
+
+impl OsimProblem {
+    pub(super) fn unsupported(place: Place, what: &str, accepted: &'static str) -> Self {
+        Self::Unsupported { place, what: shorten(what), accepted }
+    }
+
+    pub(super) fn invalid(place: Place, value: &str, problem: impl Into<String>) -> Self {
+        Self::Invalid { place, value: shorten(value), problem: problem.into() }
+    }
+}

@@ -1,0 +1,96 @@
+//! What the readers' tests share: files, and forward kinematics of a [`Body`] written from its description alone.
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
+
+use contrapposto_formats::body::{Body, BodyMotion, Drive};
+use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
+use std::path::{Path, PathBuf};
+
+pub fn here() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A published model beside the repository; says so and gives none if it is missing.
+pub fn shared(path: &str) -> Option<PathBuf> {
+    let path = here().join("../../../shared").join(path);
+    if path.exists() {
+        return Some(path);
+    }
+    println!("skipped: {} is missing", path.display());
+    None
+}
+
+/// Frames of all segments, given all coordinates (couplings are the caller's).
+pub fn frames(body: &Body, q: &[f64]) -> Vec<Isometry3<f64>> {
+    let mut frames: Vec<Isometry3<f64>> = vec![];
+    let value = |drive: &Drive| match drive {
+        Drive::Coordinate(i) => q[*i],
+        Drive::Function(function, i) => function.value(q[*i]),
+        Drive::Constant(c) => *c,
+    };
+    for segment in &body.segments {
+        let mut frame = segment.parent.map_or(Isometry3::identity(), |p| frames[p]) * segment.in_parent;
+        for motion in &segment.motions {
+            frame *= match motion {
+                BodyMotion::Hinge { axis, drive } => Isometry3::from_parts(
+                    Translation3::identity(),
+                    UnitQuaternion::from_axis_angle(&Unit::new_normalize(*axis), value(drive)),
+                ),
+                BodyMotion::Slide { axis, drive } => Isometry3::from(Translation3::from(axis * value(drive))),
+                BodyMotion::Ball { first } => {
+                    let q = Quaternion::new(q[*first], q[first + 1], q[first + 2], q[first + 3]);
+                    Isometry3::from_parts(Translation3::identity(), UnitQuaternion::new_normalize(q))
+                }
+            };
+        }
+        frames.push(frame * segment.in_segment.inverse());
+    }
+    frames
+}
+
+pub fn center_of_mass(body: &Body, q: &[f64]) -> Vector3<f64> {
+    let frames = frames(body, q);
+    let at = |(s, f): (&contrapposto_formats::body::BodySegment, &Isometry3<f64>)| {
+        (f * nalgebra::Point3::from(s.center_of_mass)).coords * s.mass
+    };
+    let sum: Vector3<f64> = body.segments.iter().zip(&frames).map(at).sum();
+    sum / body.segments.iter().map(|s| s.mass).sum::<f64>()
+}
+
+/// Largest absolute difference of two lists, divided by the larger of 1 and the largest expected value.
+pub fn difference(found: &[f64], expected: &[f64]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    let scale = expected.iter().fold(1.0_f64, |a, b| a.max(b.abs()));
+    found.iter().zip(expected).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs())) / scale
+}
+
+/// Constants of a seeded generator that is good enough to choose bytes.
+pub fn next(state: &mut u64) -> usize {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 33) as usize
+}
+
+/// Changes a few bytes or inserts parts of the format.
+pub fn mutate(base: &[u8], parts: &[&str], state: &mut u64) -> Vec<u8> {
+    let mut bytes = base.to_vec();
+    for _ in 0..=next(state) % 4 {
+        let at = next(state) % (bytes.len() + 1);
+        match next(state) % 5 {
+            0 => bytes.insert(at, next(state) as u8),
+            1 => drop(bytes.splice(at..at, parts[next(state) % parts.len()].bytes())),
+            2 => drop(bytes.drain(at..(at + next(state) % 12).min(bytes.len()))),
+            3 if at < bytes.len() => bytes[at] = b"0123456789.-e \"<>"[next(state) % 17],
+            _ => {
+                // Copies a stretch elsewhere: repeats elements, moves attributes.
+                let to = next(state) % (bytes.len() + 1);
+                let stretch = bytes[at..(at + next(state) % 80).min(bytes.len())].to_vec();
+                drop(bytes.splice(to..to, stretch));
+            }
+        }
+    }
+    bytes
+}
+
+/// How many mutated inputs a test reads; `CONTRAPPOSTO_MUTATIONS` overrides it.
+pub fn mutations(usual: usize) -> usize {
+    std::env::var("CONTRAPPOSTO_MUTATIONS").ok().and_then(|s| s.parse().ok()).unwrap_or(usual)
+}
