@@ -50,7 +50,7 @@ impl<'a> Sweep<'a> {
         self.external.update(model, &self.kinematics, loads).map_err(|error| Fail::job("load", error))?;
         let coordinate = &model.coordinates()[self.coordinate];
         let external = coordinate.rate.map_or(0.0, |rate| self.external.torques()[rate]);
-        Ok((external, coordinate.passive.as_ref().map_or(0.0, |curve| curve.torque(angle))))
+        Ok((external, coordinate.passive.as_ref().map_or(0.0, |law| law.torque(self.coordinate, self.kinematics.values()))))
     }
 
     /// Angles (deg) where the true active torque is zero.
@@ -105,7 +105,7 @@ impl<'a> Sweep<'a> {
         self.torques(angle_deg.to_radians())?;
         let model = self.model();
         let rate = model.coordinates()[self.coordinate].rate;
-        let axis = rate.map_or(Vector3::z(), |rate| self.kinematics.axis(rate));
+        let axis = rate.map_or(Vector3::z(), |rate| self.kinematics.axis(model, rate));
         // Look along the ground axis nearest the joint's: from the right, from behind, or from above.
         let view = |p: Vector3<f64>| match axis.iamax() {
             0 => [p.z, p.y],

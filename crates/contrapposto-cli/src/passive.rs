@@ -98,7 +98,7 @@ fn find(name: &str) -> Result<Found, Fail> {
     let model = adult(&Adult::default()).map_err(|error| Fail::job("adult", error))?;
     if let (Some(index), Some(sources)) = (model.coordinate(name), library.sources(name)) {
         let coordinate = &model.coordinates()[index];
-        if let Some(curve) = &coordinate.passive {
+        if let Some(curve) = coordinate.curve() {
             let (curve, positive) = (curve.clone(), coordinate.positive.clone());
             return Ok(Found { curve, curve_name: sources.curve.to_owned(), positive });
         }

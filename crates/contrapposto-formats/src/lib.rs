@@ -4,9 +4,10 @@
 //! crate opens no files; the program does.
 
 pub mod body;
-pub mod expression;
+pub use contrapposto::math::expression;
 pub mod mjcf;
 pub mod numbers;
+pub mod osim;
 pub mod urdf;
 pub mod xml;
 

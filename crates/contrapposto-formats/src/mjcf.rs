@@ -72,7 +72,9 @@ pub fn read(
     for section in root.children() {
         match section.name() {
             "worldbody" | "compiler" | "option" | "default" => {}
-            "equality" => equality::read(section, &mut body, &settings, &classes, &built, &mut couplings, &mut ignored)?,
+            "equality" => {
+                equality::read(section, &mut body, &settings, &classes, &built, &mut couplings, &mut ignored)?
+            }
             "tendon" => tendons(section, &settings, &classes, &mut ignored)?,
             "deformable" => {
                 for child in section.children() {
@@ -109,7 +111,7 @@ fn tendons<'a>(
         if !matches!(tendon.name(), "spatial" | "fixed") {
             return Err(MjcfError::unknown_element(tendon, &["spatial", "fixed"]));
         }
-        let attributes = Attributes::new(tendon, schema::Tag::Tendon, classes, 0)?;
+        let attributes = Attributes::new(tendon, schema::Tag::Tendon, classes, classes.main())?;
         if settings.springs && attributes.merged("stiffness")?.iter().any(|&k| k != 0.0) {
             return Err(Unsupported::TendonSpring.at_attribute(tendon, "stiffness"));
         }

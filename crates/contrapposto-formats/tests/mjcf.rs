@@ -121,7 +121,8 @@ fn poses_springs_and_sites_are_mujocos() {
         for pose in reference["poses"].as_array().unwrap() {
             let q = numbers(&pose["qpos"]);
             let found = frames(&body, &q);
-            let positions: Vec<f64> = found.iter().flat_map(|f| f.translation.vector.iter().copied().collect::<Vec<_>>()).collect();
+            let positions: Vec<f64> =
+                found.iter().flat_map(|f| f.translation.vector.iter().copied().collect::<Vec<_>>()).collect();
             let turn = |f: &nalgebra::Isometry3<f64>| f.rotation.to_rotation_matrix().matrix().transpose();
             let rotations: Vec<f64> = found.iter().flat_map(|f| turn(f).iter().copied().collect::<Vec<_>>()).collect();
             // A mocap body's rotation is its own; all others follow.
@@ -139,19 +140,26 @@ fn poses_springs_and_sites_are_mujocos() {
             let single = |c: &&contrapposto_formats::body::BodyCoordinate| c.kind != BodyCoordinateKind::Quaternion;
             let free = body.coordinates.iter().filter(|c| c.name.starts_with("root_t")).count();
             for (index, _) in body.coordinates.iter().enumerate().filter(|(_, c)| single(c)).skip(free) {
-                let torque: f64 = body.passive.iter().filter(|p| p.coordinate == index).map(|p| match &p.law {
-                    PassiveLawText::Spring { stiffness, rest } => -stiffness * (q[index] - rest),
-                    PassiveLawText::Polynomial { coefficients, rest } => {
-                        let x = q[index] - rest;
-                        -coefficients.iter().rev().fold(0.0, |sum, k| (sum + k) * x)
-                    }
-                    law => panic!("{law:?}"),
-                }).sum();
+                let torque: f64 = body
+                    .passive
+                    .iter()
+                    .filter(|p| p.coordinate == index)
+                    .map(|p| match &p.law {
+                        PassiveLawText::Spring { stiffness, rest } => -stiffness * (q[index] - rest),
+                        PassiveLawText::Polynomial { coefficients, rest } => {
+                            let x = q[index] - rest;
+                            -coefficients.iter().rev().fold(0.0, |sum, k| (sum + k) * x)
+                        }
+                        law => panic!("{law:?}"),
+                    })
+                    .sum();
                 worst[4] = worst[4].max(difference(&[torque], &[springs.next().unwrap()]));
             }
         }
-        println!("{}: position {:.1e} m, rotation {:.1e}, centre of mass {:.1e} m, sites {:.1e} m, springs {:.1e} N m",
-            reference["model"], worst[0], worst[1], worst[2], worst[3], worst[4]);
+        println!(
+            "{}: position {:.1e} m, rotation {:.1e}, centre of mass {:.1e} m, sites {:.1e} m, springs {:.1e} N m",
+            reference["model"], worst[0], worst[1], worst[2], worst[3], worst[4]
+        );
         assert!(worst.iter().all(|w| *w < 1e-12), "{}: {worst:?}", reference["model"]);
     }
 }

@@ -189,7 +189,7 @@ fn muscle_groups_pull_the_way_their_name_says() {
 fn every_passive_curve_falls_over_its_range() {
     for size in [MALE, FEMALE] {
         for coordinate in adult(&size).unwrap().coordinates() {
-            let curve: &PassiveCurve = coordinate.passive.as_ref().unwrap();
+            let curve: &PassiveCurve = coordinate.curve().unwrap();
             let (min, max) = coordinate.range;
             assert_eq!(curve.range(), coordinate.range);
             assert!(curve.torque(min) > 0.0 && curve.torque(max) < 0.0, "{}", coordinate.name);
@@ -201,7 +201,7 @@ fn every_passive_curve_falls_over_its_range() {
     }
     // Data sheet, elbow in detail.
     let model = adult(&MALE).unwrap();
-    let elbow = model.coordinates()[3].passive.as_ref().unwrap();
+    let elbow = model.coordinates()[3].curve().unwrap();
     for (degrees, torque) in [(0f64, 13.18), (15.0, 0.47), (60.0, 0.07), (73.0, -0.06), (120.0, -1.6), (150.0, -9.86)] {
         assert!((elbow.torque(degrees.to_radians()) - torque).abs() < 6e-3, "{degrees}");
     }

@@ -286,7 +286,7 @@ struct Statics {
 
 impl Statics {
     fn new(model: &Model) -> Self {
-        let gradient = Gradient::new(model.rates().len());
+        let gradient = Gradient::new(&model);
         Self { kinematics: Kinematics::new(model), external: ExternalTorque::new(model), gradient }
     }
 
@@ -568,7 +568,7 @@ fn kinematics_agrees_with_plain_composition() {
             None => assert_eq!(mass, 0.0),
         }
         for (rate, screw) in frames.screws.iter().enumerate() {
-            worst = f64::max(worst, (kinematics.axis(rate) - screw.axis).norm());
+            worst = f64::max(worst, (kinematics.axis(&tree.model, rate) - screw.axis).norm());
         }
     }
     println!("worst difference {worst:.1e} (m, rad)");

@@ -3,10 +3,9 @@
 //! Units rad, m, kg, N, N m. Defaults, classes, includes, degrees and Euler sequences have ended at the reader.
 
 mod build;
-mod function;
 mod root;
 
-pub use function::Function;
+pub use contrapposto::math::{Function, Spline, SplineError};
 pub use root::{BodyRoot, FREE_ENDINGS};
 
 pub(crate) use build::{compose_couplings, first_not_finite, near, polynomial, unique_coordinates, unit};

@@ -36,7 +36,8 @@ impl Body {
             });
         }
         let slide = |(i, axis)| BodyMotion::Slide { axis, drive: Drive::Coordinate(first + i) };
-        let mut motions: Vec<_> = [Vector3::x(), Vector3::y(), Vector3::z()].into_iter().enumerate().map(slide).collect();
+        let mut motions: Vec<_> =
+            [Vector3::x(), Vector3::y(), Vector3::z()].into_iter().enumerate().map(slide).collect();
         motions.push(BodyMotion::Ball { first: first + 3 });
         motions
     }

@@ -8,7 +8,7 @@ use crate::body::near;
 use crate::xml::{Limits, shorten};
 use std::collections::BTreeMap;
 
-/// All classes; the first is "main", which every file has.
+/// All classes; every file has "main".
 pub(super) struct Classes<'a> {
     classes: Vec<Class<'a>>,
     names: BTreeMap<&'a str, usize>,
@@ -24,14 +24,29 @@ impl<'a> Classes<'a> {
     /// All `<default>` sections, wherever they stand.
     pub(super) fn read(root: Item<'a>, limits: &Limits) -> Result<Self, MjcfError> {
         let mut classes = Self { classes: vec![Class::default()], names: BTreeMap::from([("main", 0)]) };
-        for section in root.children().into_iter().filter(|c| c.name() == "default") {
+        let sections = root.children().into_iter().filter(|c| c.name() == "default");
+        for (number, section) in sections.enumerate() {
             check(section, &["class"])?;
             if section.attribute("class").is_some_and(|name| name != "main" && !name.is_empty()) {
                 return Err(MjcfError::invalid(section, "class", MjcfRule::MainClass));
             }
-            classes.fill(section, 0, limits.depth)?;
+            if number >= limits.depth {
+                return Err(MjcfError::invalid(section, "class", MjcfRule::DefaultSections));
+            }
+            if number > 0 {
+                // Classes inherit what "main" was when they were made, so a further section makes a further "main".
+                let parent = Some(classes.main());
+                classes.names.insert("main", classes.classes.len());
+                classes.classes.push(Class { parent, values: BTreeMap::new() });
+            }
+            classes.fill(section, classes.main(), limits.depth)?;
         }
         Ok(classes)
+    }
+
+    /// The class of elements that name none.
+    pub(super) fn main(&self) -> usize {
+        self.names.get("main").copied().unwrap_or(0)
     }
 
     /// An element's own settings first, then the classes inside, which inherit them wherever they stand.

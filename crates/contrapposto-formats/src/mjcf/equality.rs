@@ -1,5 +1,6 @@
 //! Equality constraints between joints, as couplings.
 
+use super::Ignored;
 use super::attributes::{Attributes, Value};
 use super::compiler::Settings;
 use super::defaults::Classes;
@@ -7,7 +8,6 @@ use super::error::{MjcfError, MjcfRule, Unsupported};
 use super::files::Item;
 use super::schema::Tag;
 use super::tree::Built;
-use super::Ignored;
 use crate::body::{Body, Coupling, compose_couplings, near, polynomial};
 use crate::xml::{Place, shorten};
 
@@ -26,7 +26,7 @@ pub(super) fn read<'a>(
         if !KINDS.contains(&item.name()) {
             return Err(MjcfError::unknown_element(item, KINDS));
         }
-        let attributes = Attributes::new(item, Tag::Equality, classes, 0)?;
+        let attributes = Attributes::new(item, Tag::Equality, classes, classes.main())?;
         let active = attributes.get("active").map_or(Ok(true), |v| v.flag())?;
         if !active || !settings.equality {
             ignored.add("equality (inactive)", 1);

@@ -198,7 +198,9 @@ pub enum Unsupported {
     #[error("moving the frame of free bodies to their centre of mass is not supported; write false")]
     AlignFree,
     /// Wind in a fluid.
-    #[error("wind in a fluid presses on bodies at rest and is not supported; set wind, or density and viscosity, to zero")]
+    #[error(
+        "wind in a fluid presses on bodies at rest and is not supported; set wind, or density and viscosity, to zero"
+    )]
     Wind,
     /// gravcomp.
     #[error("gravity compensation is not supported; write 0 or remove the body's mass")]
@@ -216,7 +218,9 @@ pub enum Unsupported {
     #[error("springdamper takes its stiffness from an inertia that this armature changes; write stiffness instead")]
     SpringdamperArmature,
     /// Mass of a mesh.
-    #[error("this body's mass comes from a mesh, which is not read; give the body an <inertial>, or this geom mass=\"0\"")]
+    #[error(
+        "this body's mass comes from a mesh, which is not read; give the body an <inertial>, or this geom mass=\"0\""
+    )]
     MeshMass,
     /// shellinertia.
     #[error("mass on the surface of a geom is not supported; give the body an <inertial>")]
@@ -266,6 +270,9 @@ pub enum MjcfRule {
     /// Name of the outermost class.
     #[error("the outermost default class is called main")]
     MainClass,
+    /// Number of outermost defaults.
+    #[error("a model has at most 64 outermost <default> sections; write them as one")]
+    DefaultSections,
     /// fromto and pos.
     #[error("either pos or fromto, not both")]
     PosOrFromto,

@@ -41,8 +41,10 @@ impl Files {
             let mut found = vec![];
             for node in loaded.files[next].document.nodes().filter(|n| n.name() == "include") {
                 let item = Item { files: &loaded, file: next, node };
-                let text = item.attribute("file").ok_or_else(|| MjcfError::Missing { place: item.attribute_place("file") })?;
-                let refuse = |why| MjcfError::Include { place: item.attribute_place("file"), value: shorten(text), why };
+                let text =
+                    item.attribute("file").ok_or_else(|| MjcfError::Missing { place: item.attribute_place("file") })?;
+                let refuse =
+                    |why| MjcfError::Include { place: item.attribute_place("file"), value: shorten(text), why };
                 if node.children().next().is_some() {
                     return Err(refuse(IncludeRule::Childless));
                 }

@@ -61,7 +61,10 @@ pub(super) fn solid(
     let density = geom.number("density")?.unwrap_or(1000.0);
     for (name, value) in [("mass", mass.unwrap_or(0.0)), ("density", density)] {
         if value < 0.0 {
-            return Err(geom.get(name).map_or_else(|| MjcfError::invalid(geom.item, name, MjcfRule::MassNotNegative), |v| v.invalid(MjcfRule::MassNotNegative)));
+            return Err(geom.get(name).map_or_else(
+                || MjcfError::invalid(geom.item, name, MjcfRule::MassNotNegative),
+                |v| v.invalid(MjcfRule::MassNotNegative),
+            ));
         }
     }
     if mass.map_or(density == 0.0, |m| m == 0.0) {
@@ -107,11 +110,7 @@ pub(super) fn solid(
 }
 
 /// Frame and half length of `fromto`; z along it.
-fn segment(
-    fromto: &Value<'_>,
-    geom: &Attributes<'_, '_>,
-    shape: &str,
-) -> Result<(Isometry3<f64>, f64), MjcfError> {
+fn segment(fromto: &Value<'_>, geom: &Attributes<'_, '_>, shape: &str) -> Result<(Isometry3<f64>, f64), MjcfError> {
     if !matches!(shape, "capsule" | "cylinder" | "box" | "ellipsoid") {
         return Err(fromto.invalid(MjcfRule::FromtoShape));
     }
@@ -121,10 +120,7 @@ fn segment(
 }
 
 /// Middle and difference of the two points of `fromto`, which excludes a position.
-pub(super) fn middle(
-    fromto: &Value<'_>,
-    item: &Attributes<'_, '_>,
-) -> Result<(Vector3<f64>, Vector3<f64>), MjcfError> {
+pub(super) fn middle(fromto: &Value<'_>, item: &Attributes<'_, '_>) -> Result<(Vector3<f64>, Vector3<f64>), MjcfError> {
     if let Some(position) = item.get("pos")
         && position.numbers::<3>()? != [0.0; 3]
     {
@@ -150,9 +146,7 @@ fn shape_moments(shape: &str, [a, b, c]: [f64; 3]) -> (f64, Vector3<f64>) {
             let across = a * a / 4.0 + b * b / 3.0;
             (2.0 * PI * a * a * b, Vector3::new(across, across, a * a / 2.0))
         }
-        "ellipsoid" => {
-            (4.0 / 3.0 * PI * a * b * c, Vector3::new(b * b + c * c, a * a + c * c, a * a + b * b) / 5.0)
-        }
+        "ellipsoid" => (4.0 / 3.0 * PI * a * b * c, Vector3::new(b * b + c * c, a * a + c * c, a * a + b * b) / 5.0),
         _ => (8.0 * a * b * c, Vector3::new(b * b + c * c, a * a + c * c, a * a + b * b) / 3.0),
     }
 }

@@ -29,7 +29,11 @@ pub(super) fn mass(
             parts.extend(solid(geom, frame, settings, moves)?);
         }
     }
-    let summed = if from_geoms && (!parts.is_empty() || explicit.is_none()) { Solid::sum(&parts) } else { explicit.unwrap_or_default() };
+    let summed = if from_geoms && (!parts.is_empty() || explicit.is_none()) {
+        Solid::sum(&parts)
+    } else {
+        explicit.unwrap_or_default()
+    };
     bounded(body, summed, settings)
 }
 

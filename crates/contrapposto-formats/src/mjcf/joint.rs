@@ -5,9 +5,7 @@ use super::compiler::Settings;
 use super::error::{MjcfError, MjcfRule, Unsupported};
 use super::files::Item;
 use super::schema;
-use crate::body::{
-    Body, BodyCoordinate, BodyCoordinateKind, BodyMotion, BodyPassive, Drive, PassiveLawText, unit,
-};
+use crate::body::{Body, BodyCoordinate, BodyCoordinateKind, BodyMotion, BodyPassive, Drive, PassiveLawText, unit};
 use nalgebra::{Isometry3, Unit, Vector3};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

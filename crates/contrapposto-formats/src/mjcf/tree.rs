@@ -88,14 +88,22 @@ impl<'a, 'w> Walk<'a, 'w> {
         if let Some((name, _)) = section.attributes().next() {
             return Err(MjcfError::invalid(section, name, MjcfRule::World));
         }
-        let context = Context { parent: None, frame: Isometry3::identity(), class: 0, depth: 2 };
+        let context = Context { parent: None, frame: Isometry3::identity(), class: self.classes.main(), depth: 2 };
         let mut contents = Contents::default();
         self.collect(section, context, &mut contents)?;
         if let Some(joint) = contents.joints.first() {
-            return Err(MjcfError::Invalid { place: joint.item.place(), value: "worldbody".to_owned(), needs: MjcfRule::World });
+            return Err(MjcfError::Invalid {
+                place: joint.item.place(),
+                value: "worldbody".to_owned(),
+                needs: MjcfRule::World,
+            });
         }
         if let Some((item, _)) = contents.inertial {
-            return Err(MjcfError::Invalid { place: item.place(), value: "worldbody".to_owned(), needs: MjcfRule::World });
+            return Err(MjcfError::Invalid {
+                place: item.place(),
+                value: "worldbody".to_owned(),
+                needs: MjcfRule::World,
+            });
         }
         self.ignored.add("geom of the world", contents.geoms.len());
         self.ignored.add("site of the world", contents.stations.len());
@@ -360,7 +368,8 @@ impl<'a, 'w> Walk<'a, 'w> {
             }
         }
         // A moving body may get its mass from bodies fixed to it.
-        let mut heavy: Vec<bool> = body.segments.iter().map(|s| s.mass >= LEAST && s.inertia.trace() >= LEAST).collect();
+        let mut heavy: Vec<bool> =
+            body.segments.iter().map(|s| s.mass >= LEAST && s.inertia.trace() >= LEAST).collect();
         for (index, segment) in body.segments.iter().enumerate().rev() {
             if segment.motions.is_empty() {
                 if let Some(parent) = segment.parent {

@@ -257,7 +257,7 @@ fn curve(
         let rows: Vec<(f64, f64)> = rows.iter().map(|[deg, nm]| (deg.to_radians(), *nm)).collect();
         ("table_deg_nm", Tabulated::new(&rows).and_then(|table| PassiveCurve::new(table.form(), range, None)))
     } else {
-        match &model.coordinates()[index].passive {
+        match model.coordinates()[index].curve() {
             Some(curve) => ("reshape", Ok(curve.clone())),
             None => return Err(at.error(&["passive", name], "no curve is given", None)),
         }

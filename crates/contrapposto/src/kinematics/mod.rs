@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 
-use crate::model::{Model, Motion, Placement};
+use crate::model::{Drive, Model, Motion, Placement};
 use crate::posture::{Posture, PostureError};
 
 /// Frames and axes of a posture. Depends on the posture only; filled by [`Kinematics::update`].
@@ -12,8 +12,14 @@ pub struct Kinematics {
     pub(crate) rotations: Vec<Matrix3<f64>>,
     /// Its origin in ground, m: the point hinges and balls turn about.
     pub(crate) origins: Vec<Vector3<f64>>,
-    /// Unit axis of each rate in ground.
+    /// Unit axis of each elementary rate in ground.
     pub(crate) axes: Vec<Vector3<f64>>,
+    /// Value of every coordinate, those that follow others filled in.
+    pub(crate) values: Vec<f64>,
+    /// First and second derivative of each elementary motion by its coordinate.
+    pub(crate) drives: Vec<(f64, f64)>,
+    /// First and second derivative of each coupling.
+    pub(crate) couplings: Vec<(f64, f64)>,
 }
 
 impl Kinematics {
@@ -22,7 +28,10 @@ impl Kinematics {
         let mut kinematics = Self {
             rotations: vec![Matrix3::identity(); model.mobilities.len()],
             origins: vec![Vector3::zeros(); model.mobilities.len()],
-            axes: vec![Vector3::zeros(); model.rates.len()],
+            axes: vec![Vector3::zeros(); model.elements.len()],
+            values: vec![0.0; model.coordinates.len()],
+            drives: vec![(1.0, 0.0); model.elements.len()],
+            couplings: vec![(0.0, 0.0); model.couplings.len()],
         };
         kinematics.fill(model, model.default_posture().values());
         kinematics
@@ -38,7 +47,13 @@ impl Kinematics {
         Ok(())
     }
 
-    fn fill(&mut self, model: &Model, values: &[f64]) {
+    fn fill(&mut self, model: &Model, posture: &[f64]) {
+        self.values.copy_from_slice(posture);
+        for (coupling, derivatives) in model.couplings.iter().zip(&mut self.couplings) {
+            let [value, slope, curvature] = coupling.function.value_slope_curvature(posture[coupling.independent]);
+            self.values[coupling.dependent] = value;
+            *derivatives = (slope, curvature);
+        }
         for (i, mobility) in model.mobilities.iter().enumerate() {
             let (rotation, origin) = match mobility.parent {
                 None => (mobility.rotation, mobility.translation),
@@ -46,21 +61,34 @@ impl Kinematics {
                     (self.rotations[p] * mobility.rotation, self.rotations[p] * mobility.translation + self.origins[p])
                 }
             };
-            let value = &values[mobility.coordinate..];
+            let mut quaternion = [0.0; 4];
+            let value = match &mobility.drive {
+                Drive::Coordinate(c) if mobility.motion == Motion::Ball => {
+                    quaternion.copy_from_slice(&self.values[*c..c + 4]);
+                    0.0
+                }
+                Drive::Coordinate(c) => self.values[*c],
+                Drive::Fixed(value) => *value,
+                Drive::Function(function, c) => {
+                    let [value, slope, curvature] = function.value_slope_curvature(self.values[*c]);
+                    self.drives[mobility.rate] = (slope, curvature);
+                    value
+                }
+            };
             match mobility.motion {
                 Motion::Hinge(axis) => {
                     self.axes[mobility.rate] = rotation * axis.into_inner();
-                    self.rotations[i] = rotation * Rotation3::from_axis_angle(&axis, value[0]).into_inner();
+                    self.rotations[i] = rotation * Rotation3::from_axis_angle(&axis, value).into_inner();
                     self.origins[i] = origin;
                 }
                 Motion::Slide(axis) => {
                     let axis = rotation * axis.into_inner();
                     self.axes[mobility.rate] = axis;
                     self.rotations[i] = rotation;
-                    self.origins[i] = origin + value[0] * axis;
+                    self.origins[i] = origin + value * axis;
                 }
                 Motion::Ball => {
-                    let quaternion = nalgebra::Quaternion::new(value[0], value[1], value[2], value[3]);
+                    let quaternion = nalgebra::Quaternion::new(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
                     let turn = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().into_inner();
                     let rotation = rotation * turn;
                     for axis in 0..3 {
@@ -100,9 +128,15 @@ impl Kinematics {
         segment.mobility.map_or(direction, |m| self.rotations[m] * direction)
     }
 
-    /// Unit axis of a rate in ground.
-    pub fn axis(&self, rate: usize) -> Vector3<f64> {
-        self.axes[rate]
+    /// Unit axis of the first elementary motion that a rate drives, in ground; zero if it drives none.
+    pub fn axis(&self, model: &Model, rate: usize) -> Vector3<f64> {
+        let element = model.elements.iter().position(|&r| r == Some(rate));
+        element.map_or_else(Vector3::zeros, |element| self.axes[element])
+    }
+
+    /// Value of every coordinate, those that follow others filled in.
+    pub fn values(&self) -> &[f64] {
+        &self.values
     }
 
     /// Centre of mass of the whole body in ground, m; `None` for a body without mass.

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::data::{Along, CoordinateRow, Library, Reference, SegmentRow, library};
 use super::{CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, Placement, SegmentSpec};
-use crate::passive::PassiveError;
+use crate::passive::{PassiveError, PassiveLaw};
 
 /// Standard gravity of the built-in adult, m/s^2 along -y.
 const GRAVITY: f64 = 9.81;
@@ -164,7 +164,7 @@ fn coordinate(library: &Library, sex: Sex, row: &CoordinateRow) -> Result<Coordi
     };
     Ok(CoordinateSpec {
         positive: row.positive.clone(),
-        passive: Some(curve.over(range, row.passive.sign)?),
+        passive: Some(PassiveLaw::Curve(curve.over(range, row.passive.sign)?)),
         groups: Some([group(&row.strength.positive)?, group(&row.strength.negative)?]),
         ..CoordinateSpec::new(&row.name, range)
     })

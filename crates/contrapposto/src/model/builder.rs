@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{
-    Coordinate, CoordinateKind, CoordinateSpec, JointKind, LARGEST, Mobility, Model, Motion, Placement, Rate, Segment,
+    Coordinate, CoordinateKind, CoordinateSpec, Coupling, Drive, JointKind, LARGEST, Mobility, Model, Motion, Placement, Rate, Segment,
 };
+use crate::math::Function;
 
 /// A segment and its joint as given to the builder.
 #[derive(Clone, Debug)]
@@ -64,6 +65,16 @@ pub enum ModelError {
         /// What would be accepted.
         accepted: &'static str,
     },
+    /// Two coordinates cannot be coupled.
+    #[error("`{dependent}` cannot follow `{independent}`: {problem}")]
+    Coupling {
+        /// The coordinate that should follow.
+        dependent: String,
+        /// The one that should lead.
+        independent: String,
+        /// Why not.
+        problem: &'static str,
+    },
     /// The joint has another number of hinges and slides.
     #[error("joint `{joint}` has {given} coordinates; its kind needs {needed}, one for each hinge and slide")]
     Coordinates {
@@ -92,6 +103,9 @@ impl ModelBuilder {
             coordinates: vec![],
             mobilities: vec![],
             rates: vec![],
+            elements: vec![],
+            couplings: vec![],
+            direct: true,
         };
         Self { model }
     }
@@ -130,39 +144,38 @@ impl ModelBuilder {
             None => (None, spec.in_parent),
             Some(p) => (model.segments[p].mobility, model.segments[p].offset * spec.in_parent),
         };
-        let mut specs = specs.into_iter();
-        for motion in motions {
+        let first = model.coordinates.len();
+        let first_rate = model.rates.len();
+        model.add_coordinates(&spec.joint, specs);
+        let mut next = first;
+        for (i, motion) in motions.into_iter().enumerate() {
+            let drive = match &spec.kind {
+                JointKind::Driven(motions) => motions[i].1.shifted(first),
+                _ => Drive::Coordinate(next),
+            };
+            next += motion.coordinates();
+            let rate = model.elements.len();
+            match (&drive, motion) {
+                (Drive::Coordinate(c), Motion::Ball) => {
+                    // The ball's three rates stand where its quaternion's components do.
+                    let before = (first..*c).filter(|&c| model.coordinates[c].rate.is_some()).count();
+                    model.elements.extend((0..3).map(|axis| Some(first_rate + before + axis)));
+                }
+                (Drive::Coordinate(c) | Drive::Function(_, c), _) => model.elements.push(model.coordinates[*c].rate),
+                (Drive::Fixed(_), _) => model.elements.push(None),
+            }
             model.mobilities.push(Mobility {
                 parent: mobility,
                 rotation: rest.rotation.to_rotation_matrix().into_inner(),
                 translation: rest.translation.vector,
                 motion,
-                coordinate: model.coordinates.len(),
-                rate: model.rates.len(),
+                drive,
+                rate,
                 mass: 0.0,
                 first_moment: Vector3::zeros(),
             });
             mobility = Some(model.mobilities.len() - 1);
             rest = Placement::identity();
-            for (c, kind) in specs.by_ref().take(motion.coordinates()) {
-                let rate = (kind != CoordinateKind::Quaternion).then_some(model.rates.len());
-                if rate.is_some() {
-                    model.rates.push(Rate {
-                        name: c.name.clone(),
-                        rotational: kind == CoordinateKind::Rotation,
-                        coordinate: Some(model.coordinates.len()),
-                    });
-                }
-                let (name, range, default) = (c.name, c.range, c.default);
-                let (positive, passive, groups) = (c.positive, c.passive, c.groups);
-                model.coordinates.push(Coordinate { name, kind, range, default, positive, passive, groups, rate });
-            }
-            if motion == Motion::Ball {
-                for axis in ["mx", "my", "mz"] {
-                    let name = format!("{}_{axis}", spec.joint);
-                    model.rates.push(Rate { name, rotational: true, coordinate: None });
-                }
-            }
         }
         let offset = rest * spec.in_segment.inverse();
         if let Some(m) = mobility {
@@ -184,9 +197,67 @@ impl ModelBuilder {
         Ok(())
     }
 
+    /// Makes `dependent` follow `function(independent)`.
+    ///
+    /// # Errors
+    /// [`ModelError::Coupling`] for a name that is not there, a quaternion component, a coordinate that already follows
+    /// another one, or one that leads.
+    pub fn couple(&mut self, dependent: &str, independent: &str, function: Function) -> Result<(), ModelError> {
+        let refuse = |problem| {
+            let (dependent, independent) = (dependent.to_owned(), independent.to_owned());
+            Err(ModelError::Coupling { dependent, independent, problem })
+        };
+        let index = |name: &str| self.model.coordinate(name).filter(|&i| self.model.coordinates[i].rate.is_some());
+        let (Some(d), Some(i)) = (index(dependent), index(independent)) else {
+            return refuse("both must be angles or distances of the model");
+        };
+        let couplings = &self.model.couplings;
+        if d == i || couplings.iter().any(|c| c.dependent == d || c.independent == d || c.dependent == i) {
+            return refuse("a coordinate follows one leader at most, and a leader follows none");
+        }
+        self.model.couplings.push(Coupling { dependent: d, independent: i, function });
+        Ok(())
+    }
+
     /// The finished model.
-    pub fn build(self) -> Model {
+    pub fn build(mut self) -> Model {
+        let model = &mut self.model;
+        let plain = |m: &Mobility| matches!(m.drive, Drive::Coordinate(_));
+        let in_order = model.elements.iter().enumerate().all(|(i, rate)| *rate == Some(i));
+        model.direct =
+            model.couplings.is_empty() && in_order && model.rates.len() == model.elements.len() && model.mobilities.iter().all(plain);
         self.model
+    }
+}
+
+impl Model {
+    /// Adds the coordinates of a joint and their rates; a ball's four have three rates.
+    fn add_coordinates(&mut self, joint: &str, specs: Vec<(CoordinateSpec, CoordinateKind)>) {
+        for (c, kind) in specs {
+            let rate = (kind != CoordinateKind::Quaternion).then_some(self.rates.len());
+            if rate.is_some() {
+                let rotational = kind == CoordinateKind::Rotation;
+                self.rates.push(Rate { name: c.name.clone(), rotational, coordinate: Some(self.coordinates.len()) });
+            } else if c.name.ends_with("_qw") {
+                for axis in ["mx", "my", "mz"] {
+                    let name = format!("{joint}_{axis}");
+                    self.rates.push(Rate { name, rotational: true, coordinate: None });
+                }
+            }
+            let CoordinateSpec { name, range, default, positive, passive, groups, locked, .. } = c;
+            self.coordinates.push(Coordinate { name, kind, range, default, positive, passive, groups, rate, locked });
+        }
+    }
+}
+
+impl Drive {
+    /// The same drive with its coordinate counted from `first`.
+    fn shifted(&self, first: usize) -> Self {
+        match self {
+            Self::Coordinate(c) => Self::Coordinate(first + c),
+            Self::Function(function, c) => Self::Function(function.clone(), first + c),
+            Self::Fixed(value) => Self::Fixed(*value),
+        }
     }
 }
 
@@ -243,6 +314,9 @@ fn coordinate_specs(
     spec: &SegmentSpec,
     motions: &[Motion],
 ) -> Result<Vec<(CoordinateSpec, CoordinateKind)>, ModelError> {
+    if let JointKind::Driven(motions) = &spec.kind {
+        return driven_specs(spec, motions);
+    }
     let mut given = spec.coordinates.iter().cloned();
     let axes = motions.iter().filter(|m| **m != Motion::Ball).count();
     if spec.coordinates.len() != axes {
@@ -261,4 +335,22 @@ fn coordinate_specs(
         }
     }
     Ok(all)
+}
+
+/// The coordinates of a joint driven by functions: as many as were given, each of the kind that was given.
+fn driven_specs(
+    spec: &SegmentSpec,
+    motions: &[(Motion, Drive)],
+) -> Result<Vec<(CoordinateSpec, CoordinateKind)>, ModelError> {
+    let given = spec.coordinates.len();
+    for (motion, drive) in motions {
+        let needed = match drive {
+            Drive::Coordinate(c) | Drive::Function(_, c) => c + 1,
+            Drive::Fixed(_) => 0,
+        };
+        if needed > given || *motion == Motion::Ball {
+            return Err(ModelError::Coordinates { joint: spec.joint.clone(), given, needed });
+        }
+    }
+    Ok(spec.coordinates.iter().map(|c| (c.clone(), c.kind)).collect())
 }

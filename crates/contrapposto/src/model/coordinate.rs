@@ -1,7 +1,7 @@
 //! What is known of one coordinate: its range, its passive law and the two muscle groups that move it.
 
 use crate::fatigue::FatigueLaw;
-use crate::passive::PassiveCurve;
+use crate::passive::{PassiveCurve, PassiveLaw};
 use crate::strength::Strength;
 
 /// What the number means.
@@ -73,12 +73,21 @@ pub struct Coordinate {
     pub default: f64,
     /// The positive direction in clinical words, e.g. `flexion`.
     pub positive: String,
-    /// Passive torque over the range, if known.
-    pub passive: Option<PassiveCurve>,
+    /// Passive torque, if known.
+    pub passive: Option<PassiveLaw>,
     /// The muscle groups of the positive and negative sense, if known.
     pub groups: Option<[MuscleGroup; 2]>,
-    /// Its rate, for hinges and slides.
+    /// Its rate, for angles and distances.
     pub rate: Option<usize>,
+    /// The file that described it locks it: it is not meant to move.
+    pub locked: bool,
+}
+
+impl Coordinate {
+    /// The falling passive curve that relief can be found on, where the law is one.
+    pub fn curve(&self) -> Option<&PassiveCurve> {
+        self.passive.as_ref().and_then(PassiveLaw::curve)
+    }
 }
 
 /// A coordinate as it is given to the builder.
@@ -93,15 +102,28 @@ pub struct CoordinateSpec {
     /// The positive direction in clinical words; may be empty.
     pub positive: String,
     /// Passive torque, if known.
-    pub passive: Option<PassiveCurve>,
+    pub passive: Option<PassiveLaw>,
     /// Positive and negative muscle group, if known.
     pub groups: Option<[MuscleGroup; 2]>,
+    /// Angle or distance, for joints driven by functions; the motion decides elsewhere.
+    pub kind: CoordinateKind,
+    /// It is not meant to move.
+    pub locked: bool,
 }
 
 impl CoordinateSpec {
     /// A coordinate with a name and a range; default 0 or the limit nearest to it, nothing else known.
     pub fn new(name: &str, range: (f64, f64)) -> Self {
         let default = 0f64.max(range.0).min(range.1);
-        Self { name: name.to_owned(), range, default, positive: String::new(), passive: None, groups: None }
+        Self {
+            name: name.to_owned(),
+            range,
+            default,
+            positive: String::new(),
+            passive: None,
+            groups: None,
+            kind: CoordinateKind::Rotation,
+            locked: false,
+        }
     }
 }

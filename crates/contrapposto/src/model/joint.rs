@@ -2,6 +2,8 @@
 
 use nalgebra::{Unit, Vector3};
 
+use crate::math::Function;
+
 /// An elementary motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
@@ -30,8 +32,21 @@ pub enum JointKind {
     Ball,
     /// Three translations along the parent's axes, then free rotation.
     Free,
-    /// Any chain of hinges, slides and balls (OpenSim's CustomJoint without its functions, six-coordinate roots).
+    /// Any chain of hinges, slides and balls, one coordinate (a ball four) each: six-coordinate roots.
     Chain(Vec<Motion>),
+    /// A chain of hinges and slides driven by functions of the joint's coordinates (OpenSim's CustomJoint).
+    Driven(Vec<(Motion, Drive)>),
+}
+
+/// What gives the value of an elementary motion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drive {
+    /// A coordinate itself, by its index.
+    Coordinate(usize),
+    /// A function of one coordinate, given by its index.
+    Function(Function, usize),
+    /// Always the same: rad or m.
+    Fixed(f64),
 }
 
 impl Motion {
@@ -61,6 +76,7 @@ impl JointKind {
                 slides.into_iter().chain([Motion::Ball]).collect()
             }
             Self::Chain(motions) => motions.clone(),
+            Self::Driven(motions) => motions.iter().map(|(motion, _)| *motion).collect(),
         }
     }
 }

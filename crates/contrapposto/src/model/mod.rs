@@ -12,12 +12,13 @@ mod joint;
 pub use adult::{Adult, AdultError, CoordinateSources, Sex, adult};
 pub use builder::{ModelBuilder, ModelError, SegmentSpec};
 pub use coordinate::{Coordinate, CoordinateKind, CoordinateSpec, MuscleGroup, Side};
-pub use joint::{JointKind, Motion};
+pub use joint::{Drive, JointKind, Motion};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use crate::fatigue::FatigueLaw;
-use crate::passive::PassiveCurve;
+use crate::math::Function;
+use crate::passive::{PassiveCurve, PassiveLaw};
 
 /// Largest size of any number of a model, posture or load, in SI units. Far beyond every body, and small enough that no
 /// product of them overflows: what is accepted gives finite torques and gradients.
@@ -57,8 +58,9 @@ pub(crate) struct Mobility {
     pub(crate) rotation: Matrix3<f64>,
     pub(crate) translation: Vector3<f64>,
     pub(crate) motion: Motion,
-    /// First coordinate that drives it, and first rate.
-    pub(crate) coordinate: usize,
+    /// What gives its value; for a ball the first of its four coordinates.
+    pub(crate) drive: Drive,
+    /// Its first elementary rate: one for a hinge or slide, three for a ball.
     pub(crate) rate: usize,
     /// Mass of the segments fixed to it, and mass times their centre in the mobility's frame.
     pub(crate) mass: f64,
@@ -85,6 +87,23 @@ pub struct Model {
     pub(crate) coordinates: Vec<Coordinate>,
     pub(crate) mobilities: Vec<Mobility>,
     pub(crate) rates: Vec<Rate>,
+    /// For every elementary rate the rate that it belongs to; `None` for a fixed motion.
+    pub(crate) elements: Vec<Option<usize>>,
+    /// Coordinates that follow another one.
+    pub(crate) couplings: Vec<Coupling>,
+    /// Every motion is a coordinate of its own and nothing is coupled: torques need no folding.
+    pub(crate) direct: bool,
+}
+
+/// `dependent = function(independent)`, both coordinates by index.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coupling {
+    /// The coordinate that follows.
+    pub dependent: usize,
+    /// The coordinate that leads.
+    pub independent: usize,
+    /// How.
+    pub function: Function,
 }
 
 impl Model {
@@ -126,7 +145,7 @@ impl Model {
     /// The same body with another passive curve at one coordinate.
     #[must_use]
     pub fn with_passive(mut self, coordinate: usize, curve: PassiveCurve) -> Self {
-        self.coordinates[coordinate].passive = Some(curve);
+        self.coordinates[coordinate].passive = Some(PassiveLaw::Curve(curve));
         self
     }
 
@@ -137,6 +156,16 @@ impl Model {
             group.fatigue = law.clone();
         }
         self
+    }
+
+    /// Coordinates that follow another one.
+    pub fn couplings(&self) -> &[Coupling] {
+        &self.couplings
+    }
+
+    /// Does the coordinate follow another one?
+    pub fn is_dependent(&self, coordinate: usize) -> bool {
+        self.couplings.iter().any(|coupling| coupling.dependent == coordinate)
     }
 
     /// Total mass, kg.

@@ -6,12 +6,14 @@
 
 mod coordinate_limit_force;
 mod exponentials;
+mod law;
 mod reshape;
 mod riener_edrich1999;
 mod tabulated;
 
 pub use coordinate_limit_force::CoordinateLimitForce;
 pub use exponentials::{DoubleExponential, End, Exponentials};
+pub use law::{Coupled, PassiveLaw, Term};
 pub use reshape::Reshape;
 pub use riener_edrich1999::{CoupledTerm, RienerEdrich1999};
 pub use tabulated::Tabulated;

@@ -62,6 +62,8 @@ pub struct Simulation<'a> {
 struct GroupState {
     fatigue: Option<FatigueState>,
     recovering: bool,
+    /// Relative load when its present recovery began.
+    load_at_trip: f64,
     /// The strategy its present recovery ended up with (docs/deviations.md, D4).
     accepted: Option<Strategy>,
 }
@@ -75,7 +77,7 @@ impl<'a> Simulation<'a> {
         scenario.check()?;
         let model = &scenario.model;
         let n = model.coordinates().len();
-        let rested = GroupState { fatigue: None, recovering: false, accepted: None };
+        let rested = GroupState { fatigue: None, recovering: false, load_at_trip: 0.0, accepted: None };
         let mut simulation = Self {
             scenario,
             steps: 0,
@@ -140,7 +142,7 @@ impl<'a> Simulation<'a> {
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             let angle = self.posture.values()[i];
             self.external[i] = coordinate.rate.map_or(0.0, |rate| self.external_torque.torques()[rate]);
-            self.passive[i] = coordinate.passive.as_ref().map_or(0.0, |curve| curve.torque(angle));
+            self.passive[i] = coordinate.passive.as_ref().map_or(0.0, |law| law.torque(i, self.kinematics.values()));
             self.active[i] = -(self.passive[i] + self.external[i]);
             let side = Side::of(self.active[i]).index();
             let strength = coordinate.groups.as_ref().map(|groups| groups[side].strength.torque(angle));
@@ -173,12 +175,18 @@ impl<'a> Simulation<'a> {
                 let load = self.load_of(i, side);
                 let group = &mut self.groups[i][side.index()];
                 let Some(state) = group.fatigue else { continue };
-                let level = state.level(load);
+                // Three-compartment fatigue is relative to the load. A recovering group is judged at the load that tired it:
+                // taking the load off must not count as having rested (docs/deviations.md, D15).
+                let judged = if group.recovering { load.max(group.load_at_trip) } else { load };
+                let level = state.level(judged);
                 self.fatigue[i][side.index()] = level;
-                group.recovering = self.scenario.hysteresis.recovering(group.recovering, level);
-                if !group.recovering {
+                let recovering = self.scenario.hysteresis.recovering(group.recovering, level);
+                if recovering && !group.recovering {
+                    group.load_at_trip = load;
+                } else if !recovering {
                     group.accepted = None;
                 }
+                group.recovering = recovering;
             }
         }
     }
@@ -190,7 +198,7 @@ impl<'a> Simulation<'a> {
         let mut moved = false;
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             self.decisions[i] = None;
-            let (Some(curve), Some(rate), true) = (&coordinate.passive, coordinate.rate, free[i]) else { continue };
+            let (Some(curve), Some(rate), true) = (coordinate.curve(), coordinate.rate, free[i]) else { continue };
             // The group that works asks; within the tolerance neither does, and either may.
             let within = self.active[i].abs() <= relief.torque_tolerance;
             let works = Side::of(self.active[i]);

@@ -10,20 +10,28 @@
 //! `v_d = sum_i (f_i . r_d)(x_i - p_d) - (f_i . (x_i - p_d)) r_d` (hinge) or `r_d x F` (slide): one vector a rate, one dot
 //! product a pair. Entries on different branches, and of a slide nearer the root, are zero. Couples and body-fixed
 //! forces are not symmetric and have their own terms below. See docs/deviations.md, D1.
+//!
+//! All of this is done for elementary motions. Where functions drive them, or coordinates follow others, torques and
+//! gradient are folded by the chain rule at the end (`fold.rs`).
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{FixedIn, Load, LoadError, LoadKind};
+use super::{FixedIn, Gradient, Load, LoadError, LoadKind};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Motion};
 
-/// What is carried at and beyond one mobility, in ground axes.
+/// The weight at and beyond one mobility, in ground axes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Carried {
     mass: f64,
     /// Mass times position, kg m.
     first_moment: Vector3<f64>,
-    /// World-fixed forces without gravity: sum, and sum of `x f^T`.
+}
+
+/// The loads at and beyond one mobility, in ground axes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pull {
+    /// World-fixed forces: sum, and sum of `x f^T`.
     force: Vector3<f64>,
     virial: Matrix3<f64>,
     /// World-fixed couples.
@@ -33,10 +41,8 @@ struct Carried {
     body_moment: Vector3<f64>,
 }
 
-impl Carried {
+impl Pull {
     fn add(&mut self, other: &Self) {
-        self.mass += other.mass;
-        self.first_moment += other.first_moment;
         self.force += other.force;
         self.virial += other.virial;
         self.couple += other.couple;
@@ -48,39 +54,19 @@ impl Carried {
 /// External torque of every rate. Depends on posture and loads; filled by [`ExternalTorque::update`].
 #[derive(Clone, Debug)]
 pub struct ExternalTorque {
+    /// By rate, coupled ones folded into their leader.
     torques: Vec<f64>,
+    /// By rate, nothing coupled.
+    raw: Vec<f64>,
+    /// By elementary rate.
+    pub(super) elements: Vec<f64>,
     carried: Vec<Carried>,
-    /// `v_d` of the module's text, gravity and world-fixed forces.
+    pulls: Vec<Pull>,
+    pulled: bool,
+    /// Some load is a couple or fixed in a segment.
+    twisted: bool,
+    /// `v_d` of the module's text, by elementary rate: gravity and world-fixed forces.
     bends: Vec<Vector3<f64>>,
-}
-
-/// `d external_i / d q_j`, N m/rad (or per m), rows and columns in the order of the model's rates.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Gradient {
-    n: usize,
-    entries: Vec<f64>,
-}
-
-impl Gradient {
-    /// Space for a model with `n` rates.
-    pub fn new(n: usize) -> Self {
-        Self { n, entries: vec![0.0; n * n] }
-    }
-
-    /// Number of rows and columns.
-    pub fn size(&self) -> usize {
-        self.n
-    }
-
-    /// `d external_row / d q_column`.
-    pub fn get(&self, row: usize, column: usize) -> f64 {
-        self.entries[row * self.n + column]
-    }
-
-    /// Row `J tau_e,l` of Eq. 7.
-    pub fn row(&self, row: usize) -> &[f64] {
-        &self.entries[row * self.n..(row + 1) * self.n]
-    }
 }
 
 impl ExternalTorque {
@@ -88,8 +74,13 @@ impl ExternalTorque {
     pub fn new(model: &Model) -> Self {
         Self {
             torques: vec![0.0; model.rates.len()],
+            raw: vec![0.0; model.rates.len()],
+            elements: vec![0.0; model.elements.len()],
             carried: vec![Carried::default(); model.mobilities.len()],
-            bends: vec![Vector3::zeros(); model.rates.len()],
+            pulls: vec![Pull::default(); model.mobilities.len()],
+            pulled: false,
+            twisted: false,
+            bends: vec![Vector3::zeros(); model.elements.len()],
         }
     }
 
@@ -102,142 +93,204 @@ impl ExternalTorque {
             load.check(model)?;
         }
         for (i, (carried, mobility)) in self.carried.iter_mut().zip(&model.mobilities).enumerate() {
-            *carried = Carried {
-                mass: mobility.mass,
-                first_moment: kinematics.rotations[i] * mobility.first_moment + mobility.mass * kinematics.origins[i],
-                ..Carried::default()
-            };
+            carried.mass = mobility.mass;
+            carried.first_moment =
+                kinematics.rotations[i] * mobility.first_moment + mobility.mass * kinematics.origins[i];
         }
+        if self.pulled {
+            self.pulls.fill(Pull::default());
+        }
+        self.pulled = !loads.is_empty();
+        self.twisted = false;
         for load in loads {
             self.add_load(model, kinematics, load);
         }
         for i in (0..model.mobilities.len()).rev() {
-            let mobility = &model.mobilities[i];
-            let carried = self.carried[i];
-            if let Some(parent) = mobility.parent {
-                self.carried[parent].add(&carried);
-            }
-            let gravity = model.gravity;
-            let point = kinematics.origins[i];
-            let force = carried.mass * gravity + carried.force;
-            let lever = carried.first_moment - carried.mass * point;
-            let virial = carried.virial - point * carried.force.transpose();
-            let moment = lever.cross(&gravity)
-                + axial(&virial)
-                + carried.couple
-                + (carried.body_moment - point.cross(&carried.body_force));
-            for rate in mobility.rate..mobility.rate + mobility.motion.rates() {
-                let axis = kinematics.axes[rate];
-                if let Motion::Slide(_) = mobility.motion {
-                    self.torques[rate] = axis.dot(&(force + carried.body_force));
-                    self.bends[rate] = axis.cross(&force);
-                } else {
-                    self.torques[rate] = axis.dot(&moment);
-                    self.bends[rate] =
-                        lever * gravity.dot(&axis) + virial * axis - (lever.dot(&gravity) + virial.trace()) * axis;
+            if let Some(parent) = model.mobilities[i].parent {
+                let Carried { mass, first_moment } = self.carried[i];
+                self.carried[parent].mass += mass;
+                self.carried[parent].first_moment += first_moment;
+                if self.pulled {
+                    let pull = self.pulls[i];
+                    self.pulls[parent].add(&pull);
                 }
             }
+            self.torques_of(model, kinematics, i);
+        }
+        if model.direct {
+            self.torques.copy_from_slice(&self.elements);
+        } else {
+            kinematics.fold_elements(model, &self.elements, &mut self.raw);
+            kinematics.fold_couplings(model, &self.raw, &mut self.torques);
         }
         Ok(())
     }
 
     fn add_load(&mut self, model: &Model, kinematics: &Kinematics, load: &Load) {
         let Some(mobility) = model.segments[load.segment].mobility else { return };
-        let carried = &mut self.carried[mobility];
+        let pull = &mut self.pulls[mobility];
         let point = kinematics.station(model, load.segment, load.point);
         let mut world = |force: Vector3<f64>| {
-            carried.force += force;
-            carried.virial += point * force.transpose();
+            pull.force += force;
+            pull.virial += point * force.transpose();
         };
         match load.kind {
             LoadKind::Weight(mass) => world(mass * model.gravity),
             LoadKind::Force(force, FixedIn::World) => world(force),
             LoadKind::Force(force, FixedIn::Segment) => {
                 let force = kinematics.direction(model, load.segment, force);
-                carried.body_force += force;
-                carried.body_moment += point.cross(&force);
+                pull.body_force += force;
+                pull.body_moment += point.cross(&force);
+                self.twisted = true;
             }
-            LoadKind::Couple(couple, FixedIn::World) => carried.couple += couple,
+            LoadKind::Couple(couple, FixedIn::World) => {
+                pull.couple += couple;
+                self.twisted = true;
+            }
             LoadKind::Couple(couple, FixedIn::Segment) => {
-                carried.body_moment += kinematics.direction(model, load.segment, couple);
+                pull.body_moment += kinematics.direction(model, load.segment, couple);
+                self.twisted = true;
             }
         }
     }
 
-    /// External torque of every rate, N m (N for slides), in the model's order.
+    /// Torques and `v_d` of one mobility, whose carried sums are complete.
+    fn torques_of(&mut self, model: &Model, kinematics: &Kinematics, i: usize) {
+        let mobility = &model.mobilities[i];
+        let gravity = model.gravity;
+        let Carried { mass, first_moment } = self.carried[i];
+        let point = kinematics.origins[i];
+        let lever = first_moment - mass * point;
+        let along = lever.dot(&gravity);
+        let elements = mobility.rate..mobility.rate + mobility.motion.rates();
+        if let Motion::Slide(_) = mobility.motion {
+            let axis = kinematics.axes[mobility.rate];
+            let force = mass * gravity;
+            self.elements[mobility.rate] = axis.dot(&force);
+            self.bends[mobility.rate] = axis.cross(&force);
+        } else {
+            let moment = lever.cross(&gravity);
+            for element in elements.clone() {
+                let axis = kinematics.axes[element];
+                self.elements[element] = axis.dot(&moment);
+                self.bends[element] = lever * gravity.dot(&axis) - along * axis;
+            }
+        }
+        if !self.pulled {
+            return;
+        }
+        let pull = &self.pulls[i];
+        if let Motion::Slide(_) = mobility.motion {
+            let axis = kinematics.axes[mobility.rate];
+            self.elements[mobility.rate] += axis.dot(&(pull.force + pull.body_force));
+            self.bends[mobility.rate] += axis.cross(&pull.force);
+            return;
+        }
+        let virial = pull.virial - point * pull.force.transpose();
+        let moment = axial(&virial) + pull.couple + (pull.body_moment - point.cross(&pull.body_force));
+        for element in elements {
+            let axis = kinematics.axes[element];
+            self.elements[element] += axis.dot(&moment);
+            self.bends[element] += virial * axis - virial.trace() * axis;
+        }
+    }
+
+    /// External torque of every rate, N m (N for slides), in the model's order. What a coordinate that follows another
+    /// one gives is folded into its leader, and its own entry is zero.
     pub fn torques(&self) -> &[f64] {
         &self.torques
     }
 
+    /// As [`ExternalTorque::torques`], but as if no coordinate followed another one.
+    pub fn uncoupled_torques<'a>(&'a self, model: &Model) -> &'a [f64] {
+        if model.direct { &self.torques } else { &self.raw }
+    }
+
     /// `d tau_e,l / d theta_l` of a hinge or slide: the slope that Table 1 extrapolates, N m/rad.
     ///
-    /// Couples and body-fixed forces do not change a joint's own torque when that joint alone moves.
+    /// Couples and body-fixed forces do not change a joint's own torque when that joint alone moves. Where functions
+    /// drive the body the whole gradient is computed for it.
     pub fn own_slope(&self, kinematics: &Kinematics, model: &Model, rate: usize) -> f64 {
+        if !model.direct {
+            let mut gradient = Gradient::new(model);
+            self.gradient(model, kinematics, &mut gradient);
+            return gradient.get(rate, rate);
+        }
         if model.rates[rate].rotational { kinematics.axes[rate].dot(&self.bends[rate]) } else { 0.0 }
     }
 
-    /// The full matrix of Eq. 7, all pairs right. Does not allocate.
+    /// The full matrix of Eq. 7, all pairs right, coupled coordinates folded. Does not allocate.
     pub fn gradient(&self, model: &Model, kinematics: &Kinematics, gradient: &mut Gradient) {
-        assert_eq!(gradient.n, model.rates.len(), "gradient was made for another model");
-        gradient.entries.fill(0.0);
-        for far in 0..model.mobilities.len() {
-            self.pairs_within(model, kinematics, far, gradient);
-            let mut ancestor = model.mobilities[far].parent;
-            while let Some(near) = ancestor {
-                self.pairs_between(model, kinematics, near, far, gradient);
-                ancestor = model.mobilities[near].parent;
-            }
-        }
-    }
-
-    /// Entries of one mobility with itself. A ball's three axes turn with every motion of the ball.
-    fn pairs_within(&self, model: &Model, kinematics: &Kinematics, own: usize, gradient: &mut Gradient) {
-        let mobility = &model.mobilities[own];
-        if let Motion::Slide(_) = mobility.motion {
-            return;
-        }
-        let rates = mobility.rate..mobility.rate + mobility.motion.rates();
-        for row in rates.clone() {
-            let turned = self.bends[row] + kinematics.axes[row].cross(&self.carried[own].couple);
-            for column in rates.clone() {
-                gradient.entries[row * gradient.n + column] = kinematics.axes[column].dot(&turned);
-            }
-        }
-    }
-
-    /// Entries of two mobilities of one chain, `near` nearer the root.
-    fn pairs_between(&self, model: &Model, kinematics: &Kinematics, near: usize, far: usize, gradient: &mut Gradient) {
-        let n = gradient.n;
-        let (a, d) = (&model.mobilities[near], &model.mobilities[far]);
-        let carried = &self.carried[far];
-        let near_slides = matches!(a.motion, Motion::Slide(_));
-        for rate_d in d.rate..d.rate + d.motion.rates() {
-            let axis = kinematics.axes[rate_d];
-            let far_slides = matches!(d.motion, Motion::Slide(_));
-            // What the far motion does to the body-fixed wrench it carries (moment about the ground origin).
-            let (turned_force, turned_moment) = if far_slides {
-                (Vector3::zeros(), axis.cross(&carried.body_force))
-            } else {
-                let velocity = kinematics.origins[far].cross(&axis);
-                let moment = axis.cross(&carried.body_moment) + velocity.cross(&carried.body_force);
-                (axis.cross(&carried.body_force), moment)
-            };
-            for rate_a in a.rate..a.rate + a.motion.rates() {
-                let near_axis = kinematics.axes[rate_a];
-                let (mut row_far, mut row_near) = (0.0, 0.0);
-                if near_slides {
-                    row_near += near_axis.dot(&turned_force);
-                } else {
-                    let both = near_axis.dot(&self.bends[rate_d]);
-                    row_far += both;
-                    row_near += both;
-                    if !far_slides {
-                        row_far += near_axis.dot(&axis.cross(&carried.couple));
+        assert_eq!(gradient.size(), model.rates.len(), "gradient was made for another model");
+        let matrix = gradient.begin(model.elements.len());
+        let n = model.elements.len();
+        for far in &model.mobilities {
+            let elements = far.rate..far.rate + far.motion.rates();
+            for element in elements.clone() {
+                let bend = self.bends[element];
+                if !matches!(far.motion, Motion::Slide(_)) {
+                    for other in elements.clone() {
+                        matrix[element * n + other] = kinematics.axes[other].dot(&bend);
                     }
-                    row_near += near_axis.dot(&(turned_moment - kinematics.origins[near].cross(&turned_force)));
                 }
-                gradient.entries[rate_d * n + rate_a] = row_far;
-                gradient.entries[rate_a * n + rate_d] = row_near;
+                let mut ancestor = far.parent;
+                while let Some(near) = ancestor {
+                    let near = &model.mobilities[near];
+                    ancestor = near.parent;
+                    if matches!(near.motion, Motion::Slide(_)) {
+                        continue;
+                    }
+                    for other in near.rate..near.rate + near.motion.rates() {
+                        let entry = kinematics.axes[other].dot(&bend);
+                        matrix[element * n + other] = entry;
+                        matrix[other * n + element] = entry;
+                    }
+                }
+            }
+        }
+        if self.twisted {
+            self.add_twists(model, kinematics, matrix);
+        }
+        gradient.fold(model, kinematics, &self.elements, &self.raw);
+    }
+
+    /// What couples and body-fixed forces add to the gradient; neither is symmetric.
+    fn add_twists(&self, model: &Model, kinematics: &Kinematics, matrix: &mut [f64]) {
+        let n = model.elements.len();
+        for (i, far) in model.mobilities.iter().enumerate() {
+            let pull = &self.pulls[i];
+            let far_slides = matches!(far.motion, Motion::Slide(_));
+            for element in far.rate..far.rate + far.motion.rates() {
+                let axis = kinematics.axes[element];
+                if !far_slides {
+                    // A ball's three axes turn with every motion of the ball.
+                    for other in far.rate..far.rate + far.motion.rates() {
+                        matrix[element * n + other] += kinematics.axes[other].dot(&axis.cross(&pull.couple));
+                    }
+                }
+                // What the far motion does to the body-fixed wrench it carries (moment about the ground origin).
+                let (force, moment) = if far_slides {
+                    (Vector3::zeros(), axis.cross(&pull.body_force))
+                } else {
+                    let velocity = kinematics.origins[i].cross(&axis);
+                    (axis.cross(&pull.body_force), axis.cross(&pull.body_moment) + velocity.cross(&pull.body_force))
+                };
+                let mut ancestor = far.parent;
+                while let Some(j) = ancestor {
+                    let near = &model.mobilities[j];
+                    ancestor = near.parent;
+                    for other in near.rate..near.rate + near.motion.rates() {
+                        let near_axis = kinematics.axes[other];
+                        if matches!(near.motion, Motion::Slide(_)) {
+                            matrix[other * n + element] += near_axis.dot(&force);
+                            continue;
+                        }
+                        if !far_slides {
+                            matrix[element * n + other] += near_axis.dot(&axis.cross(&pull.couple));
+                        }
+                        matrix[other * n + element] += near_axis.dot(&(moment - kinematics.origins[j].cross(&force)));
+                    }
+                }
             }
         }
     }

@@ -4,7 +4,9 @@
 //! robotics' generalised gravity has the opposite sign of our external torque.
 
 mod external;
+mod fold;
 mod load;
 
-pub use external::{ExternalTorque, Gradient};
+pub use external::ExternalTorque;
+pub use fold::Gradient;
 pub use load::{FixedIn, Load, LoadError, LoadKind};

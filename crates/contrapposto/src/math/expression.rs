@@ -23,10 +23,10 @@ pub const MOST_DEPTH: usize = 64;
 /// A formula of `q`. Evaluation takes time linear in its length.
 ///
 /// ```
-/// use contrapposto_formats::expression::Expression;
+/// use contrapposto::math::expression::Expression;
 /// let torque = Expression::parse("-k*q^2; k=10")?;
 /// assert_eq!(torque.value_and_slope(0.5), (-2.5, -10.0));
-/// # Ok::<(), contrapposto_formats::expression::ExpressionError>(())
+/// # Ok::<(), contrapposto::math::expression::ExpressionError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {

@@ -1,0 +1,114 @@
+//! From joints to a tree that begins at ground.
+//!
+//! A joint that is written from the outer body to the inner one is turned round: its motions in reverse order about reversed axes.
+
+use super::Ignored;
+use super::attributes::Reader;
+use super::coordinates::Coordinates;
+use super::error::OsimProblem;
+use super::joint;
+use super::sets::Scene;
+use crate::body::{Body, BodyMotion, BodySegment};
+use nalgebra::Isometry3;
+
+/// Builds the segments and the list of coordinates.
+pub(super) fn assemble<'a>(
+    reader: &Reader<'a>,
+    scene: &Scene<'a>,
+    body: &mut Body,
+    ignored: &mut Ignored,
+) -> Result<Coordinates, OsimProblem> {
+    let mut coordinates = Coordinates::default();
+    let mut motions = Vec::with_capacity(scene.joints.len());
+    for joint in &scene.joints {
+        motions.push(joint::motions(reader, joint, &mut coordinates, ignored)?);
+    }
+    // Joints at each body; ground is the last.
+    let ground = scene.bodies.len();
+    let index = |body: Option<usize>| body.unwrap_or(ground);
+    let mut joints_at = vec![Vec::new(); ground + 1];
+    let mut is_child = vec![false; ground + 1];
+    for (number, joint) in scene.joints.iter().enumerate() {
+        joints_at[index(joint.parent.body)].push(number);
+        joints_at[index(joint.child.body)].push(number);
+        is_child[index(joint.child.body)] = true;
+    }
+    let mut segment_of: Vec<Option<usize>> = vec![None; ground];
+    let mut used = vec![false; scene.joints.len()];
+    let mut waiting: Vec<usize> = Vec::new();
+    let mut next_base = 0;
+    let mut at = ground;
+    loop {
+        // Joints of this body whose other body is not reached yet, the first of the file on top.
+        waiting.extend(joints_at[at].iter().rev().filter(|&&number| !used[number]));
+        while let Some(number) = waiting.pop() {
+            if std::mem::replace(&mut used[number], true) {
+                continue;
+            }
+            let joint = &scene.joints[number];
+            let reached = |body: Option<usize>| body.is_none_or(|b| segment_of[b].is_some());
+            let (inner, outer, turned) = match (reached(joint.parent.body), joint.child.body, joint.parent.body) {
+                (true, Some(outer), _) if segment_of[outer].is_none() => (joint.parent, (outer, joint.child), false),
+                (false, _, Some(outer)) => (joint.child, (outer, joint.parent), true),
+                _ => {
+                    let accepted = "joints that form a tree";
+                    return Err(OsimProblem::unsupported(joint.node.place(), "a joint that closes a loop", accepted));
+                }
+            };
+            let mut chain = std::mem::take(&mut motions[number]);
+            if turned {
+                turn_round(&mut chain);
+            }
+            let (outer, frame) = outer;
+            let source = &scene.bodies[outer];
+            segment_of[outer] = Some(body.segments.len());
+            body.segments.push(BodySegment {
+                name: source.name.clone(),
+                parent: inner.body.and_then(|b| segment_of[b]),
+                mass: source.mass,
+                center_of_mass: source.center_of_mass,
+                inertia: source.inertia,
+                joint: joint.name.clone(),
+                in_parent: inner.pose,
+                in_segment: frame.pose,
+                motions: chain,
+            });
+            waiting.extend(joints_at[outer].iter().rev().filter(|&&number| !used[number]));
+        }
+        // A body that nothing joins to ground: OpenSim gives the innermost one a free joint.
+        while next_base < ground && (segment_of[next_base].is_some() || is_child[next_base]) {
+            next_base += 1;
+        }
+        let Some(base) = scene.bodies.get(next_base) else { break };
+        let (name, chain) = joint::free(reader, &base.name, base.node, &mut coordinates)?;
+        segment_of[next_base] = Some(body.segments.len());
+        body.segments.push(BodySegment {
+            name: base.name.clone(),
+            parent: None,
+            mass: base.mass,
+            center_of_mass: base.center_of_mass,
+            inertia: base.inertia,
+            joint: name,
+            in_parent: Isometry3::identity(),
+            in_segment: Isometry3::identity(),
+            motions: chain,
+        });
+        at = next_base;
+    }
+    if let Some(lost) = segment_of.iter().position(Option::is_none) {
+        let accepted = "bodies that joints connect to ground";
+        let what = format!("body {}, in a loop of joints apart from ground,", scene.bodies[lost].name);
+        return Err(OsimProblem::unsupported(scene.bodies[lost].node.place(), &what, accepted));
+    }
+    Ok(coordinates)
+}
+
+fn turn_round(motions: &mut [BodyMotion]) {
+    motions.reverse();
+    for motion in motions {
+        match motion {
+            BodyMotion::Hinge { axis, .. } | BodyMotion::Slide { axis, .. } => *axis = -*axis,
+            BodyMotion::Ball { .. } => {}
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! How do torques of elementary motions become torques of coordinates?
+//!
+//! By the chain rule. An elementary motion `u = f(q)` gives its coordinate `tau_q = f'(q) tau_u`; a coordinate that follows,
+//! `q_d = g(q_i)`, gives its leader `g'(q_i) tau_d`. Gradients follow with the second derivatives:
+//! `H_q = F^T H_u F + tau_u f''`, then `H_i = G^T H_q G + tau_d g''`.
+
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+
+/// `d external_i / d q_j`, N m/rad (or per m), rows and columns in the order of the model's rates. Rows and columns of
+/// coordinates that follow others are zero: they are folded into their leader.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradient {
+    n: usize,
+    entries: Vec<f64>,
+    /// The matrix of elementary motions, where it is not the same.
+    elements: Vec<f64>,
+}
+
+impl Gradient {
+    /// Space for `model`.
+    pub fn new(model: &Model) -> Self {
+        let (n, m) = (model.rates.len(), model.elements.len());
+        Self { n, entries: vec![0.0; n * n], elements: vec![0.0; if model.direct { 0 } else { m * m }] }
+    }
+
+    /// Number of rows and columns.
+    pub fn size(&self) -> usize {
+        self.n
+    }
+
+    /// `d external_row / d q_column`.
+    pub fn get(&self, row: usize, column: usize) -> f64 {
+        self.entries[row * self.n + column]
+    }
+
+    /// Row `J tau_e,l` of Eq. 7.
+    pub fn row(&self, row: usize) -> &[f64] {
+        &self.entries[row * self.n..(row + 1) * self.n]
+    }
+
+    /// The cleared matrix of elementary motions.
+    pub(super) fn begin(&mut self, elements: usize) -> &mut [f64] {
+        let matrix = if self.elements.is_empty() { &mut self.entries } else { &mut self.elements };
+        debug_assert_eq!(matrix.len(), elements * elements);
+        matrix.fill(0.0);
+        matrix
+    }
+
+    /// Folds the matrix of elementary motions into that of the rates. `torques` by element, `raw` by rate.
+    pub(super) fn fold(&mut self, model: &Model, kinematics: &Kinematics, torques: &[f64], raw: &[f64]) {
+        if model.direct {
+            return;
+        }
+        let (n, m) = (self.n, model.elements.len());
+        self.entries.fill(0.0);
+        for (i, row) in model.elements.iter().enumerate() {
+            let Some(row) = *row else { continue };
+            let (slope, curvature) = kinematics.drives[i];
+            for (j, column) in model.elements.iter().enumerate() {
+                if let Some(column) = *column {
+                    self.entries[row * n + column] += slope * kinematics.drives[j].0 * self.elements[i * m + j];
+                }
+            }
+            self.entries[row * n + row] += curvature * torques[i];
+        }
+        for (coupling, &(slope, curvature)) in model.couplings.iter().zip(&kinematics.couplings) {
+            let rate = |coordinate: usize| model.coordinates[coordinate].rate;
+            let (Some(d), Some(i)) = (rate(coupling.dependent), rate(coupling.independent)) else { continue };
+            for row in 0..n {
+                let entry = std::mem::take(&mut self.entries[row * n + d]);
+                self.entries[row * n + i] += slope * entry;
+            }
+            for column in 0..n {
+                let entry = std::mem::take(&mut self.entries[d * n + column]);
+                self.entries[i * n + column] += slope * entry;
+            }
+            self.entries[i * n + i] += curvature * raw[d];
+        }
+    }
+}
+
+impl Kinematics {
+    /// Torques of elementary motions become torques of rates.
+    pub(super) fn fold_elements(&self, model: &Model, elements: &[f64], rates: &mut [f64]) {
+        rates.fill(0.0);
+        for ((rate, torque), (slope, _)) in model.elements.iter().zip(elements).zip(&self.drives) {
+            if let Some(rate) = *rate {
+                rates[rate] += slope * torque;
+            }
+        }
+    }
+
+    /// Torques by rate, as if nothing were coupled, become torques with every follower folded into its leader.
+    pub fn fold_couplings(&self, model: &Model, raw: &[f64], folded: &mut [f64]) {
+        folded.copy_from_slice(raw);
+        for (coupling, (slope, _)) in model.couplings.iter().zip(&self.couplings) {
+            let rate = |coordinate: usize| model.coordinates[coordinate].rate;
+            if let (Some(d), Some(i)) = (rate(coupling.dependent), rate(coupling.independent)) {
+                folded[i] += slope * raw[d];
+                folded[d] = 0.0;
+            }
+        }
+    }
+}
