@@ -183,7 +183,7 @@ fn verdict(figure: &Published, summary: &CoordinateSummary) -> &'static str {
     if summary.cases == figure.printed {
         "yes"
     } else if inner == figure.printed {
-        "with 1.2 between: docs/deviations.md, D14"
+        "with 1.2 between: docs/deviations.md, D13"
     } else {
         "no"
     }

@@ -20,7 +20,7 @@ mod tree;
 
 pub use error::{IncludeRule, MjcfError, MjcfRule, Unsupported};
 
-use crate::body::{Body, BodyRoot, first_not_finite, unique_coordinates};
+use crate::body::{Body, BodyRoot, first_too_large, unique_coordinates};
 use crate::xml::Limits;
 use attributes::Attributes;
 use compiler::Settings;
@@ -91,7 +91,7 @@ pub fn read(
     equality::close(&mut body, couplings)?;
     springdamper::apply(&mut body, &built, root)?;
     unique_coordinates(&body).map_err(|value| MjcfError::DuplicateName { place: root.place(), value })?;
-    if let Some(segment) = first_not_finite(&body) {
+    if let Some(segment) = first_too_large(&body) {
         let value = body.segments.get(segment).map_or_else(String::new, |s| s.name.clone());
         let place = built.places.get(segment).cloned().unwrap_or_else(|| root.place());
         return Err(MjcfError::Invalid { place, value, needs: MjcfRule::Overflow });

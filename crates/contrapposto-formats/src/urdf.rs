@@ -10,9 +10,9 @@ mod tree;
 
 pub use error::{UrdfError, UrdfRule};
 
-use crate::body::{Body, BodyRoot, BodySegment};
+use crate::body::{Body, BodyRoot, BodySegment, first_too_large};
 use crate::numbers;
-use crate::xml::{self, Limits, Node, Place};
+use crate::xml::{self, Limits, Node, Place, shorten};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
 
@@ -51,6 +51,10 @@ pub fn read(bytes: &[u8], file_name: &str, options: &Options) -> Result<Body, Ur
     let name = robot.attribute("name").filter(|n| !n.is_empty()).unwrap_or(file_name).to_owned();
     let mut body = Body { name, gravity: Vector3::new(0.0, 0.0, -GRAVITY), ..Body::default() };
     tree::build(&mut body, robot, &links, &joints, options, &mut ignored)?;
+    if let Some(segment) = first_too_large(&body) {
+        let value = body.segments.get(segment).map_or_else(String::new, |s| shorten(&s.name));
+        return Err(UrdfError::Invalid { place: robot.place(), value, needs: UrdfRule::Overflow });
+    }
     body.ignored = ignored.0.into_iter().collect();
     Ok(body)
 }

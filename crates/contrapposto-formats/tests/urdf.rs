@@ -156,35 +156,35 @@ fn refusals_say_where() {
         (joint("<parent link='a'/>"), "<joint> at line 3, column 1: <child> is missing inside"),
         (
             joint("<parent link='a'/><child link='bb'/><limit/>"),
-            "<child link> at line 3, column 60: there is no link `bb`; did you mean `b`?",
+            "<child link> at line 3, column 58: there is no link `bb`; did you mean `b`?",
         ),
         (
             joint(&format!("{ends}<limit lower='1' upper='0'/>")),
-            "<limit lower> at line 3, column 77: `1 0`: the lower limit is at most the upper one",
+            "<limit lower> at line 3, column 75: `1 0`: the lower limit is at most the upper one",
         ),
         (
             joint(&format!("{ends}<limit/><axis xyz='0 0 0'/>")),
-            "<axis xyz> at line 3, column 84: `0 0 0`: an axis is longer than zero",
+            "<axis xyz> at line 3, column 82: `0 0 0`: an axis is longer than zero",
         ),
         (
             joint(&format!("{ends}<limit/><axis xyz='0 0'/>")),
-            "<axis xyz> at line 3, column 84: 2 numbers; exactly 3 accepted",
+            "<axis xyz> at line 3, column 82: 2 numbers; exactly 3 accepted",
         ),
         (
             joint(&format!("{ends}<limit/><origin rpy='0 nan 0'/>")),
-            "<origin rpy> at line 3, column 86: `nan` is not a finite number",
+            "<origin rpy> at line 3, column 84: `nan` is not a finite number",
         ),
         (
             joint(&format!("{ends}<limit upper='1e999'/>")),
-            "<limit upper> at line 3, column 77: `1e999` is not a finite number",
+            "<limit upper> at line 3, column 75: `1e999` is not a finite number",
         ),
         (
             joint(&format!("{ends}<limit upper='${{pi}}'/>")),
-            "<limit upper> at line 3, column 77: `${pi}` is not a number",
+            "<limit upper> at line 3, column 75: `${pi}` is not a number",
         ),
         (
             joint(&format!("{ends}<limit/><mimic joint='j'/>")),
-            "<mimic joint> at line 3, column 85: `j`: joints mimic each other in a circle",
+            "<mimic joint> at line 3, column 83: `j`: joints mimic each other in a circle",
         ),
         (
             joint(ends).replace("revolute", "hinge"),

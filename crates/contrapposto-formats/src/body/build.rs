@@ -1,7 +1,7 @@
 //! What the readers share while they build a body.
 
-use super::{Body, Coupling, Function};
-use nalgebra::{Unit, Vector3};
+use super::{Body, BodyMotion, BodySegment, Coupling, Drive, Function, PassiveLawText};
+use nalgebra::{Isometry3, Unit, Vector3};
 use std::collections::BTreeSet;
 
 /// The direction of a vector, unless it is too short to have one.
@@ -20,38 +20,40 @@ pub(crate) fn unique_coordinates(body: &Body) -> Result<(), String> {
     }
 }
 
-/// Index of the first segment with a number that is not finite; one past the last for a spring or coupling.
-pub(crate) fn first_not_finite(body: &Body) -> Option<usize> {
-    let finite = |s: &super::BodySegment| {
-        let pose = |p: &nalgebra::Isometry3<f64>| {
-            p.translation.vector.iter().chain(p.rotation.coords.iter()).all(|x| x.is_finite())
-        };
-        let motion = |m: &super::BodyMotion| match m {
-            super::BodyMotion::Hinge { axis, drive } | super::BodyMotion::Slide { axis, drive } => {
-                let drive = if let super::Drive::Constant(value) = drive { *value } else { 0.0 };
-                drive.is_finite() && axis.iter().all(|x| x.is_finite())
-            }
-            super::BodyMotion::Ball { .. } => true,
-        };
-        let numbers = s.center_of_mass.iter().chain(s.inertia.iter());
-        s.mass.is_finite()
-            && numbers.copied().all(f64::is_finite)
+/// Larger numbers are refused: sums and squares of as many as a file can hold stay finite below it.
+const LARGEST: f64 = 1e30;
+
+/// Index of the first segment with a number that is not finite or too large to calculate with; one past the last for
+/// anything else.
+pub(crate) fn first_too_large(body: &Body) -> Option<usize> {
+    let fits = |x: &f64| x.abs() <= LARGEST; // false for NaN
+    let pose = |p: &Isometry3<f64>| p.translation.vector.iter().chain(p.rotation.coords.iter()).all(fits);
+    let motion = |m: &BodyMotion| match m {
+        BodyMotion::Hinge { axis, drive } | BodyMotion::Slide { axis, drive } => {
+            axis.iter().all(fits) && if let Drive::Constant(value) = drive { fits(value) } else { true }
+        }
+        BodyMotion::Ball { .. } => true,
+    };
+    let segment = |s: &BodySegment| {
+        s.center_of_mass.iter().chain(s.inertia.iter()).chain([&s.mass]).all(fits)
             && pose(&s.in_parent)
             && pose(&s.in_segment)
             && s.motions.iter().all(motion)
     };
-    if let Some(segment) = body.segments.iter().position(|s| !finite(s)) {
+    if let Some(segment) = body.segments.iter().position(|s| !segment(s)) {
         return Some(segment);
     }
-    let coupled = body.couplings.iter().all(|c| powers(&c.function).is_none_or(|k| k.iter().all(|x| x.is_finite())));
-    let sprung = body.passive.iter().all(|p| match &p.law {
-        super::PassiveLawText::Spring { stiffness, rest } => stiffness.is_finite() && rest.is_finite(),
-        super::PassiveLawText::Polynomial { coefficients, rest } => {
-            rest.is_finite() && coefficients.iter().all(|x| x.is_finite())
-        }
+    let end = |x: &f64| x.is_infinite() || fits(x);
+    let coordinates = body.coordinates.iter().all(|c| fits(&c.default) && end(&c.range.0) && end(&c.range.1));
+    let couplings = body.couplings.iter().all(|c| powers(&c.function).is_none_or(|k| k.iter().all(fits)));
+    let springs = body.passive.iter().all(|p| match &p.law {
+        PassiveLawText::Spring { stiffness, rest } => fits(stiffness) && fits(rest),
+        PassiveLawText::Polynomial { coefficients, rest } => fits(rest) && coefficients.iter().all(fits),
         _ => true,
     });
-    (!coupled || !sprung).then_some(body.segments.len())
+    let stations = body.stations.iter().all(|(_, _, at)| at.iter().all(fits));
+    let rest = body.gravity.iter().all(fits) && coordinates && couplings && springs && stations;
+    (!rest).then_some(body.segments.len())
 }
 
 /// The name that `given` was probably meant to be, among those short enough to compare quickly.

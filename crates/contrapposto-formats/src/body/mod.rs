@@ -3,12 +3,14 @@
 //! Units rad, m, kg, N, N m. Defaults, classes, includes, degrees and Euler sequences have ended at the reader.
 
 mod build;
+mod model;
 mod root;
 
 pub use contrapposto::math::{Function, Spline, SplineError};
+pub use model::{BodyError, Imported};
 pub use root::{BodyRoot, FREE_ENDINGS};
 
-pub(crate) use build::{compose_couplings, first_not_finite, near, polynomial, unique_coordinates, unit};
+pub(crate) use build::{compose_couplings, first_too_large, near, polynomial, unique_coordinates, unit};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 

@@ -340,12 +340,14 @@ pub enum MjcfRule {
     #[error("springdamper needs a body with inertia about every joint")]
     SpringdamperInertia,
     /// Couplings.
-    #[error("a joint follows one other joint, by a polynomial, and no joints follow each other in a circle")]
+    #[error(
+        "a joint follows one other joint, by a polynomial of at most 32 powers, and no joints follow each other in a circle"
+    )]
     Coupling,
     /// Options::root free.
     #[error("a root can be freed if the world has exactly one body and that has no joint, or a free one")]
     Root,
     /// Numbers too large to calculate with.
-    #[error("the numbers are too large to calculate with")]
+    #[error("a number is beyond 1e30, too large to calculate with")]
     Overflow,
 }

@@ -115,6 +115,9 @@ pub enum UrdfRule {
     /// Coupling to a joint with one coordinate.
     #[error("a joint mimics a revolute, continuous or prismatic joint and is one itself")]
     MimicKind,
+    /// Numbers too large to calculate with.
+    #[error("a number is beyond 1e30, too large to calculate with")]
+    Overflow,
     /// Coupling in a circle.
     #[error("joints mimic each other in a circle")]
     MimicCircle,

@@ -1,0 +1,93 @@
+//! Does the loop do what its parts promise together? Rest is enforced, the balance of torques holds, nothing leaves its range.
+
+use contrapposto::fatigue::Hysteresis;
+use contrapposto::hybrid::Strategy;
+use contrapposto::model::{Adult, adult, data};
+use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, run};
+use contrapposto::statics::Load;
+
+/// The reference man's right arm, elbow free, `load` kg in the hand, an elbow curve that can carry it.
+fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
+    let model = adult(&Adult::default()).unwrap();
+    let elbow = model.coordinate("elbow_flex_r").unwrap();
+    let curve = data::reshaped(model.coordinates()[elbow].curve().unwrap(), 5f64.to_radians(), 80.0).unwrap();
+    let model = model.with_passive(elbow, curve);
+    let hand = model.segment("hand_r").unwrap();
+    let mut start = model.default_posture();
+    start.values_mut()[model.coordinate("arm_flex_r").unwrap()] = 40f64.to_radians();
+    start.values_mut()[elbow] = 50f64.to_radians();
+    let n = model.coordinates().len();
+    let mut free = vec![false; n];
+    free[elbow] = true;
+    let scenario = Scenario {
+        title: "loaded elbow".into(),
+        loads: vec![Load::weight(&model, hand, load)],
+        model,
+        start,
+        free,
+        strategy: StrategySettings { kind: Strategy::Passive, minimum_decrease_ratio: 0.9 },
+        relief: ReliefSettings {
+            step_gain: 0.3,
+            max_step: 2f64.to_radians(),
+            torque_tolerance: 0.05,
+            tables: Tables::Total,
+        },
+        hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
+        start_fatigue: vec![[0.0; 2]; n],
+        run: RunSettings { duration, step: 1.0 / 30.0, stop_when_settled: false },
+    };
+    (scenario, elbow)
+}
+
+#[test]
+fn relief_lasts_until_the_group_has_rested() {
+    let (scenario, elbow) = loaded_elbow(10.0, 600.0);
+    let (mut began, mut ended, mut load_at_trip) = (None, None, 0.0);
+    run(&scenario, |sample| {
+        if sample.decisions[elbow].is_some() && began.is_none() {
+            began = Some(sample.time);
+            load_at_trip = sample.load[elbow];
+        }
+        if began.is_some() && ended.is_none() && sample.decisions[elbow].is_none() {
+            ended = Some(sample.time);
+        }
+    })
+    .unwrap();
+    let (began, ended) = (began.expect("the group tires"), ended.expect("the group rests"));
+    assert!(load_at_trip > 0.4, "a real load: {load_at_trip}");
+    // From 0.6 to 0.3 at rest, 3CC-r of the elbow: ln 2 / (15 x 0.00094 /s) = 49.2 s, after the way to the balance.
+    let rest = ended - began;
+    println!("trips at {began:.1} s under load {load_at_trip:.2}, rests {rest:.1} s");
+    assert!((49.0..56.0).contains(&rest), "{rest}");
+}
+
+#[test]
+fn every_sample_is_balanced_and_in_range() {
+    let (scenario, _) = loaded_elbow(4.0, 300.0);
+    let mut relieved = 0;
+    run(&scenario, |sample| {
+        for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
+            assert_eq!(sample.external[i] + sample.passive[i] + sample.active[i], 0.0);
+            assert!((coordinate.range.0..=coordinate.range.1).contains(&sample.posture[i]));
+            assert!(sample.fatigue[i].iter().all(|f| (0.0..=1.0).contains(f)));
+            relieved += u32::from(sample.decisions[i].is_some());
+        }
+    })
+    .unwrap();
+    assert!(relieved > 100, "{relieved}");
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_bits() {
+    let (scenario, _) = loaded_elbow(6.0, 120.0);
+    let record = || {
+        let mut bits: Vec<u64> = vec![];
+        let summary = run(&scenario, |sample| {
+            bits.extend(sample.posture.iter().chain(sample.active).map(|x| x.to_bits()));
+            bits.extend(sample.fatigue.iter().flatten().map(|x| x.to_bits()));
+        })
+        .unwrap();
+        (bits, summary)
+    };
+    assert!(record() == record(), "two runs differ");
+}
