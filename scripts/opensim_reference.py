@@ -137,7 +137,7 @@ def models():
             markers = {m.getName(): vector(m.getLocationInGround(state)) for m in model.getMarkerSet()}
             cases.append({"q": q.tolist(), "bodies": bodies, "forces": forces, "markers": markers})
         coupled = []
-        for value in [-1.3, -0.4, 0.2, 0.9, 1.7]:
+        for value in [-1.3, -0.4, 0.2, 0.9, 1.7] if "slide" in names else []:
             coordinates.get("pin_angle").setClamped(state, False)
             coordinates.get("pin_angle").setValue(state, value, True)
             coupled.append([value, coordinates.get("slide").getValue(state)])

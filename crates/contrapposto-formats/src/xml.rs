@@ -3,10 +3,12 @@
 //! No namespaces, no DOCTYPE, no entities but the five of XML and character references. Elements lie in one arena, their
 //! names, values and text in one string.
 
+mod error;
 mod parse;
 
+pub use error::{Malformed, XmlError};
+pub use parse::parse;
 pub(crate) use parse::shorten;
-pub use parse::{Malformed, XmlError, parse};
 
 /// What a reader accepts at most. One struct for the model formats; each cap is tested at its value and one above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,13 +68,13 @@ impl std::fmt::Display for Position {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     /// Included file, as the include names it; empty for the file itself.
-    pub file: String,
+    pub file: Box<str>,
     /// Of the attribute if there is one, of the element otherwise.
     pub position: Position,
     /// Element name.
-    pub tag: String,
+    pub tag: Box<str>,
     /// Attribute name; empty for the element or its text.
-    pub attribute: String,
+    pub attribute: Box<str>,
 }
 
 impl std::fmt::Display for Place {
@@ -241,14 +243,14 @@ impl<'a> Node<'a> {
     /// The element as a place for messages.
     #[must_use]
     pub fn place(self) -> Place {
-        Place { file: String::new(), position: self.position(), tag: self.name().to_owned(), attribute: String::new() }
+        Place { file: "".into(), position: self.position(), tag: self.name().into(), attribute: "".into() }
     }
 
     /// An attribute as a place for messages; the element's position if the attribute is missing.
     #[must_use]
     pub fn attribute_place(self, name: &str) -> Place {
         let position = self.attribute_position(name).unwrap_or(self.position());
-        Place { position, attribute: name.to_owned(), ..self.place() }
+        Place { position, attribute: name.into(), ..self.place() }
     }
 
     fn attribute_slice(self) -> &'a [Attribute] {

@@ -69,12 +69,7 @@ impl Body {
         own.sort_unstable();
         own.dedup();
         let local = |c: usize| own.iter().position(|&o| o == c).unwrap_or(0);
-        let motion = |motion: &BodyMotion| match motion {
-            BodyMotion::Hinge { axis, drive } => (Motion::Hinge(Unit::new_normalize(*axis)), Some(drive)),
-            BodyMotion::Slide { axis, drive } => (Motion::Slide(Unit::new_normalize(*axis)), Some(drive)),
-            BodyMotion::Ball { .. } => (Motion::Ball, None),
-        };
-        let motions: Vec<_> = segment.motions.iter().map(motion).collect();
+        let motions: Vec<_> = segment.motions.iter().map(motion_and_drive).collect();
         // Every motion its own coordinate, in order: a plain chain. Balls only come so.
         let plain = motions.iter().filter_map(|(_, drive)| *drive).zip(0..).all(|(drive, i)| match drive {
             Drive::Coordinate(c) => local(*c) == i,
@@ -149,5 +144,14 @@ impl Body {
         spec.locked = *locked;
         spec.passive = (!terms.is_empty()).then_some(PassiveLaw::Sum(terms));
         Ok(spec)
+    }
+}
+
+/// The motion, and what drives it; a ball is driven by its own coordinates.
+fn motion_and_drive(motion: &BodyMotion) -> (Motion, Option<&Drive>) {
+    match motion {
+        BodyMotion::Hinge { axis, drive } => (Motion::Hinge(Unit::new_normalize(*axis)), Some(drive)),
+        BodyMotion::Slide { axis, drive } => (Motion::Slide(Unit::new_normalize(*axis)), Some(drive)),
+        BodyMotion::Ball { .. } => (Motion::Ball, None),
     }
 }

@@ -92,16 +92,10 @@ impl Settings {
                     }
                     self.groups = (from, to);
                 }
-                "coordinate" => {
-                    if value.keyword(&["local", "global"])? == 1 {
-                        return Err(Unsupported::GlobalCoordinates.at_attribute(item, name));
-                    }
+                "coordinate" if value.keyword(&["local", "global"])? == 1 => {
+                    return Err(Unsupported::GlobalCoordinates.at_attribute(item, name));
                 }
-                "alignfree" => {
-                    if value.flag()? {
-                        return Err(Unsupported::AlignFree.at_attribute(item, name));
-                    }
-                }
+                "alignfree" if value.flag()? => return Err(Unsupported::AlignFree.at_attribute(item, name)),
                 "eulerseq" => match *value.text.as_bytes() {
                     [a, b, c] if [a, b, c].iter().all(|l| b"xyzXYZ".contains(l)) => self.euler_sequence = [a, b, c],
                     _ => return Err(value.invalid(MjcfRule::EulerSequence)),

@@ -137,8 +137,8 @@ impl<'a> Item<'a> {
         Place { file: self.file_name(), ..self.node.attribute_place(name) }
     }
 
-    fn file_name(self) -> String {
-        self.files.files[self.file].name.clone()
+    fn file_name(self) -> Box<str> {
+        self.files.files[self.file].name.as_str().into()
     }
 
     /// The names of all elements of these kinds in all files.

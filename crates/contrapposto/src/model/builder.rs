@@ -191,6 +191,9 @@ impl ModelBuilder {
             inertia: spec.inertia,
             joint: spec.joint,
             joint_kind: spec.kind,
+            coordinates: first..model.coordinates.len(),
+            in_parent: spec.in_parent,
+            in_segment: spec.in_segment,
             mobility,
             offset,
         });

@@ -44,6 +44,12 @@ pub struct Segment {
     pub joint: String,
     /// Kind of that joint.
     pub joint_kind: JointKind,
+    /// The joint's coordinates, in [`Model::coordinates`].
+    pub coordinates: std::ops::Range<usize>,
+    /// The joint's resting frame in the parent's frame (in ground where there is no parent).
+    pub in_parent: Placement,
+    /// The joint's moved frame in this segment's frame.
+    pub in_segment: Placement,
     /// The mobility that carries the segment; `None` when it is fixed to ground.
     pub(crate) mobility: Option<usize>,
     /// The segment's frame in the frame of that mobility (or in ground).
