@@ -8,6 +8,7 @@ Writes crates/contrapposto-formats/tests/data/opensim_{expressions,functions,mod
 
 import json
 import math
+import multiprocessing
 import pathlib
 
 import numpy
@@ -109,46 +110,50 @@ def vector(v):
     return [v.get(i) for i in range(3)]
 
 
+def model_reference(path):
+    model = opensim.Model(str(path))
+    state = model.initSystem()
+    coordinates = model.getCoordinateSet()
+    names = [coordinates.get(i).getName() for i in range(coordinates.getSize())]
+    random = numpy.random.RandomState(11)
+    cases = []
+    for _ in range(12):
+        q = random.uniform(-0.9, 0.9, len(names))
+        for i, value in enumerate(q):
+            coordinates.get(i).setLocked(state, False)
+            coordinates.get(i).setValue(state, float(value), False)
+        model.realizeVelocity(state)
+        bodies = {}
+        for body in model.getBodyList():
+            pose = body.getTransformInGround(state)
+            rotation = [[pose.R().get(i, j) for j in range(3)] for i in range(3)]
+            bodies[body.getName()] = {"origin": vector(pose.p()), "R": rotation}
+        forces = {}
+        for force in model.getForceSet():
+            kind = force.getConcreteClassName()
+            if force.get_appliesForce() and (kind.startswith("Coordinate") and kind.endswith("LimitForce") or "Generalized" in kind or "Expression" in kind):
+                forces[force.getName()] = force.getRecordValues(state).get(0)
+        markers = {m.getName(): vector(m.getLocationInGround(state)) for m in model.getMarkerSet()}
+        cases.append({"q": q.tolist(), "bodies": bodies, "forces": forces, "markers": markers})
+    coupled = []
+    for value in [-1.3, -0.4, 0.2, 0.9, 1.7] if "slide" in names else []:
+        coordinates.get("pin_angle").setClamped(state, False)
+        coordinates.get("pin_angle").setValue(state, value, True)
+        coupled.append([value, coordinates.get("slide").getValue(state)])
+    kinds = {n: coordinates.get(n).getMotionType() for n in names}
+    ranges = {n: [coordinates.get(n).getRangeMin(), coordinates.get(n).getRangeMax()] for n in names}
+    defaults = {n: coordinates.get(n).getDefaultValue() for n in names}
+    mass = model.getTotalMass(state)
+    return {"file": path.name, "coordinates": names, "motion_type": kinds, "default": defaults, "mass": mass,
+            "range": {n: [str(v) if math.isinf(v) else v for v in r] for n, r in ranges.items()},
+            "coupled_pin_angle_slide": coupled, "cases": cases}
+
+
 def models():
-    result = {"tool": TOOL, "models": []}
-    for path in sorted((HERE / "models").glob("joints_*.osim")):
-        model = opensim.Model(str(path))
-        state = model.initSystem()
-        coordinates = model.getCoordinateSet()
-        names = [coordinates.get(i).getName() for i in range(coordinates.getSize())]
-        random = numpy.random.RandomState(11)
-        cases = []
-        for _ in range(12):
-            q = random.uniform(-0.9, 0.9, len(names))
-            for i, value in enumerate(q):
-                coordinates.get(i).setLocked(state, False)
-                coordinates.get(i).setValue(state, float(value), False)
-            model.realizeVelocity(state)
-            bodies = {}
-            for body in model.getBodyList():
-                pose = body.getTransformInGround(state)
-                rotation = [[pose.R().get(i, j) for j in range(3)] for i in range(3)]
-                bodies[body.getName()] = {"origin": vector(pose.p()), "R": rotation}
-            forces = {}
-            for force in model.getForceSet():
-                kind = force.getConcreteClassName()
-                if force.get_appliesForce() and (kind.startswith("Coordinate") and kind.endswith("LimitForce") or "Generalized" in kind or "Expression" in kind):
-                    forces[force.getName()] = force.getRecordValues(state).get(0)
-            markers = {m.getName(): vector(m.getLocationInGround(state)) for m in model.getMarkerSet()}
-            cases.append({"q": q.tolist(), "bodies": bodies, "forces": forces, "markers": markers})
-        coupled = []
-        for value in [-1.3, -0.4, 0.2, 0.9, 1.7] if "slide" in names else []:
-            coordinates.get("pin_angle").setClamped(state, False)
-            coordinates.get("pin_angle").setValue(state, value, True)
-            coupled.append([value, coordinates.get("slide").getValue(state)])
-        kinds = {n: coordinates.get(n).getMotionType() for n in names}
-        ranges = {n: [coordinates.get(n).getRangeMin(), coordinates.get(n).getRangeMax()] for n in names}
-        defaults = {n: coordinates.get(n).getDefaultValue() for n in names}
-        mass = model.getTotalMass(state)
-        result["models"].append({"file": path.name, "coordinates": names, "motion_type": kinds, "default": defaults, "mass": mass,
-                                 "range": {n: [str(v) if math.isinf(v) else v for v in r] for n, r in ranges.items()},
-                                 "coupled_pin_angle_slide": coupled, "cases": cases})
-    return result
+    # One process each: OpenSim keeps the <defaults> of a model for all that are read after it.
+    paths = sorted((HERE / "models").glob("joints_*.osim"))
+    with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
+        return {"tool": TOOL, "models": pool.map(model_reference, paths, chunksize=1)}
 
 
 def main():

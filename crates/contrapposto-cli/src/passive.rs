@@ -98,9 +98,12 @@ fn find(name: &str) -> Result<Found, Fail> {
     let model = adult(&Adult::default()).map_err(|error| Fail::job("adult", error))?;
     if let (Some(index), Some(sources)) = (model.coordinate(name), library.sources(name)) {
         let coordinate = &model.coordinates()[index];
-        if let Some(curve) = coordinate.curve() {
-            let (curve, positive) = (curve.clone(), coordinate.positive.clone());
-            return Ok(Found { curve, curve_name: sources.curve.to_owned(), positive });
+        // A law coupled to neighbouring joints is shown with them at their defaults.
+        let posture = model.default_posture();
+        let curve = coordinate.passive.as_ref().and_then(|law| law.curve_at(index, posture.values(), coordinate.range));
+        if let (Some(curve), Some(curve_name)) = (curve, sources.curve) {
+            let (curve, positive) = (curve.into_owned(), coordinate.positive.clone());
+            return Ok(Found { curve, curve_name: curve_name.to_owned(), positive });
         }
     }
     if let Some(row) = library.curve(name) {
@@ -108,9 +111,9 @@ fn find(name: &str) -> Result<Found, Fail> {
         let curve = row.over(range, 1.0).map_err(|error| Fail::job(name, error))?;
         return Ok(Found { curve, curve_name: name.to_owned(), positive: row.positive.clone() });
     }
-    let coordinates: Vec<&str> = library.coordinate_names().collect();
+    let coordinates: Vec<String> = library.coordinate_names().collect();
     let curves: Vec<&str> = library.curve_names().collect();
-    let hint = contrapposto_formats::nearest(name, coordinates.iter().chain(&curves).copied());
+    let hint = contrapposto_formats::nearest(name, coordinates.iter().map(String::as_str).chain(curves.iter().copied()));
     let hint = hint.map_or(String::new(), |name| format!("; did you mean `{name}`?"));
     Err(Fail::Refused(format!(
         "there is no coordinate or curve `{name}`{hint}\n  coordinates: {}\n  curves: {}",

@@ -6,6 +6,7 @@
 pub mod body;
 pub use contrapposto::math::expression;
 pub mod mjcf;
+pub mod motion;
 pub mod numbers;
 pub mod osim;
 pub mod urdf;

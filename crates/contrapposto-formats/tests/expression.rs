@@ -25,7 +25,10 @@ fn values_are_those_of_opensim() {
         for (&q, theirs) in angles.iter().zip(row["values"].as_array().unwrap()) {
             let (ours, theirs) = (expression.value(q), number(theirs));
             if !theirs.is_finite() {
-                assert!(ours == theirs || (ours.is_nan() && theirs.is_nan()), "{text} at {q}: {ours}, OpenSim {theirs}");
+                assert!(
+                    ours == theirs || (ours.is_nan() && theirs.is_nan()),
+                    "{text} at {q}: {ours}, OpenSim {theirs}"
+                );
                 continue;
             }
             let error = (ours - theirs).abs() / theirs.abs().max(1e-3);
@@ -117,7 +120,10 @@ fn definitions_are_shared_and_evaluation_is_linear() {
 
 #[test]
 fn any_text_gives_a_formula_or_an_error() {
-    let pieces = ["q", "+", "-", "*", "/", "^", "(", ")", ",", ";", "=", "1", ".5", "e", "sin(", "min(", " ", "\u{e9}", "qdot", "x"];
+    let pieces = [
+        "q", "+", "-", "*", "/", "^", "(", ")", ",", ";", "=", "1", ".5", "e", "sin(", "min(", " ", "\u{e9}", "qdot",
+        "x",
+    ];
     let mut state = 12345u64;
     let mut accepted = 0;
     for _ in 0..50_000 {

@@ -1,5 +1,7 @@
 //! URDF models as bodies: a hand-made one by hand, published ones against Pinocchio's order and their MJCF twins.
 
+#![allow(clippy::unwrap_used, reason = "what the tests share may fail like a test")]
+
 mod common;
 
 use common::{center_of_mass, difference, frames, here, mutate, mutations, shared};

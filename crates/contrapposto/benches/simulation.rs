@@ -10,7 +10,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 /// The right arm of the reference man, elbow free, upper arm 30 degrees forward, 3 kg in the hand: the elbow tires and is
 /// relieved again and again.
 fn ten_minutes() -> Scenario {
-    let model = adult(&Adult::default()).expect("the reference man");
+    let model = adult(&Adult::right_arm()).expect("the reference man");
     let index = |name: &str| model.coordinate(name).expect("a coordinate of the arm");
     let (shoulder, elbow) = (index("arm_flex_r"), index("elbow_flex_r"));
     let hand = model.segment("hand_r").expect("a hand");

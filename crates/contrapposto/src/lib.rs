@@ -13,7 +13,7 @@
 //! use contrapposto::{kinematics::Kinematics, statics::ExternalTorque};
 //!
 //! // How heavy is a forearm, held level with the upper arm hanging?
-//! let model = adult(&Adult::default())?;
+//! let model = adult(&Adult::right_arm())?;
 //! let elbow = model.coordinate("elbow_flex_r").unwrap();
 //! let mut posture = model.default_posture();
 //! posture.values_mut()[elbow] = 90f64.to_radians();

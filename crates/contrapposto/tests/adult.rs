@@ -4,7 +4,7 @@
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::data::library;
-use contrapposto::model::{Adult, AdultError, CoordinateKind, Model, Sex, Side, adult};
+use contrapposto::model::{Adult, AdultError, CoordinateKind, Model, Part, Sex, Side, adult};
 use contrapposto::passive::PassiveCurve;
 use contrapposto::posture::Posture;
 use contrapposto::statics::ExternalTorque;
@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-const MALE: Adult = Adult { sex: Sex::Male, stature: 1.741, mass: 73.0 };
-const FEMALE: Adult = Adult { sex: Sex::Female, stature: 1.735, mass: 61.9 };
+const MALE: Adult = Adult { sex: Sex::Male, stature: 1.741, mass: 73.0, part: Part::RightArm, lengths: Vec::new() };
+const FEMALE: Adult = Adult { sex: Sex::Female, stature: 1.735, mass: 61.9, part: Part::RightArm, lengths: Vec::new() };
 
 /// The model in a posture given in degrees, the rest at zero.
 fn at(model: &Model, degrees: &[(&str, f64)]) -> Kinematics {
@@ -209,9 +209,9 @@ fn every_passive_curve_falls_over_its_range() {
 
 #[test]
 fn size_scales_masses_lengths_and_inertias() {
-    let small = adult(&Adult { sex: Sex::Female, stature: 1.4, mass: 40.0 }).unwrap();
+    let small = adult(&Adult { stature: 1.4, mass: 40.0, ..FEMALE }).unwrap();
     let (k, s) = (2.5, 1.5);
-    let large = adult(&Adult { sex: Sex::Female, stature: 1.4 * s, mass: 40.0 * k }).unwrap();
+    let large = adult(&Adult { stature: 1.4 * s, mass: 40.0 * k, ..FEMALE }).unwrap();
     let (a, b) = (at(&small, &[("arm_flex_r", 40.0)]), at(&large, &[("arm_flex_r", 40.0)]));
     for (i, (small_segment, large_segment)) in small.segments().iter().zip(large.segments()).enumerate() {
         assert!((k * small_segment.mass - large_segment.mass).abs() < 1e-12);
@@ -242,7 +242,7 @@ fn silly_sizes_are_refused() {
     );
     for stature in [1.2, 2.3] {
         for mass in [30.0, 250.0] {
-            adult(&Adult { sex: Sex::Female, stature, mass }).unwrap();
+            adult(&Adult { stature, mass, ..FEMALE }).unwrap();
         }
     }
 }

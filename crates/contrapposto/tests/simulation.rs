@@ -8,7 +8,7 @@ use contrapposto::statics::Load;
 
 /// The reference man's right arm, elbow free, `load` kg in the hand, an elbow curve that can carry it.
 fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
-    let model = adult(&Adult::default()).unwrap();
+    let model = adult(&Adult::right_arm()).unwrap();
     let elbow = model.coordinate("elbow_flex_r").unwrap();
     let curve = data::reshaped(model.coordinates()[elbow].curve().unwrap(), 5f64.to_radians(), 80.0).unwrap();
     let model = model.with_passive(elbow, curve);

@@ -688,7 +688,7 @@ fn planar_double_pendulum() {
 
 #[test]
 fn adult_elbow_with_the_upper_arm_horizontal() {
-    let model = adult(&Adult::default()).unwrap();
+    let model = adult(&Adult::right_arm()).unwrap();
     let (flex, elbow) = (model.coordinate("arm_flex_r").unwrap(), model.coordinate("elbow_flex_r").unwrap());
     let mut posture = model.default_posture();
     posture.values_mut()[flex] = 90f64.to_radians();

@@ -74,7 +74,8 @@ fn check_couplings(scene: &Scene<'_>, body: &Body) -> Result<(), OsimProblem> {
     let mut leader_of = std::collections::HashMap::new();
     let enforced = scene.constraints.iter().filter(|n| n.name() == "CoordinateCouplerConstraint");
     let place = enforced.clone().next().map(|n| n.place()).unwrap_or_default();
-    let refuse = |what| Err(OsimProblem::unsupported(place.clone(), what, "couplings that form no loop, one per coordinate"));
+    let refuse =
+        |what| Err(OsimProblem::unsupported(place.clone(), what, "couplings that form no loop, one per coordinate"));
     for coupling in &body.couplings {
         if leader_of.insert(coupling.dependent, coupling.independent).is_some() {
             return refuse("a coordinate that follows two others");

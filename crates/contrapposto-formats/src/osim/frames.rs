@@ -83,7 +83,8 @@ impl<'a> Frames<'a> {
             let (text, node) = reader.required_text(component, name)?;
             let target = absolute(&text, &path);
             let Some(frame) = self.by_path.get(&target) else {
-                let near = near(&target, self.by_path.keys().map(String::as_str).collect::<std::collections::BTreeSet<_>>());
+                let near =
+                    near(&target, self.by_path.keys().map(String::as_str).collect::<std::collections::BTreeSet<_>>());
                 return Err(OsimProblem::Unknown {
                     place: node.place(),
                     what: "frame",

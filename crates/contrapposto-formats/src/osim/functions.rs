@@ -49,7 +49,10 @@ pub(super) fn read<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<Function, 
         }),
         "MultiplierFunction" => {
             let Some(inner) = reader.object(node, "function", is_function) else {
-                return Err(OsimProblem::Missing { place: node.place(), what: "the <function> to multiply".to_owned() });
+                return Err(OsimProblem::Missing {
+                    place: node.place(),
+                    what: "the <function> to multiply".to_owned(),
+                });
             };
             Ok(read(reader, inner)?.scaled(reader.number(node, "scale", Some(1.0))?))
         }

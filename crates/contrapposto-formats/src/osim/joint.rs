@@ -15,7 +15,8 @@ use super::{Ignored, functions, objects};
 use crate::body::{BodyCoordinateKind, BodyMotion, Drive, Function, near, unit};
 use crate::xml::{Node, shorten};
 
-const ACCEPTED: &str = "WeldJoint, PinJoint, SliderJoint, UniversalJoint, GimbalJoint, BallJoint, FreeJoint, PlanarJoint, CustomJoint";
+const ACCEPTED: &str =
+    "WeldJoint, PinJoint, SliderJoint, UniversalJoint, GimbalJoint, BallJoint, FreeJoint, PlanarJoint, CustomJoint";
 
 use BodyCoordinateKind::{Rotation, Translation};
 
@@ -78,14 +79,17 @@ pub(super) fn motions<'a>(
         };
         let manner = Manner { degrees: kind == Rotation, of_ball: ball && kind == Rotation };
         let place = declared.get(i).unwrap_or(&node).place();
-        driven.push((kind, axis, all.add(reader, place, &joint.name, coordinate, manner)?));
+        driven.push(((kind, axis), all.add(reader, place, &joint.name, coordinate, manner)?));
     }
     Ok(slides_first(&driven))
 }
 
-fn slides_first(driven: &[(BodyCoordinateKind, fn() -> Vector3<f64>, usize)]) -> Vec<BodyMotion> {
-    let of = |wanted| driven.iter().filter(move |d| d.0 == wanted);
-    of(Translation).chain(of(Rotation)).map(|&(kind, axis, index)| motion(kind, axis(), Drive::Coordinate(index))).collect()
+fn slides_first(driven: &[(Mobility, usize)]) -> Vec<BodyMotion> {
+    let of = |wanted| driven.iter().filter(move |d| d.0.0 == wanted);
+    of(Translation)
+        .chain(of(Rotation))
+        .map(|&(kind, axis, index)| motion(kind, axis(), Drive::Coordinate(index)))
+        .collect()
 }
 
 /// The free joint that OpenSim gives to a body without one.
@@ -100,7 +104,7 @@ pub(super) fn free<'a>(
     for (i, &(kind, axis)) in FREE.iter().enumerate() {
         let coordinate = coordinates::unwritten(format!("{joint}_coord_{i}"), kind);
         let manner = Manner { degrees: kind == Rotation, of_ball: kind == Rotation };
-        driven.push((kind, axis, all.add(reader, node.place(), &joint, coordinate, manner)?));
+        driven.push(((kind, axis), all.add(reader, node.place(), &joint, coordinate, manner)?));
     }
     Ok((joint, slides_first(&driven)))
 }
@@ -120,8 +124,16 @@ const AXES: [(&str, BodyCoordinateKind); 6] = [
     ("rotation3", Rotation),
 ];
 
-/// One motion before its coordinate has a number: kind, axis, function, name of the coordinate.
-type Part<'a> = (BodyCoordinateKind, Vector3<f64>, Function, Option<usize>);
+/// One motion before its coordinate has a number.
+struct Part {
+    kind: BodyCoordinateKind,
+    axis: Vector3<f64>,
+    function: Function,
+    /// Which of the joint's coordinates drives it.
+    coordinate: Option<usize>,
+    /// OpenSim takes the coordinate's kind from this axis: its function is linear and begins with the slope 1.
+    gives_kind: bool,
+}
 
 fn custom<'a>(
     reader: &Reader<'a>,
@@ -150,24 +162,22 @@ fn custom<'a>(
         };
         axes[slot].get_or_insert(axis);
     }
-    let mut parts: Vec<Part<'a>> = Vec::new();
-    // OpenSim's kind of a coordinate: that of the last axis, rotations first, it drives with slope 1.
+    let mut parts: Vec<Part> = Vec::new();
+    // OpenSim's kind of a coordinate: that of the last axis, rotations first, that gives one.
     let mut plain = vec![None; declared.len()];
     for slot in [3, 4, 5, 0, 1, 2] {
         let kind = AXES[slot].1;
         for part in axes[slot].map(|axis| axis_parts(reader, axis, kind, &by_name)).transpose()?.unwrap_or_default() {
-            if let (Some(i), Function::Linear { slope, .. }) = (part.3, &part.2)
-                && *slope == 1.0
-            {
+            if let Some(i) = part.coordinate.filter(|_| part.gives_kind) {
                 plain[i] = Some(kind);
             }
             parts.push(part);
         }
     }
-    parts.sort_by_key(|part| part.0 == Rotation);
+    parts.sort_by_key(|part| part.kind == Rotation);
     let mut numbers = Vec::with_capacity(declared.len());
     for (i, &coordinate) in declared.iter().enumerate() {
-        let drives = |kind| parts.iter().any(|part| part.3 == Some(i) && part.0 == kind);
+        let drives = |kind| parts.iter().any(|part| part.coordinate == Some(i) && part.kind == kind);
         let kind = if drives(Rotation) { Rotation } else { Translation };
         let read = coordinates::read(reader, coordinate, kind)?;
         if !drives(kind) {
@@ -184,7 +194,7 @@ fn custom<'a>(
         (Some(index), function) => Drive::Function(function, index),
         (None, function) => Drive::Constant(function.value(0.0)),
     };
-    let motions = parts.into_iter().map(|(kind, axis, function, i)| motion(kind, axis, drive(function, i)));
+    let motions = parts.into_iter().map(|part| motion(part.kind, part.axis, drive(part.function, part.coordinate)));
     Ok(motions.filter(|m| !is_still(m)).collect())
 }
 
@@ -199,7 +209,7 @@ fn axis_parts<'a>(
     node: Node<'a>,
     kind: BodyCoordinateKind,
     by_name: &HashMap<String, usize>,
-) -> Result<Vec<Part<'a>>, OsimProblem> {
+) -> Result<Vec<Part>, OsimProblem> {
     let list = reader.property(node, "coordinates");
     let text = list.map(Node::text).unwrap_or_default();
     let mut names = Vec::new();
@@ -213,15 +223,21 @@ fn axis_parts<'a>(
         names.push(index);
     }
     let Some(function) = reader.object(node, "function", functions::is_function) else { return Ok(Vec::new()) };
+    let mut gives_kind = false;
     let parts = match (names.as_slice(), function.name()) {
         (_, "Constant") => vec![(functions::read(reader, function)?, None)],
-        (&[index], _) => vec![(functions::read(reader, function)?, Some(index))],
+        (&[index], kind) => {
+            let read = functions::read(reader, function)?;
+            gives_kind = kind == "LinearFunction" && matches!(read, Function::Linear { slope, .. } if slope == 1.0);
+            vec![(read, Some(index))]
+        }
         ([], _) => {
             let accepted = "a Constant, or the name of a coordinate in <coordinates>";
             return Err(OsimProblem::unsupported(node.place(), "a function of no coordinate", accepted));
         }
         (several, "LinearFunction") => {
             let coefficients = functions::linear(reader, function, several.len())?;
+            gives_kind = coefficients[0] == 1.0;
             let mut intercept = coefficients[several.len()];
             let each = several.iter().zip(&coefficients).map(|(&index, &slope)| {
                 (Function::Linear { slope, intercept: std::mem::take(&mut intercept) }, Some(index))
@@ -242,5 +258,7 @@ fn axis_parts<'a>(
         let text = reader.text(node, "axis").unwrap_or_default();
         return Err(OsimProblem::invalid(node.place(), &text, "an axis must have a length"));
     };
-    Ok(parts.into_iter().map(|(function, index)| (kind, axis.into_inner(), function, index)).collect())
+    let axis = axis.into_inner();
+    let part = |(function, coordinate)| Part { kind, axis, function, coordinate, gives_kind };
+    Ok(parts.into_iter().map(part).collect())
 }

@@ -112,7 +112,8 @@ impl<'a> Scene<'a> {
             scene.add_body(reader, node, version, ignored)?;
         }
         scene.frames.add_base("/ground".to_owned(), None);
-        let inside = |node: Option<Node<'a>>| node.and_then(|n| n.child("components")).into_iter().flat_map(Node::children);
+        let inside =
+            |node: Option<Node<'a>>| node.and_then(|n| n.child("components")).into_iter().flat_map(Node::children);
         scene.frames.add_offsets(reader, "/ground", inside(model.child("Ground")))?;
         for (index, body) in scene.bodies.iter().enumerate() {
             let path = format!("/bodyset/{}", body.name);
@@ -246,7 +247,9 @@ impl Component {
             "Station" => Self::Harmless("stations"),
             _ if name.ends_with("Joint") => Self::Joint,
             _ if name.ends_with("Constraint") => Self::Constraint,
-            _ if ["Force", "Muscle", "Actuator", "Spring", "Ligament"].iter().any(|end| name.ends_with(end)) => Self::Force,
+            _ if ["Force", "Muscle", "Actuator", "Spring", "Ligament"].iter().any(|end| name.ends_with(end)) => {
+                Self::Force
+            }
             _ if name.ends_with("Controller") => Self::Harmless("controllers"),
             _ if name.ends_with("Probe") => Self::Harmless("probes"),
             _ if name.ends_with("Geometry") || name.starts_with("Contact") => Self::Harmless("contact geometries"),

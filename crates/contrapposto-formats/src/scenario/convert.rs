@@ -2,7 +2,7 @@
 
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
-use contrapposto::model::{Adult, CoordinateKind, Model, Sex, adult, data};
+use contrapposto::model::{Adult, AdultError, Coordinate, CoordinateKind, Model, Part, Sex, adult, data};
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveError, Tabulated};
 use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables};
 use contrapposto::statics::{FixedIn, Load, LoadKind};
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use super::Located;
 use super::text::{
-    DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PassiveText, ReshapeText, ScenarioText, SexText,
+    DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PartText, PassiveText, ReshapeText, ScenarioText, SexText,
     StrategyKindText, TablesText,
 };
 use crate::input_error::{InputError, suggestion};
@@ -98,14 +98,24 @@ fn body(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
         SexText::Female => Sex::Female,
         SexText::Male => Sex::Male,
     };
-    let mut model = adult(&Adult { sex, stature: size.stature_m, mass: size.mass_kg }).map_err(|error| {
-        let key = if error.to_string().starts_with("mass") { "mass_kg" } else { "stature_m" };
+    let part = match size.part {
+        PartText::Whole => Part::Whole,
+        PartText::RightArm => Part::RightArm,
+    };
+    let lengths = size.lengths_m.iter().map(|(name, length)| (name.clone(), *length)).collect();
+    let size = Adult { sex, stature: size.stature_m, mass: size.mass_kg, part, lengths };
+    let mut model = adult(&size).map_err(|error| {
+        let key = match &error {
+            AdultError::Size { what: "mass (kg)", .. } => "mass_kg",
+            AdultError::Size { what: "stature (m)", .. } => "stature_m",
+            _ => "lengths_m",
+        };
         at.error(&["model", "adult", key], error.to_string(), None)
     })?;
     if text.fatigue.law == LawText::Endurance {
         for index in 0..model.coordinates().len() {
             let sources = data::library().sources(&model.coordinates()[index].name);
-            let class = sources.map_or("general", |sources| sources.fatigue_class);
+            let class = sources.and_then(|sources| sources.fatigue_class).unwrap_or("general");
             let name = text.fatigue.curve.clone().unwrap_or_else(|| data::library().default_endurance(class));
             let Some((law, _)) = data::library().endurance(&name) else {
                 let help = suggestion(&name, data::library().endurance_names().collect::<Vec<_>>());
@@ -119,7 +129,7 @@ fn body(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
     }
     for (name, passive) in &text.passive {
         let index = coordinate(at, &model, &["passive", name], name)?;
-        let curve = curve(at, &model, index, name, passive)?;
+        let curve = passive_curve(at, &["passive", name], &model.coordinates()[index], None, passive)?;
         model = model.with_passive(index, curve);
     }
     Ok(model)
@@ -174,7 +184,7 @@ fn free(at: &Located, model: &Model, text: &ScenarioText) -> Result<Vec<bool>, I
         }
         (Some(list), None) => (list, "free", true),
         (None, Some(list)) => (list, "locked", false),
-        (None, None) => return Ok(vec![true; n]),
+        (None, None) => return Ok(model.coordinates().iter().map(Coordinate::can_be_relieved).collect()),
     };
     let mut flags = vec![!listed; n];
     for (i, name) in list.iter().enumerate() {
@@ -214,15 +224,18 @@ fn load(at: &Located, model: &Model, i: usize, text: &LoadText) -> Result<Load, 
     Ok(load)
 }
 
-fn curve(
+/// The curve that the table at `path` describes, over the coordinate's range. `sign` -1: the coordinate runs against a named
+/// curve; when left out, as the built-in coordinate of that name does.
+pub(crate) fn passive_curve(
     at: &Located,
-    model: &Model,
-    index: usize,
-    name: &str,
+    path: &[&str],
+    coordinate: &Coordinate,
+    sign: Option<f64>,
     text: &PassiveText,
 ) -> Result<PassiveCurve, InputError> {
-    let range = model.coordinates()[index].range;
-    let refuse = |key: &str, error: PassiveError| at.error(&["passive", name, key], error.to_string(), None);
+    let (name, range) = (&coordinate.name, coordinate.range);
+    let place = |key| [path, &[key]].concat();
+    let refuse = |key: &str, error: PassiveError| at.error(&place(key), error.to_string(), None);
     let given = [
         text.curve.is_some(),
         text.double_exponential.is_some(),
@@ -231,15 +244,16 @@ fn curve(
     ];
     if given.iter().filter(|given| **given).count() > 1 {
         let help = Some("keep one of curve, double_exponential, coordinate_limit_force, table_deg_nm".to_owned());
-        return Err(at.error(&["passive", name], "more than one curve is given", help));
+        return Err(at.error(path, "more than one curve is given", help));
     }
     let (key, curve) = if let Some(curve) = &text.curve {
         let Some(row) = data::library().curve(curve) else {
             let help = suggestion(curve, data::library().curve_names().collect::<Vec<_>>());
-            return Err(at.error(&["passive", name, "curve"], format!("there is no passive curve `{curve}`"), help));
+            return Err(at.error(&place("curve"), format!("there is no passive curve `{curve}`"), help));
         };
         // The built-in curve of this coordinate may run against its direction; others are taken as they are.
-        let sign = data::library().sources(name).filter(|s| s.curve == *curve).map_or(1.0, |s| s.curve_sign);
+        let own = data::library().sources(name).filter(|s| s.curve == Some(curve.as_str()));
+        let sign = sign.or(own.map(|s| s.curve_sign)).unwrap_or(1.0);
         ("curve", row.over(range, sign))
     } else if let Some(law) = &text.double_exponential {
         let form = double_exponential(law).form();
@@ -257,9 +271,9 @@ fn curve(
         let rows: Vec<(f64, f64)> = rows.iter().map(|[deg, nm]| (deg.to_radians(), *nm)).collect();
         ("table_deg_nm", Tabulated::new(&rows).and_then(|table| PassiveCurve::new(table.form(), range, None)))
     } else {
-        match model.coordinates()[index].curve() {
+        match coordinate.curve() {
             Some(curve) => ("reshape", Ok(curve.clone())),
-            None => return Err(at.error(&["passive", name], "no curve is given", None)),
+            None => return Err(at.error(path, "no curve is given", None)),
         }
     };
     let curve = curve.map_err(|error| refuse(key, error))?;

@@ -4,8 +4,8 @@ mod convert;
 mod text;
 
 pub use text::ScenarioText;
-pub(crate) use convert::double_exponential;
-pub(crate) use text::{DoubleExponentialText, StrategyKindText};
+pub(crate) use convert::{double_exponential, passive_curve};
+pub(crate) use text::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, StrategyKindText};
 
 use std::ops::Range;
 
@@ -22,13 +22,22 @@ pub const MOST_BYTES: u64 = 1 << 20;
 /// # Errors
 /// [`InputError`] says what is wrong, where, and what would be right.
 pub fn read_scenario(name: &str, bytes: &[u8]) -> Result<Scenario, InputError> {
+    read_toml(name, bytes, convert::scenario)
+}
+
+/// Reads a TOML file of ours: known keys, finite numbers, and whatever else `convert` asks of it.
+pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
+    name: &str,
+    bytes: &[u8],
+    convert: impl FnOnce(&Located, &T) -> Result<R, InputError>,
+) -> Result<R, InputError> {
     let text = utf8(name, bytes)?;
     let source = Source { name, text };
     let tree = DeTable::parse(text)
         .map_err(|error| source.error(error.span(), "the file is not TOML", error.message(), None))?;
     refuse_non_finite(&source, tree.get_ref())?;
-    let scenario: ScenarioText = toml::from_str(text).map_err(|error| complaint(&source, &error))?;
-    convert::scenario(&Located { source, tree: tree.get_ref() }, &scenario)
+    let parsed: T = toml::from_str(text).map_err(|error| complaint(&source, &error))?;
+    convert(&Located { source, tree: tree.get_ref() }, &parsed)
 }
 
 /// JSON Schema of the scenario file.

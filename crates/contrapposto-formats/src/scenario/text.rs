@@ -60,12 +60,35 @@ pub struct AdultText {
     pub stature_m: f64,
     /// Mass, kg, 30 to 250.
     pub mass_kg: f64,
+    /// `whole`, or `right_arm` on a trunk that is fixed in ground.
+    #[serde(default)]
+    pub part: PartText,
+    /// Measured segment lengths, m, by segment name without side (`femur`, `humerus`, ...).
+    #[serde(default)]
+    pub lengths_m: BTreeMap<String, f64>,
+}
+
+/// How much of the body.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PartText {
+    /// All of it.
+    #[default]
+    Whole,
+    /// The right arm.
+    RightArm,
 }
 
 impl Default for AdultText {
     fn default() -> Self {
         let adult = contrapposto::model::Adult::default();
-        Self { sex: SexText::Male, stature_m: adult.stature, mass_kg: adult.mass }
+        Self {
+            sex: SexText::Male,
+            stature_m: adult.stature,
+            mass_kg: adult.mass,
+            part: PartText::Whole,
+            lengths_m: BTreeMap::new(),
+        }
     }
 }
 

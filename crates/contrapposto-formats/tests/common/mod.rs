@@ -1,5 +1,6 @@
 //! What the readers' tests share: files, and forward kinematics of a [`Body`] written from its description alone.
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
+#![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
 use contrapposto_formats::body::{Body, BodyMotion, Drive};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};

@@ -81,10 +81,9 @@ impl Function {
         match self {
             Self::Constant(value) => [*value, 0.0, 0.0],
             Self::Linear { slope, intercept } => [slope * x + intercept, *slope, 0.0],
-            Self::Polynomial(coefficients) => coefficients
-                .iter()
-                .rev()
-                .fold([0.0; 3], |[p, d, c], k| [p * x + k, d * x + p, c * x + 2.0 * d]),
+            Self::Polynomial(coefficients) => {
+                coefficients.iter().rev().fold([0.0; 3], |[p, d, c], k| [p * x + k, d * x + p, c * x + 2.0 * d])
+            }
             Self::Sine { amplitude, omega, phase, offset } => {
                 let (sin, cos) = (omega * x + phase).sin_cos();
                 [amplitude * sin + offset, amplitude * omega * cos, -amplitude * omega * omega * sin]
@@ -189,7 +188,8 @@ impl Spline {
     pub fn piecewise_linear(x: &[f64], y: &[f64]) -> Result<Self, SplineError> {
         let (_, slopes) = Self::steps(x, y)?;
         let last = slopes[slopes.len() - 1];
-        let pieces = y.iter().zip(slopes.iter().copied().chain([last])).map(|(&y, slope)| [y, slope, 0.0, 0.0]).collect();
+        let pieces =
+            y.iter().zip(slopes.iter().copied().chain([last])).map(|(&y, slope)| [y, slope, 0.0, 0.0]).collect();
         Ok(Self { knots: x.to_vec(), pieces })
     }
 

@@ -1,17 +1,17 @@
-//! A good adult for whoever has no model: by sex, stature and mass.
+//! A good adult for whoever has no model: by sex, stature and mass, or by measured segment lengths.
 //!
 //! Masses, centres and inertias from de Leva 1996; joints, ranges, passive curves, strengths and fatigue classes from
-//! `data/adult.toml`. Today: trunk fixed in ground, right arm in full detail.
+//! `data/adult.toml`. The shoulder girdle is fixed to the thorax; the pelvis stands on six ordinary root coordinates.
 
 use nalgebra::{Matrix3, Unit, Vector3};
 use serde::Deserialize;
 
-use super::data::{Along, CoordinateRow, Library, Reference, SegmentRow, library};
-use super::{CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, Placement, SegmentSpec};
-use crate::passive::{PassiveError, PassiveLaw};
-
-/// Standard gravity of the built-in adult, m/s^2 along -y.
-const GRAVITY: f64 = 9.81;
+use super::data::{Along, CoordinateRow, GRAVITY, InRightArm, Library, Reference, SegmentRow, library};
+use super::{
+    CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, Placement,
+    SegmentSpec,
+};
+use crate::passive::{Coupled, PassiveError, PassiveLaw};
 
 /// Sex, as the body tables distinguish it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -23,8 +23,17 @@ pub enum Sex {
     Male,
 }
 
+/// How much of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// The right arm, on a trunk and head that are fixed in ground.
+    RightArm,
+}
+
 /// Size of the built-in adult.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Adult {
     /// Whose proportions.
     pub sex: Sex,
@@ -32,12 +41,24 @@ pub struct Adult {
     pub stature: f64,
     /// Mass, kg, 30..=250.
     pub mass: f64,
+    /// How much of the body.
+    pub part: Part,
+    /// Measured segment lengths, m, by segment name without side (`femur`, `tibia`, `humerus`, `radius`, `hand`, ...); the
+    /// others follow stature. Masses stay shares of body mass.
+    pub lengths: Vec<(String, f64)>,
 }
 
 impl Default for Adult {
-    /// De Leva's reference man, 73.0 kg and 1.741 m.
+    /// De Leva's reference man, 73.0 kg and 1.741 m, whole.
     fn default() -> Self {
-        Self { sex: Sex::Male, stature: 1.741, mass: 73.0 }
+        Self { sex: Sex::Male, stature: 1.741, mass: 73.0, part: Part::Whole, lengths: vec![] }
+    }
+}
+
+impl Adult {
+    /// The right arm of the reference man.
+    pub fn right_arm() -> Self {
+        Self { part: Part::RightArm, ..Self::default() }
     }
 }
 
@@ -48,7 +69,7 @@ pub enum AdultError {
     /// Not the size of an adult.
     #[error("{what} of the adult is {value}; it must lie in {min}..{max}")]
     Size {
-        /// Stature or mass with its unit.
+        /// Stature, mass or length with its unit.
         what: &'static str,
         /// The value.
         value: f64,
@@ -56,6 +77,14 @@ pub enum AdultError {
         min: f64,
         /// Greatest accepted.
         max: f64,
+    },
+    /// A length is given for something that has none.
+    #[error("the adult has no segment `{name}` with a length; there are: {accepted}")]
+    Length {
+        /// The name given.
+        name: String,
+        /// Names that would be accepted.
+        accepted: String,
     },
     /// The embedded data name something that is not there (a test reads all of them).
     #[error("the body data name `{0}`, which is not there")]
@@ -73,137 +102,256 @@ pub enum AdultError {
 /// ```
 /// use contrapposto::model::{Adult, adult};
 /// let model = adult(&Adult::default())?;
-/// let elbow = &model.coordinates()[model.coordinate("elbow_flex_r").unwrap()];
-/// assert_eq!(elbow.range.1.to_degrees(), 150.0);
+/// let knee = &model.coordinates()[model.coordinate("knee_angle_l").unwrap()];
+/// assert_eq!(knee.range.1.to_degrees(), 130.0);
+/// assert!((model.mass() - 73.0).abs() < 1e-9);
 /// # Ok::<(), contrapposto::model::AdultError>(())
 /// ```
 ///
 /// # Errors
-/// [`AdultError::Size`] for a stature or mass that is no adult's.
+/// [`AdultError::Size`] for a stature, mass or length that is no adult's.
 pub fn adult(size: &Adult) -> Result<Model, AdultError> {
     for (what, value, min, max) in [("stature (m)", size.stature, 1.2, 2.3), ("mass (kg)", size.mass, 30.0, 250.0)] {
         if !(min..=max).contains(&value) {
             return Err(AdultError::Size { what, value, min, max });
         }
     }
-    let library = library();
+    let recipe = Recipe { library: library(), size };
+    recipe.check_lengths()?;
     let name = match size.sex {
         Sex::Female => "adult, female",
         Sex::Male => "adult, male",
     };
     let mut builder = ModelBuilder::new(name, Vector3::new(0.0, -GRAVITY, 0.0));
-    for row in &library.adult.segment {
-        builder.segment(segment(library, size, row)?)?;
+    for left in [false, true] {
+        for row in &recipe.library.adult.segment {
+            let wanted = size.part == Part::Whole || (row.right_arm.is_some() && !left);
+            if wanted && (row.mirrored || !left) {
+                builder.segment(recipe.segment(row, left)?)?;
+            }
+        }
     }
-    Ok(builder.build())
+    let mut model = builder.build();
+    recipe.couple_legs(&mut model);
+    Ok(model)
 }
 
-fn segment(library: &Library, size: &Adult, row: &SegmentRow) -> Result<SegmentSpec, AdultError> {
-    let missing = |name: &str| AdultError::Data(name.to_owned());
-    let parent = match &row.parent {
-        None => None,
-        Some(name) => Some(library.adult.segment.iter().find(|s| &s.name == name).ok_or_else(|| missing(name))?),
-    };
-    let mut at = size.stature * Vector3::from(row.at_stature);
-    if let Some(parent) = parent {
-        at += row.at_parent * length(library, size, parent)? * direction(parent);
+/// `hand_r` on the right, `hand_l` on the left.
+fn sided(name: &str, left: bool) -> String {
+    match name.strip_suffix("_r") {
+        Some(stem) if left => format!("{stem}_l"),
+        _ => name.to_owned(),
     }
-    let length = length(library, size, row)?;
-    let (mut mass, mut center_of_mass, mut inertia) = (0.0, Vector3::zeros(), Matrix3::zeros());
-    if let Some(id) = &row.anthropometry {
-        let shares =
-            library.anthropometry.segment.iter().find(|r| &r.id == id).ok_or_else(|| missing(id))?.of(size.sex);
-        mass = shares.mass * size.mass;
+}
+
+/// The data, and whom to make of them.
+struct Recipe<'a> {
+    library: &'static Library,
+    size: &'a Adult,
+}
+
+impl Recipe<'_> {
+    fn check_lengths(&self) -> Result<(), AdultError> {
+        for (name, value) in &self.size.lengths {
+            let stem = |row: &SegmentRow| row.name.trim_end_matches("_r").to_owned();
+            let rows = self.library.adult.segment.iter().filter(|row| row.anthropometry.is_some());
+            let known: Vec<String> = rows.map(stem).collect();
+            if !known.contains(name) {
+                return Err(AdultError::Length { name: name.clone(), accepted: known.join(", ") });
+            }
+            if !(0.02..=1.0).contains(value) {
+                return Err(AdultError::Size { what: "a segment length (m)", value: *value, min: 0.02, max: 1.0 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Length of a row of the anthropometry, m: measured, or a share of stature.
+    fn length(&self, id: &str) -> Result<f64, AdultError> {
+        let measured = self.size.lengths.iter().find(|(name, _)| {
+            let mut rows = self.library.adult.segment.iter();
+            rows.any(|r| r.name.trim_end_matches("_r") == name && r.anthropometry.as_deref() == Some(id))
+        });
+        if let Some((_, length)) = measured {
+            return Ok(*length);
+        }
+        let found = self.library.anthropometry.segment.iter().find(|row| row.id == id);
+        Ok(found.ok_or_else(|| AdultError::Data(id.to_owned()))?.of(self.size.sex).length * self.size.stature)
+    }
+
+    fn length_of(&self, row: &SegmentRow) -> Result<f64, AdultError> {
+        row.length_of.as_ref().or(row.anthropometry.as_ref()).map_or(Ok(0.0), |id| self.length(id))
+    }
+
+    fn segment(&self, row: &SegmentRow, left: bool) -> Result<SegmentSpec, AdultError> {
+        let missing = |name: &str| AdultError::Data(name.to_owned());
+        let stature = self.size.stature;
+        let side = if left { -1.0 } else { 1.0 };
+        let mut at = stature * Vector3::from(row.at_stature);
+        if let Some(name) = &row.parent {
+            let parent = self.library.adult.segment.iter().find(|s| &s.name == name).ok_or_else(|| missing(name))?;
+            let mut along = row.at_parent * self.length_of(parent)?;
+            for (id, share) in &row.at_lengths {
+                along += share * self.length(id)?;
+            }
+            at += along * direction(parent);
+        }
+        at.z *= side;
+        let fixed = self.size.part == Part::RightArm && row.right_arm == Some(InRightArm::Fixed);
+        let mut motions = vec![];
+        let mut coordinates = vec![];
+        for motion in &row.motions {
+            let name = &motion.coordinate;
+            let found = self.library.adult.coordinate.iter().find(|c| &c.name == name).ok_or_else(|| missing(name))?;
+            // Turning is mirrored in the sagittal plane: the axis keeps its z part only.
+            let axis = Vector3::new(side * motion.axis[0], side * motion.axis[1], motion.axis[2]);
+            let spec = self.coordinate(found, left)?;
+            if fixed {
+                // Held at its default: the root's slides lift the body onto its feet.
+                at += if motion.slide { spec.default * axis } else { Vector3::zeros() };
+                continue;
+            }
+            let axis = Unit::new_normalize(axis);
+            motions.push(if motion.slide { Motion::Slide(axis) } else { Motion::Hinge(axis) });
+            coordinates.push(spec);
+        }
+        let mut spec = SegmentSpec {
+            name: sided(&row.name, left),
+            parent: row.parent.as_ref().map(|name| sided(name, left)),
+            mass: 0.0,
+            center_of_mass: Vector3::zeros(),
+            inertia: Matrix3::zeros(),
+            joint: sided(&row.joint, left),
+            kind: if motions.is_empty() { JointKind::Weld } else { JointKind::Chain(motions) },
+            in_parent: Placement::translation(at.x, at.y, at.z),
+            in_segment: Placement::identity(),
+            coordinates,
+        };
+        if let Some(id) = &row.anthropometry {
+            self.weigh(row, id, &mut spec)?;
+        }
+        Ok(spec)
+    }
+
+    /// Mass, centre and inertia from the anthropometry.
+    fn weigh(&self, row: &SegmentRow, id: &str, spec: &mut SegmentSpec) -> Result<(), AdultError> {
+        let found = self.library.anthropometry.segment.iter().find(|r| r.id == id);
+        let shares = found.ok_or_else(|| AdultError::Data(id.to_owned()))?.of(self.size.sex);
+        let length = self.length_of(row)?;
+        spec.mass = shares.mass * self.size.mass;
         // The data count from the proximal (cranial) end; a segment that points up has its joint at the other one.
         let share = if row.along == Along::Up { 1.0 - shares.com } else { shares.com };
-        center_of_mass = share * length * direction(row);
-        let radius2 = |r: f64| mass * (r * length).powi(2);
-        let moments = Vector3::new(radius2(shares.r_ap), radius2(shares.r_long), radius2(shares.r_ml));
-        inertia = Matrix3::from_diagonal(&moments);
+        spec.center_of_mass = self.size.stature * Vector3::from(row.proximal_at_stature) + share * length * direction(row);
+        let about = |radius: f64| spec.mass * (radius * length).powi(2);
+        let (ap, ml, long) = (about(shares.r_ap), about(shares.r_ml), about(shares.r_long));
+        // Of a foot the longitudinal axis lies along x, and the antero-posterior column is the one across it (de Leva: sagittal).
+        let moments = if row.along == Along::Forward { [long, ap, ml] } else { [ap, long, ml] };
+        spec.inertia = Matrix3::from_diagonal(&Vector3::from(moments));
+        Ok(())
     }
-    let mut motions = vec![];
-    let mut coordinates = vec![];
-    for motion in &row.motions {
-        motions.push(Motion::Hinge(Unit::new_normalize(Vector3::from(motion.axis))));
-        let name = &motion.coordinate;
-        let found = library.adult.coordinate.iter().find(|c| &c.name == name).ok_or_else(|| missing(name))?;
-        coordinates.push(coordinate(library, size.sex, found)?);
+
+    fn coordinate(&self, row: &CoordinateRow, left: bool) -> Result<CoordinateSpec, AdultError> {
+        let missing = |name: &str| AdultError::Data(name.to_owned());
+        let range = match (row.range_deg, row.range_m) {
+            (Some([min, max]), _) => (min.to_radians(), max.to_radians()),
+            (None, Some([min, max])) => (min, max),
+            (None, None) => return Err(missing(&row.name)),
+        };
+        let mut spec = CoordinateSpec::new(&sided(&row.name, left), range);
+        spec.positive.clone_from(&row.positive);
+        spec.kind = if row.range_m.is_some() { CoordinateKind::Translation } else { CoordinateKind::Rotation };
+        if let Some(default) = &row.default {
+            spec.default = default.stature * self.size.stature;
+            for (id, share) in &default.lengths {
+                spec.default += share * self.length(id)?;
+            }
+        }
+        if let Some(passive) = &row.passive {
+            let female = passive.female_curve.as_ref().filter(|_| self.size.sex == Sex::Female);
+            let name = female.unwrap_or(&passive.curve);
+            let curve = self.library.curve(name).ok_or_else(|| missing(name))?;
+            spec.passive = Some(match curve.coupled() {
+                Some(law) => PassiveLaw::Coupled(Coupled { law, neighbours: [None; 3] }), // see `couple_legs`
+                None => PassiveLaw::Curve(curve.over(range, passive.sign)?),
+            });
+        }
+        if let (Some(strength), Some(class)) = (&row.strength, &row.fatigue) {
+            let (fatigue, _) = self.library.three_compartment(class).ok_or_else(|| missing(class))?;
+            let group = |id: &str| -> Result<MuscleGroup, AdultError> {
+                let found = self.library.strength(id, self.size, strength.sign);
+                let (strength, _) = found.ok_or_else(|| missing(id))?;
+                Ok(MuscleGroup { name: id.replace('_', " "), strength, fatigue: fatigue.clone() })
+            };
+            spec.groups = Some([group(&strength.positive)?, group(&strength.negative)?]);
+        }
+        Ok(spec)
     }
-    Ok(SegmentSpec {
-        name: row.name.clone(),
-        parent: row.parent.clone(),
-        mass,
-        center_of_mass,
-        inertia,
-        joint: row.joint.clone(),
-        kind: if motions.is_empty() { JointKind::Weld } else { JointKind::Chain(motions) },
-        in_parent: Placement::translation(at.x, at.y, at.z),
-        in_segment: Placement::identity(),
-        coordinates,
-    })
+
+    /// Hip, knee and ankle of a leg meet in the laws of Riener & Edrich; the ankle counts dorsiflexion positive.
+    fn couple_legs(&self, model: &mut Model) {
+        for side in ["_r", "_l"] {
+            let index = |stem: &str| model.coordinate(&format!("{stem}{side}"));
+            let neighbours = [
+                index("hip_flexion").map(|i| (i, 1.0)),
+                index("knee_angle").map(|i| (i, 1.0)),
+                index("ankle_angle").map(|i| (i, -1.0)),
+            ];
+            for (own, _) in neighbours.into_iter().flatten() {
+                if let Some(PassiveLaw::Coupled(coupled)) = &mut model.coordinates[own].passive {
+                    coupled.neighbours = neighbours;
+                }
+            }
+        }
+    }
 }
 
 fn direction(row: &SegmentRow) -> Vector3<f64> {
-    if row.along == Along::Up { Vector3::y() } else { -Vector3::y() }
-}
-
-fn length(library: &Library, size: &Adult, row: &SegmentRow) -> Result<f64, AdultError> {
-    let id = row.length_of.as_ref().or(row.anthropometry.as_ref()).ok_or_else(|| AdultError::Data(row.name.clone()))?;
-    let found = library.anthropometry.segment.iter().find(|r| &r.id == id);
-    Ok(found.ok_or_else(|| AdultError::Data(id.clone()))?.of(size.sex).length * size.stature)
-}
-
-fn coordinate(library: &Library, sex: Sex, row: &CoordinateRow) -> Result<CoordinateSpec, AdultError> {
-    let missing = |name: &str| AdultError::Data(name.to_owned());
-    let range = (row.range_deg[0].to_radians(), row.range_deg[1].to_radians());
-    let curve = library.curve(&row.passive.curve).ok_or_else(|| missing(&row.passive.curve))?;
-    let (fatigue, _) = library.three_compartment(&row.fatigue).ok_or_else(|| missing(&row.fatigue))?;
-    let group = |id: &str| -> Result<MuscleGroup, AdultError> {
-        let (strength, _) = library.strength(id, sex, row.strength.sign).ok_or_else(|| missing(id))?;
-        Ok(MuscleGroup { name: id.replace('_', " "), strength, fatigue: fatigue.clone() })
-    };
-    Ok(CoordinateSpec {
-        positive: row.positive.clone(),
-        passive: Some(PassiveLaw::Curve(curve.over(range, row.passive.sign)?)),
-        groups: Some([group(&row.strength.positive)?, group(&row.strength.negative)?]),
-        ..CoordinateSpec::new(&row.name, range)
-    })
+    match row.along {
+        Along::Up => Vector3::y(),
+        Along::Down => -Vector3::y(),
+        Along::Forward => Vector3::x(),
+    }
 }
 
 /// What the body data say of a coordinate of the adult: its row's names and references.
 #[derive(Clone, Debug)]
 pub struct CoordinateSources<'a> {
-    /// Name of the passive curve.
-    pub curve: &'a str,
+    /// Name of the passive curve (a man's, where the sexes differ); `None` for the root.
+    pub curve: Option<&'a str>,
     /// +1, or -1 where the coordinate runs against the curve's own direction.
     pub curve_sign: f64,
     /// Class of the fatigue data.
-    pub fatigue_class: &'a str,
+    pub fatigue_class: Option<&'a str>,
     /// Region of the body, for strategies by region.
     pub region: &'a str,
     /// Of the range of motion.
     pub range: &'a Reference,
     /// Of the strength of the positive and negative group.
-    pub strength: [&'a Reference; 2],
+    pub strength: Option<[&'a Reference; 2]>,
 }
 
 impl Library {
     /// Where the numbers of one of the adult's coordinates come from.
     pub fn sources(&self, coordinate: &str) -> Option<CoordinateSources<'_>> {
-        let row = self.adult.coordinate.iter().find(|row| row.name == coordinate)?;
-        let reference = |id: &str| self.strength(id, Sex::Male, 1.0).map(|(_, reference)| reference);
+        let left = coordinate.ends_with("_l");
+        let row = self.adult.coordinate.iter().find(|row| sided(&row.name, left && row.mirrored) == coordinate)?;
+        let size = Adult::default();
+        let reference = |id: &str| self.strength(id, &size, 1.0).map(|(_, reference)| reference);
+        let strength = row.strength.as_ref().and_then(|s| Some([reference(&s.positive)?, reference(&s.negative)?]));
         Some(CoordinateSources {
-            curve: &row.passive.curve,
-            curve_sign: row.passive.sign,
-            fatigue_class: &row.fatigue,
+            curve: row.passive.as_ref().map(|passive| passive.curve.as_str()),
+            curve_sign: row.passive.as_ref().map_or(1.0, |passive| passive.sign),
+            fatigue_class: row.fatigue.as_deref(),
             region: &row.region,
             range: &row.range_reference,
-            strength: [reference(&row.strength.positive)?, reference(&row.strength.negative)?],
+            strength,
         })
     }
 
-    /// Names of the adult's coordinates.
-    pub fn coordinate_names(&self) -> impl Iterator<Item = &str> {
-        self.adult.coordinate.iter().map(|row| row.name.as_str())
+    /// Names of the adult's coordinates, the right side's before the left side's.
+    pub fn coordinate_names(&self) -> impl Iterator<Item = String> {
+        let rows = &self.adult.coordinate;
+        let left = rows.iter().filter(|row| row.mirrored).map(|row| sided(&row.name, true));
+        rows.iter().map(|row| row.name.clone()).chain(left)
     }
 }

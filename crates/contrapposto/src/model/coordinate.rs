@@ -84,6 +84,11 @@ pub struct Coordinate {
 }
 
 impl Coordinate {
+    /// Is enough known of its passive torque to find relief?
+    pub fn can_be_relieved(&self) -> bool {
+        matches!(self.passive, Some(PassiveLaw::Curve(_) | PassiveLaw::Coupled(_)))
+    }
+
     /// The falling passive curve that relief can be found on, where the law is one.
     pub fn curve(&self) -> Option<&PassiveCurve> {
         self.passive.as_ref().and_then(PassiveLaw::curve)

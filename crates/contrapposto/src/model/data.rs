@@ -3,11 +3,12 @@
 //! The TOML files of `data/`, embedded at compile time and parsed once. Every number carries a [`Reference`]: a status and
 //! a source. Nothing of the body is written in code.
 
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use super::Sex;
+use super::{Adult, Sex};
 use crate::fatigue::{Endurance, EnduranceCurve, EnduranceForm, FatigueLaw, ThreeCompartment};
 use crate::passive::{
     CoupledTerm, DoubleExponential, End, Form, PassiveCurve, PassiveError, Reshape, RienerEdrich1999,
@@ -135,19 +136,33 @@ impl Library {
         format!("freylaw_avin_2010_{class}")
     }
 
-    /// Strength of a movement for a sex; `sign` -1 where the coordinate runs against the data.
-    pub(super) fn strength(&self, id: &str, sex: Sex, sign: f64) -> Option<(Strength, &Reference)> {
+    /// Strength of a movement for an adult; `sign` -1 where the coordinate runs against the data. Hip and knee flexion and
+    /// extension and the ankle's follow Anderson et al. 2007, young adults.
+    pub(super) fn strength(&self, id: &str, size: &Adult, sign: f64) -> Option<(Strength, &Reference)> {
+        let floor = self.strength.floor.share;
+        let measured = self.strength.anderson2007.row.iter().find(|r| r.id == id && r.sex == size.sex && r.age == YOUNG);
+        if let Some(row) = measured {
+            let peak = row.c1 * size.mass * GRAVITY * size.stature;
+            let strength = Strength { peak, best: sign * row.c3_rad, narrowness: row.c2_per_rad, floor };
+            return Some((strength, &self.strength.anderson2007.reference));
+        }
         let row = self.strength.group.iter().find(|row| row.id == id)?;
-        let factor = if sex == Sex::Female { row.female_factor } else { 1.0 };
+        let factor = if size.sex == Sex::Female { row.female_factor } else { 1.0 };
         let strength = Strength {
             peak: row.male_nm * factor,
             best: sign * row.shape.best_deg.to_radians(),
             narrowness: row.shape.narrowness_per_rad,
-            floor: self.strength.floor.share,
+            floor,
         };
         Some((strength, &row.reference))
     }
 }
+
+/// Age group of Anderson et al. 2007 that the built-in adult belongs to.
+const YOUNG: &str = "18-25";
+
+/// Gravity in Anderson's normalisation and of the built-in adult, m/s^2.
+pub(super) const GRAVITY: f64 = 9.81;
 
 /// One row of `data/passive.toml`.
 #[derive(Debug, Deserialize)]
@@ -274,7 +289,6 @@ impl RienerEdrichRow {
 pub(super) struct StrengthFile {
     floor: FloorRow,
     group: Vec<GroupRow>,
-    #[expect(dead_code, reason = "read with the legs, which the built-in adult does not have yet")]
     anderson2007: AndersonTable,
 }
 
@@ -309,16 +323,13 @@ struct ShapeRow {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(dead_code, reason = "read with the legs, which the built-in adult does not have yet")]
 struct AndersonTable {
-    status: Status,
-    source: String,
+    reference: Reference,
     row: Vec<AndersonRow>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(dead_code, reason = "read with the legs, which the built-in adult does not have yet")]
 struct AndersonRow {
     id: String,
     sex: Sex,
@@ -485,7 +496,14 @@ pub(super) struct SegmentRow {
     #[serde(default)]
     pub(super) at_parent: f64,
     #[serde(default)]
+    pub(super) at_lengths: BTreeMap<String, f64>,
+    #[serde(default)]
     pub(super) at_stature: [f64; 3],
+    #[serde(default)]
+    pub(super) proximal_at_stature: [f64; 3],
+    #[serde(default)]
+    pub(super) mirrored: bool,
+    pub(super) right_arm: Option<InRightArm>,
     #[serde(default)]
     pub(super) motions: Vec<MotionRow>,
     #[expect(dead_code, reason = "stands in the file for its readers")]
@@ -497,11 +515,21 @@ pub(super) struct SegmentRow {
 pub(super) enum Along {
     Up,
     Down,
+    Forward,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum InRightArm {
+    Fixed,
+    Moving,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MotionRow {
+    #[serde(default)]
+    pub(super) slide: bool,
     pub(super) axis: [f64; 3],
     pub(super) coordinate: String,
 }
@@ -511,18 +539,32 @@ pub(super) struct MotionRow {
 pub(super) struct CoordinateRow {
     pub(super) name: String,
     pub(super) positive: String,
-    pub(super) range_deg: [f64; 2],
+    /// The left side has one, too.
+    #[serde(default)]
+    pub(super) mirrored: bool,
+    pub(super) range_deg: Option<[f64; 2]>,
+    pub(super) range_m: Option<[f64; 2]>,
     pub(super) range_reference: Reference,
-    pub(super) passive: PassiveUse,
-    pub(super) strength: StrengthUse,
-    pub(super) fatigue: String,
+    pub(super) default: Option<DefaultRow>,
+    pub(super) passive: Option<PassiveUse>,
+    pub(super) strength: Option<StrengthUse>,
+    pub(super) fatigue: Option<String>,
     pub(super) region: String,
+}
+
+/// A default distance: a share of stature and lengths of segments.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DefaultRow {
+    pub(super) stature: f64,
+    pub(super) lengths: BTreeMap<String, f64>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PassiveUse {
     pub(super) curve: String,
+    pub(super) female_curve: Option<String>,
     pub(super) sign: f64,
 }
 
@@ -550,7 +592,7 @@ mod tests {
             assert!(library.endurance(&row.name).is_some(), "{} has no form", row.name);
         }
         for coordinate in &library.adult.coordinate {
-            let class = &coordinate.fatigue;
+            let Some(class) = &coordinate.fatigue else { continue };
             assert!(library.three_compartment(class).is_some(), "no class {class}");
             assert!(library.endurance(&library.default_endurance(class)).is_some(), "no curve for {class}");
         }

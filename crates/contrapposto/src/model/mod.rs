@@ -9,7 +9,7 @@ mod coordinate;
 pub mod data;
 mod joint;
 
-pub use adult::{Adult, AdultError, CoordinateSources, Sex, adult};
+pub use adult::{Adult, AdultError, CoordinateSources, Part, Sex, adult};
 pub use builder::{ModelBuilder, ModelError, SegmentSpec};
 pub use coordinate::{Coordinate, CoordinateKind, CoordinateSpec, MuscleGroup, Side};
 pub use joint::{Drive, JointKind, Motion};
@@ -153,6 +153,40 @@ impl Model {
     pub fn with_passive(mut self, coordinate: usize, curve: PassiveCurve) -> Self {
         self.coordinates[coordinate].passive = Some(PassiveLaw::Curve(curve));
         self
+    }
+
+    /// The same body with another passive law at one coordinate, or none.
+    #[must_use]
+    pub fn with_passive_law(mut self, coordinate: usize, law: Option<PassiveLaw>) -> Self {
+        self.coordinates[coordinate].passive = law;
+        self
+    }
+
+    /// The same body with other muscle groups, positive first, at one coordinate.
+    #[must_use]
+    pub fn with_groups(mut self, coordinate: usize, groups: [MuscleGroup; 2]) -> Self {
+        self.coordinates[coordinate].groups = Some(groups);
+        self
+    }
+
+    /// The same body with another range (rad or m) of one coordinate; its default moves to the nearest limit if it must. A
+    /// passive curve keeps the range that it was made for.
+    ///
+    /// # Errors
+    /// [`ModelError::Number`] unless the lower limit lies at or below the upper one.
+    pub fn with_range(mut self, coordinate: usize, range: (f64, f64)) -> Result<Self, ModelError> {
+        let found = &mut self.coordinates[coordinate];
+        if range.0.is_nan() || range.1.is_nan() || range.0 > range.1 {
+            return Err(ModelError::Number {
+                name: found.name.clone(),
+                what: "lower limit of the range",
+                value: range.0,
+                accepted: "at or below the upper limit",
+            });
+        }
+        found.range = range;
+        found.default = found.default.max(range.0).min(range.1);
+        Ok(self)
     }
 
     /// The same body with another fatigue law in both groups of one coordinate, if it has groups.

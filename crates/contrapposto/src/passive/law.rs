@@ -3,6 +3,8 @@
 //! Relief needs a falling curve with a range ([`PassiveCurve`]); torques of imported models need more: laws coupled to
 //! neighbouring joints, and sums of whatever a file holds, falling or not.
 
+use std::borrow::Cow;
+
 use super::{CoordinateLimitForce, DoubleExponential, Exponentials, Form, PassiveCurve, PassiveError, RienerEdrich1999};
 use crate::math::expression::Expression;
 
@@ -57,6 +59,21 @@ impl PassiveLaw {
         if let Self::Curve(curve) = self { Some(curve) } else { None }
     }
 
+    /// The falling curve of coordinate `own` over `range` (rad), with the neighbours held as in `posture`; `None` where the
+    /// law is a sum of a file's terms, which need not fall.
+    pub fn curve_at(&self, own: usize, posture: &[f64], range: (f64, f64)) -> Option<Cow<'_, PassiveCurve>> {
+        match self {
+            Self::Curve(curve) => Some(Cow::Borrowed(curve)),
+            Self::Coupled(coupled) => {
+                let angles = coupled.angles(posture);
+                let mirrored = coupled.neighbours.iter().flatten().any(|&(index, sign)| index == own && sign < 0.0);
+                let held = coupled.law.held(angles, mirrored).ok()?;
+                PassiveCurve::new(Form::Exponentials(held), range, None).ok().map(Cow::Owned)
+            }
+            Self::Sum(_) => None,
+        }
+    }
+
     /// Torque (N m) of coordinate `own` in a posture (values of all coordinates, rad).
     pub fn torque(&self, own: usize, posture: &[f64]) -> f64 {
         match self {
@@ -68,9 +85,14 @@ impl PassiveLaw {
 }
 
 impl Coupled {
+    /// Hip, knee and ankle angle in the law's own directions, rad.
+    fn angles(&self, posture: &[f64]) -> [f64; 3] {
+        self.neighbours.map(|n| n.map_or(0.0, |(index, sign)| sign * posture[index]))
+    }
+
     /// Torque in the coordinate's direction, and its derivatives by the coordinates of hip, knee and ankle.
     pub fn torque_and_gradient(&self, posture: &[f64]) -> (f64, [f64; 3]) {
-        let angles = self.neighbours.map(|n| n.map_or(0.0, |(index, sign)| sign * posture[index]));
+        let angles = self.angles(posture);
         let signs = self.neighbours.map(|n| n.map_or(0.0, |(_, sign)| sign));
         let (torque, mut gradient) = self.law.torque_and_gradient(angles);
         let own = if signs[self.law.joint] < 0.0 { -1.0 } else { 1.0 };

@@ -133,7 +133,7 @@ impl Scenario {
             if value < range.0 || value > range.1 {
                 return Err(ScenarioError::OutsideRange { coordinate: coordinate.name.clone(), value, range });
             }
-            if free && coordinate.curve().is_none() {
+            if free && !coordinate.can_be_relieved() {
                 return Err(ScenarioError::NoPassiveCurve(coordinate.name.clone()));
             }
         }

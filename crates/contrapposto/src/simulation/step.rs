@@ -198,7 +198,7 @@ impl<'a> Simulation<'a> {
         let mut moved = false;
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             self.decisions[i] = None;
-            let (Some(curve), Some(rate), true) = (coordinate.curve(), coordinate.rate, free[i]) else { continue };
+            let (Some(law), Some(rate), true) = (&coordinate.passive, coordinate.rate, free[i]) else { continue };
             // The group that works asks; within the tolerance neither does, and either may.
             let within = self.active[i].abs() <= relief.torque_tolerance;
             let works = Side::of(self.active[i]);
@@ -207,8 +207,9 @@ impl<'a> Simulation<'a> {
                 continue;
             };
             let angle = self.posture.values()[i];
+            let Some(curve) = law.curve_at(i, self.kinematics.values(), coordinate.range) else { continue };
             let problem = Problem {
-                curve,
+                curve: &curve,
                 angle,
                 external_torque: self.external[i],
                 external_slope: self.external_torque.own_slope(&self.kinematics, model, rate),

@@ -53,7 +53,15 @@ pub(super) fn unary(function: Unary, a: Dual) -> Dual {
 pub(super) fn binary(operation: Binary, a: Dual, b: Dual) -> Dual {
     let (x, y) = (a.value, b.value);
     let sum = |value, by_a, by_b| Dual { value, slope: a.chain(x, by_a).slope + b.chain(y, by_b).slope };
-    let choose = |first: bool| if x == y { sum(x, 0.5, 0.5) } else if first { a } else { b };
+    let choose = |second: bool| {
+        if x == y {
+            sum(x, 0.5, 0.5)
+        } else if second {
+            b
+        } else {
+            a
+        }
+    };
     match operation {
         Binary::Add => sum(x + y, 1.0, 1.0),
         Binary::Subtract => sum(x - y, 1.0, -1.0),
@@ -65,8 +73,8 @@ pub(super) fn binary(operation: Binary, a: Dual, b: Dual) -> Dual {
             sum(x.powf(y), by_base, by_exponent)
         }
         // As the C++ library: the first where they are not ordered.
-        Binary::Min => choose(!(y < x)),
-        Binary::Max => choose(!(x < y)),
+        Binary::Min => choose(y < x),
+        Binary::Max => choose(x < y),
     }
 }
 

@@ -39,7 +39,9 @@ pub enum ExpressionError {
         expected: &'static str,
     },
     /// Neither `q`, `qdot` nor defined.
-    #[error("column {column}: unknown name `{name}`; names are `q`, `qdot` and what is defined after a `;` to the right")]
+    #[error(
+        "column {column}: unknown name `{name}`; names are `q`, `qdot` and what is defined after a `;` to the right"
+    )]
     UnknownName {
         /// Where.
         column: usize,
@@ -252,7 +254,9 @@ impl Cursor<'_> {
 
     fn unexpected(&self, expected: &'static str) -> ExpressionError {
         match self.peek() {
-            Some((token, column)) => ExpressionError::Unexpected { column: *column, found: token.to_string(), expected },
+            Some((token, column)) => {
+                ExpressionError::Unexpected { column: *column, found: token.to_string(), expected }
+            }
             None => ExpressionError::Unexpected { column: self.end, found: "the end".to_owned(), expected },
         }
     }

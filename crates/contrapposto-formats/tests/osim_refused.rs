@@ -1,0 +1,363 @@
+//! What the `.osim` reader refuses, and that any bytes end in a body or an error, in time linear in their number.
+
+use contrapposto_formats::body::PassiveLawText;
+use contrapposto_formats::osim;
+use std::path::Path;
+
+/// A document of the 4.x form with one body on a joint, and more.
+fn document(joint: &str, more: &str) -> String {
+    format!(
+        "<OpenSimDocument Version=\"40500\"><Model name=\"m\">\n<BodySet><objects><Body name=\"b\"><mass>1</mass></Body></objects></BodySet>\n\
+         <JointSet><objects>\n{joint}\n</objects></JointSet>\n{more}\n</Model></OpenSimDocument>"
+    )
+}
+
+fn joint(kind: &str, inside: &str) -> String {
+    format!(
+        "<{kind} name=\"j\"><socket_parent_frame>/ground</socket_parent_frame><socket_child_frame>/bodyset/b</socket_child_frame>\n{inside}</{kind}>"
+    )
+}
+
+const PIN: &str = "<coordinates><Coordinate name=\"q\"/></coordinates>";
+
+fn custom(axis: &str) -> String {
+    joint("CustomJoint", &format!("{PIN}<SpatialTransform>\n{axis}</SpatialTransform>"))
+}
+
+fn error(text: &str) -> String {
+    osim::read(text.as_bytes(), "f.osim").unwrap_err().to_string()
+}
+
+#[test]
+fn what_matters_and_is_not_supported_is_an_error_with_its_place() {
+    let pin = joint("PinJoint", PIN);
+    let force = |inside: &str| document(&pin, &format!("<ForceSet><objects>\n{inside}</objects></ForceSet>"));
+    let constraint =
+        |inside: &str| document(&pin, &format!("<ConstraintSet><objects>\n{inside}</objects></ConstraintSet>"));
+    let coordinate = |inside: &str| document(&joint("PinJoint", &format!("<coordinates>\n{inside}</coordinates>")), "");
+    let cases = [
+        (
+            document(&joint("EllipsoidJoint", ""), ""),
+            "f.osim: <EllipsoidJoint> at line 4, column 1: joint EllipsoidJoint is not supported; accepted: WeldJoint",
+        ),
+        (document(&joint("PinJoint", ""), ""), "<PinJoint> at line 4, column 1: `0 coordinates`: a PinJoint has 1"),
+        (
+            document(&pin.replace("/bodyset/b<", "/bodyset/c<"), ""),
+            "there is no frame `/bodyset/c`; did you mean `/bodyset/b`?",
+        ),
+        (document(&pin.replace("/bodyset/b<", "/ground<"), ""), "a joint that closes a loop is not supported"),
+        (
+            document(&(pin.clone() + &pin.replace("\"q\"", "\"r\"").replace("\"j\"", "\"k\"")), ""),
+            "a joint that closes a loop",
+        ),
+        (
+            force("<BushingForce name=\"x\"/>"),
+            "<BushingForce> at line 8, column 1: force BushingForce is not supported; accepted: CoordinateLimitForce",
+        ),
+        (force("<Ligament name=\"x\"/>"), "force Ligament is not supported"),
+        (force("<HuntCrossleyForce name=\"x\"/>"), "force HuntCrossleyForce is not supported"),
+        (force("<PrescribedForce name=\"x\"/>"), "force PrescribedForce is not supported"),
+        (
+            force("<SpringGeneralizedForce><coordinate>r</coordinate></SpringGeneralizedForce>"),
+            "there is no coordinate `r`; did you mean `q`?",
+        ),
+        (force("<SpringGeneralizedForce/>"), "<SpringGeneralizedForce> at line 8, column 1: <coordinate> is missing"),
+        (
+            force(
+                "<ExpressionBasedCoordinateForce><coordinate>q</coordinate><expression>2*x</expression></ExpressionBasedCoordinateForce>",
+            ),
+            "<expression> at line 8, column 59, in the expression, column 3: unknown name `x`",
+        ),
+        (
+            force("<CoordinateLimitForce><coordinate>q</coordinate><transition>0</transition></CoordinateLimitForce>"),
+            "transition (rad) is 0; it must be positive",
+        ),
+        (
+            constraint("<WeldConstraint name=\"x\"/>"),
+            "<WeldConstraint> at line 8, column 1: WeldConstraint is not supported",
+        ),
+        (
+            coordinate("<Coordinate name=\"q\"><prescribed>true</prescribed></Coordinate>"),
+            "a coordinate prescribed in time is not supported",
+        ),
+        (
+            coordinate("<Coordinate name=\"q\"><range>1 0</range></Coordinate>"),
+            "`1 0`: two numbers are needed, the lower one first",
+        ),
+        (coordinate("<Coordinate name=\"q\"><range>0 NaN</range></Coordinate>"), "two numbers are needed"),
+        (
+            coordinate("<Coordinate name=\"q\"><default_value>nan</default_value></Coordinate>"),
+            "<default_value> at line 6, column 22: `nan` is not a finite number",
+        ),
+        (
+            coordinate("<Coordinate name=\"q\"><locked>yes</locked></Coordinate>"),
+            "`yes`: `true` or `false` is accepted",
+        ),
+        (
+            document(
+                &custom(
+                    "<TransformAxis name=\"rotation1\"><coordinates>r</coordinates><axis>1 0 0</axis></TransformAxis>",
+                ),
+                "",
+            ),
+            "there is no coordinate of this joint `r`",
+        ),
+        (
+            document(
+                &custom(
+                    "<TransformAxis name=\"rotation1\"><coordinates>q</coordinates><axis>0 0 0</axis><LinearFunction name=\"function\"/></TransformAxis>",
+                ),
+                "",
+            ),
+            "`0 0 0`: an axis must have a length",
+        ),
+        (
+            document(
+                &custom(
+                    "<TransformAxis name=\"rotation1\"><coordinates>q</coordinates><axis>1 0 0</axis><GCVSpline name=\"function\"/></TransformAxis>",
+                ),
+                "",
+            ),
+            "<GCVSpline> at line 6, column 79: function GCVSpline is not supported; accepted: Constant",
+        ),
+        (document(&custom("<TransformAxis name=\"turn\"/>"), ""), "`turn`: rotation1 to rotation3 and translation1"),
+        (
+            document(
+                &custom(
+                    "<TransformAxis name=\"rotation1\"><coordinates>q</coordinates><axis>1 0 0</axis><SimmSpline name=\"function\"><x>0 1 0.5</x><y>1 2 3</y></SimmSpline></TransformAxis>",
+                ),
+                "",
+            ),
+            "x falls from 1 to 0.5",
+        ),
+        (document(&pin, "").replace("<mass>1</mass>", "<mass>-1</mass>"), "a mass must not be negative"),
+        (document(&pin, "").replace("<mass>1</mass>", ""), "<Body> at line 2, column 19: <mass> is missing"),
+        (document(&pin, "").replace("<mass>1</mass>", "<mass>1 kg</mass>"), "numbers; exactly 1 accepted"),
+        (document(&pin, "<gravity>0 -inf 0</gravity>"), "`-inf` is not a finite number"),
+        (document(&pin, "").replace("40500", "50000"), "50000 is not supported; accepted: Version=\"10901\""),
+        (
+            document(&pin, "").replace("<BodySet>", "<BodySet file=\"/etc/passwd\">"),
+            "a set in a file of its own is not supported",
+        ),
+        (
+            document(&pin, "<ComponentSet><objects><Mystery name=\"x\"/></objects></ComponentSet>"),
+            "Mystery is not supported",
+        ),
+        (
+            document(&pin, "<MarkerSet><objects><Marker name=\"x\"><body>c</body></Marker></objects></MarkerSet>"),
+            "there is no body `c`",
+        ),
+        ("<Model/>".to_owned(), "Model is not supported; accepted: a document whose root is <OpenSimDocument>"),
+        ("<!DOCTYPE x><OpenSimDocument/>".to_owned(), "DOCTYPE"),
+    ];
+    let mut wrong = Vec::new();
+    for (text, expected) in cases {
+        let found = error(&text);
+        if !found.contains(expected) || !found.starts_with("f.osim: ") {
+            wrong.push(format!("expected: {expected}\nfound:    {found}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn couplings_in_a_circle_and_forces_on_balls_are_refused() {
+    let ball = joint(
+        "BallJoint",
+        "<coordinates><Coordinate name=\"a\"/><Coordinate name=\"b\"/><Coordinate name=\"c\"/></coordinates>",
+    );
+    let spring = "<ForceSet><objects><SpringGeneralizedForce><coordinate>b</coordinate></SpringGeneralizedForce></objects></ForceSet>";
+    let found = error(&document(&ball, spring));
+    assert!(found.contains("a force on a rotation of a ball or free"), "{found}");
+    let follow = |leader: &str, follower: &str| {
+        format!(
+            "<CoordinateCouplerConstraint><coupled_coordinates_function><LinearFunction/></coupled_coordinates_function>\
+             <independent_coordinate_names>{leader}</independent_coordinate_names>\
+             <dependent_coordinate_name>{follower}</dependent_coordinate_name></CoordinateCouplerConstraint>"
+        )
+    };
+    let set = |inside: String| document(&ball, &format!("<ConstraintSet><objects>{inside}</objects></ConstraintSet>"));
+    assert!(osim::read(set(follow("a", "b") + &follow("b", "c")).as_bytes(), "f").is_ok());
+    assert!(error(&set(follow("a", "b") + &follow("b", "a"))).contains("follows itself"));
+    assert!(error(&set(follow("a", "a"))).contains("follows itself"));
+    assert!(error(&set(follow("a", "c") + &follow("b", "c"))).contains("follows two others"));
+    assert!(error(&set(follow("a b", "c"))).contains("several coordinates"));
+}
+
+#[test]
+fn exponential_limits_are_the_double_exponential() {
+    let text = "<ForceSet><objects><ExponentialCoordinateLimitForce name=\"e\"><coordinate>/jointset/j/q</coordinate><lower_limit>-0.2</lower_limit>\
+                <upper_limit>0.3</upper_limit><lower_shape_parameters>50 75</lower_shape_parameters>\
+                <upper_shape_parameters>20 25</upper_shape_parameters></ExponentialCoordinateLimitForce></objects></ForceSet>";
+    let body = osim::read(document(&joint("PinJoint", PIN), text).as_bytes(), "f").unwrap();
+    let PassiveLawText::DoubleExponential(law) = &body.passive[0].law else { panic!() };
+    let ours = |q: f64| {
+        law.lower.torque * (-law.lower.rate * (q - law.lower.angle)).exp()
+            - law.upper.torque * (law.upper.rate * (q - law.upper.angle)).exp()
+    };
+    for q in [-0.3, 0.0, 0.4f64] {
+        let theirs = 50.0 * (-75.0 * (q + 0.2)).exp() - 20.0 * (25.0 * (q - 0.3)).exp();
+        assert!((ours(q) - theirs).abs() <= 1e-12 * theirs.abs());
+    }
+}
+
+#[test]
+fn hostile_files_end_in_an_error_quickly() {
+    let pin = joint("PinJoint", PIN);
+    let frame = |name: &str, parent: &str| {
+        format!("<PhysicalOffsetFrame name=\"{name}\"><socket_parent>{parent}</socket_parent></PhysicalOffsetFrame>")
+    };
+    let circle = format!("<components>{}{}</components>", frame("x", "/y"), frame("y", "/x"));
+    let on_x = pin.replace("/ground<", "/x<");
+    assert!(error(&document(&on_x, &circle)).contains("more than 64 frames fixed to each other"));
+    let chain = |n: usize| {
+        let frames: String = (0..n).map(|i| frame(&format!("x{i}"), &format!("/x{}", i + 1))).collect();
+        document(
+            &pin.replace("/ground<", "/x0<"),
+            &format!("<components>{frames}{}</components>", frame(&format!("x{n}"), "/ground")),
+        )
+    };
+    assert!(osim::read(chain(62).as_bytes(), "f").is_ok());
+    assert!(error(&chain(63)).contains("more than 64 frames"));
+    let long = "n".repeat(257);
+    assert!(error(&document(&pin.replace("\"q\"", &format!("\"{long}\"")), "")).contains("a name may have 256 bytes"));
+    assert!(osim::read(document(&pin.replace("\"q\"", &format!("\"{}\"", &long[1..])), "").as_bytes(), "f").is_ok());
+    let many = |n: usize| {
+        let mut text = String::from("<OpenSimDocument Version=\"40500\"><Model><BodySet><objects>");
+        (0..n).for_each(|i| text += &format!("<Body name=\"b{i}\"><mass>1</mass></Body>"));
+        text += "</objects></BodySet><JointSet><objects>";
+        for i in 0..n {
+            let parent = if i == 0 { "/ground".to_owned() } else { format!("/bodyset/b{}", i - 1) };
+            text += &format!(
+                "<PinJoint name=\"j{i}\"><socket_parent_frame>{parent}</socket_parent_frame><socket_child_frame>/bodyset/b{i}</socket_child_frame>\
+                 <coordinates><Coordinate name=\"q{i}\"/></coordinates></PinJoint>"
+            );
+        }
+        text + "</objects></JointSet></Model></OpenSimDocument>"
+    };
+    assert_eq!(osim::read(many(512).as_bytes(), "f").unwrap().coordinates.len(), 512);
+    assert!(error(&many(513)).contains("more than 512 coordinates"));
+    let numbers = |n: usize| {
+        let list = "0 ".repeat(n);
+        let axis = format!(
+            "<TransformAxis name=\"rotation1\"><coordinates>q</coordinates><axis>1 0 0</axis><PolynomialFunction name=\"function\"><coefficients>{list}</coefficients></PolynomialFunction></TransformAxis>"
+        );
+        document(&custom(&axis), "")
+    };
+    assert!(osim::read(numbers(4096).as_bytes(), "f").is_ok());
+    assert!(error(&numbers(4097)).contains("numbers"));
+}
+
+/// Four times as many markers, muscles, frames or bodies take about four times as long.
+#[test]
+fn reading_is_linear_in_the_size() {
+    let pin = joint("PinJoint", PIN);
+    let repeat = |n: usize, make: &dyn Fn(usize) -> String| (0..n).map(make).collect::<String>();
+    let shapes: [(&str, &dyn Fn(usize) -> String); 4] = [
+        ("markers", &|n| {
+            let all = repeat(n, &|i| {
+                format!(
+                    "<Marker name=\"m{i}\"><socket_parent_frame>/bodyset/b</socket_parent_frame><location>0 0 0</location></Marker>"
+                )
+            });
+            document(&pin, &format!("<MarkerSet><objects>{all}</objects></MarkerSet>"))
+        }),
+        ("muscles", &|n| {
+            document(
+                &pin,
+                &format!(
+                    "<ForceSet><objects>{}</objects></ForceSet>",
+                    repeat(n, &|_| "<Thelen2003Muscle/>".to_owned())
+                ),
+            )
+        }),
+        ("frames", &|n| {
+            let all = repeat(n, &|i| {
+                format!(
+                    "<PhysicalOffsetFrame name=\"m{i}\"><socket_parent>/bodyset/b</socket_parent></PhysicalOffsetFrame>"
+                )
+            });
+            document(&pin, &format!("<components>{all}</components>"))
+        }),
+        ("bodies welded in a chain", &|n| {
+            let bodies = repeat(n, &|i| format!("<Body name=\"b{i}\"><mass>1</mass></Body>"));
+            let joints = repeat(n - 1, &|i| {
+                format!(
+                    "<WeldJoint name=\"j{i}\"><socket_parent_frame>/bodyset/b{i}</socket_parent_frame><socket_child_frame>/bodyset/b{}</socket_child_frame></WeldJoint>",
+                    i + 1
+                )
+            });
+            format!(
+                "<OpenSimDocument Version=\"40500\"><Model><BodySet><objects>{bodies}</objects></BodySet><JointSet><objects>{joints}</objects></JointSet></Model></OpenSimDocument>"
+            )
+        }),
+    ];
+    for (name, make) in shapes {
+        let time = |text: &str| {
+            let runs = (0..3).map(|_| {
+                let start = std::time::Instant::now();
+                osim::read(text.as_bytes(), "f").unwrap();
+                start.elapsed().as_secs_f64()
+            });
+            runs.fold(f64::INFINITY, f64::min)
+        };
+        // Other work may disturb a measurement: the best of a few counts. Quadratic time would be 16.
+        let (small, large) = (make(4_000), make(16_000));
+        let best = (0..5).map(|_| time(&large) / time(&small)).fold(f64::INFINITY, f64::min);
+        println!("{name}: four times as long takes {best:.1} times as much");
+        assert!(best < 8.0, "{name}: {best}");
+    }
+}
+
+#[test]
+fn mutated_files_never_panic() {
+    let sources = ["joints_4x.osim", "joints_3x.osim"]
+        .map(|f| std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(f)).unwrap());
+    let mut state = 99u64;
+    let mut next = move |n: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % n
+    };
+    let pieces: [&[u8]; 12] = [
+        b"NaN",
+        b"1e999",
+        b"-1",
+        b"<",
+        b">",
+        b"</Body>",
+        b"<frames>",
+        b"\"",
+        b"/",
+        b"..",
+        b"\xff",
+        b"<Coordinate name=\"x\"/>",
+    ];
+    let (mut read, mut refused) = (0, 0);
+    for _ in 0..4_000 {
+        let source = &sources[next(2)];
+        let mut text = source.clone();
+        for _ in 0..next(4) + 1 {
+            let at = next(text.len());
+            let until = (at + next(30)).min(text.len());
+            match next(4) {
+                0 => text[at] = next(256) as u8,
+                1 => drop(text.drain(at..until)),
+                2 => drop(text.splice(at..at, pieces[next(pieces.len())].iter().copied())),
+                _ => {
+                    let copied = text[at..until].to_vec();
+                    let to = next(text.len());
+                    text.splice(to..to, copied);
+                }
+            }
+        }
+        match osim::read(&text, "f") {
+            Ok(_) => read += 1,
+            Err(error) => {
+                refused += 1;
+                assert!(error.to_string().len() < 2_000, "{error}");
+            }
+        }
+    }
+    println!("{read} read, {refused} refused");
+    assert!(read > 100 && refused > 1000);
+}
