@@ -5,13 +5,17 @@
 
 mod args;
 mod chart;
+mod convert;
 mod fail;
 mod figures;
 mod input;
+mod inspect;
 mod minimize;
+mod model_file;
 mod output;
 mod passive;
 mod simulate;
+mod torques;
 
 use std::process::ExitCode;
 
@@ -26,6 +30,9 @@ fn main() -> ExitCode {
         Verb::Figures(args) => figures::figures(&args),
         Verb::Minimize(args) => minimize::minimize(&args),
         Verb::Passive(args) => passive::passive(&args),
+        Verb::Inspect(args) => inspect::inspect(&args),
+        Verb::Torques(args) => torques::torques(&args),
+        Verb::Convert(args) => convert::convert(&args),
         Verb::Schema => output::print(&format!("{:#}\n", contrapposto_formats::scenario_schema())),
     };
     match result {

@@ -1,6 +1,6 @@
 //! Where does every coordinate stand?
 
-use crate::model::{Drive, LARGEST, Model, Motion};
+use crate::model::{LARGEST, Model};
 
 /// The values of all coordinates of a model, in its order: rad, m, or quaternion components.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,8 +75,7 @@ impl Posture {
                 return Err(PostureError::NotFinite { coordinate: coordinate.name.clone(), value: *value });
             }
         }
-        for ball in model.mobilities.iter().filter(|m| m.motion == Motion::Ball) {
-            let Drive::Coordinate(first) = ball.drive else { continue };
+        for &first in &model.balls {
             let length = self.values[first..first + 4].iter().map(|v| v * v).sum::<f64>().sqrt();
             if length < 1e-6 {
                 return Err(PostureError::Quaternion { coordinate: model.coordinates[first].name.clone(), length });

@@ -88,7 +88,7 @@ fn slides_first(driven: &[(Mobility, usize)]) -> Vec<BodyMotion> {
     let of = |wanted| driven.iter().filter(move |d| d.0.0 == wanted);
     of(Translation)
         .chain(of(Rotation))
-        .map(|&(kind, axis, index)| motion(kind, axis(), Drive::Coordinate(index)))
+        .map(|&((kind, axis), index)| motion(kind, axis(), Drive::Coordinate(index)))
         .collect()
 }
 

@@ -58,7 +58,9 @@ impl Kinematics {
             let (rotation, origin) = match mobility.parent {
                 None => (mobility.rotation, mobility.translation),
                 Some(p) => {
-                    (self.rotations[p] * mobility.rotation, self.rotations[p] * mobility.translation + self.origins[p])
+                    let parent = &self.rotations[p];
+                    let rotation = if mobility.turned { parent * mobility.rotation } else { *parent };
+                    (rotation, parent * mobility.translation + self.origins[p])
                 }
             };
             let mut quaternion = [0.0; 4];
@@ -77,8 +79,13 @@ impl Kinematics {
             };
             match mobility.motion {
                 Motion::Hinge(axis) => {
-                    self.axes[mobility.rate] = rotation * axis.into_inner();
-                    self.rotations[i] = rotation * Rotation3::from_axis_angle(&axis, value).into_inner();
+                    (self.rotations[i], self.axes[mobility.rate]) = match mobility.principal {
+                        Some((k, sign)) => turn_about(&rotation, k, sign, value),
+                        None => {
+                            let turn = Rotation3::from_axis_angle(&axis, value).into_inner();
+                            (rotation * turn, rotation * axis.into_inner())
+                        }
+                    };
                     self.origins[i] = origin;
                 }
                 Motion::Slide(axis) => {
@@ -147,4 +154,16 @@ impl Kinematics {
             .sum();
         (mass > 0.0).then(|| moment / mass)
     }
+}
+
+/// `rotation` turned by `angle` about its own axis `k` (times `sign`), and that axis in ground.
+#[inline]
+fn turn_about(rotation: &Matrix3<f64>, k: usize, sign: f64, angle: f64) -> (Matrix3<f64>, Vector3<f64>) {
+    let (sin, cos) = (sign * angle).sin_cos();
+    let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+    let (from, to) = (rotation.column(a).into_owned(), rotation.column(b).into_owned());
+    let mut turned = *rotation;
+    turned.set_column(a, &(cos * from + sin * to));
+    turned.set_column(b, &(cos * to - sin * from));
+    (turned, sign * rotation.column(k))
 }

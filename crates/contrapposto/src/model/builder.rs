@@ -105,6 +105,10 @@ impl ModelBuilder {
             rates: vec![],
             elements: vec![],
             couplings: vec![],
+            balls: vec![],
+            ancestors: vec![],
+            ancestor_starts: vec![0],
+            fixed: (0.0, Vector3::zeros()),
             direct: true,
         };
         Self { model }
@@ -164,8 +168,14 @@ impl ModelBuilder {
                 (Drive::Coordinate(c) | Drive::Function(_, c), _) => model.elements.push(model.coordinates[*c].rate),
                 (Drive::Fixed(_), _) => model.elements.push(None),
             }
+            model.add_ancestors(mobility);
+            if let (Drive::Coordinate(c), Motion::Ball) = (&drive, motion) {
+                model.balls.push(*c);
+            }
             model.mobilities.push(Mobility {
                 parent: mobility,
+                principal: principal(motion),
+                turned: rest.rotation.to_rotation_matrix().into_inner() != Matrix3::identity(),
                 rotation: rest.rotation.to_rotation_matrix().into_inner(),
                 translation: rest.translation.vector,
                 motion,
@@ -178,11 +188,16 @@ impl ModelBuilder {
             rest = Placement::identity();
         }
         let offset = rest * spec.in_segment.inverse();
-        if let Some(m) = mobility {
-            model.mobilities[m].mass += spec.mass;
-            model.mobilities[m].first_moment +=
-                spec.mass * (offset * nalgebra::Point3::from(spec.center_of_mass)).coords;
-        }
+        let first_moment = spec.mass * (offset * nalgebra::Point3::from(spec.center_of_mass)).coords;
+        let (mass, moment) = match mobility {
+            Some(m) => {
+                let carrier = &mut model.mobilities[m];
+                (&mut carrier.mass, &mut carrier.first_moment)
+            }
+            None => (&mut model.fixed.0, &mut model.fixed.1),
+        };
+        *mass += spec.mass;
+        *moment += first_moment;
         model.segments.push(Segment {
             name: spec.name,
             parent,
@@ -251,6 +266,27 @@ impl Model {
             self.coordinates.push(Coordinate { name, kind, range, default, positive, passive, groups, rate, locked });
         }
     }
+}
+
+impl Model {
+    /// Lists the hinges and balls between a new mobility and the root.
+    fn add_ancestors(&mut self, parent: Option<usize>) {
+        let mut next = parent;
+        while let Some(p) = next {
+            let near = &self.mobilities[p];
+            if !matches!(near.motion, Motion::Slide(_)) {
+                self.ancestors.extend(near.rate..near.rate + near.motion.rates());
+            }
+            next = near.parent;
+        }
+        self.ancestor_starts.push(self.ancestors.len());
+    }
+}
+
+/// Which axis of its own frame a hinge turns about, if it is one of the three, and in which sense.
+fn principal(motion: Motion) -> Option<(usize, f64)> {
+    let Motion::Hinge(axis) = motion else { return None };
+    (0..3).find(|&k| axis[k].abs() == 1.0).map(|k| (k, axis[k]))
 }
 
 impl Drive {

@@ -64,6 +64,10 @@ pub(crate) struct Mobility {
     pub(crate) rotation: Matrix3<f64>,
     pub(crate) translation: Vector3<f64>,
     pub(crate) motion: Motion,
+    /// The ground-axis-like axis of a hinge, where it is one: which, and its sign.
+    pub(crate) principal: Option<(usize, f64)>,
+    /// The resting frame is turned against the parent's.
+    pub(crate) turned: bool,
     /// What gives its value; for a ball the first of its four coordinates.
     pub(crate) drive: Drive,
     /// Its first elementary rate: one for a hinge or slide, three for a ball.
@@ -97,6 +101,14 @@ pub struct Model {
     pub(crate) elements: Vec<Option<usize>>,
     /// Coordinates that follow another one.
     pub(crate) couplings: Vec<Coupling>,
+    /// First coordinate of every ball.
+    pub(crate) balls: Vec<usize>,
+    /// Elementary rates of the hinges and balls nearer the root, for every mobility, one list after the other.
+    pub(crate) ancestors: Vec<usize>,
+    /// Where the list of each mobility begins; one more at the end.
+    pub(crate) ancestor_starts: Vec<usize>,
+    /// Mass fixed in ground, and mass times position.
+    pub(crate) fixed: (f64, Vector3<f64>),
     /// Every motion is a coordinate of its own and nothing is coupled: torques need no folding.
     pub(crate) direct: bool,
 }

@@ -222,9 +222,10 @@ impl ExternalTorque {
     /// The full matrix of Eq. 7, all pairs right, coupled coordinates folded. Does not allocate.
     pub fn gradient(&self, model: &Model, kinematics: &Kinematics, gradient: &mut Gradient) {
         assert_eq!(gradient.size(), model.rates.len(), "gradient was made for another model");
-        let matrix = gradient.begin(model.elements.len());
         let n = model.elements.len();
-        for far in &model.mobilities {
+        let matrix = gradient.begin(self.twisted);
+        for (far, range) in model.mobilities.iter().zip(model.ancestor_starts.windows(2)) {
+            let nearer = &model.ancestors[range[0]..range[1]];
             let elements = far.rate..far.rate + far.motion.rates();
             for element in elements.clone() {
                 let bend = self.bends[element];
@@ -233,18 +234,10 @@ impl ExternalTorque {
                         matrix[element * n + other] = kinematics.axes[other].dot(&bend);
                     }
                 }
-                let mut ancestor = far.parent;
-                while let Some(near) = ancestor {
-                    let near = &model.mobilities[near];
-                    ancestor = near.parent;
-                    if matches!(near.motion, Motion::Slide(_)) {
-                        continue;
-                    }
-                    for other in near.rate..near.rate + near.motion.rates() {
-                        let entry = kinematics.axes[other].dot(&bend);
-                        matrix[element * n + other] = entry;
-                        matrix[other * n + element] = entry;
-                    }
+                for &other in nearer {
+                    let entry = kinematics.axes[other].dot(&bend);
+                    matrix[element * n + other] = entry;
+                    matrix[other * n + element] = entry;
                 }
             }
         }
@@ -252,6 +245,19 @@ impl ExternalTorque {
             self.add_twists(model, kinematics, matrix);
         }
         gradient.fold(model, kinematics, &self.elements, &self.raw);
+    }
+
+    /// Centre of mass of the whole body in ground, m, from the sums that the last update carried to the root; `None` for a
+    /// body without mass.
+    pub fn center_of_mass(&self, model: &Model) -> Option<Vector3<f64>> {
+        let (mut mass, mut moment) = model.fixed;
+        for (carried, mobility) in self.carried.iter().zip(&model.mobilities) {
+            if mobility.parent.is_none() {
+                mass += carried.mass;
+                moment += carried.first_moment;
+            }
+        }
+        (mass > 0.0).then(|| moment / mass)
     }
 
     /// What couples and body-fixed forces add to the gradient; neither is symmetric.

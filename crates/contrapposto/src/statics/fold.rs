@@ -15,13 +15,15 @@ pub struct Gradient {
     entries: Vec<f64>,
     /// The matrix of elementary motions, where it is not the same.
     elements: Vec<f64>,
+    /// Entries that plain weights and forces leave at zero may hold something.
+    dirty: bool,
 }
 
 impl Gradient {
     /// Space for `model`.
     pub fn new(model: &Model) -> Self {
         let (n, m) = (model.rates.len(), model.elements.len());
-        Self { n, entries: vec![0.0; n * n], elements: vec![0.0; if model.direct { 0 } else { m * m }] }
+        Self { n, entries: vec![0.0; n * n], elements: vec![0.0; if model.direct { 0 } else { m * m }], dirty: false }
     }
 
     /// Number of rows and columns.
@@ -39,11 +41,14 @@ impl Gradient {
         &self.entries[row * self.n..(row + 1) * self.n]
     }
 
-    /// The cleared matrix of elementary motions.
-    pub(super) fn begin(&mut self, elements: usize) -> &mut [f64] {
+    /// The matrix of elementary motions. Entries of pairs on different branches, and of slides nearer the root, are zero; what
+    /// couples and body-fixed forces (`twisted`) wrote there is cleared, the rest is overwritten every time.
+    pub(super) fn begin(&mut self, twisted: bool) -> &mut [f64] {
         let matrix = if self.elements.is_empty() { &mut self.entries } else { &mut self.elements };
-        debug_assert_eq!(matrix.len(), elements * elements);
-        matrix.fill(0.0);
+        if self.dirty {
+            matrix.fill(0.0);
+        }
+        self.dirty = twisted;
         matrix
     }
 

@@ -1,0 +1,80 @@
+//! `adult:female,1.65m,60kg`
+
+use contrapposto::model::{Adult, Sex};
+
+use crate::fail::Fail;
+
+const ACCEPTED: &str = "accepted: `adult` (de Leva's reference man), or `adult:` and sex, stature and mass: \
+    `adult:female,1.65m,60kg`";
+
+/// The adult that MODEL asks for; `None` where it names a file.
+pub(crate) fn adult_size(text: &str) -> Option<Result<Adult, Fail>> {
+    if text == "adult" {
+        return Some(Ok(Adult::default()));
+    }
+    let rest = text.strip_prefix("adult:")?;
+    Some(parsed(rest).map_err(|problem| Fail::Refused(format!("`{text}`: {problem}\n  {ACCEPTED}"))))
+}
+
+fn parsed(text: &str) -> Result<Adult, String> {
+    let (mut sex, mut stature, mut mass) = (None, None, None);
+    for part in text.split(',').map(str::trim) {
+        let twice = match part {
+            "female" => sex.replace(Sex::Female).is_some(),
+            "male" => sex.replace(Sex::Male).is_some(),
+            _ => {
+                if let Some(number) = part.strip_suffix("kg") {
+                    mass.replace(size(number, part)?).is_some()
+                } else if let Some(number) = part.strip_suffix("cm") {
+                    stature.replace(size(number, part)? / 100.0).is_some()
+                } else if let Some(number) = part.strip_suffix('m') {
+                    stature.replace(size(number, part)?).is_some()
+                } else if part.is_empty() {
+                    return Err("something is missing between the commas".to_owned());
+                } else {
+                    return Err(format!("`{part}` is neither a sex (female, male), a stature (1.65m) nor a mass (60kg)"));
+                }
+            }
+        };
+        if twice {
+            return Err(format!("`{part}` says the same thing a second time"));
+        }
+    }
+    let missing = |what: &str| format!("the {what} is missing");
+    Ok(Adult {
+        sex: sex.ok_or_else(|| missing("sex"))?,
+        stature: stature.ok_or_else(|| missing("stature"))?,
+        mass: mass.ok_or_else(|| missing("mass"))?,
+        ..Adult::default()
+    })
+}
+
+fn size(number: &str, part: &str) -> Result<f64, String> {
+    let value = number.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    value.ok_or_else(|| format!("`{part}` does not begin with a number"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parsed;
+    use contrapposto::model::Sex;
+
+    #[test]
+    fn sizes_in_any_order() {
+        for text in ["female,1.65m,60kg", "60 kg, 165 cm, female"] {
+            let size = parsed(text).unwrap();
+            assert_eq!((size.sex, size.mass), (Sex::Female, 60.0));
+            assert!((size.stature - 1.65).abs() < 1e-12);
+        }
+        for (text, part) in [
+            ("female,1.65,60kg", "`1.65` is neither"),
+            ("female,60kg", "stature is missing"),
+            ("female,male,60kg", "second time"),
+            ("female,nanm,60kg", "`nanm` does not begin"),
+            ("", "missing between"),
+        ] {
+            let error = parsed(text).unwrap_err();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+}

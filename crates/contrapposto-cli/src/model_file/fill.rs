@@ -1,0 +1,217 @@
+//! Passive laws and muscle groups of the built-in adult for models that have none, by the standard OpenSim names.
+//!
+//! A name alone is not trusted: older lower-limb models count the knee the other way round. The turning axis of the
+//! coordinate must lie along that of the adult's, or against it, and then its curve runs the other way. Both are taken in
+//! ground axes at zero angles, which both must have as OpenSim does: x forward, y up, z right.
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Coordinate, CoordinateKind, Model, MuscleGroup, adult, data};
+use contrapposto::passive::{Coupled, PassiveLaw};
+use contrapposto::strength::Strength;
+use nalgebra::Vector3;
+
+use super::{Format, Origin, Origins};
+use crate::fail::Fail;
+
+/// Names of published models that differ from those of Rajagopal2016, which the adult has.
+const OTHER_NAMES: [(&str, &str); 3] =
+    [("r_elbow_flex", "elbow_flex_r"), ("r_shoulder_elev", "arm_flex_r"), ("elbow_flexion", "elbow_flex_r")];
+
+/// Coordinates that published models count from another zero than the adult: from full supination, not from mid-way.
+const OTHER_ZERO: [&str; 2] = ["pro_sup_r", "pro_sup_l"];
+
+/// How well two axes must agree: the cosine of 60 deg.
+const AGREE: f64 = 0.5;
+
+/// Range that may reach beyond the curve's own without a word, rad.
+const BEYOND: f64 = 0.1;
+
+/// Fills what is unknown, and says so, joint by joint.
+pub(super) fn fill(
+    mut model: Model,
+    format: Format,
+    origins: &mut [Origins],
+    notes: &mut Vec<String>,
+) -> Result<Model, Fail> {
+    let twin = adult(&Adult::default()).map_err(|error| Fail::job("adult", error))?;
+    let signs = Signs::new(&model, format, &twin);
+    let mut unknown = vec![];
+    for index in 0..model.coordinates().len() {
+        let coordinate = &model.coordinates()[index];
+        let name = coordinate.name.clone();
+        if coordinate.kind != CoordinateKind::Rotation || coordinate.passive.is_some() || model.is_dependent(index) {
+            continue;
+        }
+        let Some((own, found)) = known(&twin, &name) else {
+            unknown.push(format!("`{name}`"));
+            continue;
+        };
+        // The root has no tissue.
+        let Some(law) = &found.passive else { continue };
+        let filled = signs.sign(index, own).and_then(|sign| {
+            let law = law_for(law, &signs, coordinate, found, sign)?;
+            Ok((law, sign))
+        });
+        match filled {
+            Err(why) => notes.push(format!("`{name}`: no passive torque in the file, and the built-in one is not applied: {why}")),
+            Ok((law, sign)) => {
+                notes.push(said(coordinate, found, sign));
+                let groups = found.groups.clone().filter(|_| coordinate.groups.is_none());
+                model = model.with_passive_law(index, Some(law));
+                let origins = &mut origins[index];
+                origins.passive = Origin::Library;
+                origins.twin = Some(found.name.clone());
+                if let Some(groups) = groups {
+                    model = model.with_groups(index, turned(groups, sign));
+                    (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
+                }
+            }
+        }
+    }
+    if !unknown.is_empty() {
+        let all = unknown.len();
+        unknown.truncate(12);
+        let more = if all > 12 { ", ..." } else { "" };
+        let list = unknown.join(", ");
+        notes.push(format!("no passive torque is known for {all} coordinates, which have none: {list}{more}"));
+    }
+    Ok(model)
+}
+
+/// The adult's coordinate of that name.
+fn known<'a>(twin: &'a Model, name: &str) -> Option<(usize, &'a Coordinate)> {
+    let other = OTHER_NAMES.iter().find(|(other, _)| *other == name).map(|(_, ours)| *ours);
+    let index = twin.coordinate(other.unwrap_or(name))?;
+    Some((index, &twin.coordinates()[index]))
+}
+
+/// Which way do coordinates turn?
+struct Signs<'a> {
+    model: &'a Model,
+    twin: &'a Model,
+    /// The model's ground axes are not known to be the adult's: why.
+    elsewhere: Option<String>,
+}
+
+impl<'a> Signs<'a> {
+    fn new(model: &'a Model, format: Format, twin: &'a Model) -> Self {
+        let down = model.gravity();
+        let along = down.dot(&-Vector3::y()) / down.norm();
+        let upright = if down.norm() > 0.0 { along > 0.99 } else { format == Format::OpenSim };
+        let elsewhere = "its direction cannot be verified, for gravity does not act along -y, so that the file's axes are not \
+            OpenSim's (x forward, y up, z right)";
+        Self { model, twin, elsewhere: (!upright).then(|| elsewhere.to_owned()) }
+    }
+
+    /// +1 where both turn the same way, -1 where they turn against each other.
+    fn sign(&self, index: usize, own: usize) -> Result<f64, String> {
+        if let Some(why) = &self.elsewhere {
+            return Err(why.clone());
+        }
+        let (theirs, ours) = (turning(self.model, index), turning(self.twin, own));
+        let (Some(theirs), Some(ours)) = (theirs, ours) else {
+            return Err("its turning axis cannot be told".to_owned());
+        };
+        let along = theirs.dot(&ours);
+        if along.abs() < AGREE {
+            let degrees = along.acos().to_degrees();
+            return Err(format!("its direction cannot be verified, for its axis stands at {degrees:.0} deg to the expected one"));
+        }
+        let coordinate = &self.model.coordinates()[index];
+        if OTHER_ZERO.contains(&coordinate.name.as_str()) && coordinate.range.0.abs() < BEYOND {
+            return Err("the file counts it from full supination, the built-in data from mid-way".to_owned());
+        }
+        Ok(along.signum())
+    }
+}
+
+/// Direction about which a segment turns in ground when a coordinate grows, all angles zero.
+fn turning(model: &Model, coordinate: usize) -> Option<Vector3<f64>> {
+    const STEP: f64 = 1e-4;
+    let segment = model.segments().iter().position(|segment| segment.coordinates.contains(&coordinate))?;
+    let mut posture = model.default_posture();
+    for (value, about) in posture.values_mut().iter_mut().zip(model.coordinates()) {
+        if about.kind == CoordinateKind::Rotation {
+            *value = 0.0;
+        }
+    }
+    let mut kinematics = Kinematics::new(model);
+    let mut at = |value: f64| {
+        posture.values_mut()[coordinate] = value;
+        kinematics.update(model, &posture).ok()?;
+        Some(kinematics.placement(model, segment).rotation)
+    };
+    let turn = at(STEP)? * at(-STEP)?.inverse();
+    let rate = turn.scaled_axis() / (2.0 * STEP);
+    (rate.norm() > AGREE).then(|| rate.normalize())
+}
+
+/// The adult's law in the coordinate's direction and over its range.
+fn law_for(
+    law: &PassiveLaw,
+    signs: &Signs<'_>,
+    coordinate: &Coordinate,
+    found: &Coordinate,
+    sign: f64,
+) -> Result<PassiveLaw, String> {
+    match law {
+        PassiveLaw::Curve(_) => {
+            let missing = || "the built-in data have no curve for it".to_owned();
+            let sources = data::library().sources(&found.name).ok_or_else(missing)?;
+            let row = sources.curve.and_then(|name| data::library().curve(name)).ok_or_else(missing)?;
+            let (min, max) = coordinate.range;
+            let own = min < max && min.is_finite() && max.is_finite();
+            let range = if own { coordinate.range } else { mirrored(found.range, sign) };
+            row.over(range, sign * sources.curve_sign).map(PassiveLaw::Curve).map_err(|error| error.to_string())
+        }
+        PassiveLaw::Coupled(coupled) => {
+            let mut neighbours = [None; 3];
+            for (slot, neighbour) in neighbours.iter_mut().zip(coupled.neighbours) {
+                let Some((theirs, their_sign)) = neighbour else { continue };
+                let name = &signs.twin.coordinates()[theirs].name;
+                let index = signs.model.coordinates().iter().position(|c| {
+                    known(signs.twin, &c.name).is_some_and(|(index, _)| index == theirs)
+                });
+                // What the law depends on must be there, and turn the way it says.
+                let index = index.ok_or_else(|| format!("its law needs `{name}`, which the model does not have"))?;
+                let turned = signs.sign(index, theirs).map_err(|why| format!("its law needs `{name}`, but {why}"))?;
+                *slot = Some((index, turned * their_sign));
+            }
+            Ok(PassiveLaw::Coupled(Coupled { law: coupled.law.clone(), neighbours }))
+        }
+        PassiveLaw::Sum(_) if sign > 0.0 => Ok(law.clone()),
+        PassiveLaw::Sum(_) => Err("it turns the other way round, and its law cannot be mirrored".to_owned()),
+    }
+}
+
+fn mirrored((min, max): (f64, f64), sign: f64) -> (f64, f64) {
+    if sign < 0.0 { (-max, -min) } else { (min, max) }
+}
+
+/// The groups in the coordinate's direction.
+fn turned(groups: [MuscleGroup; 2], sign: f64) -> [MuscleGroup; 2] {
+    if sign > 0.0 {
+        return groups;
+    }
+    let [positive, negative] = groups.map(|group| MuscleGroup {
+        strength: Strength { best: -group.strength.best, ..group.strength },
+        ..group
+    });
+    [negative, positive]
+}
+
+fn said(coordinate: &Coordinate, found: &Coordinate, sign: f64) -> String {
+    let sources = data::library().sources(&found.name);
+    let row = sources.and_then(|sources| sources.curve).and_then(|name| data::library().curve(name));
+    let curve = row.map_or(String::new(), |row| format!(", curve `{}` ({})", row.name, row.reference.status));
+    let way = if sign < 0.0 { format!(", turned round: {} is negative here", found.positive) } else { String::new() };
+    let (min, max) = coordinate.range;
+    let (low, high) = mirrored(found.range, sign);
+    let beyond = if min < low - BEYOND || max > high + BEYOND {
+        let [min, max, low, high] = [min, max, low, high].map(f64::to_degrees);
+        format!("; the file's range {min:.0} .. {max:.0} deg goes beyond {low:.0} .. {high:.0} deg, for which it is meant")
+    } else {
+        String::new()
+    };
+    format!("`{}`: passive torque and strength from the built-in data{curve}{way}{beyond}", coordinate.name)
+}

@@ -1,0 +1,32 @@
+//! Files that an MJCF model includes: inside the model's own folder, whatever the names and links in it say.
+
+use std::path::{Component, Path};
+
+use crate::fail::Fail;
+use crate::input::read;
+
+/// A reader of included files for the model at `main`; how many and how deep is the format's own business.
+pub(super) fn confined(main: &Path, most: u64) -> impl FnMut(&str) -> Result<Vec<u8>, String> + use<> {
+    let parent = main.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = if main == Path::new("-") {
+        Err("a model from standard input has no folder to include from".to_owned())
+    } else {
+        parent.canonicalize().map_err(|error| error.to_string())
+    };
+    move |name| {
+        let folder = folder.as_ref().map_err(String::clone)?;
+        let relative = Path::new(name);
+        if !relative.components().all(|part| matches!(part, Component::Normal(_))) {
+            return Err("it does not stay inside the model's folder".to_owned());
+        }
+        // Links are followed before the folder is compared: one that leads out is refused, whatever its name.
+        let real = folder.join(relative).canonicalize().map_err(|error| error.to_string())?;
+        if !real.starts_with(folder) {
+            return Err("it is a link that leads out of the model's folder".to_owned());
+        }
+        read(&real, most).map_err(|fail| match fail {
+            Fail::Refused(why) => why,
+            _ => "it cannot be read".to_owned(),
+        })
+    }
+}

@@ -1,0 +1,303 @@
+//! A small TOML file laid over a model: range, passive law, strength and fatigue of the coordinates it names.
+//!
+//! Published models hold no passive torque of joints, and their knees stop at 0 deg. What is named replaces what the model
+//! has; everything else stays. See `docs/formats.md`.
+
+use std::collections::BTreeMap;
+
+use contrapposto::model::{CoordinateKind, Model, MuscleGroup, data};
+use contrapposto::passive::{PassiveCurve, PassiveLaw};
+use contrapposto::strength::Strength;
+use serde::Deserialize;
+
+use crate::input_error::{InputError, suggestion};
+use crate::scenario::{
+    CoordinateLimitForceText, DoubleExponentialText, Located, PassiveText, ReshapeText, passive_curve, read_toml,
+};
+
+/// Fatigue class of a group that is given a strength and nothing else.
+const GENERAL: &str = "general";
+
+/// Fatigue classes, for suggestions.
+const CLASSES: [&str; 7] = ["ankle", "knee", "trunk", "shoulder", "elbow", "grip", GENERAL];
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OverlayText {
+    coordinates: BTreeMap<String, CoordinateText>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CoordinateText {
+    range_deg: Option<[f64; 2]>,
+    range_m: Option<[f64; 2]>,
+    passive: Option<OverlayPassiveText>,
+    strength: Option<StrengthText>,
+    fatigue: Option<String>,
+}
+
+/// As in a scenario, with the sign of a named curve.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OverlayPassiveText {
+    curve: Option<String>,
+    /// -1 where the coordinate runs against the curve's own direction.
+    sign: Option<f64>,
+    double_exponential: Option<DoubleExponentialText>,
+    coordinate_limit_force: Option<CoordinateLimitForceText>,
+    table_deg_nm: Option<Vec<[f64; 2]>>,
+    reshape: Option<ReshapeText>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StrengthText {
+    positive_nm: f64,
+    negative_nm: f64,
+}
+
+/// A model with an overlay laid over it.
+#[derive(Clone, Debug)]
+pub struct Overlaid {
+    /// The model.
+    pub model: Model,
+    /// What was changed, in the order of the coordinates' names.
+    pub changes: Vec<OverlayChange>,
+}
+
+/// What an overlay changed of one coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OverlayChange {
+    /// Index of the coordinate.
+    pub coordinate: usize,
+    /// Its range.
+    pub range: bool,
+    /// Its passive law.
+    pub passive: bool,
+    /// The strength of its groups.
+    pub strength: bool,
+    /// The fatigue of its groups.
+    pub fatigue: bool,
+    /// The same in a plain sentence.
+    pub note: String,
+}
+
+/// Lays the overlay in `bytes` over `model`. `name` is the file's name for messages.
+///
+/// # Errors
+/// [`InputError`] says what is wrong, where, and what would be right.
+pub fn overlay(name: &str, bytes: &[u8], model: Model) -> Result<Overlaid, InputError> {
+    read_toml(name, bytes, |at: &Located, text: &OverlayText| {
+        let mut laid = Overlaid { model, changes: vec![] };
+        for (name, text) in &text.coordinates {
+            let table = Table { at, path: ["coordinates", name] };
+            let change = table.lay(&mut laid.model, text)?;
+            laid.changes.push(change);
+        }
+        Ok(laid)
+    })
+}
+
+/// The table of one coordinate.
+struct Table<'a> {
+    at: &'a Located<'a>,
+    path: [&'a str; 2],
+}
+
+impl Table<'_> {
+    fn lay(&self, model: &mut Model, text: &CoordinateText) -> Result<OverlayChange, InputError> {
+        let Some(index) = model.coordinate(self.path[1]) else {
+            let help = suggestion(self.path[1], model.coordinates().iter().map(|c| c.name.as_str()));
+            let message = format!("the model has no coordinate `{}`", self.path[1]);
+            return Err(self.at.key_error(&self.path, message, help));
+        };
+        let kind = model.coordinates()[index].kind;
+        let mut said = vec![];
+        let range = self.range(model, index, text, &mut said)?;
+        if kind != CoordinateKind::Rotation {
+            let given = [("passive", text.passive.is_some()), ("strength", text.strength.is_some())];
+            let given = given.into_iter().chain([("fatigue", text.fatigue.is_some())]);
+            if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+                let message = format!("`{}` is no angle; only angles take a {key}", self.path[1]);
+                return Err(self.key_error(key, message, Some("leave it out".to_owned())));
+            }
+        }
+        self.passive(model, index, text, range, &mut said)?;
+        self.groups(model, index, text, &mut said)?;
+        if said.is_empty() {
+            let help = Some("give range_deg, passive, strength or fatigue".to_owned());
+            return Err(self.at.error(&self.path, "nothing is laid over this coordinate", help));
+        }
+        Ok(OverlayChange {
+            coordinate: index,
+            range,
+            passive: text.passive.is_some(),
+            strength: text.strength.is_some(),
+            fatigue: text.fatigue.is_some() || text.strength.is_some(),
+            note: format!("`{}`: {} from the overlay", self.path[1], said.join(", ")),
+        })
+    }
+
+    fn range(
+        &self,
+        model: &mut Model,
+        index: usize,
+        text: &CoordinateText,
+        said: &mut Vec<String>,
+    ) -> Result<bool, InputError> {
+        let (key, [min, max], unit) = match (text.range_deg, text.range_m) {
+            (None, None) => return Ok(false),
+            (Some(range), None) => ("range_deg", range, CoordinateKind::Rotation),
+            (None, Some(range)) => ("range_m", range, CoordinateKind::Translation),
+            (Some(_), Some(_)) => {
+                let help = Some("angles have range_deg, slides range_m".to_owned());
+                return Err(self.key_error("range_m", "both ranges are given", help));
+            }
+        };
+        let found = &model.coordinates()[index];
+        if found.kind != unit {
+            let right = match found.kind {
+                CoordinateKind::Rotation => "it is an angle: give range_deg",
+                CoordinateKind::Translation => "it is a slide: give range_m",
+                CoordinateKind::Quaternion => "a component of a quaternion has no range of its own: leave it out",
+            };
+            let message = format!("`{}` is not measured in the unit of `{key}`", self.path[1]);
+            return Err(self.key_error(key, message, Some(right.to_owned())));
+        }
+        if min >= max {
+            let message = format!("the range {min} .. {max} is empty");
+            return Err(self.value_error(key, message, Some("give the lower limit first".to_owned())));
+        }
+        let rad = |x: f64| if unit == CoordinateKind::Rotation { x.to_radians() } else { x };
+        let range = (rad(min), rad(max));
+        let before = found.default;
+        let changed = model.clone().with_range(index, range);
+        *model = changed.map_err(|error| self.value_error(key, error.to_string(), None))?;
+        let word = if unit == CoordinateKind::Rotation { "deg" } else { "m" };
+        said.push(format!("range {min} .. {max} {word}"));
+        let after = model.coordinates()[index].default;
+        if after != before {
+            said.push(format!("default moved into it, to {} {word}", if word == "deg" { after.to_degrees() } else { after }));
+        }
+        Ok(true)
+    }
+
+    fn passive(
+        &self,
+        model: &mut Model,
+        index: usize,
+        text: &CoordinateText,
+        new_range: bool,
+        said: &mut Vec<String>,
+    ) -> Result<(), InputError> {
+        let coordinate = &model.coordinates()[index];
+        let Some(passive) = &text.passive else {
+            // A curve belongs to a range: it goes with the new one.
+            if let Some(curve) = coordinate.curve().filter(|_| new_range) {
+                let curve = PassiveCurve::new(curve.form().clone(), coordinate.range, curve.reshape().copied());
+                let refuse = |error: contrapposto::passive::PassiveError| {
+                    let help = Some("give a passive law that suits this range".to_owned());
+                    self.value_error("range_deg", format!("the passive curve does not suit it: {error}"), help)
+                };
+                *model = model.clone().with_passive(index, curve.map_err(refuse)?);
+            }
+            return Ok(());
+        };
+        if let Some(sign) = passive.sign {
+            let path = [self.path[0], self.path[1], "passive", "sign"];
+            if passive.curve.is_none() {
+                let help = Some("leave it out: only a named curve has a direction of its own".to_owned());
+                return Err(self.at.key_error(&path, "`sign` goes with `curve`", help));
+            }
+            if sign.abs() != 1.0 {
+                let help = Some("give 1, or -1 where the coordinate runs against the curve".to_owned());
+                return Err(self.at.error(&path, format!("sign is {sign}"), help));
+            }
+        }
+        let as_scenario = PassiveText {
+            curve: passive.curve.clone(),
+            double_exponential: passive.double_exponential,
+            coordinate_limit_force: passive.coordinate_limit_force,
+            table_deg_nm: passive.table_deg_nm.clone(),
+            reshape: passive.reshape,
+        };
+        let path = [self.path[0], self.path[1], "passive"];
+        let sign = Some(passive.sign.unwrap_or(1.0));
+        let curve = passive_curve(self.at, &path, coordinate, sign, &as_scenario)?;
+        said.push(match passive.curve.as_deref().and_then(|name| data::library().curve(name)) {
+            None => "passive law".to_owned(),
+            Some(row) => {
+                let against = if sign == Some(-1.0) { "negative" } else { "positive" };
+                let held = if row.coupled().is_some() { ", neighbouring joints held at zero" } else { "" };
+                format!("passive curve `{}` with {} {against}{held} ({})", row.name, row.positive, row.reference.status)
+            }
+        });
+        *model = model.clone().with_passive_law(index, Some(PassiveLaw::Curve(curve)));
+        Ok(())
+    }
+
+    fn groups(
+        &self,
+        model: &mut Model,
+        index: usize,
+        text: &CoordinateText,
+        said: &mut Vec<String>,
+    ) -> Result<(), InputError> {
+        if text.strength.is_none() && text.fatigue.is_none() {
+            return Ok(());
+        }
+        let coordinate = &model.coordinates()[index];
+        let class = text.fatigue.as_deref();
+        let law = |class: &str| {
+            data::library().three_compartment(class).map(|(law, _)| law).ok_or_else(|| {
+                let help = suggestion(class, CLASSES);
+                self.value_error("fatigue", format!("there is no fatigue class `{class}`"), help)
+            })
+        };
+        let mut groups = match (&coordinate.groups, &text.strength) {
+            (Some(groups), _) => groups.clone(),
+            (None, Some(_)) => {
+                let fatigue = law(class.unwrap_or(GENERAL))?;
+                ["positive", "negative"].map(|side| MuscleGroup {
+                    name: format!("{}, {side}", coordinate.name),
+                    strength: Strength::constant(0.0),
+                    fatigue: fatigue.clone(),
+                })
+            }
+            (None, None) => {
+                let help = Some("add strength = { positive_nm = ..., negative_nm = ... }".to_owned());
+                return Err(self.key_error("fatigue", "this coordinate has no muscle groups yet", help));
+            }
+        };
+        if let Some(strength) = &text.strength {
+            let sides = [("positive_nm", strength.positive_nm), ("negative_nm", strength.negative_nm)];
+            for ((key, peak), group) in sides.into_iter().zip(&mut groups) {
+                if !(peak > 0.0 && peak <= 1e6) {
+                    let path = [self.path[0], self.path[1], "strength", key];
+                    let help = Some("both sizes are positive, at most 1e6 N m".to_owned());
+                    return Err(self.at.error(&path, format!("{key} is {peak}"), help));
+                }
+                group.strength = Strength::constant(peak);
+            }
+            said.push(format!("strength {} / {} N m", strength.positive_nm, strength.negative_nm));
+        }
+        if let Some(class) = class {
+            let fatigue = law(class)?;
+            groups.iter_mut().for_each(|group| group.fatigue = fatigue.clone());
+            said.push(format!("fatigue class `{class}`"));
+        } else if coordinate.groups.is_none() {
+            said.push(format!("fatigue class `{GENERAL}`"));
+        }
+        *model = model.clone().with_groups(index, groups);
+        Ok(())
+    }
+
+    fn key_error(&self, key: &str, message: impl Into<String>, help: Option<String>) -> InputError {
+        self.at.key_error(&[self.path[0], self.path[1], key], message, help)
+    }
+
+    fn value_error(&self, key: &str, message: impl Into<String>, help: Option<String>) -> InputError {
+        self.at.error(&[self.path[0], self.path[1], key], message, help)
+    }
+}

@@ -1,0 +1,96 @@
+//! A model as an OpenSim, URDF or MJCF file.
+//!
+//! Each writer gives the text and, in plain sentences, what the format cannot hold. Numbers stand in the shortest form that
+//! reads back as the same bits; orientations are chosen so that our readers find the same quaternion where there is one such
+//! choice (`exact.rs`). The same model always gives the same text.
+//!
+//! Coordinates keep their names and values everywhere, except balls in `.osim` files, which become three angles. External
+//! torque is what the programs call generalised gravity, with the other sign.
+
+mod exact;
+mod law;
+mod mjcf;
+mod names;
+mod osim;
+mod osim_functions;
+mod osim_joint;
+mod parts;
+mod urdf;
+mod xml;
+
+pub use mjcf::mjcf;
+pub use osim::osim;
+pub use urdf::urdf;
+
+use contrapposto::model::Model;
+
+/// A file, and what it does not say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The whole file.
+    pub text: String,
+    /// What the format cannot hold: plain sentences, in the order in which it was met.
+    pub lost: Vec<String>,
+}
+
+/// Why a model cannot be written in a format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// A character that XML cannot hold.
+    #[error("the name {name:?} has a character that no XML file can hold")]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// A joint that the format has no words for.
+    #[error("joint `{joint}`: {problem}")]
+    Joint {
+        /// Name of the joint.
+        joint: String,
+        /// What the format lacks.
+        problem: &'static str,
+    },
+    /// A segment that the format's program would refuse.
+    #[error("segment `{segment}`: {problem}")]
+    Segment {
+        /// Name of the segment.
+        segment: String,
+        /// What it would not accept.
+        problem: &'static str,
+    },
+}
+
+/// Stands at the head of every file.
+const MADE_BY: &str = concat!("Written by contrapposto ", env!("CARGO_PKG_VERSION"), ".");
+
+/// What no format holds, after a check of all names.
+fn common(model: &Model) -> Result<Vec<String>, WriteError> {
+    let segments = model.segments().iter().flat_map(|s| [&s.name, &s.joint]);
+    let all = segments.chain(model.coordinates().iter().map(|c| &c.name));
+    for name in all.map(String::as_str).chain([model.name()]) {
+        if !name.chars().all(xml::holds) {
+            return Err(WriteError::Name { name: name.to_owned() });
+        }
+    }
+    let mut lost = vec![];
+    let count = |wanted: fn(&contrapposto::model::Coordinate) -> bool| model.coordinates().iter().filter(|c| wanted(c)).count();
+    let groups = count(|c| c.groups.is_some());
+    if groups > 0 {
+        lost.push(format!("Strength and fatigue of the muscle groups of {groups} coordinates are not written."));
+    }
+    let words = count(|c| !c.positive.is_empty());
+    if words > 0 {
+        lost.push(format!("The clinical words for the positive direction of {words} coordinates are not written."));
+    }
+    Ok(lost)
+}
+
+/// `a`, `b` and `c`.
+fn listed(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => quoted.concat(),
+    }
+}

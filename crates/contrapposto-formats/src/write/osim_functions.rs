@@ -1,0 +1,40 @@
+//! Functions of one coordinate as OpenSim's objects.
+
+use contrapposto::math::Function;
+
+use super::parts::{self, Joined};
+use super::xml::{Xml, number, numbers};
+
+/// Writes a function as the property `name`; false for one that OpenSim has not, and then nothing is written.
+pub(super) fn write(xml: &mut Xml, name: &str, function: &Function) -> bool {
+    let named = [("name", name)];
+    match function {
+        Function::Constant(value) => {
+            xml.open("Constant", &named);
+            xml.value("value", &number(*value));
+        }
+        Function::Linear { slope, intercept } => {
+            xml.open("LinearFunction", &named);
+            xml.value("coefficients", &numbers([slope, intercept]));
+        }
+        Function::Polynomial(coefficients) => {
+            xml.open("PolynomialFunction", &named);
+            xml.value("coefficients", &numbers(coefficients.iter().rev()));
+        }
+        Function::Sine { amplitude, omega, phase, offset } => {
+            xml.open("Sine", &named);
+            for (tag, value) in [("amplitude", amplitude), ("omega", omega), ("phase", phase), ("offset", offset)] {
+                xml.value(tag, &number(*value));
+            }
+        }
+        Function::Spline(spline) => {
+            let Some((joined, x, y)) = parts::spline(spline) else { return false };
+            xml.open(if matches!(joined, Joined::Simm) { "SimmSpline" } else { "PiecewiseLinearFunction" }, &named);
+            xml.value("x", &numbers(&x));
+            xml.value("y", &numbers(&y));
+        }
+        _ => return false,
+    }
+    xml.close();
+    true
+}
