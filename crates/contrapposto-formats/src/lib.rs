@@ -10,6 +10,7 @@ pub mod motion;
 pub mod numbers;
 pub mod osim;
 pub mod urdf;
+pub mod write;
 pub mod xml;
 
 mod input_error;

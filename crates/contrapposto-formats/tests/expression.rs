@@ -1,6 +1,8 @@
 //! OpenSim's expressions mean here what they mean there. Values from OpenSim 4.6 (`scripts/opensim_reference.py`); slopes are
 //! held to the values by central differences, of OpenSim's own grammar through ours.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use contrapposto::math::expression::{Expression, ExpressionError, MOST_BYTES, MOST_DEPTH};
 use serde_json::Value;
 

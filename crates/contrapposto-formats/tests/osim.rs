@@ -1,6 +1,8 @@
 //! The `.osim` reader: bodies are where OpenSim 4.6 puts them, functions and forces have its values, and what matters and is
 //! not supported is refused with its place. References: `scripts/opensim_reference.py`, and `../shared` where it exists.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use contrapposto_formats::body::{Body, BodyCoordinateKind, BodyMotion, Drive, Function, PassiveLawText, Spline};
 use contrapposto_formats::osim;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};

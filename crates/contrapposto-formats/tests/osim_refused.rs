@@ -1,5 +1,7 @@
 //! What the `.osim` reader refuses, and that any bytes end in a body or an error, in time linear in their number.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use contrapposto_formats::body::PassiveLawText;
 use contrapposto_formats::osim;
 use std::path::Path;

@@ -28,13 +28,14 @@ const BEYOND: f64 = 0.1;
 
 /// Fills what is unknown, and says so, joint by joint.
 pub(super) fn fill(
-    mut model: Model,
+    model: Model,
     format: Format,
     origins: &mut [Origins],
     notes: &mut Vec<String>,
 ) -> Result<Model, Fail> {
     let twin = adult(&Adult::default()).map_err(|error| Fail::job("adult", error))?;
     let signs = Signs::new(&model, format, &twin);
+    let mut changed = model.clone();
     let mut unknown = vec![];
     for index in 0..model.coordinates().len() {
         let coordinate = &model.coordinates()[index];
@@ -57,12 +58,12 @@ pub(super) fn fill(
             Ok((law, sign)) => {
                 notes.push(said(coordinate, found, sign));
                 let groups = found.groups.clone().filter(|_| coordinate.groups.is_none());
-                model = model.with_passive_law(index, Some(law));
+                changed = changed.with_passive_law(index, Some(law));
                 let origins = &mut origins[index];
                 origins.passive = Origin::Library;
                 origins.twin = Some(found.name.clone());
                 if let Some(groups) = groups {
-                    model = model.with_groups(index, turned(groups, sign));
+                    changed = changed.with_groups(index, turned(groups, sign));
                     (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
                 }
             }
@@ -75,7 +76,7 @@ pub(super) fn fill(
         let list = unknown.join(", ");
         notes.push(format!("no passive torque is known for {all} coordinates, which have none: {list}{more}"));
     }
-    Ok(model)
+    Ok(changed)
 }
 
 /// The adult's coordinate of that name.

@@ -154,7 +154,7 @@ impl Columns {
         }) {
             Some(0) => "calcn_r",
             Some(_) => "calcn_l",
-            None => ["calcn_r", "calcn_l"][i.min(1)],
+            None => ["calcn_r", "calcn_l"].get(i).copied().unwrap_or_default(),
         }
     }
 }

@@ -59,18 +59,18 @@ pub fn postures(table: &Table, name: &str, bytes: &[u8], model: &Model, units: U
     let (columns, unknown) = job.columns()?;
     let coordinates = model.coordinates();
     let mut filled = vec![false; coordinates.len()];
-    columns.iter().for_each(|(_, coordinate, _)| filled[*coordinate] = true);
+    columns.iter().for_each(|column| filled[column.coordinate] = true);
     let balls = job.balls(&filled)?;
     let absent = |i: &usize| !filled[*i] && !model.is_dependent(*i);
     let missing = (0..filled.len()).filter(absent).map(|i| coordinates[i].name.clone()).collect();
     let mut made = Vec::with_capacity(table.rows.len());
     for (row, time) in table.times.iter().enumerate() {
         let mut posture = model.default_posture();
-        for &(column, coordinate, unit) in &columns {
-            posture.values_mut()[coordinate] = job.value(row, column, coordinate, unit)?;
+        for column in &columns {
+            posture.values_mut()[column.coordinate] = job.value(row, column)?;
         }
         for &first in &balls {
-            job.normalise(row, first, posture.values_mut())?;
+            job.normalise(row, first, &columns, posture.values_mut())?;
         }
         made.push((*time, posture));
     }
@@ -95,6 +95,14 @@ enum Unit {
     AsIs,
 }
 
+/// A column of the table that is a coordinate of the model.
+struct Column<'a> {
+    label: &'a str,
+    index: usize,
+    coordinate: usize,
+    unit: Unit,
+}
+
 enum Meaning {
     Coordinate(usize, Unit),
     PassedOver,
@@ -109,7 +117,7 @@ struct Job<'a> {
     units: Units,
 }
 
-impl Job<'_> {
+impl<'a> Job<'a> {
     /// Tables made by hand may be ragged.
     fn check_shape(&self) -> Result<(), InputError> {
         let Table { columns, times, rows, .. } = self.table;
@@ -126,12 +134,12 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Column, coordinate and unit of every column that is a coordinate; the columns that nobody knows.
-    fn columns(&self) -> Result<(Vec<(usize, usize, Unit)>, Vec<String>), InputError> {
+    /// The columns that are coordinates, and the labels that nobody knows.
+    fn columns(&self) -> Result<(Vec<Column<'a>>, Vec<String>), InputError> {
         let names = self.names();
         let mut taken: HashMap<usize, &str> = HashMap::new();
         let (mut columns, mut unknown) = (vec![], vec![]);
-        for (column, label) in self.table.columns.iter().enumerate() {
+        for (index, label) in self.table.columns.iter().enumerate() {
             let (coordinate, unit) = match self.meaning(label, &names) {
                 Meaning::Coordinate(coordinate, unit) => (coordinate, unit),
                 Meaning::PassedOver => continue,
@@ -152,7 +160,7 @@ impl Job<'_> {
                             .mot file, or column names: NAME_deg";
                 return Err(self.layout.error(self.layout.find(label, None), message, "here", help.to_owned()));
             }
-            columns.push((column, coordinate, unit));
+            columns.push(Column { label, index, coordinate, unit });
         }
         if columns.is_empty() { Err(self.nothing_known()) } else { Ok((columns, unknown)) }
     }
@@ -162,8 +170,8 @@ impl Job<'_> {
         let coordinates = || self.model.coordinates().iter().enumerate();
         let mut names: HashMap<String, usize> = coordinates().map(|(i, c)| (c.name.clone(), i)).collect();
         for (i, coordinate) in coordinates() {
-            for comma in [false, true] {
-                names.entry(plain(&coordinate.name, comma)).or_insert(i);
+            for csv in [false, true] {
+                names.entry(plain(&coordinate.name, csv)).or_insert(i);
             }
         }
         names
@@ -239,13 +247,13 @@ impl Job<'_> {
         Ok(balls)
     }
 
-    fn value(&self, row: usize, column: usize, coordinate: usize, unit: Unit) -> Result<f64, InputError> {
-        let about = &self.model.coordinates()[coordinate];
-        let given = self.table.rows[row][column];
+    fn value(&self, row: usize, column: &Column) -> Result<f64, InputError> {
+        let Column { label, unit, .. } = *column;
+        let about = &self.model.coordinates()[column.coordinate];
+        let given = self.table.rows[row][column.index];
         let rotation = about.kind == CoordinateKind::Rotation;
         let degrees = rotation && (unit == Unit::Degrees || (unit == Unit::File && self.degrees == Some(true)));
         let value = if degrees { given.to_radians() } else { given };
-        let label = &self.table.columns[column];
         if value.is_nan() || value.abs() > LARGEST {
             let help = format!("at most {LARGEST:e} rad or m");
             return Err(self.cell_error(row, label, &format!("holds {given:?}: too large"), help));
@@ -261,15 +269,15 @@ impl Job<'_> {
         Ok(value)
     }
 
-    fn normalise(&self, row: usize, first: usize, values: &mut [f64]) -> Result<(), InputError> {
+    fn normalise(&self, row: usize, first: usize, columns: &[Column], values: &mut [f64]) -> Result<(), InputError> {
         let end = (first + 4).min(values.len());
         let four = &mut values[first..end];
         let square = four.iter().map(|v| v * v).sum::<f64>();
         let length = square.sqrt();
         if length.is_nan() || (length - 1.0).abs() > QUATERNION_TOLERANCE {
             let name = &self.model.coordinates()[first].name;
-            let label = self.table.columns.iter().find(|l| l.strip_suffix(".value").unwrap_or(l) == name);
-            let label = label.unwrap_or(name);
+            let label =
+                columns.iter().find(|column| column.coordinate == first).map_or(name.as_str(), |column| column.label);
             let problem = format!("begins a quaternion of length {length}");
             let help = format!("its four components must have length 1 within {QUATERNION_TOLERANCE}");
             return Err(self.cell_error(row, label, &problem, help));

@@ -53,7 +53,7 @@ pub enum UnwritableTable {
 /// reads are exactly the numbers written; [`super::postures`] gives back the same bits without `in_degrees`, and with it
 /// angles within a relative 4.5e-16 (two roundings each way), everything else the same bits.
 ///
-/// Control characters in names become `_`, blanks around them too.
+/// Control characters and blanks in labels become `_`: OpenSim's `Storage` cuts labels at blanks. The name keeps its blanks.
 ///
 /// # Errors
 /// [`UnwritableTable`] if the table could not be read back.
@@ -154,9 +154,10 @@ fn body<R: AsRef<[f64]>>(
     Ok(())
 }
 
-/// A name as it can stand in a table: without control characters and blanks around it, for CSV without commas and quotes.
-pub(super) fn plain(name: &str, comma: bool) -> String {
-    let bad = |c: char| c.is_control() || (comma && (c == ',' || c == '"'));
+/// A name as it can stand in a table: without control characters; without blanks, at which OpenSim's `Storage` cuts labels,
+/// or, for CSV, without commas, quotes and blanks around it.
+pub(super) fn plain(name: &str, csv: bool) -> String {
+    let bad = |c: char| c.is_control() || if csv { c == ',' || c == '"' } else { c == ' ' };
     let mut plain: String = name.chars().map(|c| if bad(c) { '_' } else { c }).collect();
     if plain.starts_with(' ') {
         plain.replace_range(..1, "_");

@@ -234,8 +234,7 @@ pub(crate) fn passive_curve(
     text: &PassiveText,
 ) -> Result<PassiveCurve, InputError> {
     let (name, range) = (&coordinate.name, coordinate.range);
-    let place = |key| [path, &[key]].concat();
-    let refuse = |key: &str, error: PassiveError| at.error(&place(key), error.to_string(), None);
+    let refuse = |key: &str, error: PassiveError| at.error(&below(path, key), error.to_string(), None);
     let given = [
         text.curve.is_some(),
         text.double_exponential.is_some(),
@@ -249,7 +248,7 @@ pub(crate) fn passive_curve(
     let (key, curve) = if let Some(curve) = &text.curve {
         let Some(row) = data::library().curve(curve) else {
             let help = suggestion(curve, data::library().curve_names().collect::<Vec<_>>());
-            return Err(at.error(&place("curve"), format!("there is no passive curve `{curve}`"), help));
+            return Err(at.error(&below(path, "curve"), format!("there is no passive curve `{curve}`"), help));
         };
         // The built-in curve of this coordinate may run against its direction; others are taken as they are.
         let own = data::library().sources(name).filter(|s| s.curve == Some(curve.as_str()));
@@ -286,6 +285,11 @@ pub(crate) fn passive_curve(
         Some(ReshapeText::Stated(stated)) => (stated.zone_deg.to_radians(), stated.end_torque_nm),
     };
     data::reshaped(&curve, zone, end_torque).map_err(|error| refuse("reshape", error))
+}
+
+/// The path of a key of the table at `path`.
+fn below<'a>(path: &[&'a str], key: &'a str) -> Vec<&'a str> {
+    path.iter().copied().chain([key]).collect()
 }
 
 /// The law in rad.

@@ -10,11 +10,13 @@
 mod exact;
 mod law;
 mod mjcf;
+mod mjcf_body;
 mod names;
 mod osim;
 mod osim_functions;
 mod osim_joint;
 mod parts;
+mod steps;
 mod urdf;
 mod xml;
 

@@ -1,10 +1,10 @@
 //! Chains of motions as OpenSim's joints: three translations along axes of the parent's frame, then three rotations.
 
-use std::borrow::Cow;
-
 use contrapposto::math::Function;
-use contrapposto::model::{Drive, JointKind, Motion, Segment};
+use contrapposto::model::{Motion, Segment};
 use nalgebra::{Unit, Vector3};
+
+use super::steps::{By, steps};
 
 /// What drives one of the six axes.
 pub(super) enum Driver<'m> {
@@ -27,31 +27,20 @@ pub(super) struct Axis<'m> {
 pub(super) struct Piece<'m> {
     pub(super) slides: Vec<Axis<'m>>,
     pub(super) hinges: Vec<Axis<'m>>,
-    /// Its hinges are the angles of a ball, and there is nothing else.
-    pub(super) ball: bool,
-}
-
-/// A segment's motions with the coordinates they follow, by their index in the model.
-pub(super) fn steps(segment: &Segment) -> Vec<(Motion, Cow<'_, Drive>)> {
-    let first = segment.coordinates.start;
-    if let JointKind::Driven(motions) = &segment.joint_kind {
-        let counted = |drive: &'_ Drive| match drive {
-            Drive::Coordinate(c) => Drive::Coordinate(first + c),
-            Drive::Function(function, c) => Drive::Function(function.clone(), first + c),
-            Drive::Fixed(value) => Drive::Fixed(*value),
-        };
-        return motions.iter().map(|(motion, drive)| (*motion, Cow::Owned(counted(drive)))).collect();
-    }
-    let mut next = first;
-    let numbered = segment.joint_kind.motions().into_iter().map(|motion| {
-        let own = next;
-        next += motion.coordinates();
-        (motion, Cow::Owned(Drive::Coordinate(own)))
-    });
-    numbered.collect()
+    /// Its hinges are the angles of the ball with this first coordinate.
+    pub(super) ball: Option<usize>,
 }
 
 impl<'m> Driver<'m> {
+    fn new(by: By<'m>) -> Self {
+        match by {
+            By::Coordinate(c) => Self::Linear(vec![(c, 1.0)], 0.0),
+            By::Function(Function::Linear { slope, intercept }, c) => Self::Linear(vec![(c, *slope)], *intercept),
+            By::Function(function, c) => Self::Function(function, c),
+            By::Fixed(value) => Self::Constant(value),
+        }
+    }
+
     /// Coordinates that move it.
     pub(super) fn coordinates(&self) -> Vec<usize> {
         match self {
@@ -63,23 +52,17 @@ impl<'m> Driver<'m> {
 
     /// Takes in a further motion along the same axis, if both are linear.
     fn join(&mut self, other: &Self) -> bool {
-        let (mut terms, mut sum) = match self {
-            Self::Linear(terms, sum) => (terms.clone(), *sum),
-            Self::Constant(value) => (vec![], *value),
-            Self::Function(..) => return false,
+        let parts = |driver: &Self| match driver {
+            Self::Linear(terms, sum) => Some((terms.clone(), *sum)),
+            Self::Constant(value) => Some((vec![], *value)),
+            Self::Function(..) => None,
         };
-        match other {
-            Self::Linear(more, by) => {
-                if more.iter().any(|(c, _)| terms.iter().any(|(own, _)| own == c)) {
-                    return false;
-                }
-                terms.extend(more);
-                sum += by;
-            }
-            Self::Constant(by) => sum += by,
-            Self::Function(..) => return false,
+        let (Some((mut terms, sum)), Some((more, by))) = (parts(self), parts(other)) else { return false };
+        if more.iter().any(|(c, _)| terms.iter().any(|(own, _)| own == c)) {
+            return false;
         }
-        *self = if terms.is_empty() { Self::Constant(sum) } else { Self::Linear(terms, sum) };
+        terms.extend(more);
+        *self = if terms.is_empty() { Self::Constant(sum + by) } else { Self::Linear(terms, sum + by) };
         true
     }
 }
@@ -91,39 +74,80 @@ fn apart(a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
     a.cross(b).norm() > APART
 }
 
-/// Puts an axis into the list if OpenSim can take it there.
-fn place<'m>(list: &mut Vec<Axis<'m>>, axis: Axis<'m>) -> Option<Axis<'m>> {
-    if let Some(last) = list.last_mut()
-        && last.direction == axis.direction
-        && last.driver.join(&axis.driver)
-    {
-        return None;
+impl<'m> Piece<'m> {
+    /// Takes in a motion; gives it back if it does not fit.
+    fn add(&mut self, rotates: bool, axis: Axis<'m>) -> Option<Axis<'m>> {
+        if self.ball.is_some() || (!rotates && !self.hinges.is_empty()) {
+            return Some(axis);
+        }
+        let list = if rotates { &mut self.hinges } else { &mut self.slides };
+        if let Some(last) = list.last_mut()
+            && last.direction == axis.direction
+            && last.driver.join(&axis.driver)
+        {
+            return None;
+        }
+        if list.len() == 3 || list.iter().any(|other| !apart(&other.direction, &axis.direction)) {
+            return Some(axis);
+        }
+        list.push(axis);
+        None
     }
-    if list.len() == 3 || list.iter().any(|other| !apart(&other.direction, &axis.direction)) {
-        return Some(axis);
+
+    /// All axes.
+    pub(super) fn axes(&self) -> impl Iterator<Item = &Axis<'m>> {
+        self.slides.iter().chain(&self.hinges)
     }
-    list.push(axis);
-    None
+
+    /// Its coordinates, in the model's order.
+    pub(super) fn coordinates(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = self.axes().flat_map(|axis| axis.driver.coordinates()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Whether OpenSim calls the coordinate rotational: the last axis, rotations first, that it drives with slope 1.
+    pub(super) fn in_degrees(&self, coordinate: usize) -> bool {
+        let drives = |axis: &&Axis<'_>| match &axis.driver {
+            Driver::Linear(terms, _) => terms.contains(&(coordinate, 1.0)),
+            _ => false,
+        };
+        !self.slides.iter().any(|axis| drives(&axis)) && self.hinges.iter().any(|axis| drives(&axis))
+    }
 }
 
 /// The joints that a segment's motions need, nearest the parent first; one without motions for a weld.
 pub(super) fn pieces(segment: &Segment) -> Vec<Piece<'_>> {
-    let first = segment.coordinates.start;
-    let mut all = vec![Piece::default()];
-    let mut add = |rotates: bool, axis: Axis<'_>| {
-        let last = all.len() - 1;
-        let piece: &mut Piece<'_> = &mut all[last];
-        let refused = match rotates {
-            true => place(&mut piece.hinges, axis),
-            false if piece.hinges.is_empty() => place(&mut piece.slides, axis),
-            false => Some(axis),
+    let mut all = vec![];
+    let mut piece = Piece::default();
+    for (motion, by) in steps(segment) {
+        let (rotates, direction) = match motion {
+            Motion::Hinge(axis) => (true, axis),
+            Motion::Slide(axis) => (false, axis),
+            Motion::Ball => {
+                if !piece.hinges.is_empty() {
+                    all.push(std::mem::take(&mut piece));
+                }
+                let By::Coordinate(first) = by else { continue };
+                let angles = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+                // The first three of the ball's four coordinates stand for the angles.
+                piece.hinges = (first..).zip(angles).map(|(c, direction)| Axis { direction, driver: Driver::Linear(vec![(c, 1.0)], 0.0) }).collect();
+                piece.ball = Some(first);
+                continue;
+            }
         };
-        if let Some(axis) = refused {
-            let mut next = Piece::default();
-            if rotates { next.hinges.push(axis) } else { next.slides.push(axis) }
-            all.push(next);
+        if let Some(axis) = piece.add(rotates, Axis { direction, driver: Driver::new(by) }) {
+            all.push(std::mem::take(&mut piece));
+            piece.add(rotates, axis);
         }
-    };
-    let _ = (&mut add, first);
-    todo!()
+    }
+    all.push(piece);
+    all
+}
+
+/// An axis for a place among three that nothing uses, such that no two of them are one.
+pub(super) fn filler(used: &[Vector3<f64>]) -> Vector3<f64> {
+    let free = |axis: &Vector3<f64>| used.iter().all(|u| apart(u, axis));
+    [Vector3::x(), Vector3::y(), Vector3::z()].into_iter().find(free).unwrap_or(Vector3::x())
 }

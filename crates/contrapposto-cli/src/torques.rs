@@ -1,0 +1,264 @@
+//! `contrapposto torques`: what gravity, loads, ligaments and muscles give at every coordinate of a body at rest.
+
+mod frames;
+mod ground;
+mod loads;
+mod residual;
+mod text;
+
+
+use std::path::{Path, PathBuf};
+
+use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::posture::Posture;
+use contrapposto::statics::Load;
+use contrapposto_formats::motion::{self, Units, postures, read_table};
+
+use crate::args::TorquesArgs;
+use crate::fail::Fail;
+use crate::input::read;
+use crate::model_file::{open, tell};
+use crate::output::{Folder, Pending};
+use frames::{Order, Statics};
+use ground::GroundReaction;
+use residual::Residual;
+pub(crate) use text::plain_table;
+
+/// What the command works on.
+pub(crate) struct Job {
+    model: Model,
+    frames: Vec<(f64, Posture)>,
+    loads: Vec<Load>,
+    ground: Option<GroundReaction>,
+    gradient: bool,
+}
+
+pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
+    if args.model.model == Path::new("-") && args.postures == Path::new("-") {
+        return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
+    }
+    let target = args.out.as_deref().map(Target::new).transpose()?;
+    let opened = open(&args.model, true)?;
+    let mut notes = opened.notes;
+    let model = opened.model;
+    let frames = frames_of(args, &model, &mut notes)?;
+    let mut loads = vec![];
+    for text in &args.load {
+        loads.push(loads::weight(&model, text)?);
+    }
+    for text in &args.force {
+        loads.push(loads::force(&model, text)?);
+    }
+    let ground = match &args.grf {
+        None => None,
+        Some(path) => Some(GroundReaction::read(path, &args.grf_on, &model, &mut notes)?),
+    };
+    let job = Job { model, frames, loads, ground, gradient: args.gradient };
+    job.check()?;
+    outside(&job, &mut notes);
+    notes.iter().for_each(|note| tell("note", note));
+
+    let order = Order::new(&job.model);
+    let mut residual = Residual::new(&job.model);
+    if let Some(target) = target {
+        let mut file = target.begin()?;
+        let mut sink = |text: &str| file.append(text.as_bytes());
+        match target.form {
+            Form::Json => json(&job, &order, &mut residual, &mut sink)?,
+            Form::Table(separator) => table(&job, &order, separator, &mut residual, &mut sink)?,
+        }
+        target.folder.commit(vec![file])?;
+        residual = Residual::new(&job.model);
+    }
+    let mut out = Printed::default();
+    let mut sink = |text: &str| out.append(text);
+    match (&args.out, job.frames.as_slice()) {
+        _ if args.json => json(&job, &order, &mut residual, &mut sink)?,
+        (_, [_]) => job.run(&order, &mut residual, |frame| sink(&text::readable(&job.model, &order, frame)))?,
+        (Some(path), frames) => {
+            job.run(&order, &mut residual, |_| Ok(()))?;
+            sink(&format!("{} frames in {}\n", frames.len(), path.display()))?;
+        }
+        (None, _) => table(&job, &order, ',', &mut residual, &mut sink)?,
+    }
+    out.finish()?;
+    if let Some((kind, text)) = residual.told(&job.model, job.ground.is_some()) {
+        tell(kind, &text);
+    }
+    Ok(())
+}
+
+fn json(job: &Job, order: &Order, residual: &mut Residual, sink: &mut dyn FnMut(&str) -> Result<(), Fail>) -> Result<(), Fail> {
+    sink("[")?;
+    let mut before = "\n";
+    job.run(order, residual, |frame| {
+        let text = serde_json::to_string(&text::json(&job.model, order, frame));
+        sink(std::mem::replace(&mut before, ",\n"))?;
+        sink(&text.map_err(|error| Fail::job("JSON", error))?)
+    })?;
+    sink("\n]\n")
+}
+
+fn table(
+    job: &Job,
+    order: &Order,
+    separator: char,
+    residual: &mut Residual,
+    sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
+) -> Result<(), Fail> {
+    sink(&text::header(&job.model, order, job.frames.len(), separator, job.gradient))?;
+    job.run(order, residual, |frame| sink(&text::row(order, frame, separator)))
+}
+
+impl Job {
+    /// Everything that could go wrong in a frame, before the first one is printed.
+    fn check(&self) -> Result<(), Fail> {
+        let mut statics = Statics::new(&self.model, false);
+        for (frame, (_, posture)) in self.frames.iter().enumerate() {
+            statics.place(&self.model, posture).map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
+        }
+        self.ground.as_ref().map_or(Ok(()), |ground| ground.check(self.frames.iter().map(|(time, _)| *time)))
+    }
+
+    /// Computes frame after frame.
+    fn run(
+        &self,
+        order: &Order,
+        residual: &mut Residual,
+        mut visit: impl FnMut(&frames::Frame<'_>) -> Result<(), Fail>,
+    ) -> Result<(), Fail> {
+        let mut statics = Statics::new(&self.model, self.gradient);
+        let mut loads = vec![];
+        for (index, (time, posture)) in self.frames.iter().enumerate() {
+            let failed = |why: String| Fail::Refused(format!("frame {index}: {why}"));
+            statics.place(&self.model, posture).map_err(failed)?;
+            loads.clone_from(&self.loads);
+            if let Some(ground) = &self.ground {
+                ground.loads(*time, &self.model, statics.kinematics(), &mut loads);
+            }
+            statics.pull(&self.model, &loads).map_err(failed)?;
+            let frame = statics.frame(&self.model, order, index, *time);
+            residual.take(&frame);
+            visit(&frame)?;
+        }
+        Ok(())
+    }
+}
+
+fn frames_of(args: &TorquesArgs, model: &Model, notes: &mut Vec<String>) -> Result<Vec<(f64, Posture)>, Fail> {
+    if args.postures == Path::new("default") {
+        return Ok(vec![(0.0, model.default_posture())]);
+    }
+    let name = args.postures.display().to_string();
+    let bytes = read(&args.postures, motion::MOST_BYTES as u64).map_err(|fail| match fail {
+        Fail::Refused(why) => Fail::Refused(format!("{why}\n  POSTURES is a .mot, .sto or .csv file, or `default`")),
+        other => other,
+    })?;
+    let table = read_table(&name, &bytes)?;
+    let units = match (args.degrees, args.radians) {
+        (true, _) => Units::Degrees,
+        (_, true) => Units::Radians,
+        _ => Units::FromFile,
+    };
+    let read = postures(&table, &name, &bytes, model, units)?;
+    for (names, what) in [
+        (&read.missing, "coordinates without a column stand at their default"),
+        (&read.unknown, "columns that are no coordinate of the model are passed over"),
+    ] {
+        if !names.is_empty() {
+            notes.push(format!("{name}: {} {what}: {}", names.len(), first_of(names)));
+        }
+    }
+    if read.postures.is_empty() {
+        return Err(Fail::Refused(format!("{name}: holds no rows")));
+    }
+    Ok(read.postures)
+}
+
+fn first_of(names: &[String]) -> String {
+    let more = if names.len() > 12 { ", ..." } else { "" };
+    format!("{}{more}", names.iter().take(12).map(String::as_str).collect::<Vec<_>>().join(", "))
+}
+
+/// Says which coordinates leave their range.
+fn outside(job: &Job, notes: &mut Vec<String>) {
+    /// Beyond a limit without a word, rad or m.
+    const SLACK: f64 = 1e-3;
+    let mut said = vec![];
+    for (index, coordinate) in job.model.coordinates().iter().enumerate() {
+        let (min, max) = coordinate.range;
+        let measured = coordinate.kind != CoordinateKind::Quaternion && !job.model.is_dependent(index);
+        let leaves = |posture: &Posture| posture.values()[index] < min - SLACK || posture.values()[index] > max + SLACK;
+        if measured && job.frames.iter().any(|(_, posture)| leaves(posture)) {
+            said.push(format!("`{}`", coordinate.name));
+        }
+    }
+    if !said.is_empty() {
+        notes.push(format!("outside their range in some frame: {}", first_of(&said)));
+    }
+}
+
+/// A file for the results.
+struct Target {
+    folder: Folder,
+    name: String,
+    form: Form,
+}
+
+enum Form {
+    Json,
+    /// Cells apart by commas, or by tabs under OpenSim's header.
+    Table(char),
+}
+
+impl Target {
+    fn new(path: &Path) -> Result<Self, Fail> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        let form = match ending.as_deref() {
+            Some("csv") => Form::Table(','),
+            Some("sto" | "mot") => Form::Table('\t'),
+            Some("json") => Form::Json,
+            _ => {
+                let shown = path.display();
+                return Err(Fail::Refused(format!("--out {shown}: the name must end in .csv, .sto, .mot or .json")));
+            }
+        };
+        let (folder, name) = folder_and_name(path)?;
+        Ok(Self { folder: Folder::open(&folder)?, name, form })
+    }
+
+    fn begin(&self) -> Result<Pending, Fail> {
+        self.folder.begin(&self.name)
+    }
+}
+
+/// The folder that a file stands in, and its own name.
+pub(crate) fn folder_and_name(path: &Path) -> Result<(PathBuf, String), Fail> {
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name = name.ok_or_else(|| Fail::Refused(format!("{}: is no name of a file", path.display())))?;
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    Ok((parent.unwrap_or(Path::new(".")).to_owned(), name.to_owned()))
+}
+
+/// Standard output, in pieces of some size.
+#[derive(Default)]
+struct Printed {
+    waiting: String,
+}
+
+impl Printed {
+    const PIECE: usize = 1 << 16;
+
+    fn append(&mut self, text: &str) -> Result<(), Fail> {
+        self.waiting.push_str(text);
+        if self.waiting.len() >= Self::PIECE {
+            crate::output::print(&self.waiting)?;
+            self.waiting.clear();
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<(), Fail> {
+        crate::output::print(&self.waiting)
+    }
+}

@@ -1,0 +1,107 @@
+//! Tables of strangers: any bytes give a value or a complaint, in time proportional to their number.
+
+use std::time::{Duration, Instant};
+
+use contrapposto::model::CoordinateKind::Translation;
+use contrapposto_formats::motion::{Units, postures, read_table, write_sto};
+
+use super::common::{mutate, mutations};
+use super::{CSV, STATES, STORAGE, free, man, read, sto};
+
+#[test]
+fn any_bytes_give_a_table_or_a_complaint() {
+    let (man, free) = (man(), free());
+    let parts = [
+        "endheader\n",
+        "nRows=1\n",
+        "nColumns=2\n",
+        "inDegrees=no\n",
+        "inDegrees=yes\n",
+        "datarows 2\n",
+        "time",
+        "\t",
+        ",",
+        "\r\n",
+        "\n",
+        "nan",
+        "inf",
+        "1e999",
+        "1e308",
+        "hip_flexion_r",
+        ".angle_deg",
+        "_deg",
+        "/value",
+        "/speed",
+        "\"",
+        "\u{feff}",
+        "\u{2028}",
+        "é",
+        "root_qw,root_qx,root_qy,root_qz",
+        "99999999999999999999999",
+    ];
+    let (mut state, mut good, mut fitting) = (1, 0, 0);
+    let free_text = "time,root_qw,root_qx,root_qy,root_qz\n0,1,0,0,0\n";
+    for i in 0..mutations(20_000) {
+        let base = [STATES, STORAGE, CSV, free_text][i % 4];
+        let bytes = mutate(base.as_bytes(), &parts, &mut state);
+        let Ok(table) = read_table("file", &bytes) else { continue };
+        good += 1;
+        assert_eq!(table.times.len(), table.rows.len());
+        assert!(!table.rows.is_empty() && table.rows.iter().all(|row| row.len() == table.columns.len()));
+        assert!(table.rows.iter().flatten().chain(&table.times).all(|v| v.is_finite()));
+        for units in [Units::FromFile, Units::Degrees, Units::Radians] {
+            for model in [&man, &free] {
+                let Ok(found) = postures(&table, "file", &bytes, model, units) else { continue };
+                fitting += 1;
+                assert!(found.postures.iter().all(|(_, posture)| posture.check(model).is_ok()));
+            }
+        }
+        // What was read can be written and is then the same.
+        if table.columns.iter().all(|label| !label.contains(' ')) {
+            let columns: Vec<_> = table.columns.iter().map(|c| (c.as_str(), Translation)).collect();
+            let again = read(&write_sto(&table.name, &columns, false, &table.times, &table.rows).unwrap());
+            assert_eq!((&again.columns, &again.times, &again.rows), (&table.columns, &table.times, &table.rows));
+        }
+    }
+    assert!(good > 1000 && fitting > 1000, "{good} tables, {fitting} motions");
+}
+
+#[test]
+fn reading_takes_linear_time() {
+    // Time on the processor where the system tells it: other programs do not count.
+    let start = Instant::now();
+    let now = || {
+        let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+        let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
+        on_processor.map_or_else(|| start.elapsed(), Duration::from_nanos)
+    };
+    let time = |text: &str, repetitions: usize| {
+        let start = now();
+        for _ in 0..repetitions {
+            if let Ok(table) = read_table("x", text.as_bytes()) {
+                drop(postures(&table, "x", text.as_bytes(), &free(), Units::FromFile));
+            }
+        }
+        now() - start
+    };
+    let labels = |n: usize| (0..n).map(|i| format!("c{i}")).collect::<Vec<_>>().join("\t");
+    let shapes: [(&str, &dyn Fn(usize) -> String); 6] = [
+        ("rows", &|n| sto("", &("time\troot_tx\n".to_owned() + &"0\t0.25\n".repeat(n)))),
+        ("header", &|n| sto(&"comment of a stranger\n".repeat(n), "time\ta\n0\t1")),
+        ("bad last cell", &|n| sto("", &("time\troot_tx\n".to_owned() + &"0\t0.25\n".repeat(n) + "0\tx\n"))),
+        ("empty lines", &|n| "\n".repeat(8 * n)),
+        ("one long cell", &|n| format!("a\n0.{}", "12345678".repeat(n))),
+        ("columns", &|n| sto("", &format!("time\t{}\n0\t{}", labels(n / 20), vec!["1"; n / 20].join("\t")))),
+    ];
+    for (what, make) in shapes {
+        let (small, large) = (make(10_000), make(80_000));
+        // Eight small files against one of eight times the size; quadratic would take eight times as long. Clocks are
+        // coarse and machines busy: one of five measurements must do.
+        let linear = (0..5).any(|_| {
+            let (small, large) = (time(&small, 8), time(&large, 1));
+            println!("{what}: {small:?} {large:?}");
+            large < 3 * small + Duration::from_millis(20)
+        });
+        assert!(linear, "{what} takes more than linear time");
+    }
+}

@@ -1,0 +1,566 @@
+//! The writers: what they write our readers read as the same model, and other programs give the same torques.
+//!
+//! Files for other programs: `scripts/compare_adult.py`, which keeps its result as `data/adult_peers.json`.
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::{here, next};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::math::{Function, Spline, expression::Expression};
+use contrapposto::model::{
+    Adult, CoordinateKind, CoordinateSpec, Drive, JointKind, Model, ModelBuilder, Motion, Placement, SegmentSpec, Sex, adult,
+};
+use contrapposto::passive::{
+    CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveLaw, Reshape, Tabulated, Term,
+};
+use contrapposto::posture::Posture;
+use contrapposto::statics::{ExternalTorque, Gradient};
+use contrapposto_formats::write::{self, WriteError, Written};
+use contrapposto_formats::{mjcf, osim, urdf};
+use nalgebra::{Matrix3, Translation3, Unit, UnitQuaternion, Vector3};
+use serde_json::{Value, json};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Format {
+    Osim,
+    Urdf,
+    Mjcf,
+}
+
+use Format::{Mjcf, Osim, Urdf};
+
+fn write(model: &Model, format: Format) -> Result<Written, WriteError> {
+    match format {
+        Osim => write::osim(model),
+        Urdf => write::urdf(model),
+        Mjcf => write::mjcf(model),
+    }
+}
+
+fn read(text: &str, format: Format) -> Model {
+    let body = match format {
+        Osim => osim::read(text.as_bytes(), "test").map_err(|e| e.to_string()),
+        Urdf => urdf::read(text.as_bytes(), "test", &urdf::Options::default()).map_err(|e| e.to_string()),
+        Mjcf => {
+            let mut none = |_: &str| Err("no includes".to_owned());
+            mjcf::read(text.as_bytes(), "test", &mut none, &mjcf::Options::default()).map_err(|e| e.to_string())
+        }
+    };
+    body.unwrap_or_else(|e| panic!("{e}\n{text}")).model().unwrap_or_else(|e| panic!("{e}\n{text}")).model
+}
+
+/// A number in 0..1 from a seeded generator.
+fn random(state: &mut u64) -> f64 {
+    next(state) as f64 / (1u64 << 31) as f64
+}
+
+/// Values inside the ranges, by name; quaternions of unit length.
+fn posture(model: &Model, state: &mut u64) -> BTreeMap<String, f64> {
+    let mut values = BTreeMap::new();
+    let mut squares = 0.0;
+    for coordinate in model.coordinates() {
+        let (low, high) = (coordinate.range.0.max(-1.5), coordinate.range.1.min(1.5));
+        let value = low + (high - low).max(0.0) * random(state);
+        squares += if coordinate.kind == CoordinateKind::Quaternion { value * value } else { 0.0 };
+        values.insert(coordinate.name.clone(), value);
+    }
+    let length = squares.sqrt();
+    for coordinate in model.coordinates().iter().filter(|c| c.kind == CoordinateKind::Quaternion) {
+        *values.get_mut(&coordinate.name).unwrap() /= length;
+    }
+    values
+}
+
+/// By rate: external and passive torque, and the gradient's row by rate.
+type Torques = BTreeMap<String, (f64, f64, BTreeMap<String, f64>)>;
+
+fn torques(model: &Model, values: &BTreeMap<String, f64>) -> Torques {
+    let q: Vec<f64> = model.coordinates().iter().map(|c| values[&c.name]).collect();
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(q.clone())).unwrap();
+    let (mut external, mut gradient) = (ExternalTorque::new(model), Gradient::new(model));
+    external.update(model, &kinematics, &[]).unwrap();
+    external.gradient(model, &kinematics, &[], &mut gradient).unwrap();
+    let rates = model.rates();
+    let row = |i: usize| (0..rates.len()).map(|j| (rates[j].name.clone(), gradient.get(i, j))).collect();
+    let passive = |i: usize| {
+        let law = rates[i].coordinate.and_then(|c| model.coordinates()[c].passive.as_ref().map(|law| (c, law)));
+        law.map_or(0.0, |(c, law)| law.torque(c, kinematics.values()))
+    };
+    (0..rates.len()).map(|i| (rates[i].name.clone(), (external.torques()[i], passive(i), row(i)))).collect()
+}
+
+/// Greatest difference of torques and gradients on random postures, relative to their size.
+fn difference(ours: &Model, theirs: &Model, with_passive: bool) -> f64 {
+    let mut state = 7;
+    let mut worst: f64 = 0.0;
+    for _ in 0..20 {
+        let values = posture(ours, &mut state);
+        let (a, b) = (torques(ours, &values), torques(theirs, &values));
+        assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
+        let size = a.values().fold(1.0_f64, |s, (e, p, _)| s.max(e.abs()).max(p.abs()));
+        let steep = a.values().flat_map(|r| r.2.values()).fold(size, |s, v| s.max(v.abs()));
+        for (name, (external, passive, row)) in &a {
+            let (e, p, r) = &b[name];
+            worst = worst.max((external - e).abs() / size);
+            if with_passive {
+                worst = worst.max((passive - p).abs() / size);
+            }
+            worst = row.iter().fold(worst, |w, (other, value)| w.max((value - r[other]).abs() / steep));
+        }
+    }
+    worst
+}
+
+fn adults() -> Vec<Adult> {
+    let woman = Adult { sex: Sex::Female, stature: 1.52, mass: 50.0, ..Adult::default() };
+    vec![Adult::default(), woman, Adult::right_arm()]
+}
+
+#[test]
+fn adult_is_the_same_body_in_every_format() {
+    for size in adults() {
+        let model = adult(&size).unwrap();
+        for format in [Osim, Urdf, Mjcf] {
+            let written = write(&model, format).unwrap();
+            assert_eq!(written, write(&model, format).unwrap(), "the same text every time");
+            let back = read(&written.text, format);
+            assert!((back.mass() - model.mass()).abs() < 1e-12 * model.mass());
+            for coordinate in model.coordinates() {
+                let found = &back.coordinates()[back.coordinate(&coordinate.name).unwrap()];
+                assert_eq!((found.range, found.kind), (coordinate.range, coordinate.kind), "{}", coordinate.name);
+                if format != Urdf {
+                    assert_eq!(found.default, coordinate.default, "{}", coordinate.name);
+                }
+                if format == Osim && coordinate.curve().is_some() {
+                    let q = coordinate.range.0 + 0.37 * (coordinate.range.1 - coordinate.range.0);
+                    let own = back.coordinate(&coordinate.name).unwrap();
+                    let mut values = vec![0.0; back.coordinates().len()];
+                    values[own] = q;
+                    let torque = found.passive.as_ref().unwrap().torque(own, &values);
+                    let wanted = coordinate.curve().unwrap().torque(q);
+                    assert!((torque - wanted).abs() <= 1e-12 * wanted.abs().max(1.0), "{}", coordinate.name);
+                }
+            }
+            let worst = difference(&model, &back, false);
+            assert!(worst < 1e-12, "{format:?}: {worst:e}");
+            assert!(!written.lost.is_empty());
+        }
+    }
+}
+
+fn axis(x: f64, y: f64, z: f64) -> Unit<Vector3<f64>> {
+    Unit::new_normalize(Vector3::new(x, y, z))
+}
+
+fn pose(x: f64, y: f64, z: f64, turn: [f64; 3]) -> Placement {
+    Placement::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(turn[0], turn[1], turn[2]))
+}
+
+/// A segment of 2 kg with a skew inertia, joined at a skew place.
+fn segment(name: &str, parent: Option<&str>, kind: JointKind, coordinates: Vec<CoordinateSpec>) -> SegmentSpec {
+    SegmentSpec {
+        name: name.to_owned(),
+        parent: parent.map(str::to_owned),
+        mass: 2.0,
+        center_of_mass: Vector3::new(0.1, -0.3, 0.05),
+        inertia: Matrix3::new(0.05, 0.001, 0.002, 0.001, 0.04, 0.003, 0.002, 0.003, 0.03),
+        joint: format!("{name}_joint"),
+        kind,
+        in_parent: pose(0.1, -0.4, 0.2, [0.3, -0.2, 0.5]),
+        in_segment: pose(0.02, 0.03, -0.01, [0.1, 0.7, -0.4]),
+        coordinates,
+    }
+}
+
+fn named(names: &[&str]) -> Vec<CoordinateSpec> {
+    names.iter().map(|name| CoordinateSpec::new(name, (-1.2, 1.1))).collect()
+}
+
+fn build(segments: Vec<SegmentSpec>) -> Model {
+    let mut builder = ModelBuilder::new("made", Vector3::new(0.5, -9.5, 1.0).normalize() * 9.81);
+    segments.into_iter().for_each(|s| builder.segment(s).unwrap());
+    builder.build()
+}
+
+/// Every kind of joint without balls, with long and mixed chains.
+fn hinges_and_slides() -> Vec<SegmentSpec> {
+    let (x, y, z, skew) = (axis(1.0, 0.0, 0.0), axis(0.0, 1.0, 0.0), axis(0.0, 0.0, 1.0), axis(0.3, -0.5, 0.8));
+    let mut chain = named(&["c1", "c2", "c3", "c4", "c5", "c6"]);
+    chain[1].default = 0.25;
+    chain[4].default = -0.3;
+    chain[5].locked = true;
+    let mixed = vec![Motion::Hinge(x), Motion::Slide(skew), Motion::Slide(y), Motion::Hinge(z), Motion::Hinge(y), Motion::Hinge(z)];
+    vec![
+        segment("a", None, JointKind::Weld, vec![]),
+        segment("b", Some("a"), JointKind::Hinge(skew), named(&["h"])),
+        segment("c", Some("b"), JointKind::Slide(skew), named(&["s"])),
+        segment("d", Some("b"), JointKind::Universal([x, skew]), named(&["u1", "u2"])),
+        segment("e", Some("c"), JointKind::Gimbal([z, x, y]), named(&["g1", "g2", "g3"])),
+        segment("f", Some("d"), JointKind::Chain(mixed), chain),
+        SegmentSpec { mass: 0.0, inertia: Matrix3::zeros(), ..segment("g", Some("f"), JointKind::Hinge(y), named(&["m"])) },
+        segment("h", Some("g"), JointKind::Hinge(z), named(&["n"])),
+        segment("i", Some("h"), JointKind::Weld, vec![]),
+    ]
+}
+
+#[test]
+fn every_joint_of_hinges_and_slides_in_every_format() {
+    let model = build(hinges_and_slides());
+    for format in [Osim, Urdf, Mjcf] {
+        let written = write(&model, format).unwrap();
+        let back = read(&written.text, format);
+        let worst = difference(&model, &back, false);
+        assert!(worst < 1e-12, "{format:?}: {worst:e}\n{}", written.text);
+        let named = |m: &Model| m.coordinates().iter().map(|c| (c.name.clone(), c.range.0, c.range.1)).collect::<Vec<_>>();
+        let sorted = |m: &Model| {
+            let mut all = named(m);
+            all.sort_by(|a, b| a.0.cmp(&b.0));
+            all
+        };
+        assert_eq!(sorted(&back), sorted(&model));
+        if format != Urdf {
+            for c in model.coordinates() {
+                let found = &back.coordinates()[back.coordinate(&c.name).unwrap()];
+                assert_eq!((found.default, found.locked), (c.default, c.locked), "{format:?} {}", c.name);
+            }
+        }
+        println!("{format:?}: {worst:e}\n{}", written.lost.join("\n"));
+    }
+}
+
+#[test]
+fn driven_joints_and_couplings_in_osim() {
+    let (x, y, z) = (axis(1.0, 0.0, 0.0), axis(0.0, 1.0, 0.0), axis(0.1, 0.2, 1.0));
+    let spline = Spline::simm(&[-1.0, -0.2, 0.4, 1.3, 2.0], &[0.1, 0.3, -0.2, 0.0, 0.4]).unwrap();
+    let straight = Spline::piecewise_linear(&[-1.0, 0.1, 1.3], &[0.1, 0.3, -0.2]).unwrap();
+    let motions = vec![
+        (Motion::Slide(x), Drive::Function(Function::Spline(spline), 0)),
+        (Motion::Slide(y), Drive::Function(Function::Polynomial(vec![0.1, 0.2, -0.05]), 0)),
+        (Motion::Hinge(z), Drive::Coordinate(0)),
+        (Motion::Hinge(x), Drive::Function(Function::Sine { amplitude: 0.2, omega: 1.5, phase: 0.1, offset: 0.3 }, 1)),
+        (Motion::Hinge(y), Drive::Fixed(0.2)),
+    ];
+    let mut builder = ModelBuilder::new("driven", Vector3::new(0.0, -9.81, 0.0));
+    builder.segment(segment("a", None, JointKind::Driven(motions), named(&["p", "q"]))).unwrap();
+    builder.segment(segment("b", Some("a"), JointKind::Universal([x, y]), named(&["r", "s"]))).unwrap();
+    builder.couple("s", "r", Function::Spline(straight)).unwrap();
+    let model = builder.build();
+    let written = write::osim(&model).unwrap();
+    let back = read(&written.text, Osim);
+    assert!(difference(&model, &back, false) < 1e-12, "{}", written.text);
+    assert_eq!(back.couplings(), model.couplings());
+    let urdf = write::urdf(&model).unwrap_err();
+    assert_eq!(urdf.to_string(), "joint `a_joint`: URDF has no joint that a function drives");
+    assert!(matches!(write::mjcf(&model), Err(WriteError::Joint { .. })));
+}
+
+#[test]
+fn linear_couplings_in_urdf_and_polynomials_in_mjcf() {
+    let x = axis(1.0, 0.0, 0.0);
+    let make = |function: Function| {
+        let mut builder = ModelBuilder::new("coupled", Vector3::new(0.0, 0.0, -9.81));
+        let mut hinge = named(&["r"]);
+        hinge[0].default = 0.5;
+        builder.segment(segment("a", None, JointKind::Hinge(x), hinge)).unwrap();
+        builder.segment(segment("b", Some("a"), JointKind::Hinge(x), named(&["s"]))).unwrap();
+        builder.couple("s", "r", function).unwrap();
+        builder.build()
+    };
+    let linear = make(Function::Linear { slope: 0.5, intercept: 0.1 });
+    let back = read(&write::urdf(&linear).unwrap().text, Urdf);
+    assert_eq!(back.couplings(), linear.couplings());
+    assert!(difference(&linear, &back, false) < 1e-12);
+    let cubic = make(Function::Polynomial(vec![0.1, 0.2, -0.3, 0.04]));
+    let back = read(&write::mjcf(&cubic).unwrap().text, Mjcf);
+    assert!(difference(&cubic, &back, false) < 1e-12);
+    assert!(write::urdf(&cubic).unwrap().lost.iter().any(|l| l.contains("`s` follows `r` by a curve")));
+}
+
+#[test]
+fn balls_and_free_joints() {
+    let ball = || segment("b", Some("a"), JointKind::Ball, vec![]);
+    let free = |joint: &str| SegmentSpec {
+        joint: joint.to_owned(),
+        in_parent: Placement::identity(),
+        in_segment: Placement::identity(),
+        ..segment("a", None, JointKind::Free, ["tx", "ty", "tz"].iter().map(|e| {
+            CoordinateSpec::new(&format!("{joint}_{e}"), (f64::NEG_INFINITY, f64::INFINITY))
+        }).collect())
+    };
+    let mut lifted = free("root");
+    lifted.coordinates[1].default = 0.9;
+    let model = build(vec![lifted, ball()]);
+    let written = write::mjcf(&model).unwrap();
+    assert!(written.text.contains("<freejoint name=\"root\"/>"), "{}", written.text);
+    let back = read(&written.text, Mjcf);
+    assert!(difference(&model, &back, false) < 1e-12, "{}", written.text);
+    assert_eq!(back.default_posture(), model.default_posture());
+    // Elsewhere than at the world's origin it is three slides and a ball.
+    let skew = build(vec![segment("a", None, JointKind::Free, named(&["x", "y", "z"])), ball()]);
+    let back = read(&write::mjcf(&skew).unwrap().text, Mjcf);
+    assert!(difference(&skew, &back, false) < 1e-12);
+    let alone = build(vec![segment("a", None, JointKind::Free, free("a_joint").coordinates)]);
+    let back = read(&write::urdf(&alone).unwrap().text, Urdf);
+    assert!(difference(&alone, &back, false) < 1e-12);
+    assert_eq!(write::urdf(&model).unwrap_err().to_string(), "joint `b_joint`: URDF has no ball joint");
+    let written = write::osim(&skew).unwrap();
+    let back = read(&written.text, Osim);
+    assert_eq!(back.rates().len(), 9);
+    assert!(back.coordinate("b_joint_rx").is_some() && written.lost.iter().any(|l| l.contains("quaternion of joint `b_joint`")));
+}
+
+fn laws() -> Vec<PassiveLaw> {
+    let range = (-1.2, 1.1);
+    let limit = CoordinateLimitForce {
+        upper_stiffness: 20f64.to_degrees(),
+        upper_limit: 50f64.to_radians(),
+        lower_stiffness: 13.7f64.to_degrees(),
+        lower_limit: -61.3f64.to_radians(),
+        transition: 7.5f64.to_radians(),
+    };
+    let double = DoubleExponential {
+        lower: End { torque: 1.5, rate: 6.25, angle: -1.2 },
+        upper: End { torque: 2.5e-7, rate: 3.811, angle: 1.0 / 3.0 },
+        stiffness: 0.4,
+        neutral: -0.1,
+    };
+    let table = [(-1.5, 6.0), (-0.5, 1.0), (0.2, 0.0), (0.7, 0.0), (1.5, -4.0)];
+    let curve = |form, reshape| PassiveLaw::Curve(PassiveCurve::new(form, range, reshape).unwrap());
+    let reshape = Reshape { zone: 0.3, lower_stiffness: 3.0, upper_stiffness: 5.5 };
+    vec![
+        curve(double.form().unwrap(), None),
+        curve(double.form().unwrap(), Some(reshape)),
+        curve(limit.form().unwrap(), None),
+        curve(Tabulated::new(&table).unwrap().form(), None),
+        PassiveLaw::Sum(vec![
+            Term::Spring { stiffness: 3.0, rest: 0.2 },
+            Term::Spring { stiffness: 1.25, rest: -0.4 },
+        ]),
+        PassiveLaw::Sum(vec![Term::Polynomial { coefficients: vec![1.5, -0.3, 0.7], rest: 0.1 }]),
+        PassiveLaw::Sum(vec![
+            Term::CoordinateLimitForce(limit),
+            Term::double_exponential(double).unwrap(),
+            Term::Expression(Expression::parse("-k*q^3 + a; k = 2; a = exp(-q) < 0").unwrap_or_else(|_| Expression::parse("-k*q^3; k = 2").unwrap())),
+        ]),
+    ]
+}
+
+fn with_law(law: &PassiveLaw) -> Model {
+    let mut coordinates = named(&["h"]);
+    coordinates[0].passive = Some(law.clone());
+    build(vec![segment("a", None, JointKind::Hinge(axis(0.0, 0.0, 1.0)), coordinates)])
+}
+
+#[test]
+fn passive_laws_have_the_same_torque_and_slope_in_osim() {
+    for law in laws() {
+        let model = with_law(&law);
+        let written = write::osim(&model).unwrap();
+        assert_eq!(written.lost, Vec::<String>::new());
+        let back = read(&written.text, Osim);
+        let found = back.coordinates()[0].passive.as_ref().unwrap();
+        for i in 0..=100 {
+            let q = -1.2 + 2.3 * f64::from(i) / 100.0;
+            let (a, b) = (law.torque(0, &[q]), found.torque(0, &[q]));
+            assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0), "{law:?} at {q}: {a} {b}\n{}", written.text);
+        }
+    }
+}
+
+#[test]
+fn springs_stand_in_mjcf_and_the_rest_is_listed() {
+    for (law, held) in laws().iter().zip([false, false, false, false, true, true, false]) {
+        let model = with_law(law);
+        let written = write::mjcf(&model).unwrap();
+        let back = read(&written.text, Mjcf);
+        let lost = written.lost.iter().any(|l| l == "The passive torque of `h` is no spring and is not written.");
+        assert_eq!(lost, !held);
+        if held {
+            assert!(difference(&model, &back, true) < 1e-12);
+        }
+        assert!(write::urdf(&model).unwrap().lost.contains(&"Passive torques are not written: `h`.".to_owned()));
+    }
+}
+
+#[test]
+fn odd_names_and_what_programs_refuse() {
+    let mut odd = segment("a<b> & \"c\"", None, JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["it's\tq"]));
+    odd.joint = "j/k l".to_owned();
+    let model = build(vec![odd.clone()]);
+    let back = read(&write::urdf(&model).unwrap().text, Urdf);
+    assert!(back.coordinate("it's\tq").is_some() && back.segment("a<b> & \"c\"").is_some());
+    assert!(read(&write::mjcf(&model).unwrap().text, Mjcf).coordinate("it's\tq").is_some());
+    let written = write::osim(&model).unwrap();
+    assert!(read(&written.text, Osim).coordinate("it's_q").is_some());
+    assert!(written.lost.iter().any(|l| l == "The coordinate \"it's\\tq\" is named `it's_q` in the file."), "{:?}", written.lost);
+    odd.name.push('\u{1}');
+    for format in [Osim, Urdf, Mjcf] {
+        assert!(matches!(write(&build(vec![odd.clone()]), format), Err(WriteError::Name { .. })));
+    }
+    let light = SegmentSpec { mass: 0.0, ..segment("light", None, JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["l"])) };
+    let error = write::mjcf(&build(vec![light])).unwrap_err().to_string();
+    assert_eq!(error, "segment `light`: it moves and has no mass, which MuJoCo refuses, and carries nothing");
+}
+
+/// Our own model files and, where they are, published ones.
+fn imported() -> Vec<(String, Format, Model)> {
+    let shared = here().join("../../../shared/models");
+    let mut all = vec![];
+    for folder in [here().join("tests/models"), shared.join("opensim"), shared.join("human-gazebo"), shared.join("cmu"), shared.join("gepetto")] {
+        let Ok(entries) = std::fs::read_dir(&folder) else { continue };
+        let mut paths: Vec<_> = entries.map(|e| e.unwrap().path()).collect();
+        paths.sort();
+        for path in paths {
+            let format = match path.extension().and_then(|e| e.to_str()) {
+                Some("osim") => Osim,
+                Some("urdf") => Urdf,
+                Some("xml") => Mjcf,
+                _ => continue,
+            };
+            let bytes = std::fs::read(&path).unwrap();
+            let mut include = |name: &str| std::fs::read(folder.join(name)).map_err(|e| e.to_string());
+            let body = match format {
+                Osim => osim::read(&bytes, "m").ok(),
+                Urdf => urdf::read(&bytes, "m", &urdf::Options::default()).ok(),
+                Mjcf => mjcf::read(&bytes, "m", &mut include, &mjcf::Options::default()).ok(),
+            };
+            let Some(Ok(imported)) = body.map(|b| b.model()) else { continue };
+            all.push((path.file_name().unwrap().to_string_lossy().into_owned(), format, imported.model));
+        }
+    }
+    all
+}
+
+/// The model's `Debug` text without its numbers, and the numbers.
+fn skeleton(model: &Model) -> (String, Vec<f64>) {
+    let text = format!("{model:?}");
+    let (mut words, mut numbers) = (String::new(), vec![]);
+    for token in text.split_inclusive(|c: char| " ,[]{}()".contains(c)) {
+        let end = token.len() - token.ends_with(|c: char| " ,[]{}()".contains(c)) as usize;
+        match token[..end].parse::<f64>() {
+            Ok(value) => {
+                numbers.push(value);
+                words.push('#');
+                words.push_str(&token[end..]);
+            }
+            Err(_) => words.push_str(token),
+        }
+    }
+    (words, numbers)
+}
+
+#[test]
+fn imported_models_survive_their_own_format() {
+    let mut seen = 0;
+    for (name, format, model) in imported() {
+        let written = match write(&model, format) {
+            Ok(written) => written,
+            Err(error) => {
+                println!("{name}: {error}");
+                continue;
+            }
+        };
+        let back = read(&written.text, format);
+        let again = write(&back, format).unwrap();
+        let ((words, numbers), (words_back, numbers_back)) = (skeleton(&model), skeleton(&back));
+        let alike = words == words_back;
+        let changed = numbers.iter().zip(&numbers_back).filter(|(a, b)| a != b).count();
+        let worst = numbers.iter().zip(&numbers_back).fold(0.0_f64, |w, (a, b)| if a == b { w } else { w.max((a - b).abs() / a.abs().max(1.0)) });
+        println!(
+            "{name}: same words {alike}, {changed} of {} numbers differ, worst {worst:e}; text again the same: {}; lost: {:?}",
+            numbers.len(), again.text == written.text, written.lost
+        );
+        seen += 1;
+        let torque = difference(&model, &back, true);
+        println!("    torque {torque:e}");
+        assert!(torque < 1e-12, "{name}: {torque:e}");
+    }
+    assert!(seen >= 5);
+}
+
+/// Seed of the postures that other programs are asked about.
+const SEED: u64 = 20_070_707;
+
+/// Random postures in the ranges (slides half a metre about their default), and our external and passive torques there.
+fn answers(size: &Adult, count: usize) -> Value {
+    let model = adult(size).unwrap();
+    let mut state = SEED;
+    let mut cases = vec![];
+    for _ in 0..count {
+        let values: Vec<f64> = model
+            .coordinates()
+            .iter()
+            .map(|c| match c.kind {
+                CoordinateKind::Translation => c.default + random(&mut state) - 0.5,
+                _ => c.range.0 + (c.range.1 - c.range.0) * random(&mut state),
+            })
+            .collect();
+        let (external, passive) = external_and_passive(&model, &values);
+        cases.push(json!({ "posture": values, "external": external, "passive": passive }));
+    }
+    let names: Vec<&str> = model.coordinates().iter().map(|c| c.name.as_str()).collect();
+    let held = |c: &&contrapposto::model::Coordinate| c.curve().is_some();
+    let curves: Vec<&str> = model.coordinates().iter().filter(held).map(|c| c.name.as_str()).collect();
+    json!({
+        "sex": if size.sex == Sex::Female { "female" } else { "male" },
+        "stature": size.stature,
+        "mass": size.mass,
+        "coordinates": names,
+        "passive_curves": curves,
+        "cases": cases,
+    })
+}
+
+fn external_and_passive(model: &Model, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let by_name = model.coordinates().iter().map(|c| c.name.clone()).zip(values.iter().copied()).collect();
+    let found = torques(model, &by_name);
+    model.coordinates().iter().map(|c| (found[&c.name].0, found[&c.name].1)).unzip()
+}
+
+/// Adults that other programs are asked about.
+fn asked() -> [Adult; 2] {
+    let [man, woman, _] = <[Adult; 3]>::try_from(adults()).unwrap();
+    [man, woman]
+}
+
+/// For `scripts/compare_adult.py`: files and answers into the folder that `CONTRAPPOSTO_EXCHANGE` names.
+#[test]
+fn exchange() {
+    let Ok(folder) = std::env::var("CONTRAPPOSTO_EXCHANGE") else { return };
+    let folder = std::path::Path::new(&folder);
+    let mut all = vec![];
+    for (i, size) in asked().iter().enumerate() {
+        let model = adult(size).unwrap();
+        for (format, ending) in [(Osim, "osim"), (Urdf, "urdf"), (Mjcf, "xml")] {
+            std::fs::write(folder.join(format!("adult_{i}.{ending}")), write(&model, format).unwrap().text).unwrap();
+        }
+        all.push(answers(size, 100));
+    }
+    let answers = json!({ "seed": SEED, "adults": all });
+    std::fs::write(folder.join("answers.json"), answers.to_string()).unwrap();
+}
+
+#[test]
+fn other_programs_agree_about_the_adult() {
+    let text = std::fs::read_to_string(here().join("tests/data/adult_peers.json")).unwrap();
+    let kept: Value = serde_json::from_str(&text).unwrap();
+    let numbers = |v: &Value| v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect::<Vec<_>>();
+    for (size, kept) in asked().iter().zip(kept["adults"].as_array().unwrap()) {
+        let model = adult(size).unwrap();
+        let names: Vec<&str> = model.coordinates().iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(json!(names), kept["coordinates"], "the adult has changed: run scripts/compare_adult.py again");
+        assert_eq!((json!(size.stature), json!(size.mass)), (kept["stature"].clone(), kept["mass"].clone()));
+        for (tool, most) in [("pinocchio", 1e-9), ("mujoco", 1e-9), ("opensim", 1e-6)] {
+            let theirs = &kept["tools"][tool];
+            assert!(theirs["worst_external"].as_f64().unwrap() < most, "{tool}");
+            for (posture, external) in kept["postures"].as_array().unwrap().iter().zip(theirs["external"].as_array().unwrap()) {
+                let (ours, _) = external_and_passive(&model, &numbers(posture));
+                let worst = ours.iter().zip(numbers(external)).fold(0.0_f64, |w, (a, b)| w.max((a - b).abs()));
+                assert!(worst < most, "{tool}: {worst:e}; the adult has changed? run scripts/compare_adult.py again");
+            }
+        }
+    }
+}
