@@ -3,9 +3,13 @@
 use miette::{Diagnostic, NamedSource, SourceSpan};
 
 /// A refused input. Prints with file, line, column and a caret when shown through `miette`.
+#[derive(Debug)]
+pub struct InputError(Box<Complaint>);
+
+/// What is wrong, where, and what would be right.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[error("{message}")]
-pub struct InputError {
+struct Complaint {
     message: String,
     #[source_code]
     source_code: NamedSource<String>,
@@ -14,6 +18,28 @@ pub struct InputError {
     label: String,
     #[help]
     help: Option<String>,
+}
+
+impl std::fmt::Display for InputError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl std::error::Error for InputError {}
+
+impl Diagnostic for InputError {
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        self.0.help()
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.0.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+        self.0.labels()
+    }
 }
 
 /// An input text and its name, to complain about.
@@ -32,13 +58,13 @@ impl Source<'_> {
         label: impl Into<String>,
         help: Option<String>,
     ) -> InputError {
-        InputError {
+        InputError(Box::new(Complaint {
             message: message.into(),
             source_code: NamedSource::new(self.name, self.text.to_owned()),
             span: span.map(|range| SourceSpan::from((range.start, range.end - range.start))),
             label: label.into(),
             help,
-        }
+        }))
     }
 }
 
