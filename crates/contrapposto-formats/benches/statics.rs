@@ -3,6 +3,8 @@
 //!
 //! The peer's figures come from its own program in the same run: see docs/benchmarks.md.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
 use std::hint::black_box;
 use std::path::PathBuf;
 

@@ -2,6 +2,8 @@
 //! the models beside the project; without them these tests skip and say so. Conventions are converted here: the tools print
 //! what actuators must supply, our external torque is minus that.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
 use std::path::PathBuf;
 
 use contrapposto::kinematics::Kinematics;

@@ -1,6 +1,8 @@
 //! Does the tree still look the way ARCHITECTURE.md says? Modules use only what stands above them; crates only what they
 //! list. Guards against import cycles and against a page that has become untrue.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {

@@ -1,5 +1,7 @@
 //! Does the loop do what its parts promise together? Rest is enforced, the balance of torques holds, nothing leaves its range.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::{Adult, adult, data};

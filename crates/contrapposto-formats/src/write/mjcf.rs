@@ -12,11 +12,8 @@ use super::law::{self, Part};
 use super::mjcf_body::{Group, Joint, group, solid};
 use super::names::Names;
 use super::xml::{Xml, moments, number, numbers};
-use super::{WriteError, Written, common, exact, listed};
+use super::{PLACEHOLDER_LIMIT, WriteError, Written, common, exact, listed};
 use crate::body::{FREE_ENDINGS, Function};
-
-/// Written as a limit where a range has one only, rad or m.
-pub const PLACEHOLDER_LIMIT: f64 = 1e9;
 
 /// Writes the model as an MJCF file.
 ///

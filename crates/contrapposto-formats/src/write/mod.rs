@@ -63,6 +63,13 @@ pub enum WriteError {
     },
 }
 
+/// Written as a joint's greatest speed (rad/s or m/s): URDF asks for one, and models of posture know none.
+pub const PLACEHOLDER_VELOCITY: f64 = 10.0;
+/// Written as a joint's greatest effort (N m or N) where the strength of its muscle groups is not known.
+pub const PLACEHOLDER_EFFORT: f64 = 1000.0;
+/// Written as a limit where there is none but the format asks for one, rad or m.
+pub const PLACEHOLDER_LIMIT: f64 = 1e9;
+
 /// Stands at the head of every file.
 const MADE_BY: &str = concat!("Written by contrapposto ", env!("CARGO_PKG_VERSION"), ".");
 

@@ -13,16 +13,11 @@ use super::law;
 use super::names::Names;
 use super::steps::{By, moved, steps};
 use super::xml::{Xml, moments, number, numbers};
-use super::{WriteError, Written, common, exact, listed};
+use super::{
+    PLACEHOLDER_EFFORT, PLACEHOLDER_LIMIT, PLACEHOLDER_VELOCITY, WriteError, Written, common, exact, listed,
+};
 use crate::body::{FREE_ENDINGS, Function};
 use crate::urdf::GRAVITY;
-
-/// Written as a joint's greatest speed (rad/s or m/s): URDF asks for one, and models of posture know none.
-pub const PLACEHOLDER_VELOCITY: f64 = 10.0;
-/// Written as a joint's greatest effort (N m or N) where the strength of its muscle groups is not known.
-pub const PLACEHOLDER_EFFORT: f64 = 1000.0;
-/// Written as a limit where there is none but URDF asks for one, rad or m.
-pub const PLACEHOLDER_LIMIT: f64 = 1e9;
 
 /// Writes the model as a URDF file. Effort limits are the greater peak strength of a coordinate's two groups.
 ///

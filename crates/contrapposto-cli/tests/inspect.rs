@@ -1,0 +1,182 @@
+//! `contrapposto inspect` and `convert` through the real program, and what it will not open for a model's sake.
+
+mod program;
+
+use std::path::Path;
+use std::time::Instant;
+
+use program::{json, keys, leg, refused, run, shared, write};
+
+#[test]
+fn every_number_of_the_adult_has_a_status() {
+    let report = json(&["inspect", "adult:female,1.65m,60kg", "--json"]);
+    assert_eq!(report["format"], "built-in adult");
+    assert!((report["mass_kg"].as_f64().unwrap() - 60.0).abs() < 1e-9);
+    let order = report["coordinate_order"].as_array().unwrap();
+    assert_eq!(order.len(), report["coordinates"].as_object().unwrap().len());
+    let known = ["verified", "derived", "derived (partly assumed)", "recalled (unverified)", "assumed"];
+    let mut passive = 0;
+    for (name, coordinate) in report["coordinates"].as_object().unwrap() {
+        let sourced = |at: &serde_json::Value| {
+            assert!(known.contains(&at["status"].as_str().unwrap_or_default()), "{name}: {at}");
+            assert!(!at["source"].as_str().unwrap().is_empty(), "{name}: {at}");
+        };
+        sourced(&coordinate["range_source"]);
+        if !coordinate["passive"].is_null() {
+            sourced(&coordinate["passive"]["source"]);
+            assert!(coordinate["passive"]["curve"].is_string(), "{name}");
+            passive += 1;
+        }
+        for side in ["positive", "negative"] {
+            if !coordinate["strength"].is_null() {
+                sourced(&coordinate["strength"][side]["source"]);
+                assert!(coordinate["strength"][side]["peak_nm"].as_f64().unwrap() > 0.0);
+            }
+        }
+        if !coordinate["fatigue"].is_null() {
+            sourced(&coordinate["fatigue"]["source"]);
+        }
+    }
+    assert!(passive >= 7, "{passive}");
+    let readable = run(&["inspect", "adult"]);
+    assert_eq!(readable.code, 0, "{}", readable.told);
+    for part in ["elbow_flex_r", "sources:", "[1]", "assumed", "verified"] {
+        assert!(readable.out.contains(part), "{part}: {}", readable.out);
+    }
+}
+
+#[test]
+fn a_file_tells_its_segments_and_what_was_ignored() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = leg(1, "shin").replace("<worldbody>", "<asset/><actuator><motor joint=\"hip\"/></actuator><worldbody>");
+    let model = write(folder.path(), "leg.xml", &text);
+    let report = json(&["inspect", &model, "--json"]);
+    assert_eq!(report["format"], "MJCF");
+    assert_eq!(report["mass_kg"], 12.0);
+    assert_eq!(report["segments"][1]["parent"], "thigh");
+    assert_eq!(report["segments"][0]["joint"]["coordinates"], serde_json::json!(["hip"]));
+    assert_eq!(keys(&report["coordinates"]), ["hip", "shin"]);
+    assert_eq!(report["coordinates"]["hip"]["range"], serde_json::json!([-1.0, 1.0]));
+    assert_eq!(report["coordinates"]["hip"]["range_source"]["status"], "from the file");
+    let notes = report["notes"].to_string();
+    assert!(notes.contains("1 actuator"), "{notes}");
+    // No ending, no trouble: the outermost element tells.
+    let plain = write(folder.path(), "leg", &text);
+    assert_eq!(json(&["inspect", &plain, "--json"])["format"], "MJCF");
+    let other = write(folder.path(), "page.xml", "<html/>");
+    assert!(refused(&["inspect", &other]).contains("<html>"));
+}
+
+#[test]
+fn a_published_full_body_is_filled_joint_by_joint() {
+    let Some(model) = shared("models/opensim/gait2392_thelen2003muscle.osim") else { return };
+    let model = model.to_str().unwrap();
+    let report = json(&["inspect", model, "--json"]);
+    assert_eq!(report["coordinate_order"].as_array().unwrap().len(), 23);
+    let file = json(&["inspect", model, "--json", "--passive", "file"]);
+    assert!(file["coordinates"]["hip_flexion_r"]["passive"].is_null());
+    let knee = &report["coordinates"]["knee_angle_r"];
+    if knee["passive"].is_null() {
+        return; // The built-in data do not have the leg.
+    }
+    assert!(keys(&knee["passive"]).contains(&"source"));
+    let notes = report["notes"].to_string();
+    assert!(notes.contains("`knee_angle_r`: passive torque and strength from the built-in data"), "{notes}");
+    assert!(notes.contains("turned round: flexion is negative here"), "{notes}");
+    assert!(notes.contains("muscle") || notes.contains("Muscle"), "{notes}");
+}
+
+#[test]
+fn convert_writes_what_reads_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = write(folder.path(), "leg.xml", &leg(1, "shin"));
+    let external = |model: &str| {
+        let frames = json(&["torques", model, "default", "--json", "--passive", "file"]);
+        frames[0]["coordinates"]["hip"]["external"].as_f64().unwrap()
+    };
+    for name in ["out.osim", "out.xml"] {
+        let out = folder.path().join(name);
+        let answer = run(&["convert", &model, out.to_str().unwrap()]);
+        assert_eq!(answer.code, 0, "{}", answer.told);
+        assert!((external(out.to_str().unwrap()) - external(&model)).abs() < 1e-9, "{name}");
+    }
+    let told = refused(&["convert", &model, &model]);
+    assert!(told.contains("is the model itself"), "{told}");
+    let told = refused(&["convert", &model, folder.path().join("out.fbx").to_str().unwrap()]);
+    assert!(told.contains(".osim, .urdf"), "{told}");
+    assert!(!folder.path().join("out.fbx").exists());
+}
+
+fn including(name: &str) -> String {
+    format!(r#"<mujoco><include file="{name}"/></mujoco>"#)
+}
+
+/// A body that may be included.
+const PART: &str = r#"<mujocoinclude><worldbody><body name="secret_part"><joint name="turn" axis="0 0 1"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujocoinclude>"#;
+
+#[test]
+fn includes_stay_in_the_models_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = folder.path().join("model");
+    std::fs::create_dir_all(inside.join("parts")).unwrap();
+    let outside = write(folder.path(), "outside.xml", PART);
+    write(&inside, "part.xml", PART);
+    write(&inside.join("parts"), "deep.xml", &PART.replace("secret_part", "deep"));
+    let attempt = |name: &str| write(&inside, "main.xml", &including(name));
+
+    let good = attempt("parts/deep.xml");
+    assert_eq!(run(&["inspect", &good]).code, 0);
+    let mut attempts = vec![
+        outside,
+        "../outside.xml".to_owned(),
+        "parts/../../outside.xml".to_owned(),
+        "file:///etc/passwd".to_owned(),
+        "/etc/passwd".to_owned(),
+        "/dev/zero".to_owned(),
+        "parts".to_owned(),
+        "nowhere.xml".to_owned(),
+        "main.xml".to_owned(),
+        String::new(),
+    ];
+    let sparse = std::fs::File::create(inside.join("sparse.xml")).unwrap();
+    sparse.set_len(5 << 30).unwrap();
+    attempts.push("sparse.xml".to_owned());
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::symlink;
+        symlink("../outside.xml", inside.join("link.xml")).unwrap();
+        symlink("/dev/zero", inside.join("zero.xml")).unwrap();
+        symlink(folder.path(), inside.join("up")).unwrap();
+        symlink("loop.xml", inside.join("loop.xml")).unwrap();
+        attempts.extend(["link.xml", "zero.xml", "up/outside.xml", "loop.xml"].map(str::to_owned));
+        let made = std::process::Command::new("mkfifo").arg(inside.join("pipe.xml")).status();
+        if made.is_ok_and(|status| status.success()) {
+            attempts.push("pipe.xml".to_owned());
+        }
+        // A link that stays inside is a file like any other.
+        symlink("part.xml", inside.join("alias.xml")).unwrap();
+        assert_eq!(run(&["inspect", &attempt("alias.xml")]).code, 0);
+    }
+    for name in attempts {
+        let begun = Instant::now();
+        let told = refused(&["inspect", &attempt(&name)]);
+        assert!(!told.contains("secret_part") && !told.contains("root:"), "{name}: {told}");
+        assert!(begun.elapsed().as_secs() < 5, "{name}");
+    }
+}
+
+#[test]
+fn models_that_are_no_plain_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::File::create(path("sparse.osim")).unwrap().set_len(5 << 30).unwrap();
+    let mut models = vec![path("sparse.osim"), path(""), "/dev/zero".to_owned()];
+    if std::process::Command::new("mkfifo").arg(path("pipe.urdf")).status().is_ok_and(|status| status.success()) {
+        models.push(path("pipe.urdf"));
+    }
+    for model in models.iter().filter(|model| Path::new(model).exists()) {
+        refused(&["inspect", model]);
+        refused(&["torques", "adult", model]);
+    }
+}
