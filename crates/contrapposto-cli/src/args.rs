@@ -107,10 +107,15 @@ pub(crate) struct MinimizeArgs {
 }
 
 #[derive(Debug, Parser)]
-#[command(after_help = "Examples:\n  contrapposto passive elbow_flex_r --out out\n  contrapposto passive hip_flexion --json")]
+#[command(after_help = "Examples:\n  contrapposto passive elbow_flex_r --out out\n  contrapposto passive hip_flexion --json\n  \
+    contrapposto passive --list")]
 pub(crate) struct PassiveArgs {
     /// A coordinate of the built-in adult (`elbow_flex_r`) or a built-in curve (`elbow_neutral`).
-    pub(crate) coordinate: String,
+    #[arg(required_unless_present = "list")]
+    pub(crate) coordinate: Option<String>,
+    /// List the built-in curves by coordinate, with status and source.
+    #[arg(long, conflicts_with_all = ["coordinate", "out"])]
+    pub(crate) list: bool,
     /// Folder for the picture (default: this folder); with --json nothing is drawn unless it is given.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

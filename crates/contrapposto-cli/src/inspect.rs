@@ -86,7 +86,8 @@ fn readable(opened: &Opened, file: &str) -> String {
     let mut table = plain_table();
     table.set_header(["segment", "parent", "kg", "joint", "coordinates"]);
     for segment in model.segments() {
-        let names: Vec<&str> = model.coordinates()[segment.coordinates.clone()].iter().map(|c| c.name.as_str()).collect();
+        let names: Vec<&str> =
+            model.coordinates()[segment.coordinates.clone()].iter().map(|c| c.name.as_str()).collect();
         table.add_row([
             segment.name.clone(),
             segment.parent.map_or("ground".to_owned(), |parent| model.segments()[parent].name.clone()),
@@ -112,7 +113,15 @@ fn coordinates(opened: &Opened, seen: &mut Seen) -> comfy_table::Table {
     use contrapposto::model::CoordinateKind::{Quaternion, Rotation, Translation};
     let model = &opened.model;
     let mut table = plain_table();
-    table.set_header(["coordinate", "positive", "range", "default", "passive, N m at limits", "strength +/-, N m", "fatigue"]);
+    table.set_header([
+        "coordinate",
+        "positive",
+        "range",
+        "default",
+        "passive, N m at limits",
+        "strength +/-, N m",
+        "fatigue",
+    ]);
     for (index, coordinate) in model.coordinates().iter().enumerate() {
         let known = Known::of(opened, index);
         let shown = |x: f64| match coordinate.kind {
@@ -153,7 +162,15 @@ fn coordinates(opened: &Opened, seen: &mut Seen) -> comfy_table::Table {
         };
         let default = format!("{}{unit}", shown(coordinate.default));
         let range = format!("{range}{}", seen.mark(known.range.as_ref()));
-        table.add_row([coordinate.name.clone(), coordinate.positive.clone(), range, default, passive, strength, fatigue]);
+        table.add_row([
+            coordinate.name.clone(),
+            coordinate.positive.clone(),
+            range,
+            default,
+            passive,
+            strength,
+            fatigue,
+        ]);
     }
     table
 }

@@ -114,6 +114,10 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<Opened, Fail> {
         Some(from) => from == PassiveFrom::Library,
         None => filled && args.overlay.is_none(),
     };
+    if filled && !fill && args.passive.is_none() && format != Format::Adult {
+        let text = "with an overlay nothing else is filled from the built-in data; --passive library does so";
+        notes.push(text.to_owned());
+    }
     if fill && format != Format::Adult {
         model = fill::fill(model, format, &mut origins, &mut notes)?;
     }

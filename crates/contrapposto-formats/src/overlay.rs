@@ -178,7 +178,10 @@ impl Table<'_> {
         said.push(format!("range {min} .. {max} {word}"));
         let after = model.coordinates()[index].default;
         if after != before {
-            said.push(format!("default moved into it, to {} {word}", if word == "deg" { after.to_degrees() } else { after }));
+            said.push(format!(
+                "default moved into it, to {} {word}",
+                if word == "deg" { after.to_degrees() } else { after }
+            ));
         }
         Ok(true)
     }

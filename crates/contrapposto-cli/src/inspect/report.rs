@@ -108,18 +108,22 @@ pub(super) fn report<'a>(opened: &'a Opened, file: &'a str) -> Report<'a> {
         mass_kg: model.mass(),
         gravity_m_s2: model.gravity().into(),
         center_of_mass_m: Kinematics::new(model).center_of_mass(model).map(Into::into),
-        segments: model.segments().iter().map(|segment| SegmentText {
-            name: &segment.name,
-            parent: segment.parent.map(|parent| model.segments()[parent].name.as_str()),
-            mass_kg: segment.mass,
-            center_of_mass_m: segment.center_of_mass.into(),
-            inertia_kg_m2: [0, 1, 2].map(|i| [0, 1, 2].map(|j| segment.inertia[(i, j)])),
-            joint: JointText {
-                name: &segment.joint,
-                kind: joint_word(&segment.joint_kind),
-                coordinates: coordinates[segment.coordinates.clone()].iter().map(|c| c.name.as_str()).collect(),
-            },
-        }).collect(),
+        segments: model
+            .segments()
+            .iter()
+            .map(|segment| SegmentText {
+                name: &segment.name,
+                parent: segment.parent.map(|parent| model.segments()[parent].name.as_str()),
+                mass_kg: segment.mass,
+                center_of_mass_m: segment.center_of_mass.into(),
+                inertia_kg_m2: [0, 1, 2].map(|i| [0, 1, 2].map(|j| segment.inertia[(i, j)])),
+                joint: JointText {
+                    name: &segment.joint,
+                    kind: joint_word(&segment.joint_kind),
+                    coordinates: coordinates[segment.coordinates.clone()].iter().map(|c| c.name.as_str()).collect(),
+                },
+            })
+            .collect(),
         coordinate_order: coordinates.iter().map(|c| c.name.as_str()).collect(),
         coordinates: coordinates
             .iter()

@@ -32,7 +32,9 @@ fn parsed(text: &str) -> Result<Adult, String> {
                 } else if part.is_empty() {
                     return Err("something is missing between the commas".to_owned());
                 } else {
-                    return Err(format!("`{part}` is neither a sex (female, male), a stature (1.65m) nor a mass (60kg)"));
+                    return Err(format!(
+                        "`{part}` is neither a sex (female, male), a stature (1.65m) nor a mass (60kg)"
+                    ));
                 }
             }
         };

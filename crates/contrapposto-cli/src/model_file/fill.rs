@@ -54,7 +54,8 @@ pub(super) fn fill(
             Ok((law, sign))
         });
         match filled {
-            Err(why) => notes.push(format!("`{name}`: no passive torque in the file, and the built-in one is not applied: {why}")),
+            Err(why) => notes
+                .push(format!("`{name}`: no passive torque in the file, and the built-in one is not applied: {why}")),
             Ok((law, sign)) => {
                 notes.push(said(coordinate, found, sign));
                 let groups = found.groups.clone().filter(|_| coordinate.groups.is_none());
@@ -116,7 +117,9 @@ impl<'a> Signs<'a> {
         let along = theirs.dot(&ours);
         if along.abs() < AGREE {
             let degrees = along.acos().to_degrees();
-            return Err(format!("its direction cannot be verified, for its axis stands at {degrees:.0} deg to the expected one"));
+            return Err(format!(
+                "its direction cannot be verified, for its axis stands at {degrees:.0} deg to the expected one"
+            ));
         }
         let coordinate = &self.model.coordinates()[index];
         if OTHER_ZERO.contains(&coordinate.name.as_str()) && coordinate.range.0.abs() < BEYOND {
@@ -170,9 +173,11 @@ fn law_for(
             for (slot, neighbour) in neighbours.iter_mut().zip(coupled.neighbours) {
                 let Some((theirs, their_sign)) = neighbour else { continue };
                 let name = &signs.twin.coordinates()[theirs].name;
-                let index = signs.model.coordinates().iter().position(|c| {
-                    known(signs.twin, &c.name).is_some_and(|(index, _)| index == theirs)
-                });
+                let index = signs
+                    .model
+                    .coordinates()
+                    .iter()
+                    .position(|c| known(signs.twin, &c.name).is_some_and(|(index, _)| index == theirs));
                 // What the law depends on must be there, and turn the way it says.
                 let index = index.ok_or_else(|| format!("its law needs `{name}`, which the model does not have"))?;
                 let turned = signs.sign(index, theirs).map_err(|why| format!("its law needs `{name}`, but {why}"))?;
@@ -194,10 +199,8 @@ fn turned(groups: [MuscleGroup; 2], sign: f64) -> [MuscleGroup; 2] {
     if sign > 0.0 {
         return groups;
     }
-    let [positive, negative] = groups.map(|group| MuscleGroup {
-        strength: Strength { best: -group.strength.best, ..group.strength },
-        ..group
-    });
+    let [positive, negative] = groups
+        .map(|group| MuscleGroup { strength: Strength { best: -group.strength.best, ..group.strength }, ..group });
     [negative, positive]
 }
 
@@ -210,7 +213,9 @@ fn said(coordinate: &Coordinate, found: &Coordinate, sign: f64) -> String {
     let (low, high) = mirrored(found.range, sign);
     let beyond = if min < low - BEYOND || max > high + BEYOND {
         let [min, max, low, high] = [min, max, low, high].map(f64::to_degrees);
-        format!("; the file's range {min:.0} .. {max:.0} deg goes beyond {low:.0} .. {high:.0} deg, for which it is meant")
+        format!(
+            "; the file's range {min:.0} .. {max:.0} deg goes beyond {low:.0} .. {high:.0} deg, for which it is meant"
+        )
     } else {
         String::new()
     };

@@ -99,7 +99,8 @@ impl Order {
 /// `root_fx` for the slide `root_tx` of a joint that has a ball as well.
 fn force_name(model: &Model, coordinate: usize) -> Option<String> {
     let name = &model.coordinates()[coordinate].name;
-    let (joint, axis) = ["x", "y", "z"].iter().find_map(|axis| Some((name.strip_suffix(&format!("_t{axis}"))?, axis)))?;
+    let (joint, axis) =
+        ["x", "y", "z"].iter().find_map(|axis| Some((name.strip_suffix(&format!("_t{axis}"))?, axis)))?;
     let ball = model.coordinate(&format!("{joint}_qw"))?;
     let free = model.coordinates()[ball].kind == CoordinateKind::Quaternion;
     free.then(|| format!("{joint}_f{axis}"))

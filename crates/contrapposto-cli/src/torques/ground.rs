@@ -40,10 +40,14 @@ impl GroundReaction {
         let table = read_table(&name, &read(path, motion::MOST_BYTES as u64)?)?;
         let refuse = |why: String| Fail::Refused(format!("{name}: {why}"));
         let labels: Vec<String> = table.columns.iter().map(|label| label.to_ascii_lowercase()).collect();
-        let found: Vec<Columns> =
-            labels.iter().filter_map(|label| Columns::find(label, &labels)).collect::<Result<_, _>>().map_err(refuse)?;
+        let found: Vec<Columns> = labels
+            .iter()
+            .filter_map(|label| Columns::find(label, &labels))
+            .collect::<Result<_, _>>()
+            .map_err(refuse)?;
         if found.is_empty() {
-            let why = "no column is named like `ground_force_vx` (with ground_force_px and, if wanted, ground_torque_x)";
+            let why =
+                "no column is named like `ground_force_vx` (with ground_force_px and, if wanted, ground_torque_x)";
             return Err(refuse(why.to_owned()));
         }
         if !on.is_empty() && on.len() != found.len() {
@@ -57,16 +61,21 @@ impl GroundReaction {
         let mut plates = vec![];
         for (i, columns) in found.into_iter().enumerate() {
             let segment = match on.get(i) {
-                Some(segment) => {
-                    model.segment(segment).ok_or_else(|| Fail::Refused(format!("--grf-on: {}", no_segment(model, segment))))?
-                }
+                Some(segment) => model
+                    .segment(segment)
+                    .ok_or_else(|| Fail::Refused(format!("--grf-on: {}", no_segment(model, segment))))?,
                 None => {
                     let guess = columns.guess(i);
                     let segment = model.segment(guess).ok_or_else(|| {
                         let label = &columns.label;
-                        refuse(format!("the segment that `{label}` acts on is not known: name one a plate with --grf-on SEG,SEG"))
+                        refuse(format!(
+                            "the segment that `{label}` acts on is not known: name one a plate with --grf-on SEG,SEG"
+                        ))
                     })?;
-                    notes.push(format!("`{}` of {name} is taken to act on `{guess}`; --grf-on says otherwise", columns.label));
+                    notes.push(format!(
+                        "`{}` of {name} is taken to act on `{guess}`; --grf-on says otherwise",
+                        columns.label
+                    ));
                     segment
                 }
             };

@@ -59,7 +59,8 @@ fn checked(model: &Model, load: Load) -> Result<Load, String> {
 fn segment(model: &Model, text: &str) -> Result<(usize, String), String> {
     let text = text.trim();
     let named = model.segments().iter().enumerate().filter(|(_, segment)| {
-        text.strip_prefix(segment.name.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(char::is_whitespace))
+        text.strip_prefix(segment.name.as_str())
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(char::is_whitespace))
     });
     let Some((index, found)) = named.max_by_key(|(_, segment)| segment.name.len()) else {
         let given = text.split_whitespace().next().unwrap_or_default();
@@ -73,7 +74,8 @@ fn segment(model: &Model, text: &str) -> Result<(usize, String), String> {
 pub(super) fn no_segment(model: &Model, given: &str) -> String {
     let names = || model.segments().iter().map(|segment| segment.name.as_str());
     // The distance of two words costs their product.
-    let near = Some(given).filter(|given| given.len() <= 64).and_then(|given| contrapposto_formats::nearest(given, names()));
+    let near =
+        Some(given).filter(|given| given.len() <= 64).and_then(|given| contrapposto_formats::nearest(given, names()));
     let hint = match near {
         Some(name) => format!("did you mean `{name}`?"),
         None => format!("there are: {}", names().take(60).collect::<Vec<_>>().join(", ")),

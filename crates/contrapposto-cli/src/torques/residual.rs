@@ -59,7 +59,8 @@ impl Residual {
         if *force < 1e-6 * weight.max(1.0) && *moment < 1e-6 * weight.max(1.0) {
             return None;
         }
-        let residual = format!("residual force {force:.2} N (frame {at_force}), moment {moment:.2} N m (frame {at_moment})");
+        let residual =
+            format!("residual force {force:.2} N (frame {at_force}), moment {moment:.2} N m (frame {at_moment})");
         Some(if grounded {
             ("note", format!("`{joint}` still carries what muscles cannot give: {residual}"))
         } else {

@@ -79,7 +79,9 @@ pub(super) fn header(model: &Model, order: &Order, frames: usize, separator: cha
     }
     if gradient {
         for row in &order.rows {
-            labels.extend(order.rows.iter().map(|column| format!("{}.external_by.{}", plain(&row.name), plain(&column.name))));
+            labels.extend(
+                order.rows.iter().map(|column| format!("{}.external_by.{}", plain(&row.name), plain(&column.name))),
+            );
         }
     }
     let mut text = String::new();
@@ -109,7 +111,7 @@ pub(super) fn row(order: &Order, frame: &Frame<'_>, separator: char) -> String {
         if let Some(c) = row.coordinate {
             put(if row.turns { frame.values[c].to_degrees() } else { frame.values[c] });
         }
-        [torques.external, torques.passive, torques.active].map(&mut put);
+        [torques.external, torques.passive, torques.active].into_iter().for_each(&mut put);
     }
     frame.gradient.iter().flatten().flatten().for_each(|entry| put(*entry));
     text.push('\n');
@@ -144,7 +146,7 @@ pub(super) fn readable(model: &Model, order: &Order, frame: &Frame<'_>) -> Strin
         let names = order.rows.iter().map(|row| row.name.clone());
         table.set_header(std::iter::once("d external / d".to_owned()).chain(names));
         for (row, entries) in order.rows.iter().zip(gradient) {
-            let entries = entries.iter().map(|entry| format!("{entry:.3}"));
+            let entries = entries.iter().map(|entry| shown(*entry));
             table.add_row(std::iter::once(row.name.clone()).chain(entries));
         }
         let _ = write!(text, "\nN m (N) per rad (m):\n{table}\n");
@@ -158,10 +160,17 @@ fn cells(row: &Row, torques: &Torques, frame: &Frame<'_>) -> [String; 6] {
         Some(value) if row.turns => format!("{:.2} deg", value.to_degrees()),
         Some(value) => format!("{value:.4} m"),
     };
-    let [external, passive, active] = [torques.external, torques.passive, torques.active].map(|x| format!("{x:.3}"));
+    let [external, passive, active] = [torques.external, torques.passive, torques.active].map(shown);
     [row.name.clone(), at, external, passive, active, if row.turns { "N m" } else { "N" }.to_owned()]
 }
 
+/// Three places, and no minus before nothing.
+fn shown(value: f64) -> String {
+    let text = format!("{value:.3}");
+    if text == "-0.000" { "0.000".to_owned() } else { text }
+}
+
+/// A table without lines.
 pub(crate) fn plain_table() -> Table {
     let mut table = Table::new();
     table.load_style(comfy_table::presets::NOTHING);

@@ -1,8 +1,8 @@
 //! A model as an MJCF file.
 //!
 //! Bodies lie in each other, all hinges and slides of a chain on one body, each with its axis and anchor in that body's frame.
-//! MuJoCo refuses moving bodies without mass: such a segment gives its motions to the one that it carries. Gravity is the
-//! model's own. The file stands as the model does by default (`ref`).
+//! MuJoCo refuses moving bodies without mass: such a segment gives its motions to the one that it carries; one that carries
+//! none or several gets [`FEATHER_MASS`]. Gravity is the model's own. The file stands as the model does by default (`ref`).
 
 use contrapposto::model::{Coordinate, JointKind, Model, Motion, Placement};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
@@ -12,7 +12,7 @@ use super::law::{self, Part};
 use super::mjcf_body::{Group, Joint, group, solid};
 use super::names::Names;
 use super::xml::{Xml, moments, number, numbers};
-use super::{PLACEHOLDER_LIMIT, WriteError, Written, common, exact, listed};
+use super::{FEATHER_INERTIA, FEATHER_MASS, PLACEHOLDER_LIMIT, WriteError, Written, common, exact, listed};
 use crate::body::{FREE_ENDINGS, Function};
 
 /// Writes the model as an MJCF file.
@@ -21,8 +21,7 @@ use crate::body::{FREE_ENDINGS, Function};
 /// joints with several coordinates, segments without mass that move.
 ///
 /// # Errors
-/// [`WriteError`] for joints that functions drive, for bodies with more than six degrees of freedom, and for segments without
-/// mass that carry nothing, or several segments.
+/// [`WriteError`] for joints that functions drive, and for bodies with more than six degrees of freedom.
 pub fn mjcf(model: &Model) -> Result<Written, WriteError> {
     let lost = common(model)?;
     let mut writer = Writer::new(model, lost);
@@ -110,7 +109,13 @@ impl<'m> Writer<'m> {
             true => segment.inertia,
             false => turn.inverse() * segment.inertia * turn,
         };
-        if segment.mass != 0.0 {
+        if group.feather {
+            self.lost.push(format!(
+                "Segment `{name}` has no mass, which MuJoCo refuses in what moves: it is {FEATHER_MASS:e} kg and {FEATHER_INERTIA:e} kg m^2."
+            ));
+            let (mass, inertia) = (number(FEATHER_MASS), numbers(&[FEATHER_INERTIA; 3]));
+            self.xml.leaf("inertial", &[("pos", "0 0 0"), ("mass", &mass), ("diaginertia", &inertia)]);
+        } else if segment.mass != 0.0 {
             let (inertia, changed) = solid(&inertia);
             if changed {
                 self.lost.push(format!("The inertia of `{name}` is not that of a solid body; the file has a ball's of that size."));

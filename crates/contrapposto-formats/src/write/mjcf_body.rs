@@ -32,6 +32,8 @@ pub(super) struct Group {
     pub(super) segment: usize,
     /// Those without mass before it.
     pub(super) merged: Vec<usize>,
+    /// It moves, has no mass, and what it carries is not one segment that could have its motions.
+    pub(super) feather: bool,
     /// All motions, nearest the parent first.
     pub(super) moves: Vec<Moves>,
     in_parent: Placement,
@@ -51,7 +53,7 @@ pub(super) struct Joint {
 /// The body that begins with this segment; `children` of each segment, the last one first.
 pub(super) fn group(model: &Model, children: &[Vec<usize>], first: usize) -> Result<Group, WriteError> {
     let mut segment = first;
-    let mut merged = vec![];
+    let (mut merged, mut feather) = (vec![], false);
     let mut moves = motions(model, first)?;
     loop {
         let own = &model.segments()[segment];
@@ -60,11 +62,8 @@ pub(super) fn group(model: &Model, children: &[Vec<usize>], first: usize) -> Res
             break;
         }
         let [child] = children[segment][..] else {
-            let problem = match children[segment].len() {
-                0 => "it moves and has no mass, which MuJoCo refuses, and carries nothing",
-                _ => "it moves and has no mass, which MuJoCo refuses, and carries several segments",
-            };
-            return Err(WriteError::Segment { segment: own.name.clone(), problem });
+            feather = true;
+            break;
         };
         moves.push(Moves::Fixed(own.in_segment.inverse() * model.segments()[child].in_parent));
         moves.extend(motions(model, child)?);
@@ -77,7 +76,7 @@ pub(super) fn group(model: &Model, children: &[Vec<usize>], first: usize) -> Res
         return Err(WriteError::Segment { segment: model.segments()[segment].name.clone(), problem });
     }
     let (in_parent, in_segment) = (model.segments()[first].in_parent, model.segments()[segment].in_segment);
-    Ok(Group { first, segment, merged, moves, in_parent, in_segment })
+    Ok(Group { first, segment, merged, feather, moves, in_parent, in_segment })
 }
 
 /// Whether MuJoCo finds mass in the segment or in what is welded to it.

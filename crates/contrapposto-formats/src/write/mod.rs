@@ -70,6 +70,11 @@ pub const PLACEHOLDER_EFFORT: f64 = 1000.0;
 /// Written as a limit where there is none but the format asks for one, rad or m.
 pub const PLACEHOLDER_LIMIT: f64 = 1e9;
 
+/// What MuJoCo gets instead of no mass at the end of a chain, kg: a torque of 1e-11 N m a metre.
+pub const FEATHER_MASS: f64 = 1e-12;
+/// Inertia of such a segment, kg m^2, which plays no part at rest.
+pub const FEATHER_INERTIA: f64 = 1e-9;
+
 /// Stands at the head of every file.
 const MADE_BY: &str = concat!("Written by contrapposto ", env!("CARGO_PKG_VERSION"), ".");
 
