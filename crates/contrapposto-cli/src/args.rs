@@ -63,8 +63,10 @@ pub(crate) struct DemoArgs {
 }
 
 #[derive(Debug, Parser)]
-#[command(after_help = "Examples:\n  contrapposto figures --out out\n  contrapposto figures --only 7,8 --json --out out\n  \
-    contrapposto figures --curve measured --out measured")]
+#[command(
+    after_help = "Examples:\n  contrapposto figures --out out\n  contrapposto figures --only 7,8 --json --out out\n  \
+    contrapposto figures --curve measured --out measured"
+)]
 pub(crate) struct FiguresArgs {
     /// Folder for the pictures; made if it is not there.
     #[arg(long, value_name = "DIR")]
@@ -90,11 +92,13 @@ pub(crate) enum ElbowCurve {
 }
 
 #[derive(Debug, Parser)]
-#[command(after_help = "Example (one line):\n  echo '{\"passive\": {\"lower\": {\"torque_nm\": 12.67, \"rate_per_rad\": 19.92, \
+#[command(
+    after_help = "Example (one line):\n  echo '{\"passive\": {\"lower\": {\"torque_nm\": 12.67, \"rate_per_rad\": 19.92, \
     \"angle_deg\": 0}, \"upper\": {\"torque_nm\": 9.324, \"rate_per_rad\": 3.811, \"angle_deg\": 150}, \
     \"stiffness_nm_per_rad\": 0.4, \"neutral_deg\": 73}, \"range_deg\": [0, 150], \"angle_deg\": 20, \"external_nm\": -2.7, \
     \"external_slope_nm_per_rad\": 0.9, \"strategy\": \"active\", \"minimum_decrease_ratio\": 0.9, \"tolerance_nm\": 0.05}' \
-    | contrapposto minimize")]
+    | contrapposto minimize"
+)]
 pub(crate) struct MinimizeArgs {
     /// File of JSON lines; standard input when left out.
     pub(crate) file: Option<PathBuf>,
@@ -107,8 +111,10 @@ pub(crate) struct MinimizeArgs {
 }
 
 #[derive(Debug, Parser)]
-#[command(after_help = "Examples:\n  contrapposto passive elbow_flex_r --out out\n  contrapposto passive hip_flexion --json\n  \
-    contrapposto passive --list")]
+#[command(
+    after_help = "Examples:\n  contrapposto passive elbow_flex_r --out out\n  contrapposto passive hip_flexion --json\n  \
+    contrapposto passive --list"
+)]
 pub(crate) struct PassiveArgs {
     /// A coordinate of the built-in adult (`elbow_flex_r`) or a built-in curve (`elbow_neutral`).
     #[arg(required_unless_present = "list")]
@@ -168,7 +174,9 @@ pub(crate) enum PassiveFrom {
 }
 
 #[derive(Debug, Parser)]
-#[command(after_help = "Examples:\n  contrapposto inspect subject.osim\n  contrapposto inspect adult:female,1.65m,60kg --json")]
+#[command(
+    after_help = "Examples:\n  contrapposto inspect subject.osim\n  contrapposto inspect adult:female,1.65m,60kg --json"
+)]
 pub(crate) struct InspectArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,

@@ -5,12 +5,12 @@ mod sources;
 
 use std::fmt::Write;
 
-use contrapposto::model::{JointKind, Model};
+use contrapposto::model::JointKind;
 use contrapposto::passive::{PassiveLaw, Term};
 
 use crate::args::InspectArgs;
 use crate::fail::Fail;
-use crate::model_file::{Opened, open};
+use crate::model_file::{Opened, Tissue, open};
 use crate::output::print;
 use crate::torques::plain_table;
 use sources::{Known, Seen};
@@ -58,13 +58,15 @@ fn law_word(law: &PassiveLaw) -> String {
 }
 
 /// Passive torque at both limits of the range, the rest of the body at its default; `None` where a limit or a law is missing.
-fn at_limits(model: &Model, index: usize) -> Option<[f64; 2]> {
-    let coordinate = &model.coordinates()[index];
-    let law = coordinate.passive.as_ref()?;
+fn at_limits(opened: &Opened, index: usize) -> Option<[f64; 2]> {
+    let (model, coordinate) = (&opened.model, &opened.model.coordinates()[index]);
+    coordinate.passive.as_ref()?;
     let mut posture = model.default_posture();
+    let mut tissue = Tissue::new(opened);
     let mut at = |limit: f64| {
         posture.values_mut()[index] = limit;
-        Some(law.torque(index, posture.values())).filter(|torque| limit.is_finite() && torque.is_finite())
+        tissue.place(posture.values());
+        Some(tissue.torque(model, index)).filter(|torque| limit.is_finite() && torque.is_finite())
     };
     Some([at(coordinate.range.0)?, at(coordinate.range.1)?])
 }
@@ -98,7 +100,7 @@ fn readable(opened: &Opened, file: &str) -> String {
     }
     let _ = write!(text, "\n{table}\n\n");
     let mut seen = Seen::default();
-    let _ = write!(text, "{}\n", coordinates(opened, &mut seen));
+    let _ = writeln!(text, "{}", coordinates(opened, &mut seen));
     text.push_str(&seen.legend());
     if !opened.notes.is_empty() {
         text.push_str("\nnotes:\n");
@@ -144,7 +146,7 @@ fn coordinates(opened: &Opened, seen: &mut Seen) -> comfy_table::Table {
         let passive = match &coordinate.passive {
             None => String::new(),
             Some(law) => {
-                let ends = at_limits(model, index).map(|[low, high]| format!("{low:.1} .. {high:.1} "));
+                let ends = at_limits(opened, index).map(|[low, high]| format!("{low:.1} .. {high:.1} "));
                 format!("{}{}{}", ends.unwrap_or_default(), law_word(law), seen.mark(known.passive.as_ref()))
             }
         };

@@ -4,6 +4,7 @@
 mod adult_text;
 mod fill;
 mod include;
+mod tissue;
 
 use std::io::Write;
 use std::path::Path;
@@ -18,6 +19,7 @@ use crate::fail::Fail;
 use crate::input::read;
 
 pub(crate) use adult_text::adult_size;
+pub(crate) use tissue::Tissue;
 
 /// Who described the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +60,8 @@ pub(crate) enum Origin {
 pub(crate) struct Origins {
     /// The adult's coordinate whose data are used.
     pub(crate) twin: Option<String>,
+    /// Range that the built-in passive law is meant for, in the coordinate's direction.
+    pub(crate) meant: Option<(f64, f64)>,
     pub(crate) range: Origin,
     pub(crate) passive: Origin,
     pub(crate) strength: Origin,
@@ -78,7 +82,7 @@ pub(crate) struct Opened {
 /// Opens MODEL and lays over it what was asked for; `filled` says whether a file's unknown passive laws are filled from the
 /// built-in library when nothing is said.
 pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<Opened, Fail> {
-    let (imported, format) = match args.model.to_str().and_then(|text| adult_size(text)) {
+    let (imported, format) = match args.model.to_str().and_then(adult_size) {
         Some(size) => (adult(size?, args.root)?, Format::Adult),
         None => file(&args.model, args.root)?,
     };
@@ -88,8 +92,8 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<Opened, Fail> {
     if format == Format::Adult {
         let library = Origin::Library;
         for (origins, coordinate) in origins.iter_mut().zip(model.coordinates()) {
-            let twin = Some(coordinate.name.clone());
-            *origins = Origins { twin, range: library, passive: library, strength: library, fatigue: library };
+            let (twin, meant) = (Some(coordinate.name.clone()), Some(coordinate.range));
+            *origins = Origins { twin, meant, range: library, passive: library, strength: library, fatigue: library };
         }
     }
     if let Some(path) = &args.overlay {

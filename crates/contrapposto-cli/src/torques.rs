@@ -16,7 +16,7 @@ use contrapposto_formats::motion::{self, Units, postures, read_table};
 use crate::args::TorquesArgs;
 use crate::fail::Fail;
 use crate::input::read;
-use crate::model_file::{open, tell};
+use crate::model_file::{Opened, Tissue, open, tell};
 use crate::output::{Folder, Pending};
 use frames::{Order, Statics};
 use ground::GroundReaction;
@@ -25,7 +25,7 @@ pub(crate) use text::plain_table;
 
 /// What the command works on.
 pub(crate) struct Job {
-    model: Model,
+    opened: Opened,
     frames: Vec<(f64, Posture)>,
     loads: Vec<Load>,
     ground: Option<GroundReaction>,
@@ -37,28 +37,28 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
     }
     let target = args.out.as_deref().map(Target::new).transpose()?;
-    let opened = open(&args.model, true)?;
-    let mut notes = opened.notes;
-    let model = opened.model;
-    let frames = frames_of(args, &model, &mut notes)?;
+    let mut opened = open(&args.model, true)?;
+    let mut notes = std::mem::take(&mut opened.notes);
+    let model = &opened.model;
+    let frames = frames_of(args, model, &mut notes)?;
     let mut loads = vec![];
     for text in &args.load {
-        loads.push(loads::weight(&model, text)?);
+        loads.push(loads::weight(model, text)?);
     }
     for text in &args.force {
-        loads.push(loads::force(&model, text)?);
+        loads.push(loads::force(model, text)?);
     }
     let ground = match &args.grf {
         None => None,
-        Some(path) => Some(GroundReaction::read(path, &args.grf_on, &model, &mut notes)?),
+        Some(path) => Some(GroundReaction::read(path, &args.grf_on, model, &mut notes)?),
     };
-    let job = Job { model, frames, loads, ground, gradient: args.gradient };
+    let job = Job { opened, frames, loads, ground, gradient: args.gradient };
     job.check()?;
     outside(&job, &mut notes);
     notes.iter().for_each(|note| tell("note", note));
 
-    let order = Order::new(&job.model);
-    let mut residual = Residual::new(&job.model);
+    let order = Order::new(&job.opened.model);
+    let mut residual = Residual::new(&job.opened.model);
     if let Some(target) = target {
         let mut file = target.begin()?;
         let mut sink = |text: &str| file.append(text.as_bytes());
@@ -67,13 +67,13 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
             Form::Table(separator) => table(&job, &order, separator, &mut residual, &mut sink)?,
         }
         target.folder.commit(vec![file])?;
-        residual = Residual::new(&job.model);
+        residual = Residual::new(&job.opened.model);
     }
     let mut out = Printed::default();
     let mut sink = |text: &str| out.append(text);
     match (&args.out, job.frames.as_slice()) {
         _ if args.json => json(&job, &order, &mut residual, &mut sink)?,
-        (_, [_]) => job.run(&order, &mut residual, |frame| sink(&text::readable(&job.model, &order, frame)))?,
+        (_, [_]) => job.run(&order, &mut residual, |frame| sink(&text::readable(&job.opened.model, &order, frame)))?,
         (Some(path), frames) => {
             job.run(&order, &mut residual, |_| Ok(()))?;
             sink(&format!("{} frames in {}\n", frames.len(), path.display()))?;
@@ -81,7 +81,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         (None, _) => table(&job, &order, ',', &mut residual, &mut sink)?,
     }
     out.finish()?;
-    if let Some((kind, text)) = residual.told(&job.model, job.ground.is_some()) {
+    if let Some((kind, text)) = residual.told(&job.opened.model, job.ground.is_some()) {
         tell(kind, &text);
     }
     Ok(())
@@ -96,7 +96,7 @@ fn json(
     sink("[")?;
     let mut before = "\n";
     job.run(order, residual, |frame| {
-        let text = serde_json::to_string(&text::json(&job.model, order, frame));
+        let text = serde_json::to_string(&text::json(&job.opened.model, order, frame));
         sink(std::mem::replace(&mut before, ",\n"))?;
         sink(&text.map_err(|error| Fail::job("JSON", error))?)
     })?;
@@ -110,16 +110,16 @@ fn table(
     residual: &mut Residual,
     sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
 ) -> Result<(), Fail> {
-    sink(&text::header(&job.model, order, job.frames.len(), separator, job.gradient))?;
+    sink(&text::header(&job.opened.model, order, job.frames.len(), separator, job.gradient))?;
     job.run(order, residual, |frame| sink(&text::row(order, frame, separator)))
 }
 
 impl Job {
     /// Everything that could go wrong in a frame, before the first one is printed.
     fn check(&self) -> Result<(), Fail> {
-        let mut statics = Statics::new(&self.model, false);
+        let mut statics = Statics::new(&self.opened.model, Tissue::new(&self.opened), false);
         for (frame, (_, posture)) in self.frames.iter().enumerate() {
-            statics.place(&self.model, posture).map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
+            statics.place(&self.opened.model, posture).map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
         }
         self.ground.as_ref().map_or(Ok(()), |ground| ground.check(self.frames.iter().map(|(time, _)| *time)))
     }
@@ -131,17 +131,17 @@ impl Job {
         residual: &mut Residual,
         mut visit: impl FnMut(&frames::Frame<'_>) -> Result<(), Fail>,
     ) -> Result<(), Fail> {
-        let mut statics = Statics::new(&self.model, self.gradient);
+        let mut statics = Statics::new(&self.opened.model, Tissue::new(&self.opened), self.gradient);
         let mut loads = vec![];
         for (index, (time, posture)) in self.frames.iter().enumerate() {
             let failed = |why: String| Fail::Refused(format!("frame {index}: {why}"));
-            statics.place(&self.model, posture).map_err(failed)?;
+            statics.place(&self.opened.model, posture).map_err(failed)?;
             loads.clone_from(&self.loads);
             if let Some(ground) = &self.ground {
-                ground.loads(*time, &self.model, statics.kinematics(), &mut loads);
+                ground.loads(*time, &self.opened.model, statics.kinematics(), &mut loads);
             }
-            statics.pull(&self.model, &loads).map_err(failed)?;
-            let frame = statics.frame(&self.model, order, index, *time);
+            statics.pull(&self.opened.model, &loads).map_err(failed)?;
+            let frame = statics.frame(&self.opened.model, order, index, *time);
             residual.take(&frame);
             visit(&frame)?;
         }
@@ -184,21 +184,33 @@ fn first_of(names: &[String]) -> String {
     format!("{}{more}", names.iter().take(12).map(String::as_str).collect::<Vec<_>>().join(", "))
 }
 
-/// Says which coordinates leave their range.
+/// Says which coordinates leave their range, and which what their built-in curve is meant for.
 fn outside(job: &Job, notes: &mut Vec<String>) {
     /// Beyond a limit without a word, rad or m.
     const SLACK: f64 = 1e-3;
-    let mut said = vec![];
-    for (index, coordinate) in job.model.coordinates().iter().enumerate() {
+    let model = &job.opened.model;
+    let tissue = Tissue::new(&job.opened);
+    let (mut beyond, mut held) = (vec![], vec![]);
+    for (index, coordinate) in model.coordinates().iter().enumerate() {
         let (min, max) = coordinate.range;
-        let measured = coordinate.kind != CoordinateKind::Quaternion && !job.model.is_dependent(index);
-        let leaves = |posture: &Posture| posture.values()[index] < min - SLACK || posture.values()[index] > max + SLACK;
-        if measured && job.frames.iter().any(|(_, posture)| leaves(posture)) {
-            said.push(format!("`{}`", coordinate.name));
+        if coordinate.kind == CoordinateKind::Quaternion || model.is_dependent(index) {
+            continue;
+        }
+        let any = |test: &dyn Fn(f64) -> bool| job.frames.iter().any(|(_, posture)| test(posture.values()[index]));
+        if any(&|value| value < min - SLACK || value > max + SLACK) {
+            beyond.push(format!("`{}`", coordinate.name));
+        }
+        if any(&|value| tissue.holds(index, value)) {
+            held.push(format!("`{}`", coordinate.name));
         }
     }
-    if !said.is_empty() {
-        notes.push(format!("outside their range in some frame: {}", first_of(&said)));
+    for (names, what) in [
+        (beyond, "outside their range in some frame"),
+        (held, "outside what their built-in curve is meant for in some frame, passive torque held at its limit"),
+    ] {
+        if !names.is_empty() {
+            notes.push(format!("{what}: {}", first_of(&names)));
+        }
     }
 }
 

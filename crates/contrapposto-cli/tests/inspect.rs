@@ -1,5 +1,7 @@
 //! `contrapposto inspect` and `convert` through the real program, and what it will not open for a model's sake.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
 mod program;
 
 use std::path::Path;

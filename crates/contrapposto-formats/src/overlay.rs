@@ -18,6 +18,9 @@ use crate::scenario::{
 /// Fatigue class of a group that is given a strength and nothing else.
 const GENERAL: &str = "general";
 
+/// Greatest passive torque of a named curve that anybody can have meant, N m.
+const MOST_NM: f64 = 1e4;
+
 /// Fatigue classes, for suggestions.
 const CLASSES: [&str; 7] = ["ankle", "knee", "trunk", "shoulder", "elbow", "grip", GENERAL];
 
@@ -228,6 +231,16 @@ impl Table<'_> {
         let path = [self.path[0], self.path[1], "passive"];
         let sign = Some(passive.sign.unwrap_or(1.0));
         let curve = passive_curve(self.at, &path, coordinate, sign, &as_scenario)?;
+        let (lower, upper) = curve.limit_torques();
+        if passive.curve.is_some() && lower.abs().max(upper.abs()) > MOST_NM {
+            let message = format!("the curve reaches {lower:.3e} and {upper:.3e} N m at the limits of the range");
+            let help = "does the coordinate run the other way (sign = -1)? or does the range leave the curve's own?";
+            return Err(self.at.error(
+                &[self.path[0], self.path[1], "passive", "curve"],
+                message,
+                Some(help.to_owned()),
+            ));
+        }
         said.push(match passive.curve.as_deref().and_then(|name| data::library().curve(name)) {
             None => "passive law".to_owned(),
             Some(row) => {

@@ -165,7 +165,7 @@ fn text<'a>(opened: &Opened, model: &'a Model, index: usize, coordinate: &'a Coo
         passive: coordinate.passive.as_ref().map(|law| PassiveText {
             law: law_word(law),
             curve: known.curve,
-            torque_at_limits_nm: at_limits(model, index),
+            torque_at_limits_nm: at_limits(opened, index),
             source: known.passive.clone(),
         }),
         strength: group(0).zip(group(1)).map(|(positive, negative)| StrengthText { positive, negative }),

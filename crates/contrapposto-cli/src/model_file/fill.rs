@@ -63,6 +63,7 @@ pub(super) fn fill(
                 let origins = &mut origins[index];
                 origins.passive = Origin::Library;
                 origins.twin = Some(found.name.clone());
+                origins.meant = Some(mirrored(found.range, sign));
                 if let Some(groups) = groups {
                     changed = changed.with_groups(index, turned(groups, sign));
                     (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
@@ -214,7 +215,7 @@ fn said(coordinate: &Coordinate, found: &Coordinate, sign: f64) -> String {
     let beyond = if min < low - BEYOND || max > high + BEYOND {
         let [min, max, low, high] = [min, max, low, high].map(f64::to_degrees);
         format!(
-            "; the file's range {min:.0} .. {max:.0} deg goes beyond {low:.0} .. {high:.0} deg, for which it is meant"
+            "; the file's range {min:.0} .. {max:.0} deg goes beyond {low:.0} .. {high:.0} deg, at whose ends its torque stays"
         )
     } else {
         String::new()

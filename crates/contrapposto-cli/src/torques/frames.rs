@@ -6,11 +6,14 @@ use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, Gradient, Load};
 use nalgebra::Vector3;
 
+use crate::model_file::Tissue;
+
 /// Everything that is computed of a posture.
 pub(super) struct Statics {
     kinematics: Kinematics,
     external: ExternalTorque,
     gradient: Option<Gradient>,
+    tissue: Tissue,
     /// By rate, as if nothing were coupled, and folded.
     raw_passive: Vec<f64>,
     passive: Vec<f64>,
@@ -107,11 +110,12 @@ fn force_name(model: &Model, coordinate: usize) -> Option<String> {
 }
 
 impl Statics {
-    pub(super) fn new(model: &Model, gradient: bool) -> Self {
+    pub(super) fn new(model: &Model, tissue: Tissue, gradient: bool) -> Self {
         Self {
             kinematics: Kinematics::new(model),
             external: ExternalTorque::new(model),
             gradient: gradient.then(|| Gradient::new(model)),
+            tissue,
             raw_passive: vec![0.0; model.rates().len()],
             passive: vec![0.0; model.rates().len()],
         }
@@ -125,9 +129,10 @@ impl Statics {
     pub(super) fn place(&mut self, model: &Model, posture: &Posture) -> Result<(), String> {
         self.kinematics.update(model, posture).map_err(|error| error.to_string())?;
         let values = self.kinematics.values();
+        self.tissue.place(values);
         for (index, coordinate) in model.coordinates().iter().enumerate() {
-            let (Some(rate), Some(law)) = (coordinate.rate, &coordinate.passive) else { continue };
-            let torque = law.torque(index, values);
+            let Some(rate) = coordinate.rate else { continue };
+            let torque = self.tissue.torque(model, index);
             if !torque.is_finite() {
                 let (name, value) = (&coordinate.name, values[index]);
                 return Err(format!("the passive torque of `{name}` at {value} rad is {torque}"));

@@ -116,11 +116,30 @@ pub(super) fn axis(axis: &Unit<Vector3<f64>>) -> Vector3<f64> {
     longer.into_iter().find(fits).unwrap_or(axis.into_inner())
 }
 
-/// w, x, y, z of a quaternion that the MJCF reader makes this one of.
-pub(super) fn quaternion(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
+/// An orientation in MJCF's words.
+pub(super) enum Orientation {
+    /// w, x, y, z.
+    Quaternion([f64; 4]),
+    /// Body-fixed x, y, z angles.
+    Euler([f64; 3]),
+}
+
+/// The quaternion that reads back as this one, or the angles that do.
+pub(super) fn orientation(rotation: &UnitQuaternion<f64>) -> Orientation {
     let own = *rotation.quaternion();
     let read = |q: nalgebra::Quaternion<f64>| UnitQuaternion::new_normalize(q / q.coords.amax());
     let fits = |q: &nalgebra::Quaternion<f64>| same(read(*q).coords.as_slice(), rotation.coords.as_slice());
-    let q = factors().map(|f| own * f).find(fits).unwrap_or(own);
-    [q.w, q.i, q.j, q.k]
+    if let Some(q) = factors().map(|f| own * f).find(fits) {
+        return Orientation::Quaternion([q.w, q.i, q.j, q.k]);
+    }
+    let turn = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+    let compose = |[x, y, z]: [f64; 3]| {
+        let first = UnitQuaternion::identity() * turn(Vector3::x_axis(), x);
+        first * turn(Vector3::y_axis(), y) * turn(Vector3::z_axis(), z)
+    };
+    let angles = angles(rotation, body_angles(&rotation.to_rotation_matrix()), compose);
+    match same(compose(angles).coords.as_slice(), rotation.coords.as_slice()) {
+        true => Orientation::Euler(angles),
+        false => Orientation::Quaternion([own.w, own.i, own.j, own.k]),
+    }
 }

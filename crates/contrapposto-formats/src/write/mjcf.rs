@@ -8,6 +8,7 @@ use contrapposto::model::{Coordinate, JointKind, Model, Motion, Placement};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 use contrapposto::passive::PassiveLaw;
 
+use super::exact::Orientation;
 use super::law::{self, Part};
 use super::mjcf_body::{Group, Joint, group, solid};
 use super::names::Names;
@@ -62,6 +63,8 @@ struct Writer<'m> {
     joints: Names,
     /// Of each coordinate: name of its joint, and its value in the file's configuration.
     coordinates: Vec<(String, f64)>,
+    /// Coordinates whose passive torque is lost.
+    unsprung: Vec<String>,
     /// Frames of segments whose body stands otherwise.
     frames: Vec<Placement>,
 }
@@ -75,6 +78,7 @@ impl<'m> Writer<'m> {
             bodies: Names::new(&["world"], |_| true),
             joints: Names::new(&[], |_| true),
             coordinates: vec![(String::new(), 0.0); model.coordinates().len()],
+            unsprung: vec![],
             frames: vec![Placement::identity(); model.segments().len()],
         }
     }
@@ -94,11 +98,14 @@ impl<'m> Writer<'m> {
         self.frames[group.segment] = frame;
         let name = self.bodies.keep("segment", &segment.name, &mut self.lost);
         let free = self.free(group);
-        let quaternion = numbers(&exact::quaternion(&pose.rotation));
+        let orientation = match exact::orientation(&pose.rotation) {
+            Orientation::Quaternion(q) => ("quat", numbers(&q)),
+            Orientation::Euler(angles) => ("euler", numbers(&angles)),
+        };
         let position = numbers(&pose.translation.vector);
         let mut attributes = vec![("name", name.as_str()), ("pos", position.as_str())];
         if pose.rotation != UnitQuaternion::identity() {
-            attributes.push(("quat", &quaternion));
+            attributes.push((orientation.0, &orientation.1));
         }
         self.xml.open("body", &attributes);
         let turn = frame.rotation.to_rotation_matrix();
@@ -215,7 +222,7 @@ impl<'m> Writer<'m> {
             Some((coefficients, _)) if coefficients.is_empty() => None,
             Some((coefficients, rest)) => Some((numbers(&coefficients), number(rest))),
             None => {
-                self.lost.push(format!("The passive torque of `{}` is no spring and is not written.", coordinate.name));
+                self.unsprung.push(coordinate.name.clone());
                 None
             }
         }
@@ -252,17 +259,23 @@ impl<'m> Writer<'m> {
             }
         }
         for c in locked {
-            let name = &self.coordinates[c].0;
+            let (name, reference) = &self.coordinates[c];
+            let default = coordinates[c].default;
             if self.model.is_dependent(c) {
                 self.lost.push(format!("`{name}` follows another coordinate; its lock is not written."));
             } else {
-                self.xml.leaf("joint", &[("joint1", name), ("polycoef", "0 0 0 0 0")]);
+                let at = exact::near(default - reference, |v| reference + v == default);
+                self.xml.leaf("joint", &[("joint1", name), ("polycoef", &numbers(&[at, 0.0, 0.0, 0.0, 0.0]))]);
             }
         }
         self.xml.close();
     }
 
     fn losses(&mut self) {
+        if !self.unsprung.is_empty() {
+            let names: Vec<&str> = self.unsprung.iter().map(String::as_str).collect();
+            self.lost.push(format!("Passive torques that are no springs are not written: {}.", listed(&names)));
+        }
         if self.model.segments().iter().any(|s| s.joint_kind == JointKind::Weld) {
             self.lost.push("Welds have no names in the file.".to_owned());
         }

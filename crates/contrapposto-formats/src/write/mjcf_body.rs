@@ -113,9 +113,10 @@ fn motions(model: &Model, index: usize) -> Result<Vec<Moves>, WriteError> {
                     moves.pop();
                     reference = -value;
                 }
-                // The file stands at the default: M(q) = M(default) M(q - default).
+                // The file stands at the default: M(q) = M(default) M(q - default). A lock has its value elsewhere.
                 let default = model.coordinates()[coordinate].default;
-                if motion != Motion::Ball && default != reference {
+                let locked = model.coordinates()[coordinate].locked && !model.is_dependent(coordinate);
+                if motion != Motion::Ball && default != reference && !locked {
                     moves.push(Moves::Fixed(moved(motion, default - reference)));
                     reference = default;
                 }

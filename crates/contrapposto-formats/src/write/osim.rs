@@ -1,8 +1,8 @@
 //! A model as an OpenSim 4 document.
 //!
 //! Every joint is a `CustomJoint`, `BallJoint` or `WeldJoint` between two offset frames. A chain of motions that is not "three
-//! translations, then three rotations" becomes several joints with bodies without mass between them. Passive laws that
-//! OpenSim 4.6 has no force for are written as `ExpressionBasedCoordinateForce`, with the very formula that we evaluate.
+//! translations, then three rotations" is turned round, or else becomes several joints with bodies without mass between them.
+//! Passive laws that OpenSim 4.6 has no force for are written as `ExpressionBasedCoordinateForce`, with the very formula that we evaluate.
 
 use contrapposto::model::{Coordinate, CoordinateKind, Model, Placement, Segment};
 use contrapposto::passive::CoordinateLimitForce;
@@ -147,6 +147,7 @@ impl<'m> Writer<'m> {
             let identity = Placement::identity();
             let from = if n == 0 { (&parent, segment.in_parent) } else { (&chain[n - 1], identity) };
             let to = if n == last { (&own, segment.in_segment) } else { (&chain[n], identity) };
+            let (from, to) = if piece.turned { (to, from) } else { (from, to) };
             let kind = match piece {
                 Piece { ball: Some(_), slides, .. } if slides.is_empty() => "BallJoint",
                 _ if piece.axes().next().is_none() => "WeldJoint",

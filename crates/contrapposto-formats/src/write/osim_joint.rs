@@ -29,6 +29,8 @@ pub(super) struct Piece<'m> {
     pub(super) hinges: Vec<Axis<'m>>,
     /// Its hinges are the angles of the ball with this first coordinate.
     pub(super) ball: Option<usize>,
+    /// The joint is written from the segment to its parent: all of its motions in reverse.
+    pub(super) turned: bool,
 }
 
 impl<'m> Driver<'m> {
@@ -107,21 +109,42 @@ impl<'m> Piece<'m> {
         all
     }
 
-    /// Whether OpenSim calls the coordinate rotational: the last axis, rotations first, that it drives with slope 1.
+    /// Whether OpenSim calls the coordinate rotational: it takes the kind from the last axis, rotations first, that the coordinate
+    /// drives by a linear function whose first slope is 1.
     pub(super) fn in_degrees(&self, coordinate: usize) -> bool {
-        let drives = |axis: &&Axis<'_>| match &axis.driver {
-            Driver::Linear(terms, _) => terms.contains(&(coordinate, 1.0)),
+        let gives_kind = |axis: &Axis<'_>| match &axis.driver {
+            Driver::Linear(terms, _) => {
+                terms.first().is_some_and(|first| first.1 == 1.0) && terms.iter().any(|(c, _)| *c == coordinate)
+            }
             _ => false,
         };
-        !self.slides.iter().any(|axis| drives(&axis)) && self.hinges.iter().any(|axis| drives(&axis))
+        !self.slides.iter().any(gives_kind) && self.hinges.iter().any(gives_kind)
     }
 }
 
 /// The joints that a segment's motions need, nearest the parent first; one without motions for a weld.
 pub(super) fn pieces(segment: &Segment) -> Vec<Piece<'_>> {
+    let steps = steps(segment);
+    let straight = split(steps.iter().copied());
+    if straight.len() > 1 && steps.iter().all(|(motion, _)| *motion != Motion::Ball) {
+        let back = |motion| match motion {
+            Motion::Hinge(axis) => Motion::Hinge(-axis),
+            Motion::Slide(axis) => Motion::Slide(-axis),
+            Motion::Ball => Motion::Ball,
+        };
+        let mut turned = split(steps.into_iter().rev().map(|(motion, by)| (back(motion), by)));
+        if let [piece] = &mut turned[..] {
+            piece.turned = true;
+            return turned;
+        }
+    }
+    straight
+}
+
+fn split<'m>(steps: impl Iterator<Item = (Motion, By<'m>)>) -> Vec<Piece<'m>> {
     let mut all = vec![];
     let mut piece = Piece::default();
-    for (motion, by) in steps(segment) {
+    for (motion, by) in steps {
         let (rotates, direction) = match motion {
             Motion::Hinge(axis) => (true, axis),
             Motion::Slide(axis) => (false, axis),
@@ -132,7 +155,8 @@ pub(super) fn pieces(segment: &Segment) -> Vec<Piece<'_>> {
                 let By::Coordinate(first) = by else { continue };
                 let angles = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
                 // The first three of the ball's four coordinates stand for the angles.
-                piece.hinges = (first..).zip(angles).map(|(c, direction)| Axis { direction, driver: Driver::Linear(vec![(c, 1.0)], 0.0) }).collect();
+                let axis = |(c, direction)| Axis { direction, driver: Driver::new(By::Coordinate(c)) };
+                piece.hinges = (first..).zip(angles).map(axis).collect();
                 piece.ball = Some(first);
                 continue;
             }

@@ -7,7 +7,7 @@
 //! same, being counted from segment to segment.
 
 use contrapposto::model::{Coordinate, JointKind, Model, Motion, Placement, Segment};
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
 use super::law;
 use super::names::Names;
@@ -99,9 +99,11 @@ impl<'m> Writer<'m> {
         let names = model.segments().iter().map(|s| links.keep("segment", &s.name, lost)).collect();
         let mut coordinates = vec![String::new(); model.coordinates().len()];
         for segment in model.segments() {
-            let free = free(segment).then_some(segment.joint.as_str());
+            let whole = planar(model, segment) || free(segment);
+            let free = whole.then_some(segment.joint.as_str());
             let ours = model.coordinates()[segment.coordinates.clone()].iter().map(|c| c.name.as_str());
             if let Some(joint) = free
+                && !planar(model, segment)
                 && !ours.zip(FREE_ENDINGS).all(|(name, ending)| name == format!("{joint}_{ending}"))
             {
                 lost.push(format!("The coordinates of the free joint `{joint}` have no names in the file."));
@@ -154,7 +156,8 @@ impl<'m> Writer<'m> {
         let segment = &self.model.segments()[index];
         let own = self.names[index].clone();
         let mut movers: Vec<(Placement, Option<Motion>, usize)> = vec![];
-        if free(segment) {
+        let planar = planar(self.model, segment);
+        if free(segment) || planar {
             movers.push((origin, None, segment.coordinates.start));
             origin = Placement::identity();
         } else {
@@ -176,6 +179,7 @@ impl<'m> Writer<'m> {
             let child = if n + 1 == last && !fixed { own.clone() } else { self.links.take(&format!("{own}_at_{name}")) };
             let coordinate = &self.model.coordinates()[c];
             let kind = match motion {
+                None if planar => "planar",
                 None => "floating",
                 Some(Motion::Slide(_)) => "prismatic",
                 _ if unlimited(coordinate) => "continuous",
@@ -187,6 +191,9 @@ impl<'m> Writer<'m> {
                 self.limit(coordinate, kind == "continuous", lost);
                 self.mimic(c);
             }
+            if let (true, Some(Motion::Hinge(axis))) = (planar, segment.joint_kind.motions().last()) {
+                self.xml.leaf("axis", &[("xyz", &numbers(&exact::axis(axis)))]);
+            }
             self.xml.close();
             self.link(&child, if n + 1 == last && !fixed { Some(segment) } else { None });
             parent = child;
@@ -197,7 +204,7 @@ impl<'m> Writer<'m> {
             self.xml.close();
             self.link(&own, Some(segment));
         }
-        let named = matches!(segment.joint_kind, JointKind::Weld) || free(segment) || (last == 1 && !fixed && self.coordinates[segment.coordinates.start] == segment.joint);
+        let named = matches!(segment.joint_kind, JointKind::Weld) || free(segment) || planar || (last == 1 && !fixed && self.coordinates[segment.coordinates.start] == segment.joint);
         if !named {
             let of: Vec<&str> = segment.coordinates.clone().map(|c| self.coordinates[c].as_str()).collect();
             lost.push(format!("Joint `{}` is a chain of joints named after its coordinates: {}.", segment.joint, listed(&of)));
@@ -251,7 +258,10 @@ impl<'m> Writer<'m> {
             lost.push(format!("`{dependent}` follows `{independent}` by a curve; in the file it moves by itself."));
         }
         if coordinates.iter().any(|c| c.rate.is_some()) {
-            lost.push(format!("Speed limits of {} rad/s or m/s are placeholders, as efforts of {} N m are.", PLACEHOLDER_VELOCITY, PLACEHOLDER_EFFORT));
+            lost.push(format!("Speed limits of {PLACEHOLDER_VELOCITY} rad/s or m/s are placeholders."));
+        }
+        if coordinates.iter().any(|c| c.rate.is_some() && c.groups.is_none()) {
+            lost.push(format!("Efforts of {PLACEHOLDER_EFFORT} N m or N are placeholders where no strength is known."));
         }
     }
 }
@@ -264,6 +274,18 @@ fn free(segment: &Segment) -> bool {
         JointKind::Chain(motions) => *motions == axes,
         _ => false,
     }
+}
+
+/// Whether URDF's planar joint is this one: two slides across an axis and a hinge about it, without limits.
+fn planar(model: &Model, segment: &Segment) -> bool {
+    let JointKind::Chain(motions) = &segment.joint_kind else { return false };
+    let &[Motion::Slide(x), Motion::Slide(y), Motion::Hinge(axis)] = &motions[..] else { return false };
+    let turn = UnitQuaternion::rotation_between_axis(&Vector3::z_axis(), &axis)
+        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+    let same = |ours: Unit<Vector3<f64>>, theirs| ours == Unit::new_normalize(turn * theirs);
+    let own = &model.coordinates()[segment.coordinates.clone()];
+    let plain = |(c, ending): (&Coordinate, _)| c.name == format!("{}_{ending}", segment.joint) && unlimited(c);
+    same(x, Vector3::x()) && same(y, Vector3::y()) && own.iter().zip(["tx", "ty", "rz"]).all(plain)
 }
 
 fn unlimited(coordinate: &Coordinate) -> bool {
