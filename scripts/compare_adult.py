@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The exported adult in Pinocchio, MuJoCo and OpenSim: do they give the external torque that we give?
 
-    python3 -m venv /tmp/peervenv && /tmp/peervenv/bin/pip install opensim==4.6 pin mujoco==4.0.0 numpy
-    /tmp/peervenv/bin/python scripts/compare_adult.py [FOLDER]
+    python3 -m venv peervenv && peervenv/bin/pip install opensim==4.6 pin mujoco==4.0.0 numpy
+    peervenv/bin/python scripts/compare_adult.py [FOLDER]
 
 FOLDER holds model_N.osim, model_N.urdf, model_N.xml and answers.json (100 random postures, seed fixed, with our torques). Without
 FOLDER the test `exchange` of contrapposto-formats writes them first. The result, with the versions and the torques of ten

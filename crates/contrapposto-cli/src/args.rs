@@ -100,7 +100,7 @@ pub(crate) enum ElbowCurve {
     | contrapposto minimize"
 )]
 pub(crate) struct MinimizeArgs {
-    /// File of JSON lines; standard input when left out.
+    /// File of JSON lines; standard input when left out or `-`.
     pub(crate) file: Option<PathBuf>,
     /// Follow the printed Tables 1 and 2 to the letter; outcome `none` where they have no answer.
     #[arg(long)]

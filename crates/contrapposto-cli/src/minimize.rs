@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Read, Write};
+use std::path::Path;
 
 use contrapposto::simulation::Tables;
 use contrapposto_formats::{MOST_LINE_BYTES, minimize_line};
@@ -22,6 +23,7 @@ pub(crate) fn minimize(args: &MinimizeArgs) -> Result<(), Fail> {
     let tables = if args.literal { Tables::Literal } else { Tables::Total };
     let mut input: Box<dyn BufRead> = match &args.file {
         None => Box::new(std::io::stdin().lock()),
+        Some(path) if path == Path::new("-") => Box::new(std::io::stdin().lock()),
         Some(path) => {
             let refuse = |error: String| Fail::Refused(format!("{}: {error}", path.display()));
             let kind = std::fs::metadata(path).map_err(|error| refuse(error.to_string()))?;
@@ -50,7 +52,8 @@ pub(crate) fn minimize(args: &MinimizeArgs) -> Result<(), Fail> {
             answer(&mut out, &BadLine { error: "the line is not UTF-8".into(), line })?;
             continue;
         };
-        let text = text.trim();
+        // Some editors begin a file with a byte order mark.
+        let text = if line == 1 { text.strip_prefix('\u{feff}').unwrap_or(text) } else { text }.trim();
         if text.is_empty() {
             continue;
         }

@@ -43,8 +43,11 @@ impl Folder {
     /// Begins a file of that name.
     pub(crate) fn begin(&self, name: &str) -> Result<Pending, Fail> {
         let path = self.path.join(name);
-        let temporary = tempfile::Builder::new().prefix(".contrapposto-").tempfile_in(&self.path);
-        let file = temporary.map_err(|error| Fail::job(path.display(), error))?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".contrapposto-");
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask, as all files
+        let file = builder.tempfile_in(&self.path).map_err(|error| Fail::job(path.display(), error))?;
         Ok(Pending { file: BufWriter::new(file), path })
     }
 
@@ -62,7 +65,6 @@ impl Folder {
             let path = pending.path;
             let failed = |error: std::io::Error| Fail::job(path.display(), error);
             let file = pending.file.into_inner().map_err(|error| failed(error.into_error()))?;
-            permit_like_others(file.as_file()).map_err(failed)?;
             file.as_file().sync_all().map_err(failed)?;
             ready.push((file, path));
         }
@@ -85,16 +87,4 @@ impl Pending {
     pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), Fail> {
         self.file.write_all(bytes).map_err(|error| Fail::job(self.path.display(), error))
     }
-}
-
-/// Temporary files are private; results are for everybody the user's mask allows.
-#[cfg(unix)]
-fn permit_like_others(file: &File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn permit_like_others(_: &File) -> std::io::Result<()> {
-    Ok(())
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use comfy_table::Table;
 use contrapposto::hybrid::Case;
+use contrapposto::model::CoordinateKind;
 use contrapposto::simulation::{CoordinateSummary, Scenario, Summary, run};
 use contrapposto_formats::{MOST_BYTES, SummaryText, csv_header, csv_row, read_scenario};
 use contrapposto_plot::{SketchRole, time_line, torque_balance};
@@ -19,14 +20,8 @@ use crate::output::{Folder, print};
 /// The scenario of `contrapposto demo`.
 const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../scenarios/figure-08.toml"));
 
-const FILES: [&str; 6] = [
-    "summary.json",
-    "trajectory.csv",
-    "torque-balance.svg",
-    "torque-balance.png",
-    "time-line.svg",
-    "time-line.png",
-];
+const FILES: [&str; 6] =
+    ["summary.json", "trajectory.csv", "torque-balance.svg", "torque-balance.png", "time-line.svg", "time-line.png"];
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
@@ -154,7 +149,11 @@ fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) -> String {
         let [positive, negative] = summary.peak_fatigue;
         table.add_row([
             format!("{}{}", coordinate.name, if *free { "" } else { " (locked)" }),
-            format!("{:.1} deg", summary.final_value.to_degrees()),
+            match coordinate.kind {
+                CoordinateKind::Rotation => format!("{:.1} deg", summary.final_value.to_degrees()),
+                CoordinateKind::Translation => format!("{:.3} m", summary.final_value),
+                CoordinateKind::Quaternion => format!("{:.4}", summary.final_value),
+            },
             format!("{external:.2}"),
             format!("{passive:.2}"),
             format!("{active:.2}"),

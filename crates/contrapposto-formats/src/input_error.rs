@@ -1,6 +1,6 @@
 //! What is wrong with an input file, where, and what would be right?
 
-use miette::{Diagnostic, NamedSource, SourceSpan};
+use miette::{Diagnostic, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 /// A refused input. Prints with file, line, column and a caret when shown through `miette`.
 #[derive(Debug)]
@@ -12,9 +12,9 @@ pub struct InputError(Box<Complaint>);
 struct Complaint {
     message: String,
     #[source_code]
-    source_code: NamedSource<String>,
+    source_code: Excerpt,
     #[label("{label}")]
-    span: Option<SourceSpan>,
+    span: SourceSpan,
     label: String,
     #[help]
     help: Option<String>,
@@ -58,14 +58,92 @@ impl Source<'_> {
         label: impl Into<String>,
         help: Option<String>,
     ) -> InputError {
+        let text = printable(self.text);
+        // A long or many-lined value is underlined at its beginning; what has no place stands for the whole file.
+        let range = span.unwrap_or(0..0);
+        let line_end = text[range.start..].find('\n').map_or(text.len(), |at| range.start + at);
+        let end = range.end.min(line_end).min(boundary(&text, range.start + MOST_UNDERLINED));
+        let span = SourceSpan::from((range.start, end.saturating_sub(range.start)));
         InputError(Box::new(Complaint {
-            message: message.into(),
-            source_code: NamedSource::new(self.name, self.text.to_owned()),
-            span: span.map(|range| SourceSpan::from((range.start, range.end - range.start))),
-            label: label.into(),
-            help,
+            message: printable(&shortened(message.into())),
+            source_code: Excerpt { name: printable(self.name), text },
+            span,
+            label: printable(&shortened(label.into())),
+            help: help.map(|help| printable(&help)),
         }))
     }
+}
+
+/// Longest underlined piece, bytes.
+const MOST_UNDERLINED: usize = 100;
+
+/// Longest excerpt, bytes: beyond it, only what stands next to the place is shown.
+const MOST_SHOWN: usize = 1000;
+
+/// Longest message, bytes.
+const MOST_SAID: usize = 400;
+
+/// A text that shows only the neighbourhood of a place when its lines are very long.
+#[derive(Debug)]
+struct Excerpt {
+    name: String,
+    text: String,
+}
+
+impl SourceCode for Excerpt {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let whole = self.text.read_span(span, before, after)?;
+        let mut shown = *whole.span();
+        let (mut line, mut column) = (whole.line(), whole.column());
+        if shown.len() > MOST_SHOWN {
+            let (start, end) = (span.offset(), span.offset() + span.len());
+            let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
+            let line_end = self.text[end..].find('\n').map_or(self.text.len(), |at| end + at);
+            let from = line_start.max(boundary(&self.text, start.saturating_sub(MOST_UNDERLINED)));
+            let to = line_end.min(boundary(&self.text, end + MOST_UNDERLINED));
+            shown = (from, to.saturating_sub(from)).into();
+            line = self.text[..start].matches('\n').count();
+            column = self.text[line_start..from].chars().count();
+        }
+        let data = &self.text.as_bytes()[shown.offset()..shown.offset() + shown.len()];
+        let lines = whole.line_count();
+        Ok(Box::new(MietteSpanContents::new_named(self.name.clone(), data, shown, line, column, lines)))
+    }
+}
+
+/// The nearest place at or before `at` where the text may be cut.
+fn boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// The text without what a terminal would obey (escapes, turned reading directions); every byte keeps its place.
+fn printable(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\n' | '\t' | '\r' => c,
+        '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
+        c if c.is_control() && c.len_utf8() == 1 => '?',
+        c if c.is_control() => '\u{bf}',
+        c => c,
+    };
+    text.chars().map(shown).collect()
+}
+
+/// The message, or its beginning.
+pub(crate) fn shortened(mut message: String) -> String {
+    if message.len() > MOST_SAID {
+        message.truncate(boundary(&message, MOST_SAID));
+        message.push_str(" ...");
+    }
+    message
 }
 
 /// UTF-8 text of an input file.
@@ -79,16 +157,25 @@ pub fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
         let at = good.len();
         let text = good + "?";
         let help = Some("save the file as UTF-8".to_owned());
-        Source { name, text: &text }.error(Some(at..at + 1), "the file is not UTF-8", format!("byte 0x{byte:02x}"), help)
+        Source { name, text: &text }.error(
+            Some(at..at + 1),
+            "the file is not UTF-8",
+            format!("byte 0x{byte:02x}"),
+            help,
+        )
     })
 }
 
 /// The one of `names` that `given` was probably meant to be.
 pub fn nearest<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let length = given.chars().count();
+    let tolerable = |name: &str| 1 + name.len() / 4;
     names
         .into_iter()
+        // The distance is at least the difference of lengths: no table of a million letters is filled in vain.
+        .filter(|name| length.abs_diff(name.chars().count()) <= tolerable(name))
         .map(|name| (strsim::damerau_levenshtein(given, name), name))
-        .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
+        .filter(|(distance, name)| *distance <= tolerable(name))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
 }

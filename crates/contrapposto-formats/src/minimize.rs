@@ -5,6 +5,7 @@ use contrapposto::passive::PassiveCurve;
 use contrapposto::simulation::Tables;
 use serde::{Deserialize, Serialize};
 
+use crate::input_error::shortened;
 use crate::scenario::{DoubleExponentialText, StrategyKindText, double_exponential};
 
 /// Longest line that is read, bytes.
@@ -53,9 +54,9 @@ impl DecisionLine {
             case: decision.case.number(),
             outcome: decision.outcome.word(),
             goal_deg: decision.goal.map(f64::to_degrees),
-            active_nm: decision.active_torque,
-            active_at_goal_nm: decision.active_torque_at_goal,
-            decrease_ratio: decision.decrease_ratio,
+            active_nm: decision.active_torque + 0.0, // no -0
+            active_at_goal_nm: decision.active_torque_at_goal.map(|torque| torque + 0.0),
+            decrease_ratio: decision.decrease_ratio.map(|ratio| ratio + 0.0),
             interval_deg: decision.interval.map(|(from, to)| [from.to_degrees(), to.to_degrees()]),
             stable: decision.equilibrium.map(|kind| kind != Equilibrium::Unstable),
             why: explain(problem, decision),
@@ -68,11 +69,11 @@ impl DecisionLine {
 /// # Errors
 /// A message that says what is wrong with the line.
 pub fn minimize_line(line: &str, tables: Tables) -> Result<DecisionLine, String> {
-    let text: ProblemLine = serde_json::from_str(line).map_err(|error| {
-        let message = error.to_string();
-        // A line is a file of its own: its place is the column.
-        message.replace("at line 1 column", "at column")
-    })?;
+    let text: ProblemLine = serde_json::from_str(line).map_err(|error| complaint(line, &error))?;
+    let [min, max] = text.range_deg;
+    if min >= max {
+        return Err(format!("range_deg is [{min}, {max}]; the lower limit must come first, below the upper one"));
+    }
     // Degrees go to radians once, and the present angle with its limits, so that equal degrees stay equal.
     let range = (text.range_deg[0].to_radians(), text.range_deg[1].to_radians());
     let form = double_exponential(&text.passive).form().map_err(|error| format!("passive: {error}"))?;
@@ -100,4 +101,17 @@ pub fn minimize_line(line: &str, tables: Tables) -> Result<DecisionLine, String>
         *goal = if line.outcome == "stay" { text.angle_deg } else { goal.clamp(text.range_deg[0], text.range_deg[1]) };
     }
     Ok(line)
+}
+
+/// What the JSON reader dislikes. A line is a file of its own: its place is the column.
+fn complaint(line: &str, error: &serde_json::Error) -> String {
+    // Many programs write these; JSON has no such words.
+    let before = line.get(..error.column().saturating_sub(1)).unwrap_or("");
+    let start = before.rfind([':', ',', '[', ' ', '\t']).map_or(0, |at| at + 1);
+    let word = line[start..].split([',', ']', '}', ' ', '\t']).next().unwrap_or("");
+    let bare = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
+    if ["nan", "inf", "infinity"].contains(&bare.as_str()) {
+        return format!("`{word}` is not a finite number at column {}", start + 1);
+    }
+    shortened(error.to_string()).replace("at line 1 column", "at column")
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use contrapposto::hybrid::Case;
-use contrapposto::model::Side;
+use contrapposto::model::{CoordinateKind, Side};
 use contrapposto::simulation::{Scenario, Summary};
 use serde::Serialize;
 
@@ -85,7 +85,7 @@ impl SummaryText {
                 cases: s.cases.iter().map(|case| case.number()).collect(),
                 case_changes: s.case_changes,
                 iterations: iterations(&s.iterations),
-                final_deg: s.final_value.to_degrees(),
+                final_deg: if c.kind == CoordinateKind::Rotation { s.final_value.to_degrees() } else { s.final_value },
                 final_external_nm: external,
                 final_passive_nm: passive,
                 final_active_nm: active,

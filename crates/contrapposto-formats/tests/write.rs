@@ -1,26 +1,31 @@
 //! The writers: what they write our readers read as the same model, and other programs give the same torques.
 //!
-//! Files for other programs: `scripts/compare_adult.py`, which keeps its result as `data/adult_peers.json`.
+//! `write/laws.rs`: passive laws. `write/imported.rs`: model files survive their own format. `write/peers.rs`: what other programs say.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 mod common;
+#[path = "write/imported.rs"]
+mod imported;
+#[path = "write/laws.rs"]
+mod laws;
+#[path = "write/peers.rs"]
+mod peers;
 
 use std::collections::BTreeMap;
 
-use common::{here, next};
+use common::next;
 use contrapposto::kinematics::Kinematics;
-use contrapposto::math::{Function, Spline, expression::Expression};
+use contrapposto::math::{Function, Spline};
 use contrapposto::model::{
-    Adult, Coordinate, CoordinateKind, CoordinateSpec, Drive, JointKind, Model, ModelBuilder, Motion, Placement, SegmentSpec, Sex, adult,
-};
-use contrapposto::passive::{
-    CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveLaw, Reshape, Tabulated, Term,
+    Adult, CoordinateKind, CoordinateSpec, Drive, JointKind, Model, ModelBuilder, Motion, Placement, SegmentSpec, Sex,
+    adult,
 };
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, Gradient};
 use contrapposto_formats::write::{self, WriteError, Written};
 use contrapposto_formats::{mjcf, osim, urdf};
 use nalgebra::{Matrix3, Translation3, Unit, UnitQuaternion, Vector3};
-use serde_json::{Value, json};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Format {
@@ -192,7 +197,14 @@ fn hinges_and_slides() -> Vec<SegmentSpec> {
     chain[1].default = 0.25;
     chain[4].default = -0.3;
     chain[5].locked = true;
-    let mixed = vec![Motion::Hinge(x), Motion::Slide(skew), Motion::Slide(y), Motion::Hinge(z), Motion::Hinge(y), Motion::Hinge(z)];
+    let mixed = vec![
+        Motion::Hinge(x),
+        Motion::Slide(skew),
+        Motion::Slide(y),
+        Motion::Hinge(z),
+        Motion::Hinge(y),
+        Motion::Hinge(z),
+    ];
     vec![
         segment("a", None, JointKind::Weld, vec![]),
         segment("b", Some("a"), JointKind::Hinge(skew), named(&["h"])),
@@ -200,7 +212,11 @@ fn hinges_and_slides() -> Vec<SegmentSpec> {
         segment("d", Some("b"), JointKind::Universal([x, skew]), named(&["u1", "u2"])),
         segment("e", Some("c"), JointKind::Gimbal([z, x, y]), named(&["g1", "g2", "g3"])),
         segment("f", Some("d"), JointKind::Chain(mixed), chain),
-        SegmentSpec { mass: 0.0, inertia: Matrix3::zeros(), ..segment("g", Some("f"), JointKind::Hinge(y), named(&["m"])) },
+        SegmentSpec {
+            mass: 0.0,
+            inertia: Matrix3::zeros(),
+            ..segment("g", Some("f"), JointKind::Hinge(y), named(&["m"]))
+        },
         segment("h", Some("g"), JointKind::Hinge(z), named(&["n"])),
         segment("i", Some("h"), JointKind::Weld, vec![]),
     ]
@@ -214,7 +230,8 @@ fn every_joint_of_hinges_and_slides_in_every_format() {
         let back = read(&written.text, format);
         let worst = difference(&model, &back, false);
         assert!(worst < 1e-12, "{format:?}: {worst:e}\n{}", written.text);
-        let named = |m: &Model| m.coordinates().iter().map(|c| (c.name.clone(), c.range.0, c.range.1)).collect::<Vec<_>>();
+        let named =
+            |m: &Model| m.coordinates().iter().map(|c| (c.name.clone(), c.range.0, c.range.1)).collect::<Vec<_>>();
         let sorted = |m: &Model| {
             let mut all = named(m);
             all.sort_by(|a, b| a.0.cmp(&b.0));
@@ -286,9 +303,15 @@ fn balls_and_free_joints() {
         joint: joint.to_owned(),
         in_parent: Placement::identity(),
         in_segment: Placement::identity(),
-        ..segment("a", None, JointKind::Free, ["tx", "ty", "tz"].iter().map(|e| {
-            CoordinateSpec::new(&format!("{joint}_{e}"), (f64::NEG_INFINITY, f64::INFINITY))
-        }).collect())
+        ..segment(
+            "a",
+            None,
+            JointKind::Free,
+            ["tx", "ty", "tz"]
+                .iter()
+                .map(|e| CoordinateSpec::new(&format!("{joint}_{e}"), (f64::NEG_INFINITY, f64::INFINITY)))
+                .collect(),
+        )
     };
     let mut lifted = free("root");
     lifted.coordinates[1].default = 0.9;
@@ -310,80 +333,10 @@ fn balls_and_free_joints() {
     let written = write::osim(&skew).unwrap();
     let back = read(&written.text, Osim);
     assert_eq!(back.rates().len(), 9);
-    assert!(back.coordinate("b_joint_rx").is_some() && written.lost.iter().any(|l| l.contains("quaternion of joint `b_joint`")));
-}
-
-fn laws() -> Vec<PassiveLaw> {
-    let range = (-1.2, 1.1);
-    let limit = CoordinateLimitForce {
-        upper_stiffness: 20f64.to_degrees(),
-        upper_limit: 50f64.to_radians(),
-        lower_stiffness: 13.7f64.to_degrees(),
-        lower_limit: -61.3f64.to_radians(),
-        transition: 7.5f64.to_radians(),
-    };
-    let double = DoubleExponential {
-        lower: End { torque: 1.5, rate: 6.25, angle: -1.2 },
-        upper: End { torque: 2.5e-7, rate: 3.811, angle: 1.0 / 3.0 },
-        stiffness: 0.4,
-        neutral: -0.1,
-    };
-    let table = [(-1.5, 6.0), (-0.5, 1.0), (0.2, 0.0), (0.7, 0.0), (1.5, -4.0)];
-    let curve = |form, reshape| PassiveLaw::Curve(PassiveCurve::new(form, range, reshape).unwrap());
-    let reshape = Reshape { zone: 0.3, lower_stiffness: 3.0, upper_stiffness: 5.5 };
-    vec![
-        curve(double.form().unwrap(), None),
-        curve(double.form().unwrap(), Some(reshape)),
-        curve(limit.form().unwrap(), None),
-        curve(Tabulated::new(&table).unwrap().form(), None),
-        PassiveLaw::Sum(vec![
-            Term::Spring { stiffness: 3.0, rest: 0.2 },
-            Term::Spring { stiffness: 1.25, rest: -0.4 },
-        ]),
-        PassiveLaw::Sum(vec![Term::Polynomial { coefficients: vec![1.5, -0.3, 0.7], rest: 0.1 }]),
-        PassiveLaw::Sum(vec![
-            Term::CoordinateLimitForce(limit),
-            Term::double_exponential(double).unwrap(),
-            Term::Expression(Expression::parse("-k*q^3; k = 2").unwrap()),
-        ]),
-    ]
-}
-
-fn with_law(law: &PassiveLaw) -> Model {
-    let mut coordinates = named(&["h"]);
-    coordinates[0].passive = Some(law.clone());
-    build(vec![segment("a", None, JointKind::Hinge(axis(0.0, 0.0, 1.0)), coordinates)])
-}
-
-#[test]
-fn passive_laws_have_the_same_torque_and_slope_in_osim() {
-    for law in laws() {
-        let model = with_law(&law);
-        let written = write::osim(&model).unwrap();
-        assert_eq!(written.lost, Vec::<String>::new());
-        let back = read(&written.text, Osim);
-        let found = back.coordinates()[0].passive.as_ref().unwrap();
-        for i in 0..=100 {
-            let q = -1.2 + 2.3 * f64::from(i) / 100.0;
-            let (a, b) = (law.torque(0, &[q]), found.torque(0, &[q]));
-            assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0), "{law:?} at {q}: {a} {b}\n{}", written.text);
-        }
-    }
-}
-
-#[test]
-fn springs_stand_in_mjcf_and_the_rest_is_listed() {
-    for (law, held) in laws().iter().zip([false, false, false, false, true, true, false]) {
-        let model = with_law(law);
-        let written = write::mjcf(&model).unwrap();
-        let back = read(&written.text, Mjcf);
-        let lost = written.lost.iter().any(|l| l == "Passive torques that are no springs are not written: `h`.");
-        assert_eq!(lost, !held);
-        if held {
-            assert!(difference(&model, &back, true) < 1e-12);
-        }
-        assert!(write::urdf(&model).unwrap().lost.contains(&"Passive torques are not written: `h`.".to_owned()));
-    }
+    assert!(
+        back.coordinate("b_joint_rx").is_some()
+            && written.lost.iter().any(|l| l.contains("quaternion of joint `b_joint`"))
+    );
 }
 
 #[test]
@@ -396,12 +349,17 @@ fn odd_names_and_what_programs_refuse() {
     assert!(read(&write::mjcf(&model).unwrap().text, Mjcf).coordinate("it's\tq").is_some());
     let written = write::osim(&model).unwrap();
     assert!(read(&written.text, Osim).coordinate("it's_q").is_some());
-    assert!(written.lost.iter().any(|l| l == "The coordinate \"it's\\tq\" is named `it's_q` in the file."), "{:?}", written.lost);
+    assert!(
+        written.lost.iter().any(|l| l == "The coordinate \"it's\\tq\" is named `it's_q` in the file."),
+        "{:?}",
+        written.lost
+    );
     odd.name.push('\u{1}');
     for format in [Osim, Urdf, Mjcf] {
         assert!(matches!(write(&build(vec![odd.clone()]), format), Err(WriteError::Name { .. })));
     }
-    let light = SegmentSpec { mass: 0.0, ..segment("light", None, JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["l"])) };
+    let light =
+        SegmentSpec { mass: 0.0, ..segment("light", None, JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["l"])) };
     let written = write::mjcf(&build(vec![light])).unwrap();
     assert!(written.lost[0].starts_with("Segment `light` has no mass, which MuJoCo refuses"), "{:?}", written.lost);
     let seven = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector3::from).map(Unit::new_normalize).map(Motion::Hinge);
@@ -409,162 +367,4 @@ fn odd_names_and_what_programs_refuse() {
     let long = segment("long", None, seven, named(&["a", "b", "c", "d", "e", "f", "g"]));
     let error = write::mjcf(&build(vec![long])).unwrap_err().to_string();
     assert_eq!(error, "segment `long`: more than six motions before the next mass; MuJoCo's bodies have six at most");
-}
-
-/// Our own model files and, where they are, published ones.
-fn imported() -> Vec<(String, Format, Model)> {
-    let shared = here().join("../../../shared/models");
-    let mut all = vec![];
-    for folder in [here().join("tests/models"), shared.join("opensim"), shared.join("human-gazebo"), shared.join("cmu"), shared.join("gepetto")] {
-        let Ok(entries) = std::fs::read_dir(&folder) else { continue };
-        let mut paths: Vec<_> = entries.map(|e| e.unwrap().path()).collect();
-        paths.sort();
-        for path in paths {
-            let format = match path.extension().and_then(|e| e.to_str()) {
-                Some("osim") => Osim,
-                Some("urdf") => Urdf,
-                Some("xml") => Mjcf,
-                _ => continue,
-            };
-            let bytes = std::fs::read(&path).unwrap();
-            let mut include = |name: &str| std::fs::read(folder.join(name)).map_err(|e| e.to_string());
-            let body = match format {
-                Osim => osim::read(&bytes, "m").ok(),
-                Urdf => urdf::read(&bytes, "m", &urdf::Options::default()).ok(),
-                Mjcf => mjcf::read(&bytes, "m", &mut include, &mjcf::Options::default()).ok(),
-            };
-            let Some(Ok(imported)) = body.map(|b| b.model()) else { continue };
-            all.push((path.file_name().unwrap().to_string_lossy().into_owned(), format, imported.model));
-        }
-    }
-    all
-}
-
-/// The model's `Debug` text without its numbers, and the numbers.
-fn skeleton(model: &Model) -> (String, Vec<f64>) {
-    let text = format!("{model:?}");
-    let (mut words, mut numbers) = (String::new(), vec![]);
-    for token in text.split_inclusive(|c: char| " ,[]{}()".contains(c)) {
-        let end = token.len() - token.ends_with(|c: char| " ,[]{}()".contains(c)) as usize;
-        match token[..end].parse::<f64>() {
-            Ok(value) => {
-                numbers.push(value);
-                words.push('#');
-                words.push_str(&token[end..]);
-            }
-            Err(_) => words.push_str(token),
-        }
-    }
-    (words, numbers)
-}
-
-#[test]
-fn imported_models_survive_their_own_format() {
-    let mut seen = 0;
-    for (name, format, model) in imported() {
-        let written = match write(&model, format) {
-            Ok(written) => written,
-            Err(error) => {
-                println!("{name}: {error}");
-                continue;
-            }
-        };
-        let back = read(&written.text, format);
-        assert_eq!(format!("{back:?}"), format!("{:?}", read(&written.text, format)), "{name} twice");
-        let ((words, numbers), (words_back, numbers_back)) = (skeleton(&model), skeleton(&back));
-        let changed = numbers.iter().zip(&numbers_back).filter(|(a, b)| a != b).count();
-        let pairs = numbers.iter().zip(&numbers_back).filter(|(a, b)| a != b);
-        let worst = pairs.fold(0.0_f64, |w, (a, b)| w.max((a - b).abs() / a.abs().max(1.0)));
-        let torque = difference(&model, &back, true);
-        println!(
-            "{name}: same structure {}, {changed} of {} numbers differ, by {worst:e} at most; torque {torque:e}",
-            words == words_back,
-            numbers.len()
-        );
-        seen += 1;
-        // What no text gives exactly (products of rotations, inertias that are not quite symmetric) differs in the last digit,
-        // and once only.
-        assert!(words == words_back && worst < 1e-15, "{name}");
-        assert!(torque < 1e-15, "{name}: {torque:e}");
-        let again = read(&write(&back, format).unwrap().text, format);
-        assert_eq!(skeleton(&again), (words_back, numbers_back), "{name} again");
-    }
-    assert!(seen >= 5);
-}
-
-/// Seed of the postures that other programs are asked about.
-const SEED: u64 = 20_070_707;
-
-/// Random postures in the ranges (slides half a metre about their default), and our external and passive torques there.
-fn answers(name: &str, model: &Model, count: usize) -> Value {
-    let mut state = SEED;
-    let mut cases = vec![];
-    for _ in 0..count {
-        let value = |c: &Coordinate| match c.kind {
-            CoordinateKind::Translation => c.default + random(&mut state) - 0.5,
-            _ => c.range.0 + (c.range.1 - c.range.0) * random(&mut state),
-        };
-        let values: Vec<f64> = model.coordinates().iter().map(value).collect();
-        let (external, passive) = external_and_passive(model, &values);
-        cases.push(json!({ "posture": values, "external": external, "passive": passive }));
-    }
-    let names = |wanted: fn(&Coordinate) -> bool| -> Vec<String> {
-        model.coordinates().iter().filter(|c| wanted(c)).map(|c| c.name.clone()).collect()
-    };
-    json!({ "name": name, "coordinates": names(|_| true), "passive_curves": names(|c| c.curve().is_some()), "cases": cases })
-}
-
-fn external_and_passive(model: &Model, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let by_name = model.coordinates().iter().map(|c| c.name.clone()).zip(values.iter().copied()).collect();
-    let found = torques(model, &by_name);
-    model.coordinates().iter().map(|c| (found[&c.name].0, found[&c.name].1)).unzip()
-}
-
-/// Models that other programs are asked about.
-fn asked() -> Vec<(&'static str, Model)> {
-    let names = ["adult:male", "adult:female,stature=1.52,mass=50", "adult:right_arm"];
-    let adults = names.into_iter().zip(adults().into_iter().map(|size| adult(&size).unwrap()));
-    adults.chain([("every joint of hinges and slides", build(hinges_and_slides()))]).collect()
-}
-
-/// For `scripts/compare_adult.py`: files and answers into the folder that `CONTRAPPOSTO_EXCHANGE` names.
-#[test]
-fn exchange() {
-    let Ok(folder) = std::env::var("CONTRAPPOSTO_EXCHANGE") else { return };
-    let folder = std::path::Path::new(&folder);
-    let mut all = vec![];
-    for (i, (name, model)) in asked().iter().enumerate() {
-        for (format, ending) in [(Osim, "osim"), (Urdf, "urdf"), (Mjcf, "xml")] {
-            let written = write(model, format).unwrap();
-            std::fs::write(folder.join(format!("model_{i}.{ending}")), written.text).unwrap();
-            println!("{name}, {format:?}:\n  {}", written.lost.join("\n  "));
-        }
-        all.push(answers(name, model, 100));
-    }
-    let answers = json!({ "seed": SEED, "models": all });
-    std::fs::write(folder.join("answers.json"), answers.to_string()).unwrap();
-}
-
-#[test]
-fn other_programs_agree() {
-    let text = std::fs::read_to_string(here().join("tests/data/adult_peers.json")).unwrap();
-    let kept: Value = serde_json::from_str(&text).unwrap();
-    let numbers = |v: &Value| v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect::<Vec<_>>();
-    let (asked, kept) = (asked(), kept["models"].as_array().unwrap());
-    assert_eq!(asked.len(), kept.len());
-    for ((name, model), kept) in asked.iter().zip(kept) {
-        let names: Vec<&str> = model.coordinates().iter().map(|c| c.name.as_str()).collect();
-        let again = "has changed: run scripts/compare_adult.py again";
-        assert_eq!((json!(name), json!(names)), (kept["name"].clone(), kept["coordinates"].clone()), "{name} {again}");
-        for (tool, most) in [("pinocchio", 1e-9), ("mujoco", 1e-9), ("opensim", 1e-6)] {
-            let theirs = &kept["tools"][tool];
-            assert!(theirs["worst_external"].as_f64().unwrap() < most, "{name} {tool}");
-            let cases = kept["postures"].as_array().unwrap().iter().zip(theirs["external"].as_array().unwrap());
-            for (posture, external) in cases {
-                let (ours, _) = external_and_passive(model, &numbers(posture));
-                let worst = ours.iter().zip(numbers(external)).fold(0.0_f64, |w, (a, b)| w.max((a - b).abs()));
-                assert!(worst < most, "{name} differs from {tool} by {worst:e} and perhaps {again}");
-            }
-        }
-    }
 }

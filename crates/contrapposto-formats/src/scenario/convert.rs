@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 
 use super::Located;
 use super::text::{
-    DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PartText, PassiveText, ReshapeText, ScenarioText, SexText,
-    StrategyKindText, TablesText,
+    DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PartText, PassiveText, ReshapeText, ScenarioText,
+    SexText, StrategyKindText, TablesText,
 };
 use crate::input_error::{InputError, suggestion};
 
@@ -20,6 +20,7 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, In
         let message = format!("format is {}; this program reads format 1", text.format);
         return Err(at.error(&["format"], message, None));
     }
+    check_title(at, &text.title)?;
     let model = body(at, text)?;
     let mut start = model.default_posture();
     for (key, &value) in &text.posture {
@@ -27,13 +28,15 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, In
         start.values_mut()[index] = value;
     }
     let free = free(at, &model, text)?;
-    let loads = text.load.iter().enumerate().map(|(i, load)| self::load(at, &model, i, load)).collect::<Result<_, _>>()?;
+    let loads =
+        text.load.iter().enumerate().map(|(i, load)| self::load(at, &model, i, load)).collect::<Result<_, _>>()?;
     let mut start_fatigue = vec![[0.0; 2]; model.coordinates().len()];
     for (name, start) in &text.fatigue.start {
         let index = coordinate(at, &model, &["fatigue", "start", name], name)?;
         for (side, level) in [("positive", start.positive), ("negative", start.negative)] {
             if !(0.0..=1.0).contains(&level) {
-                let message = format!("fatigue at the start is {level}; it must lie in 0 (rested) to 1 (exhausted)");
+                let message =
+                    format!("fatigue at the start is {}; it must lie in 0 (rested) to 1 (exhausted)", shown(level));
                 return Err(at.error(&["fatigue", "start", name, side], message, None));
             }
         }
@@ -72,8 +75,44 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, In
             stop_when_settled: text.run.stop_when_settled,
         },
     };
-    scenario.check().map_err(|error| at.error(&place(&error), error.to_string(), None))?;
+    scenario.check().map_err(|error| at.error(&place(&error), told(&error, text), None))?;
     Ok(scenario)
+}
+
+/// Longest title, characters: it stands above the pictures.
+const LONGEST_TITLE: usize = 200;
+
+fn check_title(at: &Located, title: &str) -> Result<(), InputError> {
+    let length = title.chars().count();
+    let message = if length > LONGEST_TITLE {
+        format!("the title has {length} characters; {LONGEST_TITLE} at most")
+    } else if title.chars().any(char::is_control) {
+        "the title holds control characters (line breaks, escapes)".to_owned()
+    } else {
+        return Ok(());
+    };
+    Err(at.error(&["title"], message, Some("give it one short line".into())))
+}
+
+/// The complaint in the words and units of the file.
+fn told(error: &ScenarioError, text: &ScenarioText) -> String {
+    let ScenarioError::Setting { name, value, accepted } = error else { return error.to_string() };
+    match (*name, place(error).last()) {
+        ("number of steps", _) => {
+            let (duration, step) = (shown(text.run.duration_s), shown(text.run.step_s));
+            format!("{duration} s in steps of {step} s are {} steps; ten million at most", shown(*value))
+        }
+        ("greatest step (rad)", Some(key)) => {
+            format!("{key} is {}; it must be {accepted}", shown(text.relief.max_step_deg))
+        }
+        (_, Some(key)) => format!("{key} is {}; it must be {accepted}", shown(*value)),
+        _ => error.to_string(),
+    }
+}
+
+/// A number without a row of three hundred digits.
+fn shown(x: f64) -> String {
+    if x != 0.0 && !(1e-6..1e9).contains(&x.abs()) { format!("{x:e}") } else { x.to_string() }
 }
 
 /// Where a setting stands in the file.
@@ -169,7 +208,7 @@ fn posture_value(at: &Located, model: &Model, key: &str, value: f64) -> Result<(
         let show = |x: f64| if unit == CoordinateKind::Rotation { x.to_degrees() } else { x };
         let word = if unit == CoordinateKind::Rotation { "deg" } else { "m" };
         let (min, max) = (show(min), show(max));
-        let message = format!("`{name}` is {value} {word}, outside its range {min:.4}..{max:.4} {word}");
+        let message = format!("`{name}` is {} {word}, outside its range {min:.4}..{max:.4} {word}", shown(value));
         return Err(at.error(&path, message, Some(format!("give an angle from {min:.4} to {max:.4} {word}"))));
     }
     Ok((index, inside))
@@ -220,7 +259,12 @@ fn load(at: &Located, model: &Model, i: usize, text: &LoadText) -> Result<Load, 
         }
     };
     let load = Load { segment, point, kind };
-    load.check(model).map_err(|error| at.error(&["load", &number], error.to_string(), None))?;
+    load.check(model).map_err(|error| {
+        let message = error.to_string();
+        let keys = [("mass", "mass_kg"), ("force", "force_n"), ("point", "at_m")];
+        let key = keys.iter().find(|(word, _)| message.starts_with(word)).map_or("", |(_, key)| key);
+        at.error(&path(key), message, None)
+    })?;
     Ok(load)
 }
 
@@ -234,7 +278,16 @@ pub(crate) fn passive_curve(
     text: &PassiveText,
 ) -> Result<PassiveCurve, InputError> {
     let (name, range) = (&coordinate.name, coordinate.range);
-    let refuse = |key: &str, error: PassiveError| at.error(&below(path, key), error.to_string(), None);
+    let refuse = |key: &str, error: PassiveError| {
+        let message = match &error {
+            PassiveError::Parameter { name, value, accepted } if name.ends_with("(rad)") => {
+                let name = name.replace("(rad)", "(deg)");
+                format!("{name} is {:.6}; it must be {accepted}", value.to_degrees())
+            }
+            _ => error.to_string(),
+        };
+        at.error(&below(path, key), message, None)
+    };
     let given = [
         text.curve.is_some(),
         text.double_exponential.is_some(),
@@ -294,8 +347,7 @@ fn below<'a>(path: &[&'a str], key: &'a str) -> Vec<&'a str> {
 
 /// The law in rad.
 pub(crate) fn double_exponential(text: &DoubleExponentialText) -> DoubleExponential {
-    let end =
-        |end: &EndText| End { torque: end.torque_nm, rate: end.rate_per_rad, angle: end.angle_deg.to_radians() };
+    let end = |end: &EndText| End { torque: end.torque_nm, rate: end.rate_per_rad, angle: end.angle_deg.to_radians() };
     DoubleExponential {
         lower: end(&text.lower),
         upper: end(&text.upper),

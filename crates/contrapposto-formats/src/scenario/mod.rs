@@ -34,7 +34,7 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
     let text = utf8(name, bytes)?;
     let source = Source { name, text };
     let tree = DeTable::parse(text)
-        .map_err(|error| source.error(error.span(), "the file is not TOML", error.message(), None))?;
+        .map_err(|error| source.error(error.span(), format!("not TOML: {}", error.message()), "here", None))?;
     refuse_non_finite(&source, tree.get_ref())?;
     let parsed: T = toml::from_str(text).map_err(|error| complaint(&source, &error))?;
     convert(&Located { source, tree: tree.get_ref() }, &parsed)
@@ -70,9 +70,7 @@ impl Located<'_> {
             let last = i + 1 == rest.len();
             let found = match value.get_ref() {
                 DeValue::Table(table) => table.get_key_value(*step).map(|(k, v)| (k.span(), v)),
-                DeValue::Array(array) => {
-                    step.parse().ok().and_then(|i: usize| array.get(i)).map(|v| (v.span(), v))
-                }
+                DeValue::Array(array) => step.parse().ok().and_then(|i: usize| array.get(i)).map(|v| (v.span(), v)),
                 _ => None,
             };
             let Some((key_span, next)) = found else { break };
@@ -87,9 +85,22 @@ impl Located<'_> {
 fn complaint(source: &Source, error: &toml::de::Error) -> InputError {
     let message = error.message();
     let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let help = match words.split_first() {
-        Some((given, expected)) if message.starts_with("unknown") => suggestion(given, expected.iter().copied()),
-        _ => None,
+    let all_keys = || Some("`contrapposto schema` lists all keys".to_owned());
+    let (message, help) = match words.split_first() {
+        Some((given, expected)) if message.starts_with("unknown") => {
+            let kind = if message.starts_with("unknown variant") { "value" } else { "key" };
+            (format!("unknown {kind} `{given}`"), suggestion(given, expected.iter().copied()))
+        }
+        Some((key, _)) if message.starts_with("missing field") => (format!("the key `{key}` is missing"), all_keys()),
+        _ if message.ends_with("untagged enum ReshapeText") => {
+            let help = "write true, false, or { zone_deg = 5, end_torque_nm = 20 }".to_owned();
+            ("not a way to reshape".to_owned(), Some(help))
+        }
+        _ => {
+            let plain =
+                [("expected f64", "expected a number"), ("expected u32", "expected a whole number, not negative")];
+            (plain.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to)), None)
+        }
     };
     source.error(error.span(), message, "here", help)
 }
@@ -104,8 +115,13 @@ fn refuse_non_finite(source: &Source, table: &DeTable) -> Result<(), InputError>
             DeValue::Float(float) => {
                 let digits = float.as_str().replace('_', "");
                 if !digits.parse::<f64>().is_ok_and(f64::is_finite) {
-                    let message = format!("`{}` is not a finite number", float.as_str());
-                    return Err(source.error(Some(value.span()), message, "here", Some("write a finite number".into())));
+                    let message = format!("`{:.40}` is not a finite number", float.as_str());
+                    return Err(source.error(
+                        Some(value.span()),
+                        message,
+                        "here",
+                        Some("write a finite number".into()),
+                    ));
                 }
             }
             _ => {}

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 
 /// An experiment: a body, its posture and loads, the relief wanted, how long.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -113,6 +114,7 @@ pub struct PassiveText {
     /// OpenSim's CoordinateLimitForce.
     pub coordinate_limit_force: Option<CoordinateLimitForceText>,
     /// Measured points `[angle in deg, torque in N m]`, torques falling.
+    #[serde(default, deserialize_with = "rows")]
     pub table_deg_nm: Option<Vec<[f64; 2]>>,
     /// Linear terms near both limits: `true`, or zone and torque.
     pub reshape: Option<ReshapeText>,
@@ -201,8 +203,10 @@ pub struct LoadText {
     /// A weight, kg.
     pub mass_kg: Option<f64>,
     /// A force, N.
+    #[serde(default, deserialize_with = "numbers")]
     pub force_n: Option<[f64; 3]>,
     /// Where, in the segment's frame, m; its centre of mass when left out.
+    #[serde(default, deserialize_with = "numbers")]
     pub at_m: Option<[f64; 3]>,
     /// Whether the force keeps its direction in the world or in the segment; world when left out.
     pub fixed_in: Option<FixedInText>,
@@ -332,4 +336,21 @@ pub struct RunText {
 
 fn default_step() -> f64 {
     1.0 / 30.0
+}
+
+/// Exactly so many numbers: the TOML reader itself passes over surplus ones.
+fn numbers<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<[f64; N]>, D::Error> {
+    let list = Vec::<f64>::deserialize(from)?;
+    let given = list.len();
+    list.try_into().map(Some).map_err(|_| D::Error::custom(format!("{given} numbers are given; {N} are due")))
+}
+
+/// Rows of exactly so many numbers.
+fn rows<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<Vec<[f64; N]>>, D::Error> {
+    let rows = Vec::<Vec<f64>>::deserialize(from)?;
+    let row = |row: Vec<f64>| {
+        let given = row.len();
+        row.try_into().map_err(|_| D::Error::custom(format!("a row of {given} numbers; {N} are due in each")))
+    };
+    rows.into_iter().map(row).collect::<Result<_, _>>().map(Some)
 }

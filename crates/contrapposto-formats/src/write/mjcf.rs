@@ -5,8 +5,8 @@
 //! none or several gets [`FEATHER_MASS`]. Gravity is the model's own. The file stands as the model does by default (`ref`).
 
 use contrapposto::model::{Coordinate, JointKind, Model, Motion, Placement};
-use nalgebra::{Point3, UnitQuaternion, Vector3};
 use contrapposto::passive::PassiveLaw;
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 use super::exact::Orientation;
 use super::law::{self, Part};
@@ -125,7 +125,9 @@ impl<'m> Writer<'m> {
         } else if segment.mass != 0.0 {
             let (inertia, changed) = solid(&inertia);
             if changed {
-                self.lost.push(format!("The inertia of `{name}` is not that of a solid body; the file has a ball's of that size."));
+                self.lost.push(format!(
+                    "The inertia of `{name}` is not that of a solid body; the file has a ball's of that size."
+                ));
             }
             let center = frame.inverse() * Point3::from(segment.center_of_mass);
             let values = moments(&inertia);
@@ -195,7 +197,9 @@ impl<'m> Writer<'m> {
                     self.lost.push(format!("The range of `{name}` is one value; the file has no limit there."));
                 }
                 if low.is_infinite() || high.is_infinite() {
-                    self.lost.push(format!("`{name}` has a limit on one side; the other one is {PLACEHOLDER_LIMIT:e} in the file."));
+                    self.lost.push(format!(
+                        "`{name}` has a limit on one side; the other one is {PLACEHOLDER_LIMIT:e} in the file."
+                    ));
                 }
             }
         }
@@ -231,8 +235,11 @@ impl<'m> Writer<'m> {
     fn note_names(&mut self, group: &Group, joints: &[Joint]) {
         for &index in group.merged.iter().chain([&group.segment]) {
             let joint = &self.model.segments()[index].joint;
-            let own: Vec<&str> =
-                joints.iter().filter(|j| j.segment == index).map(|j| self.coordinates[j.coordinate].0.as_str()).collect();
+            let own: Vec<&str> = joints
+                .iter()
+                .filter(|j| j.segment == index)
+                .map(|j| self.coordinates[j.coordinate].0.as_str())
+                .collect();
             if !own.is_empty() && own != [joint.as_str()] {
                 self.lost.push(format!("Joint `{joint}` has the names of its motions in the file: {}.", listed(&own)));
             }
@@ -242,7 +249,8 @@ impl<'m> Writer<'m> {
     /// Couplings and locks.
     fn equalities(&mut self) {
         let coordinates = self.model.coordinates();
-        let locked: Vec<usize> = (0..coordinates.len()).filter(|&c| coordinates[c].locked && coordinates[c].rate.is_some()).collect();
+        let locked: Vec<usize> =
+            (0..coordinates.len()).filter(|&c| coordinates[c].locked && coordinates[c].rate.is_some()).collect();
         if self.model.couplings().is_empty() && locked.is_empty() {
             return;
         }
@@ -255,7 +263,9 @@ impl<'m> Writer<'m> {
                     let powers = numbers(&powers);
                     self.xml.leaf("joint", &[("joint1", &dependent), ("joint2", &independent), ("polycoef", &powers)]);
                 }
-                None => self.lost.push(format!("`{dependent}` follows `{independent}` by a curve; in the file it moves by itself.")),
+                None => self
+                    .lost
+                    .push(format!("`{dependent}` follows `{independent}` by a curve; in the file it moves by itself.")),
             }
         }
         for c in locked {

@@ -16,12 +16,7 @@ pub(super) enum Moves {
     /// A motion that stays as it is.
     Fixed(Placement),
     /// A motion with a coordinate; at `reference` the body stands as in the file.
-    Joint {
-        motion: Motion,
-        coordinate: usize,
-        reference: f64,
-        segment: usize,
-    },
+    Joint { motion: Motion, coordinate: usize, reference: f64, segment: usize },
 }
 
 /// Segments that are one body.

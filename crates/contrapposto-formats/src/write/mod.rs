@@ -88,7 +88,8 @@ fn common(model: &Model) -> Result<Vec<String>, WriteError> {
         }
     }
     let mut lost = vec![];
-    let count = |wanted: fn(&contrapposto::model::Coordinate) -> bool| model.coordinates().iter().filter(|c| wanted(c)).count();
+    let count =
+        |wanted: fn(&contrapposto::model::Coordinate) -> bool| model.coordinates().iter().filter(|c| wanted(c)).count();
     let groups = count(|c| c.groups.is_some());
     if groups > 0 {
         lost.push(format!("Strength and fatigue of the muscle groups of {groups} coordinates are not written."));

@@ -105,7 +105,10 @@ impl<'m> Writer<'m> {
                 }
             }
             for (c, _) in segment.coordinates.clone().zip(seen).filter(|(_, seen)| !seen) {
-                lost.push(format!("The coordinate `{}` moves nothing and is not written.", model.coordinates()[c].name));
+                lost.push(format!(
+                    "The coordinate `{}` moves nothing and is not written.",
+                    model.coordinates()[c].name
+                ));
             }
             let between = (1..parts.len()).map(|n| names.take(&format!("{body}_part{n}"))).collect();
             all.push((parts, between));
@@ -159,7 +162,12 @@ impl<'m> Writer<'m> {
             xml.value("socket_child_frame", "child_offset");
             xml.open("coordinates", &[]);
             for c in piece.coordinates() {
-                coordinate(xml, &self.coordinates[c].0, piece.ball.is_some_and(|b| c >= b), &self.model.coordinates()[c]);
+                coordinate(
+                    xml,
+                    &self.coordinates[c].0,
+                    piece.ball.is_some_and(|b| c >= b),
+                    &self.model.coordinates()[c],
+                );
             }
             xml.close();
             xml.open("frames", &[]);
@@ -203,9 +211,12 @@ impl<'m> Writer<'m> {
             let xml = &mut self.xml;
             xml.open("CoordinateCouplerConstraint", &[("name", &names.take(&format!("{dependent}_coupling")))]);
             xml.value("isEnforced", "true");
-            if !osim_functions::write(xml, "coupled_coordinates_function", &coupling.function) {
+            // Constraints have their functions inside a property, joints by name.
+            xml.open("coupled_coordinates_function", &[]);
+            if !osim_functions::write(xml, None, &coupling.function) {
                 lost.push(format!("`{dependent}` follows `{independent}` by a function that OpenSim has not."));
             }
+            xml.close();
             xml.value("independent_coordinate_names", independent);
             xml.value("dependent_coordinate_name", dependent);
             xml.value("scale_factor", "1");
@@ -275,7 +286,7 @@ fn transform_axis(xml: &mut Xml, axis: &Axis<'_>, coordinates: &[(String, bool)]
             xml.close();
         }
         Driver::Function(function, _) => {
-            if !osim_functions::write(xml, "function", function) {
+            if !osim_functions::write(xml, Some("function"), function) {
                 constant(xml, 0.0);
                 lost.push(format!("The motion that {} drives uses a function that OpenSim has not.", listed(&names)));
             }

@@ -5,9 +5,9 @@ use contrapposto::math::Function;
 use super::parts::{self, Joined};
 use super::xml::{Xml, number, numbers};
 
-/// Writes a function as the property `name`; false for one that OpenSim has not, and then nothing is written.
-pub(super) fn write(xml: &mut Xml, name: &str, function: &Function) -> bool {
-    let named = [("name", name)];
+/// Writes a function as an object of that name, if any; false for one that OpenSim has not, and then nothing is written.
+pub(super) fn write(xml: &mut Xml, name: Option<&str>, function: &Function) -> bool {
+    let named: Vec<(&str, &str)> = name.map(|name| ("name", name)).into_iter().collect();
     match function {
         Function::Constant(value) => {
             xml.open("Constant", &named);

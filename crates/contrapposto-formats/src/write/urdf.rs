@@ -13,9 +13,7 @@ use super::law;
 use super::names::Names;
 use super::steps::{By, moved, steps};
 use super::xml::{Xml, moments, number, numbers};
-use super::{
-    PLACEHOLDER_EFFORT, PLACEHOLDER_LIMIT, PLACEHOLDER_VELOCITY, WriteError, Written, common, exact, listed,
-};
+use super::{PLACEHOLDER_EFFORT, PLACEHOLDER_LIMIT, PLACEHOLDER_VELOCITY, WriteError, Written, common, exact, listed};
 use crate::body::{FREE_ENDINGS, Function};
 use crate::urdf::GRAVITY;
 
@@ -167,7 +165,9 @@ impl<'m> Writer<'m> {
                     (Motion::Ball, _) => return refuse("URDF has no ball joint"),
                     (_, By::Function(..)) => return refuse("URDF has no joint that a function drives"),
                     (_, By::Fixed(value)) => origin *= moved(motion, value),
-                    (_, By::Coordinate(c)) => movers.push((std::mem::replace(&mut origin, Placement::identity()), Some(motion), c)),
+                    (_, By::Coordinate(c)) => {
+                        movers.push((std::mem::replace(&mut origin, Placement::identity()), Some(motion), c))
+                    }
                 }
             }
         }
@@ -176,7 +176,8 @@ impl<'m> Writer<'m> {
         let last = movers.len();
         for (n, (origin, motion, c)) in movers.into_iter().enumerate() {
             let name = self.coordinates[c].clone();
-            let child = if n + 1 == last && !fixed { own.clone() } else { self.links.take(&format!("{own}_at_{name}")) };
+            let child =
+                if n + 1 == last && !fixed { own.clone() } else { self.links.take(&format!("{own}_at_{name}")) };
             let coordinate = &self.model.coordinates()[c];
             let kind = match motion {
                 None if planar => "planar",
@@ -204,10 +205,17 @@ impl<'m> Writer<'m> {
             self.xml.close();
             self.link(&own, Some(segment));
         }
-        let named = matches!(segment.joint_kind, JointKind::Weld) || free(segment) || planar || (last == 1 && !fixed && self.coordinates[segment.coordinates.start] == segment.joint);
+        let named = matches!(segment.joint_kind, JointKind::Weld)
+            || free(segment)
+            || planar
+            || (last == 1 && !fixed && self.coordinates[segment.coordinates.start] == segment.joint);
         if !named {
             let of: Vec<&str> = segment.coordinates.clone().map(|c| self.coordinates[c].as_str()).collect();
-            lost.push(format!("Joint `{}` is a chain of joints named after its coordinates: {}.", segment.joint, listed(&of)));
+            lost.push(format!(
+                "Joint `{}` is a chain of joints named after its coordinates: {}.",
+                segment.joint,
+                listed(&of)
+            ));
         }
         Ok(())
     }
@@ -222,7 +230,10 @@ impl<'m> Writer<'m> {
             return self.xml.leaf("limit", &rest);
         }
         if lower.is_infinite() || upper.is_infinite() {
-            lost.push(format!("`{}` has no limit on one side or both; the file gives it {PLACEHOLDER_LIMIT:e}.", coordinate.name));
+            lost.push(format!(
+                "`{}` has no limit on one side or both; the file gives it {PLACEHOLDER_LIMIT:e}.",
+                coordinate.name
+            ));
         }
         self.xml.leaf("limit", &[("lower", &low), ("upper", &high), rest[0], rest[1]]);
     }
@@ -241,7 +252,8 @@ impl<'m> Writer<'m> {
         let named = |wanted: &dyn Fn(&Coordinate) -> bool| -> Vec<&str> {
             coordinates.iter().filter(|c| wanted(c)).map(|c| c.name.as_str()).collect()
         };
-        let springs = named(&|c| c.passive.as_ref().is_some_and(|l| law::summands(l).is_none_or(|parts| !parts.is_empty())));
+        let springs =
+            named(&|c| c.passive.as_ref().is_some_and(|l| law::summands(l).is_none_or(|parts| !parts.is_empty())));
         let moved = named(&|c| c.rate.is_some() && c.default != 0.0);
         let locked = named(&|c| c.locked);
         for (names, text) in [

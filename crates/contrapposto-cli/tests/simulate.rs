@@ -1,0 +1,594 @@
+//! `contrapposto simulate` and `demo`: every scenario of the repository runs to whole, finite, balanced and repeatable files;
+//! whatever happens to disk, pipe or process, a named file is whole or not there.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod support;
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use support::{Run, contents, contrapposto, scenarios};
+
+/// What a run writes, in order of names.
+const FILES: [&str; 6] =
+    ["summary.json", "time-line.png", "time-line.svg", "torque-balance.png", "torque-balance.svg", "trajectory.csv"];
+
+/// Columns of a coordinate after its name: a rotation, or a slide.
+const ROTATION: [&str; 8] =
+    ["angle_deg", "external_nm", "passive_nm", "active_nm", "fatigue_positive", "fatigue_negative", "case", "goal_deg"];
+const SLIDE: [&str; 8] =
+    ["position_m", "external_n", "passive_n", "active_n", "fatigue_positive", "fatigue_negative", "case", "goal_m"];
+
+fn columns(coordinate: &str) -> [&'static str; 8] {
+    if ["pelvis_tx", "pelvis_ty", "pelvis_tz"].contains(&coordinate) { SLIDE } else { ROTATION }
+}
+
+fn paths() -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(scenarios()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    assert!(paths.len() >= 10);
+    paths
+}
+
+fn simulate(scenario: &Path, out: &Path, arguments: &[&str]) -> Run {
+    contrapposto(["simulate"]).arg(scenario).arg("--out").arg(out).args(arguments).run()
+}
+
+/// Runs a scenario text; gives the summary and the table.
+fn simulate_text(text: &str) -> (Value, Table) {
+    let folder = tempfile::tempdir().unwrap();
+    let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folder.path()).stdin(text).run();
+    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    (serde_json::from_str(&run.stdout).unwrap(), Table::read(&folder.path().join("trajectory.csv")))
+}
+
+/// `trajectory.csv`.
+struct Table {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    fn read(path: &Path) -> Self {
+        let text = std::fs::read_to_string(path).unwrap();
+        assert!(text.ends_with('\n') && !text.contains('\r') && !text.contains('"'));
+        let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        let rows: Vec<_> = lines.collect();
+        assert!(rows.iter().all(|row| row.len() == header.len()), "{}", path.display());
+        Self { header, rows }
+    }
+
+    fn column(&self, name: &str) -> impl Iterator<Item = &str> + use<'_> {
+        let at = self.header.iter().position(|column| column == name).unwrap_or_else(|| panic!("no column {name}"));
+        self.rows.iter().map(move |row| row[at].as_str())
+    }
+
+    fn numbers(&self, name: &str) -> Vec<f64> {
+        self.column(name).map(|cell| cell.parse().unwrap()).collect()
+    }
+}
+
+/// Columns as promised, finite numbers, torques that add up to zero, angles inside their ranges, a steady clock.
+fn assert_table(table: &Table, summary: &Value) {
+    let order: Vec<&str> =
+        summary["coordinate_order"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    let mut wanted = vec!["time".to_owned()];
+    wanted.extend(order.iter().flat_map(|name| columns(name).map(|column| format!("{name}.{column}"))));
+    assert_eq!(table.header, wanted);
+    assert_eq!(table.rows.len() as u64, summary["samples"].as_u64().unwrap());
+    let times = table.numbers("time");
+    assert_eq!(times[0], 0.0);
+    assert!(times.windows(2).all(|pair| pair[1] > pair[0]));
+    assert!(same(*times.last().unwrap(), summary["end_s"].as_f64().unwrap()));
+    let cases = ["1.1", "1.2", "1.3", "2.1", "2.2", "2.3", "3.1", "3.2", "3.3", "3.4"];
+    for name in order {
+        let column = |column: &str| table.numbers(&format!("{name}.{column}"));
+        let keys = columns(name);
+        let [angle, external, passive, active, positive, negative] = std::array::from_fn(|i| column(keys[i]));
+        let (min, max) = range_deg(name);
+        for i in 0..times.len() {
+            let numbers = [angle[i], external[i], passive[i], active[i], positive[i], negative[i]];
+            assert!(numbers.iter().all(|number| number.is_finite()), "{name} {numbers:?}");
+            assert_eq!(external[i] + passive[i] + active[i], 0.0, "{name}, row {i}");
+            assert!(angle[i] >= min - 1e-9 && angle[i] <= max + 1e-9, "{name} at {}", angle[i]);
+            assert!((0.0..=1.0).contains(&positive[i]) && (0.0..=1.0).contains(&negative[i]), "{name}, row {i}");
+        }
+        let decisions = table.column(&format!("{name}.case")).zip(table.column(&format!("{name}.{}", keys[7])));
+        for (case, goal) in decisions {
+            assert!(case.is_empty() || cases.contains(&case), "{case}");
+            assert!(!case.is_empty() || goal.is_empty());
+            if let Ok(goal) = goal.parse::<f64>() {
+                assert!(goal >= min - 1e-9 && goal <= max + 1e-9, "{name} wants {goal}");
+            } else {
+                assert_eq!(goal, "");
+            }
+        }
+        let last = &summary["coordinates"][name];
+        for (key, column) in
+            [("deg", &angle), ("external_nm", &external), ("passive_nm", &passive), ("active_nm", &active)]
+        {
+            let (said, shown) = (last[format!("final_{key}")].as_f64().unwrap(), *column.last().unwrap());
+            assert!(same(said, shown), "{name} {key}: {said} and {shown}");
+        }
+    }
+}
+
+/// Equal but for the last digit, which serde_json may read differently.
+fn same(one: f64, other: f64) -> bool {
+    (one - other).abs() <= 4.0 * f64::EPSILON * one.abs()
+}
+
+/// The ranges of the adult, as the data file says them.
+fn range_deg(name: &str) -> (f64, f64) {
+    match name {
+        "arm_flex_r" => (-60.0, 180.0),
+        "arm_add_r" => (-180.0, 10.0),
+        "arm_rot_r" => (-90.0, 70.0),
+        "elbow_flex_r" => (0.0, 150.0),
+        "pro_sup_r" => (-80.0, 80.0),
+        "wrist_flex_r" => (-70.0, 80.0),
+        "wrist_dev_r" => (-20.0, 30.0),
+        _ => (-360.0, 360.0),
+    }
+}
+
+/// Every leaf that is no word, yes or no is a number that is finite; only what may be unknown is null.
+fn assert_numbers(value: &Value, key: &str) {
+    match value {
+        Value::Number(number) => assert!(number.as_f64().unwrap().is_finite(), "{key}"),
+        Value::Null => assert!(["exhausted_s", "last_outcome", "name"].contains(&key), "{key} is null"),
+        Value::Array(list) => list.iter().for_each(|value| assert_numbers(value, key)),
+        Value::Object(map) => map.iter().for_each(|(key, value)| assert_numbers(value, key)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_scenario_runs() {
+    for path in paths() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = simulate(&path, folder.path(), &["--json"]);
+        assert_eq!((run.code, run.stderr.as_str()), (0, ""), "{}", path.display());
+        let files = contents(folder.path());
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, FILES, "{}", path.display());
+        assert_eq!(files[0].1, run.stdout.as_bytes(), "--json prints summary.json");
+        let summary: Value = serde_json::from_str(&run.stdout).unwrap();
+        assert_numbers(&summary, "");
+        let mut named: Vec<&str> =
+            summary["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
+        named.sort_unstable();
+        assert_eq!(named, FILES);
+        assert_table(&Table::read(&folder.path().join("trajectory.csv")), &summary);
+        for (name, bytes) in &files {
+            match name.rsplit_once('.').unwrap().1 {
+                "svg" => support::assert_svg(bytes),
+                "png" => support::assert_png(bytes),
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_bytes() {
+    for path in paths() {
+        let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+        let runs = folders.each_ref().map(|folder| simulate(&path, folder.path(), &["--json"]).stdout);
+        assert_eq!(runs[0], runs[1]);
+        assert!(contents(folders[0].path()) == contents(folders[1].path()), "{}", path.display());
+        // Standard input is as good as a file, and old results are replaced.
+        let text = std::fs::read(&path).unwrap();
+        let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folders[1].path()).stdin(text).run();
+        assert_eq!((run.code, &run.stdout), (0, &runs[0]));
+        assert!(contents(folders[0].path()) == contents(folders[1].path()), "{}", path.display());
+    }
+}
+
+#[test]
+fn the_demo_is_figure_8() {
+    let [demo, figure] = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    let run = contrapposto(["demo", "--out"]).arg(demo.path()).run();
+    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert!(run.stdout.contains("elbow_flex_r") && run.stdout.contains("3.1"), "{}", run.stdout);
+    assert_eq!(simulate(&scenarios().join("figure-08.toml"), figure.path(), &[]).code, 0);
+    assert!(contents(demo.path()) == contents(figure.path()));
+}
+
+/// All of the body, nothing named: what can be relieved is free, the rest held; slides are in metres and newtons.
+#[test]
+fn the_whole_body_runs() {
+    let text = "format = 1\n[posture]\npelvis_ty_m = 0.9\nlumbar_extension_deg = -40\n[strategy]\nkind = \"passive\"\n\
+        [[load]]\nsegment = \"hand_r\"\nmass_kg = 10\n[fatigue]\ncritical_level = 0.05\nrecovery_level = 0.01\n\
+        [run]\nduration_s = 10\nstep_s = 0.1\n";
+    let (summary, table) = simulate_text(text);
+    assert_table(&table, &summary);
+    assert_numbers(&summary, "");
+    let coordinates = summary["coordinates"].as_object().unwrap();
+    println!("{} coordinates, {} rows", coordinates.len(), table.rows.len());
+    assert!(coordinates.len() > 30);
+    assert_eq!(summary["coordinates"]["pelvis_ty"]["final_deg"], 0.9, "a slide is in metres");
+    assert_eq!(summary["coordinates"]["pelvis_ty"]["free"], false);
+    assert_eq!(summary["coordinates"]["elbow_flex_r"]["free"], true);
+    let folder = tempfile::tempdir().unwrap();
+    let run = contrapposto(["simulate", "-", "--out"]).arg(folder.path()).stdin(text).run();
+    assert!(run.stdout.contains("0.900 m"), "{}", run.stdout);
+}
+
+fn case_changes(text: &str) -> (u64, Vec<String>) {
+    let (summary, table) = simulate_text(text);
+    let changes = summary["coordinates"]["elbow_flex_r"]["case_changes"].as_u64().unwrap();
+    let mut cases: Vec<String> = table.column("elbow_flex_r.case").map(str::to_owned).collect();
+    cases.dedup();
+    (changes, cases)
+}
+
+#[test]
+fn chatter_is_literal_only() {
+    let text = std::fs::read_to_string(scenarios().join("chatter.toml")).unwrap();
+    let (changes, cases) = case_changes(&text);
+    println!("literal: {changes} changes");
+    assert!(changes >= 50, "{changes} changes");
+    let alternating = cases.windows(2).filter(|pair| pair == &["3.1", "3.2"] || pair == &["3.2", "3.1"]).count();
+    assert!(alternating >= 50, "{cases:?}");
+    let total = text.replace("\"literal\"", "\"total\"");
+    assert_ne!(total, text);
+    let (changes, cases) = case_changes(&total);
+    println!("total: {changes} changes, {cases:?}");
+    assert!(changes <= 4, "{cases:?}");
+    let (summary, _) = simulate_text(&total);
+    assert_eq!(summary["stopped"], "settled");
+}
+
+const TIRED: &str = r#"format = 1
+title = "A tired elbow"
+[model]
+adult = { sex = "male", stature_m = 1.741, mass_kg = 73, part = "right_arm" }
+[posture]
+arm_flex_r_deg = 0
+elbow_flex_r_deg = 90
+[coordinates]
+free = ["elbow_flex_r"]
+[strategy]
+kind = "passive"
+[fatigue]
+start = { elbow_flex_r = { positive = 0.7 } }
+[run]
+duration_s = 600
+step_s = 0.1
+"#;
+
+/// Relief brings fatigue down to the recovery level; there the constraint is released, and nothing is asked any more.
+#[test]
+fn a_recovered_group_asks_for_nothing() {
+    let text = TIRED.replace("start =", "recovery_level = 0.5\nstart =");
+    let (summary, table) = simulate_text(&text);
+    let levels = table.numbers("elbow_flex_r.fatigue_positive");
+    let cases: Vec<&str> = table.column("elbow_flex_r.case").collect();
+    assert_ne!(cases[0], "", "0.7 is above the critical level of 0.6: relief from the start");
+    let release = cases.iter().position(|case| case.is_empty()).expect("a release within 600 s");
+    println!("released at {} s, fatigue {}", table.numbers("time")[release], levels[release]);
+    assert!(levels[release] <= 0.5 && levels[release - 1] > 0.5, "{} then {}", levels[release - 1], levels[release]);
+    assert!(cases[release..].iter().all(|case| case.is_empty()), "asked again");
+    let angles = table.numbers("elbow_flex_r.angle_deg");
+    assert!(angles[release + 1..].iter().all(|&angle| angle == angles[release + 1]), "moved without being asked");
+    assert_eq!(summary["coordinates"]["elbow_flex_r"]["positive"]["peak_fatigue"], 0.7);
+}
+
+#[test]
+fn a_rested_group_asks_when_it_is_tired() {
+    let text = TIRED
+        .replace("start = { elbow_flex_r = { positive = 0.7 } }", "critical_level = 0.2\nrecovery_level = 0.1")
+        .replace("[run]", "[[load]]\nsegment = \"hand_r\"\nmass_kg = 8\n[run]");
+    let (_, table) = simulate_text(&text);
+    let levels = table.numbers("elbow_flex_r.fatigue_positive");
+    let cases: Vec<&str> = table.column("elbow_flex_r.case").collect();
+    let first = cases.iter().position(|case| !case.is_empty()).expect("8 kg tire an elbow");
+    println!("asked at {} s", table.numbers("time")[first]);
+    assert!(first > 0 && levels[first] >= 0.2 && levels[first - 1] < 0.2);
+}
+
+#[test]
+fn the_endurance_law_tires_by_its_curve() {
+    let text = |law: &str| {
+        TIRED
+            .replace("start = { elbow_flex_r = { positive = 0.7 } }", law)
+            .replace("[run]", "[[load]]\nsegment = \"hand_r\"\nmass_kg = 5\n[run]")
+            .replace("600", "60")
+    };
+    let finals: Vec<f64> = ["law = \"endurance\"", "law = \"endurance\"\ncurve = \"rohmert_general\"", ""]
+        .iter()
+        .map(|law| {
+            let levels = simulate_text(&text(law)).1.numbers("elbow_flex_r.fatigue_positive");
+            assert!(levels.windows(2).all(|pair| pair[1] >= pair[0]), "a loaded group does not recover, {law}");
+            *levels.last().unwrap()
+        })
+        .collect();
+    println!("fatigue after 60 s at 5 kg: {finals:?}");
+    assert!(finals.iter().all(|&level| level > 0.0) && finals[0] != finals[1] && finals[0] != finals[2]);
+}
+
+#[test]
+fn loads_pull() {
+    let external = |load: &str| {
+        let text = TIRED.replace("[run]", &format!("{load}\n[run]")).replace("600", "0");
+        let (summary, table) = simulate_text(&text);
+        assert_eq!(summary["samples"], 1, "a run of nothing is one sample");
+        table.numbers("elbow_flex_r.external_nm")[0]
+    };
+    let bare = external("");
+    let weight = external("[[load]]\nsegment = \"hand_r\"\nmass_kg = 2");
+    let force = external("[[load]]\nsegment = \"hand_r\"\nforce_n = [0, -19.62, 0]");
+    let up = external("[[load]]\nsegment = \"hand_r\"\nforce_n = [0, 19.62, 0]");
+    let both = external("[[load]]\nsegment = \"hand_r\"\nmass_kg = 1\n[[load]]\nsegment = \"hand_r\"\nmass_kg = 1");
+    println!("elbow: bare {bare:.3}, with 2 kg {weight:.3} N m");
+    assert!(weight < bare && bare < 0.0, "weights extend the elbow");
+    assert!((weight - both).abs() < 1e-12, "two of one are one of two");
+    assert!((weight - force).abs() < 1e-9, "2 kg are 19.62 N: {weight} {force}");
+    assert!((up + weight - 2.0 * bare).abs() < 1e-9, "a force up is a force down turned round");
+}
+
+/// Ten minutes at thirty steps a second: the table grows, memory does not.
+#[test]
+fn a_long_run_needs_little_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = TIRED.replace("step_s = 0.1", "");
+    // 256 MiB of address space, the program and its libraries included; a run that kept its samples would need more later.
+    let script = format!("ulimit -v 262144; exec '{}' simulate - --json --out out", env!("CARGO_BIN_EXE_contrapposto"));
+    let scenario = folder.path().join("scenario.toml");
+    std::fs::write(&scenario, text).unwrap();
+    let start = Instant::now();
+    let output = Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(folder.path())
+        .stdin(File::open(&scenario).unwrap())
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{error}");
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    println!("600 s, {} samples in {:.2} s", summary["samples"], start.elapsed().as_secs_f64());
+    assert_eq!(summary["samples"], 18_001);
+    assert_eq!(summary["end_s"], 600.0);
+    assert_table(&Table::read(&folder.path().join("out/trajectory.csv")), &summary);
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [&["demo", "--out"][..], &["demo", "--json", "--out"]] {
+        let mut child = contrapposto(arguments).arg(folder.path()).spawn();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.stderr.is_empty());
+        assert_eq!(contents(folder.path()).len(), FILES.len(), "the files are written all the same");
+    }
+    for arguments in [&["schema"][..], &["passive", "elbow_flex_r", "--json"], &["--help"]] {
+        let mut child = contrapposto(arguments).spawn();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0), "{arguments:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_under_standard_output_is_a_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let full = || File::options().write(true).open("/dev/full").unwrap();
+    let example = r#"{"angle_deg": 1}"#;
+    for arguments in [
+        &["demo", "--out", out][..],
+        &["demo", "--json", "--out", out],
+        &["figures", "--only", "1", "--out", out],
+        &["passive", "elbow_flex_r", "--json"],
+        &["schema"],
+        &["minimize"],
+    ] {
+        let run = contrapposto(arguments).stdin(example).stdout_to(full()).run();
+        assert_eq!(run.code, 1, "{arguments:?}");
+        assert!(run.stderr.contains("standard output: No space left on device"), "{arguments:?}: {}", run.stderr);
+    }
+}
+
+/// A limit on the size of files stands for a full disk: whatever fits, no named file is cut off.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_old_results_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let demo = |blocks: Option<u32>| {
+        let limit = blocks.map_or(String::new(), |blocks| format!("trap '' XFSZ; ulimit -f {blocks}; "));
+        let script =
+            format!("{limit}exec '{}' demo --json --out '{}'", env!("CARGO_BIN_EXE_contrapposto"), out.display());
+        Command::new("sh").args(["-c", &script]).output().unwrap()
+    };
+    assert_eq!(demo(None).status.code(), Some(0));
+    let whole = contents(&out);
+    for blocks in [0, 1, 8, 30, 60, 120] {
+        let output = demo(Some(blocks));
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{blocks} blocks: {error}");
+        assert!(error.contains("File too large"), "{error}");
+        assert!(contents(&out) == whole, "{blocks} blocks changed something");
+    }
+    std::fs::remove_dir_all(&out).unwrap();
+    assert_eq!(demo(Some(8)).status.code(), Some(1));
+    assert_eq!(contents(&out), vec![], "no file rather than a part of one");
+}
+
+#[test]
+fn an_output_folder_that_is_none_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "mine").unwrap();
+    for out in [file.clone(), file.join("below")] {
+        for verb in
+            [&["demo", "--out"][..], &["figures", "--only", "1", "--out"], &["passive", "elbow_flex_r", "--out"]]
+        {
+            let run = contrapposto(verb).arg(&out).run();
+            assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{}", run.stderr);
+            assert!(run.stderr.contains("--out") && run.stderr.contains(out.to_str().unwrap()), "{}", run.stderr);
+        }
+    }
+    assert_eq!(std::fs::read_to_string(file).unwrap(), "mine");
+    // A folder that bears the name of a result: told, and no other result is lost.
+    let out = folder.path().join("out");
+    std::fs::create_dir_all(out.join("summary.json/inside")).unwrap();
+    let run = contrapposto(["demo", "--out"]).arg(&out).run();
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("summary.json"), "{}", run.stderr);
+    let stray: Vec<_> = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(stray.iter().all(|name| !name.to_string_lossy().starts_with('.')), "{stray:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_may_not_be_written_is_told() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o555)).unwrap();
+    if File::create(folder.path().join("probe")).is_ok() {
+        println!("running as root: permissions mean nothing; /proc stands in");
+        let run = contrapposto(["demo", "--out", "/proc/self"]).run();
+        assert_eq!((run.code, run.stdout.as_str()), (1, ""));
+        assert!(run.stderr.contains("/proc/self/trajectory.csv"), "{}", run.stderr);
+        return;
+    }
+    let run = contrapposto(["demo", "--out"]).arg(folder.path()).run();
+    assert_eq!((run.code, run.stdout.as_str()), (1, ""));
+    assert!(run.stderr.contains("trajectory.csv") && run.stderr.contains("ermission denied"), "{}", run.stderr);
+}
+
+/// Results are for everybody the user's mask allows, and for nobody else.
+#[cfg(unix)]
+#[test]
+fn files_follow_the_mask_of_the_user() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    for (mask, mode) in [("022", 0o644), ("077", 0o600), ("002", 0o664)] {
+        let out = folder.path().join(mask);
+        let script =
+            format!("umask {mask}; exec '{}' demo --out '{}'", env!("CARGO_BIN_EXE_contrapposto"), out.display());
+        assert!(Command::new("sh").args(["-c", &script]).output().unwrap().status.success());
+        for name in FILES {
+            let found = out.join(name).metadata().unwrap().permissions().mode() & 0o777;
+            assert_eq!(found, mode, "{name} under umask {mask}");
+        }
+    }
+}
+
+#[test]
+fn no_colour_and_no_progress_where_none_is_wanted() {
+    let folder = tempfile::tempdir().unwrap();
+    let bad = folder.path().join("bad.toml");
+    std::fs::write(&bad, "format = 1\nstratgy = 3\n").unwrap();
+    let out = folder.path().join("out");
+    // A pipe is no terminal: no escape codes at all, with NO_COLOR or without.
+    for no_color in ["1", ""] {
+        for (path, code) in [(&bad, 2), (&scenarios().join("figure-08.toml"), 0)] {
+            let run = contrapposto(["simulate", "--out"]).arg(&out).arg(path).env("NO_COLOR", no_color).run();
+            assert_eq!(run.code, code);
+            assert!(!(run.stdout + &run.stderr).contains('\u{1b}'));
+        }
+    }
+    // On a terminal there is colour, unless NO_COLOR is set.
+    let on_terminal = |no_color: &str| {
+        let (program, bad, out) = (env!("CARGO_BIN_EXE_contrapposto"), bad.display(), out.display());
+        let call = format!("{no_color} '{program}' simulate '{bad}' --out '{out}'");
+        let output = Command::new("script").args(["-qec", &call, "/dev/null"]).env_remove("NO_COLOR").output();
+        output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let Ok(coloured) = on_terminal("env TERM=xterm-256color") else {
+        return println!("no `script` here: terminals are not tried");
+    };
+    let plain = on_terminal("env TERM=xterm-256color NO_COLOR=1").unwrap();
+    assert!(coloured.contains("\u{1b}[") && coloured.contains("stratgy"), "{coloured:?}");
+    assert!(!plain.contains("\u{1b}[3") && plain.contains("stratgy"), "{plain:?}");
+}
+
+/// Killed at any moment, a named file is whole: the old one or the new one.
+#[test]
+fn a_kill_leaves_no_half_written_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = scenarios().join("figure-08.toml");
+    let two = folder.path().join("other.toml");
+    let text = std::fs::read_to_string(&one).unwrap();
+    std::fs::write(&two, text.replace("elbow_flex_r_deg = 20", "elbow_flex_r_deg = 35")).unwrap();
+    let (whole_one, whole_two) = (folder.path().join("one"), folder.path().join("two"));
+    let full = simulate(&one, &whole_one, &[]).seconds;
+    simulate(&two, &whole_two, &[]);
+    let (whole_one, whole_two) = (contents(&whole_one), contents(&whole_two));
+    assert!(whole_one != whole_two);
+    let out = folder.path().join("out");
+    std::fs::create_dir(&out).unwrap();
+    let kills = 32;
+    let (mut whole, mut killed) = (0, 0);
+    for i in 0..kills {
+        let scenario = if i % 2 == 0 { &one } else { &two };
+        let mut child = contrapposto(["simulate"]).arg(scenario).arg("--out").arg(&out).spawn();
+        // Golden-ratio steps over a little more than a whole run, most of them near its end, where files appear.
+        let share = (f64::from(i) * 0.618_034).fract();
+        let moment = if i % 3 == 0 { share } else { 0.7 + 0.5 * share };
+        std::thread::sleep(Duration::from_secs_f64(full * moment));
+        let _ = child.kill();
+        killed += u32::from(!child.wait().unwrap().success());
+        for (name, bytes) in contents(&out) {
+            if name.starts_with(".contrapposto-") {
+                continue; // has no name yet
+            }
+            let at = FILES.iter().position(|file| *file == name).unwrap_or_else(|| panic!("stray {name}"));
+            assert!(bytes == whole_one[at].1 || bytes == whole_two[at].1, "{name} is torn, kill {i}");
+            whole += 1;
+        }
+    }
+    println!("{kills} runs, {killed} killed in time, {whole} named files seen, all whole; a run takes {full:.2} s");
+    assert!(killed * 4 >= kills as u32, "{killed}");
+    // Running again finishes as if nothing had happened.
+    assert_eq!(simulate(&one, &out, &[]).code, 0);
+    let named: Vec<_> = contents(&out).into_iter().filter(|(name, _)| !name.starts_with('.')).collect();
+    assert!(named == whole_one);
+}
+
+#[test]
+fn every_verb_has_help_with_an_example() {
+    for verb in ["simulate", "demo", "figures", "minimize", "passive", "schema"] {
+        let run = contrapposto([verb, "--help"]).run();
+        assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+        assert!(
+            run.stdout.contains("Example") && run.stdout.contains(&format!("contrapposto {verb}")),
+            "{}",
+            run.stdout
+        );
+    }
+    for arguments in [&[][..], &["simulat"], &["simulate"], &["demo", "--ouput", "x"], &["figures"], &["passive"]] {
+        let run = contrapposto(arguments).run();
+        assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{arguments:?}");
+        assert!(run.stderr.contains("Usage"), "{}", run.stderr);
+    }
+    let run = contrapposto(["passive", "elbow_flx_r", "--json"]).run();
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("did you mean `elbow_flex_r`?"), "{}", run.stderr);
+}
+
+/// The schema names every key of every scenario here.
+#[test]
+fn the_schema_is_one() {
+    let run = contrapposto(["schema"]).run();
+    let schema: Value = serde_json::from_str(&run.stdout).unwrap();
+    for path in paths() {
+        let text = std::fs::read_to_string(path).unwrap();
+        for table in text.lines().filter_map(|line| line.strip_prefix('[')?.split(']').next()) {
+            let key = table.trim_start_matches('[');
+            assert!(schema["properties"][key].is_object(), "{key}");
+        }
+    }
+    assert_eq!(schema["additionalProperties"], false);
+}
