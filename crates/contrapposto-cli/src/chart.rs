@@ -50,7 +50,10 @@ impl<'a> Sweep<'a> {
         self.external.update(model, &self.kinematics, loads).map_err(|error| Fail::job("load", error))?;
         let coordinate = &model.coordinates()[self.coordinate];
         let external = coordinate.rate.map_or(0.0, |rate| self.external.torques()[rate]);
-        Ok((external, coordinate.passive.as_ref().map_or(0.0, |law| law.torque(self.coordinate, self.kinematics.values()))))
+        Ok((
+            external,
+            coordinate.passive.as_ref().map_or(0.0, |law| law.torque(self.coordinate, self.kinematics.values())),
+        ))
     }
 
     /// Angles (deg) where the true active torque is zero.

@@ -150,7 +150,8 @@ fn find(name: &str) -> Result<Found, Fail> {
     }
     let coordinates: Vec<String> = library.coordinate_names().collect();
     let curves: Vec<&str> = library.curve_names().collect();
-    let hint = contrapposto_formats::nearest(name, coordinates.iter().map(String::as_str).chain(curves.iter().copied()));
+    let hint =
+        contrapposto_formats::nearest(name, coordinates.iter().map(String::as_str).chain(curves.iter().copied()));
     let hint = hint.map_or(String::new(), |name| format!("; did you mean `{name}`?"));
     Err(Fail::Refused(format!(
         "there is no coordinate or curve `{name}`{hint}\n  coordinates: {}\n  curves: {}",

@@ -14,7 +14,7 @@ struct Complaint {
     #[source_code]
     source_code: Excerpt,
     #[label("{label}")]
-    span: SourceSpan,
+    span: Option<SourceSpan>,
     label: String,
     #[help]
     help: Option<String>,
@@ -59,11 +59,12 @@ impl Source<'_> {
         help: Option<String>,
     ) -> InputError {
         let text = printable(self.text);
-        // A long or many-lined value is underlined at its beginning; what has no place stands for the whole file.
-        let range = span.unwrap_or(0..0);
-        let line_end = text[range.start..].find('\n').map_or(text.len(), |at| range.start + at);
-        let end = range.end.min(line_end).min(boundary(&text, range.start + MOST_UNDERLINED));
-        let span = SourceSpan::from((range.start, end.saturating_sub(range.start)));
+        // A long or many-lined value is underlined at its beginning.
+        let span = span.map(|range| {
+            let line_end = text[range.start..].find('\n').map_or(text.len(), |at| range.start + at);
+            let end = range.end.min(line_end).min(boundary(&text, range.start + MOST_UNDERLINED));
+            SourceSpan::from((range.start, end.saturating_sub(range.start)))
+        });
         InputError(Box::new(Complaint {
             message: printable(&shortened(message.into())),
             source_code: Excerpt { name: printable(self.name), text },

@@ -78,9 +78,8 @@ fn gradient_to_local(rotation: &Matrix3<f64>, torque: &[f64], ours: &[Vec<f64>])
     let n = ours.len();
     let columns: Vec<Vec<f64>> = (0..n).map(|j| ours.iter().map(|row| row[j]).collect()).collect();
     let turned_rows: Vec<Vec<f64>> = columns.iter().map(|column| to_local(rotation, column)).collect();
-    let mut result: Vec<Vec<f64>> = (0..n)
-        .map(|i| to_local(rotation, &turned_rows.iter().map(|column| column[i]).collect::<Vec<_>>()))
-        .collect();
+    let mut result: Vec<Vec<f64>> =
+        (0..n).map(|i| to_local(rotation, &turned_rows.iter().map(|column| column[i]).collect::<Vec<_>>())).collect();
     let force = rotation.transpose() * Vector3::from_column_slice(&torque[..3]);
     for j in 0..3 {
         let axis = Vector3::from_fn(|i, _| f64::from(u8::from(i == j)));
@@ -98,8 +97,13 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
     let options = urdf::Options { root, ..urdf::Options::default() };
     let imported = urdf::read(&file_bytes, file, &options).unwrap().model().unwrap();
     let free = root == BodyRoot::Free;
-    let names: Vec<&str> =
-        vectors["joint_names"].as_array().unwrap().iter().skip(if free { 2 } else { 1 }).map(|x| x.as_str().unwrap()).collect();
+    let names: Vec<&str> = vectors["joint_names"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .skip(if free { 2 } else { 1 })
+        .map(|x| x.as_str().unwrap())
+        .collect();
     let mut body = Body::new(imported.model);
     let model = body.model.clone();
     // Our rate of each of Pinocchio's.
@@ -166,15 +170,16 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
         ] {
             let turn = |v: Vector3<f64>| if fixed_in == FixedIn::World { v } else { back * v };
             let load = |kind| Load { segment: hand, point: Vector3::zeros(), kind };
-            let loads =
-                [load(LoadKind::Force(turn(force), fixed_in)), load(LoadKind::Couple(turn(couple), fixed_in))];
+            let loads = [load(LoadKind::Force(turn(force), fixed_in)), load(LoadKind::Couple(turn(couple), fixed_in))];
             body.set(values.clone(), &loads);
             torque = torque.max(relative(&convert(body.external.torques()), &numbers(&case["tau_static"])));
             let ours = convert_gradient(body.external.torques(), &body.gradient());
             slope = slope.max(relative(&ours, &matrix(&case[key]).concat()));
         }
     }
-    println!("{file}, {root:?}: torque {torque:.1e}, gradient {slope:.1e}, centre of mass {mass:.1e} m, hand {frame:.1e} m");
+    println!(
+        "{file}, {root:?}: torque {torque:.1e}, gradient {slope:.1e}, centre of mass {mass:.1e} m, hand {frame:.1e} m"
+    );
     assert!(torque < 1e-9 && slope < 1e-9 && mass < 1e-9 && frame < 1e-9);
 }
 

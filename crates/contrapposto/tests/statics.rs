@@ -286,7 +286,7 @@ struct Statics {
 
 impl Statics {
     fn new(model: &Model) -> Self {
-        let gradient = Gradient::new(&model);
+        let gradient = Gradient::new(model);
         Self { kinematics: Kinematics::new(model), external: ExternalTorque::new(model), gradient }
     }
 

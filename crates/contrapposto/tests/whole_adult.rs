@@ -36,8 +36,8 @@ fn masses_add_up_and_the_soles_stand_on_the_ground() {
             assert!(height.abs() < 1e-3, "{toes} at {height} m");
         }
         let head = model.segment("head").unwrap();
-        let crown = kinematics.placement(&model, head).translation.y
-            + 2.0 * model.segments()[head].center_of_mass.y.abs();
+        let crown =
+            kinematics.placement(&model, head).translation.y + 2.0 * model.segments()[head].center_of_mass.y.abs();
         // De Leva's segment lengths, stacked upright, exceed stature by a few percent.
         println!("{:?}: crown {crown:.3} m of {}", size.sex, size.stature);
         assert!((0.98..1.05).contains(&(crown / size.stature)));
@@ -99,9 +99,7 @@ fn leg_laws_are_riener_and_edrich_in_our_signs() {
 #[test]
 fn legs_and_spine_turn_the_way_their_names_say() {
     let model = adult(&Adult::default()).unwrap();
-    let moved = |segment: &str, name: &str| {
-        center(&model, segment, &[(name, 10.0)]) - center(&model, segment, &[])
-    };
+    let moved = |segment: &str, name: &str| center(&model, segment, &[(name, 10.0)]) - center(&model, segment, &[]);
     // x forward, y up, z right.
     for (segment, name, axis, sign) in [
         ("tibia_r", "hip_flexion_r", 0, 1.0),

@@ -1,7 +1,8 @@
 //! A resolved body becomes a [`Model`].
 
 use contrapposto::model::{
-    CoordinateKind, CoordinateSpec, Drive as ModelDrive, JointKind, Model, ModelBuilder, ModelError, Motion, SegmentSpec,
+    CoordinateKind, CoordinateSpec, Drive as ModelDrive, JointKind, Model, ModelBuilder, ModelError, Motion,
+    SegmentSpec,
 };
 use contrapposto::passive::{PassiveError, PassiveLaw, Term};
 use nalgebra::Unit;

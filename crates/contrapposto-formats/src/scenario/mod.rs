@@ -3,8 +3,8 @@
 mod convert;
 mod text;
 
-pub use text::ScenarioText;
 pub(crate) use convert::{double_exponential, passive_curve};
+pub use text::ScenarioText;
 pub(crate) use text::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, StrategyKindText};
 
 use std::ops::Range;
@@ -34,7 +34,7 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
     let text = utf8(name, bytes)?;
     let source = Source { name, text };
     let tree = DeTable::parse(text)
-        .map_err(|error| source.error(error.span(), format!("not TOML: {}", error.message()), "here", None))?;
+        .map_err(|error| source.error(placed(error.span()), format!("not TOML: {}", error.message()), "here", None))?;
     refuse_non_finite(&source, tree.get_ref())?;
     let parsed: T = toml::from_str(text).map_err(|error| complaint(&source, &error))?;
     convert(&Located { source, tree: tree.get_ref() }, &parsed)
@@ -43,6 +43,11 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
 /// JSON Schema of the scenario file.
 pub fn scenario_schema() -> serde_json::Value {
     schemars::schema_for!(ScenarioText).to_value()
+}
+
+/// What has no place of its own stands at the beginning of the file, so that the file is named.
+fn placed(span: Option<Range<usize>>) -> Option<Range<usize>> {
+    span.or(Some(0..0))
 }
 
 /// A parsed file in which a value's place can be looked up by its path.
@@ -54,12 +59,12 @@ pub(crate) struct Located<'a> {
 impl Located<'_> {
     /// A complaint about the value at `path` (keys and array indices), or its nearest table that exists.
     pub(crate) fn error(&self, path: &[&str], message: impl Into<String>, help: Option<String>) -> InputError {
-        self.source.error(self.span(path, false), message, "here", help)
+        self.source.error(placed(self.span(path, false)), message, "here", help)
     }
 
     /// A complaint about the key at the end of `path`.
     pub(crate) fn key_error(&self, path: &[&str], message: impl Into<String>, help: Option<String>) -> InputError {
-        self.source.error(self.span(path, true), message, "here", help)
+        self.source.error(placed(self.span(path, true)), message, "here", help)
     }
 
     fn span(&self, path: &[&str], key: bool) -> Option<Range<usize>> {
@@ -102,7 +107,7 @@ fn complaint(source: &Source, error: &toml::de::Error) -> InputError {
             (plain.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to)), None)
         }
     };
-    source.error(error.span(), message, "here", help)
+    source.error(placed(error.span()), message, "here", help)
 }
 
 /// TOML knows `nan` and `inf`; no scenario does.

@@ -95,7 +95,8 @@ impl Kinematics {
                     self.origins[i] = origin + value * axis;
                 }
                 Motion::Ball => {
-                    let quaternion = nalgebra::Quaternion::new(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
+                    let quaternion =
+                        nalgebra::Quaternion::new(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
                     let turn = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().into_inner();
                     let rotation = rotation * turn;
                     for axis in 0..3 {

@@ -241,7 +241,8 @@ impl Recipe<'_> {
         spec.mass = shares.mass * self.size.mass;
         // The data count from the proximal (cranial) end; a segment that points up has its joint at the other one.
         let share = if row.along == Along::Up { 1.0 - shares.com } else { shares.com };
-        spec.center_of_mass = self.size.stature * Vector3::from(row.proximal_at_stature) + share * length * direction(row);
+        spec.center_of_mass =
+            self.size.stature * Vector3::from(row.proximal_at_stature) + share * length * direction(row);
         let about = |radius: f64| spec.mass * (radius * length).powi(2);
         let (ap, ml, long) = (about(shares.r_ap), about(shares.r_ml), about(shares.r_long));
         // Of a foot the longitudinal axis lies along x, and the antero-posterior column is the one across it (de Leva: sagittal).

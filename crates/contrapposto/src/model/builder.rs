@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{
-    Coordinate, CoordinateKind, CoordinateSpec, Coupling, Drive, JointKind, LARGEST, Mobility, Model, Motion, Placement, Rate, Segment,
+    Coordinate, CoordinateKind, CoordinateSpec, Coupling, Drive, JointKind, LARGEST, Mobility, Model, Motion,
+    Placement, Rate, Segment,
 };
 use crate::math::Function;
 
@@ -242,8 +243,10 @@ impl ModelBuilder {
         let model = &mut self.model;
         let plain = |m: &Mobility| matches!(m.drive, Drive::Coordinate(_));
         let in_order = model.elements.iter().enumerate().all(|(i, rate)| *rate == Some(i));
-        model.direct =
-            model.couplings.is_empty() && in_order && model.rates.len() == model.elements.len() && model.mobilities.iter().all(plain);
+        model.direct = model.couplings.is_empty()
+            && in_order
+            && model.rates.len() == model.elements.len()
+            && model.mobilities.iter().all(plain);
         self.model
     }
 }

@@ -140,7 +140,8 @@ impl Library {
     /// extension and the ankle's follow Anderson et al. 2007, young adults.
     pub(super) fn strength(&self, id: &str, size: &Adult, sign: f64) -> Option<(Strength, &Reference)> {
         let floor = self.strength.floor.share;
-        let measured = self.strength.anderson2007.row.iter().find(|r| r.id == id && r.sex == size.sex && r.age == YOUNG);
+        let measured =
+            self.strength.anderson2007.row.iter().find(|r| r.id == id && r.sex == size.sex && r.age == YOUNG);
         if let Some(row) = measured {
             let peak = row.c1 * size.mass * GRAVITY * size.stature;
             let strength = Strength { peak, best: sign * row.c3_rad, narrowness: row.c2_per_rad, floor };

@@ -5,7 +5,9 @@
 
 use std::borrow::Cow;
 
-use super::{CoordinateLimitForce, DoubleExponential, Exponentials, Form, PassiveCurve, PassiveError, RienerEdrich1999};
+use super::{
+    CoordinateLimitForce, DoubleExponential, Exponentials, Form, PassiveCurve, PassiveError, RienerEdrich1999,
+};
 use crate::math::expression::Expression;
 
 /// Passive torque of one coordinate.
@@ -110,8 +112,7 @@ impl Term {
             Self::Spring { stiffness, rest } => (-stiffness * (q - rest), -stiffness),
             Self::Polynomial { coefficients, rest } => {
                 let x = q - rest;
-                let (value, slope) =
-                    coefficients.iter().rev().fold((0.0, 0.0), |(p, d), k| (p * x + k, d * x + p));
+                let (value, slope) = coefficients.iter().rev().fold((0.0, 0.0), |(p, d), k| (p * x + k, d * x + p));
                 (-value * x, -(value + slope * x))
             }
             Self::CoordinateLimitForce(law) => law.torque_and_slope(q),
