@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Reference numbers of MJCF models, as MuJoCo resolves them: crates/contrapposto-formats/tests/data/mujoco_reference.json.
 
-    python3 -m venv /tmp/mjvenv && /tmp/mjvenv/bin/pip install mujoco==4.0.0 numpy
-    /tmp/mjvenv/bin/python scripts/mujoco_reference.py
+    python3 -m venv mjvenv && mjvenv/bin/pip install mujoco==4.0.0 numpy
+    mjvenv/bin/python scripts/mujoco_reference.py
 
 The models: our own files in crates/contrapposto-formats/tests/models, and published ones that lie beside the repository
 (../shared/models), of which only numbers are kept: dm_control's CMU humanoid (Apache 2.0).

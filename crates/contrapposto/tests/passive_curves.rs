@@ -358,7 +358,8 @@ fn opensim_limit_forces_are_met() {
     // ToyLandingModel.osim, KneeLimit_r.
     assert!(worst(force(20.0, -5.0, 10.0, -120.0, 10.0), &TOY_LANDING_KNEE) < 1e-9);
 
-    let path = "/work/shared/vectors/opensim_coordinate_limit_force_sweeps.json";
+    let path =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/vectors/opensim_coordinate_limit_force_sweeps.json");
     let Ok(text) = std::fs::read_to_string(path) else {
         println!("skipped: {path} is not here");
         return;
