@@ -2,7 +2,6 @@
 
 use contrapposto::passive::{CoordinateLimitForce, Exponentials, Form, PassiveLaw, Reshape, Tabulated, Term};
 
-use super::parts;
 use super::xml::number;
 
 /// One summand of a law.
@@ -32,7 +31,7 @@ pub(super) fn summands(law: &PassiveLaw) -> Option<Vec<Part<'_>>> {
     match law {
         PassiveLaw::Curve(curve) => {
             let mut all = vec![match curve.form() {
-                Form::Exponentials(law) => Part::Formula(exponentials(law)?),
+                Form::Exponentials(law) => Part::Formula(exponentials(law)),
                 Form::CoordinateLimitForce(law) => Part::Limit(law),
                 Form::Tabulated(law) => Part::Formula(tabulated(law)?),
             }];
@@ -50,7 +49,7 @@ fn summand(term: &Term) -> Option<Part<'_>> {
         Term::Spring { stiffness, rest } => Part::Spring { stiffness: *stiffness, rest: *rest },
         Term::Polynomial { coefficients, rest } => Part::Polynomial { coefficients, rest: *rest },
         Term::CoordinateLimitForce(law) => Part::Limit(law),
-        Term::Exponentials(law) => Part::Formula(exponentials(law)?),
+        Term::Exponentials(law) => Part::Formula(exponentials(law)),
         Term::Expression(formula) => Part::Formula(formula.text().to_owned()),
     })
 }
@@ -78,19 +77,19 @@ fn sum(text: String) -> String {
     }
 }
 
-fn exponentials(law: &Exponentials) -> Option<String> {
-    let parts = parts::exponentials(law)?;
+fn exponentials(law: &Exponentials) -> String {
     let mut text = String::new();
-    if parts.constant != 0.0 {
-        text += &signed(parts.constant);
+    if law.constant() != 0.0 {
+        text += &signed(law.constant());
     }
-    if parts.stiffness != 0.0 {
-        text += &format!("{}*{}", signed(-parts.stiffness), from(parts.neutral));
+    let (stiffness, neutral) = law.linear_term();
+    if stiffness != 0.0 {
+        text += &format!("{}*{}", signed(-stiffness), from(neutral));
     }
-    for (torque, rate, angle) in parts.terms {
+    for (torque, rate, angle) in law.exponential_terms() {
         text += &format!("{}*exp({}*{})", signed(torque), number(rate), from(angle));
     }
-    Some(sum(text))
+    sum(text)
 }
 
 /// What reshaping adds near both limits.
@@ -108,13 +107,14 @@ fn ends(reshape: &Reshape, (min, max): (f64, f64)) -> String {
 
 /// Cubic pieces, each switched on between its ends; the outer ones go on beyond.
 fn tabulated(law: &Tabulated) -> Option<String> {
-    let pieces = parts::tabulated(law)?;
+    let pieces = law.pieces();
     let mut text = String::new();
-    for (i, (start, [c0, c1, c2, c3])) in pieces.iter().enumerate() {
-        let x = from(*start);
-        let cubic = format!("({}+{x}*({}+{x}*({}+{x}*{})))", plain(*c0), plain(*c1), plain(*c2), plain(*c3));
+    for (i, piece) in pieces.iter().enumerate() {
+        let x = from(piece.start);
+        let [c0, c1, c2, c3] = piece.coefficients.map(plain);
+        let cubic = format!("({c0}+{x}*({c1}+{x}*({c2}+{x}*{c3})))");
         let on = if i == 0 { "1".to_owned() } else { format!("step{}", bracketed(&x)) };
-        let off = pieces.get(i + 1).map_or(String::new(), |next| format!("-step{}", bracketed(&from(next.0))));
+        let off = pieces.get(i + 1).map_or(String::new(), |next| format!("-step{}", bracketed(&from(next.start))));
         text += &format!("+({on}{off})*{cubic}");
     }
     let text = sum(text);

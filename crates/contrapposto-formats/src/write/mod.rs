@@ -15,7 +15,6 @@ mod names;
 mod osim;
 mod osim_functions;
 mod osim_joint;
-mod parts;
 mod steps;
 mod urdf;
 mod xml;

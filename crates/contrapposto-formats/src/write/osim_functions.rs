@@ -2,7 +2,6 @@
 
 use contrapposto::math::Function;
 
-use super::parts::{self, Joined};
 use super::xml::{Xml, number, numbers};
 
 /// Writes a function as an object of that name, if any; false for one that OpenSim has not, and then nothing is written.
@@ -28,8 +27,8 @@ pub(super) fn write(xml: &mut Xml, name: Option<&str>, function: &Function) -> b
             }
         }
         Function::Spline(spline) => {
-            let Some((joined, x, y)) = parts::spline(spline) else { return false };
-            xml.open(if matches!(joined, Joined::Simm) { "SimmSpline" } else { "PiecewiseLinearFunction" }, &named);
+            let (x, y): (Vec<f64>, Vec<f64>) = spline.points().unzip();
+            xml.open(if spline.is_straight() { "PiecewiseLinearFunction" } else { "SimmSpline" }, &named);
             xml.value("x", &numbers(&x));
             xml.value("y", &numbers(&y));
         }

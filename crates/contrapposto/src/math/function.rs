@@ -209,6 +209,17 @@ impl Spline {
         Ok((h, slopes))
     }
 
+    /// The points that the spline goes through, x and y.
+    pub fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.knots.iter().zip(&self.pieces).map(|(&x, piece)| (x, piece[0]))
+    }
+
+    /// Are its points joined by straight lines?
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.pieces.iter().all(|piece| piece[2] == 0.0 && piece[3] == 0.0)
+    }
+
     /// First and last x of the points.
     #[must_use]
     pub fn range(&self) -> (f64, f64) {

@@ -116,6 +116,21 @@ impl Exponentials {
         Ok(sum)
     }
 
+    /// The exponential terms as (torque N m, rate 1/rad, angle rad).
+    pub fn exponential_terms(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+        self.terms().iter().map(|term| (term.torque, term.rate, term.angle))
+    }
+
+    /// The linear term: stiffness (N m/rad), and the angle where it is zero (rad).
+    pub fn linear_term(&self) -> (f64, f64) {
+        (self.stiffness, self.neutral)
+    }
+
+    /// The constant torque, N m.
+    pub fn constant(&self) -> f64 {
+        self.constant
+    }
+
     fn terms(&self) -> &[Term] {
         &self.terms[..self.count]
     }

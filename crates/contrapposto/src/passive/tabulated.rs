@@ -3,7 +3,7 @@
 //! A monotone cubic (Fritsch & Carlson 1980) through the rows: smooth, and never outside the two neighbouring values.
 
 use super::{Form, PassiveError};
-use crate::math::MonotoneCubic;
+use crate::math::{MonotoneCubic, Piece};
 
 /// Measured torque against angle.
 ///
@@ -55,6 +55,11 @@ impl Tabulated {
             energy -= piece.integral(piece.end);
         }
         Ok(Self { cubic, energies })
+    }
+
+    /// The cubic pieces from left to right, rad and N m.
+    pub fn pieces(&self) -> &[Piece] {
+        self.cubic.pieces()
     }
 
     /// The evaluable form.
