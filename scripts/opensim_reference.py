@@ -1,15 +1,20 @@
 """Reference values of OpenSim for the tests of contrapposto-formats and contrapposto.
 
     python3 -m venv venv && venv/bin/pip install opensim==4.6 numpy
-    venv/bin/python scripts/opensim_reference.py
+    venv/bin/python scripts/opensim_reference.py [FOLDER]
 
-Writes crates/contrapposto-formats/tests/data/opensim_{expressions,functions,models}.json. Deterministic: fixed seeds.
+Writes crates/contrapposto-formats/tests/data/opensim_{expressions,functions,models,torques}.json. Deterministic: fixed seeds.
+
+FOLDER holds the published models of `PUBLISHED`, which are not copied into the project; without it their part of
+opensim_torques.json stays as it is. They come out of packages of PyPI: `pip download --no-deps nimblephysics==0.10.52.1
+pose2sim==0.10.49 osim-rl==3.0.11`, then unzip or untar the `.osim` files into FOLDER.
 """
 
 import json
 import math
 import multiprocessing
 import pathlib
+import sys
 
 import numpy
 import opensim
@@ -156,9 +161,101 @@ def models():
         return {"tool": TOOL, "models": pool.map(model_reference, paths, chunksize=1)}
 
 
+PUBLISHED = ["Rajagopal2015.osim", "Model_Pose2Sim_simple.osim", "Model_Pose2Sim_muscles_flex.osim", "MoBL_ARMS_J.osim",
+             "gait14dof22musc_20170320.osim", "gait9dof18musc.osim", "gait14dof22musc_pros_20180507.osim"]
+
+
+def torque_reference(path):
+    """Inverse dynamics at rest without any force: raw rows, and rows with followers folded in by OpenSim's derivatives."""
+    first = opensim.StdVectorInt()
+    first.append(0)
+    forced = opensim.Model(str(path))
+    forced_state = forced.initSystem()
+    kinds = ["CoordinateLimitForce", "SpringGeneralizedForce"]
+    springs = [f for f in forced.getForceSet() if f.getConcreteClassName() in kinds and f.get_appliesForce()]
+    model = opensim.Model(str(path))
+    model.updForceSet().clearAndDestroy()
+    state = model.initSystem()
+    coordinates = model.getCoordinateSet()
+    every = [coordinates.get(i) for i in range(coordinates.getSize())]
+    constraints = [model.getConstraintSet().get(i) for i in range(model.getConstraintSet().getSize())]
+    couplers = [opensim.CoordinateCouplerConstraint.safeDownCast(c) for c in constraints]
+    scale = lambda c: opensim.PropertyHelper.getValueDouble(c.getPropertyByName("scale_factor"))
+    leader = {}
+    for c in couplers:
+        leader[c.getDependentCoordinateName()] = (c.getIndependentCoordinateNames().get(0), c.getFunction(), scale(c))
+    mass = model.getTotalMass(state)
+
+    def place(q):
+        def value(name):
+            if name not in leader:
+                return q[name]
+            independent, function, factor = leader[name]
+            return factor * function.calcValue(opensim.Vector(1, value(independent)))
+
+        values = {c.getName(): value(c.getName()) for c in every}
+        for c in every:
+            c.setLocked(state, False)
+            c.setValue(state, values[c.getName()], False)
+        model.realizePosition(state)
+        return values
+
+    # Which of the solver's rows belongs to which coordinate.
+    row = {}
+    for c in every:
+        c.setLocked(state, False)
+        c.setSpeedValue(state, 1.0)
+        row[c.getName()] = max(range(state.getNU()), key=lambda i: abs(state.getU().get(i)))
+        c.setSpeedValue(state, 0.0)
+    assert sorted(row.values()) == list(range(len(every)))
+    solver = opensim.InverseDynamicsSolver(model)
+    random = numpy.random.RandomState(23)
+    cases = []
+    for _ in range(3):
+        q = {}
+        for c in every:
+            low, high = max(c.getRangeMin(), -1.0), min(c.getRangeMax(), 1.0)
+            q[c.getName()] = float(random.uniform(low, high)) if low < high else c.getDefaultValue()
+        values = place(q)
+        model.realizeVelocity(state)
+        torques = solver.solve(state)
+        raw = {name: torques.get(i) for name, i in row.items()}
+        center = vector(model.calcMassCenterPosition(state))
+        folded = {name: 0.0 for name in q if name not in leader}
+        for name, torque in raw.items():
+            while name in leader:
+                independent, function, factor = leader[name]
+                torque *= factor * function.calcDerivative(first, opensim.Vector(1, values[independent]))
+                name = independent
+            folded[name] += torque
+        passive = {}
+        for c in every:
+            own = forced.getCoordinateSet().get(c.getName())
+            own.setLocked(forced_state, False)
+            own.setValue(forced_state, values[c.getName()], False)
+        forced.realizeVelocity(forced_state)
+        for force in springs:
+            name = force.getPropertyByName("coordinate").toString().strip("()")
+            passive[name] = passive.get(name, 0.0) + force.getRecordValues(forced_state).get(0)
+        cases.append({"q": values, "passive": passive, "raw": raw, "folded": folded, "center": center})
+    return {"file": path.name, "mass": mass, "cases": cases}
+
+
+def torques(folder):
+    paths = [HERE / "models/coupled.osim"]
+    kept = []
+    if folder:
+        paths += [pathlib.Path(folder) / name for name in PUBLISHED]
+    elif (HERE / "data/opensim_torques.json").exists():
+        kept = json.loads((HERE / "data/opensim_torques.json").read_text())["models"][1:]
+    with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
+        return {"tool": TOOL, "models": pool.map(torque_reference, paths, chunksize=1) + kept}
+
+
 def main():
     (HERE / "data").mkdir(exist_ok=True)
-    for name, make in [("expressions", expressions), ("functions", functions), ("models", models)]:
+    folder = sys.argv[1] if len(sys.argv) > 1 else None
+    for name, make in [("expressions", expressions), ("functions", functions), ("models", models), ("torques", lambda: torques(folder))]:
         text = json.dumps(make(), allow_nan=True).replace("-Infinity", '"-inf"').replace("Infinity", '"inf"').replace("NaN", '"nan"')
         (HERE / f"data/opensim_{name}.json").write_text(text.replace("}, {", "},\n{") + "\n")
 

@@ -115,7 +115,8 @@ impl<'a> Sweep<'a> {
             1 => [p.z, p.x],
             _ => [p.x, p.y],
         };
-        let polylines = sticks(model, &self.kinematics).into_iter().map(|line| line.into_iter().map(view).collect());
+        let lines = sticks(model, &self.kinematics, self.coordinate);
+        let polylines = lines.into_iter().map(|line| line.into_iter().map(view).collect());
         Ok(PostureSketch { label: label.to_owned(), angle_deg, polylines: polylines.collect(), role })
     }
 }
@@ -125,20 +126,45 @@ pub(crate) fn angle_label(name: &str, positive: &str) -> String {
     if positive.is_empty() { format!("{name}, deg") } else { format!("{name}, deg ({positive} positive)") }
 }
 
-/// One line a segment: from its joint to the joints of its children, or through its centre of mass to its end.
-fn sticks(model: &Model, kinematics: &Kinematics) -> Vec<Vec<Vector3<f64>>> {
+/// Lines of the body: first one that runs along all that `coordinate` leaves in place, there and back, then one a segment that
+/// it moves, from its joint to the joints of its children, or through its centre of mass to its end.
+fn sticks(model: &Model, kinematics: &Kinematics, coordinate: usize) -> Vec<Vec<Vector3<f64>>> {
+    let segments = model.segments();
     let origin = |segment| kinematics.placement(model, segment).translation.vector;
-    let mut lines = vec![];
-    for (s, segment) in model.segments().iter().enumerate() {
-        let mut children = (0..model.segments().len()).filter(|&c| model.segments()[c].parent == Some(s)).peekable();
-        if children.peek().is_none() {
-            lines.push(vec![origin(s), kinematics.station(model, s, 2.0 * segment.center_of_mass)]);
+    let mut driven = vec![coordinate];
+    // Leaders stand before their followers.
+    for coupling in model.couplings() {
+        if driven.contains(&coupling.independent) {
+            driven.push(coupling.dependent);
         }
-        for child in children {
-            if (origin(child) - origin(s)).norm() > 1e-9 {
-                lines.push(vec![origin(s), origin(child)]);
+    }
+    let mut moved: Vec<bool> = vec![];
+    for segment in segments {
+        let carried = segment.parent.is_some_and(|parent| moved[parent]);
+        moved.push(carried || segment.coordinates.clone().any(|c| driven.contains(&c)));
+    }
+    let ends = |s: usize| -> Vec<(Option<usize>, Vector3<f64>)> {
+        let children = (0..segments.len()).filter(|&c| segments[c].parent == Some(s));
+        let joints: Vec<_> = children.map(|c| (Some(c), origin(c))).collect();
+        let tip = || vec![(None, kinematics.station(model, s, 2.0 * segments[s].center_of_mass))];
+        if joints.is_empty() { tip() } else { joints }
+    };
+    let mut still = vec![];
+    // A walk through the tree: a segment is entered, or come back to.
+    let mut waiting: Vec<(Option<usize>, Vector3<f64>)> = vec![];
+    for root in (0..segments.len()).filter(|&s| segments[s].parent.is_none() && !moved[s]) {
+        waiting.push((Some(root), origin(root)));
+        while let Some((segment, at)) = waiting.pop() {
+            still.push(at);
+            for (child, end) in segment.filter(|&s| !moved[s]).into_iter().flat_map(ends) {
+                waiting.extend([(None, at), (child, end)]);
             }
         }
+    }
+    let mut lines = vec![still];
+    for s in (0..segments.len()).filter(|&s| moved[s]) {
+        let away = ends(s).into_iter().filter(|(_, end)| (end - origin(s)).norm() > 1e-9);
+        lines.extend(away.map(|(_, end)| vec![origin(s), end]));
     }
     lines
 }

@@ -46,7 +46,7 @@ fn bench_model(c: &mut Criterion, name: &str, model: &Model, loads: &[Load]) {
         b.iter(|| {
             kinematics.update(model, next.next().expect("cycle")).expect("a posture of the model");
             external.update(model, &kinematics, &[]).expect("no loads");
-            (external.center_of_mass(model), black_box(external.torques())[0])
+            (external.center_of_mass().position(), black_box(external.torques())[0])
         });
     });
     let mut next = postures.iter().cycle();

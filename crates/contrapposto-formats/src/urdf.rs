@@ -10,7 +10,7 @@ mod tree;
 
 pub use error::{UrdfError, UrdfRule};
 
-use crate::body::{Body, BodyRoot, BodySegment, first_too_large};
+use crate::body::{Body, BodyRoot, BodySegment, first_too_large, turned};
 use crate::numbers;
 use crate::xml::{self, Limits, Node, Place, shorten};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
@@ -147,10 +147,9 @@ fn segment(link: Node<'_>, name: &str, ignored: &mut Ignored) -> Result<BodySegm
         }
     }
     let frame = origin(inertial)?;
-    let turn = frame.rotation.to_rotation_matrix();
     let own = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     segment.center_of_mass = frame.translation.vector;
-    segment.inertia = turn * own * turn.inverse();
+    segment.inertia = turned(&own, frame.rotation.to_rotation_matrix().matrix());
     Ok(segment)
 }
 

@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use contrapposto::kinematics::Kinematics;
+use contrapposto::kinematics::{CenterOfMass, Kinematics};
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
@@ -60,6 +60,28 @@ impl Body {
         self.external.update(&self.model, &self.kinematics, loads).unwrap();
     }
 
+    /// Rows of a Jacobian that `fill` writes.
+    fn jacobian(&self, fill: impl Fn(&Model, &Kinematics, &mut [f64])) -> Vec<Vec<f64>> {
+        let n = self.model.rates().len();
+        let mut rows = vec![f64::NAN; 3 * n];
+        fill(&self.model, &self.kinematics, &mut rows);
+        rows.chunks(n).map(<[f64]>::to_vec).collect()
+    }
+
+    fn center_jacobian(&self) -> Vec<Vec<f64>> {
+        let mut center = CenterOfMass::new(&self.model);
+        center.update(&self.model, &self.kinematics);
+        self.jacobian(|model, kinematics, rows| center.jacobian(model, kinematics, rows))
+    }
+
+    fn origin_jacobian(&self, segment: usize) -> Vec<Vec<f64>> {
+        self.jacobian(|model, kinematics, rows| kinematics.point_jacobian(model, segment, Vector3::zeros(), rows))
+    }
+
+    fn rotation_jacobian(&self, segment: usize) -> Vec<Vec<f64>> {
+        self.jacobian(|model, kinematics, rows| kinematics.rotation_jacobian(model, segment, rows))
+    }
+
     fn gradient(&self) -> Vec<Vec<f64>> {
         let mut gradient = Gradient::new(&self.model);
         self.external.gradient(&self.model, &self.kinematics, &mut gradient);
@@ -67,7 +89,8 @@ impl Body {
     }
 }
 
-/// Generalised forces of a freed root, ours (translations in world axes) to Pinocchio's (in the root's own).
+/// Generalised forces of a freed root, or a row of derivatives by its rates, ours (translations in world axes) to Pinocchio's
+/// (in the root's own).
 fn to_local(rotation: &Matrix3<f64>, ours: &[f64]) -> Vec<f64> {
     let linear = rotation.transpose() * Vector3::from_column_slice(&ours[..3]);
     linear.iter().chain(&ours[3..]).copied().collect()
@@ -113,7 +136,7 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
     assert_eq!(rates.len(), vectors["nv"].as_u64().unwrap() as usize);
     let pick = |row: &[f64]| -> Vec<f64> { rates.iter().map(|&rate| row[rate]).collect() };
     let hand = model.segment(vectors["force_frame"].as_str().unwrap()).unwrap();
-    let (mut torque, mut slope, mut mass, mut frame) = (0f64, 0f64, 0f64, 0f64);
+    let (mut torque, mut slope, mut mass, mut frame, mut moves) = (0f64, 0f64, 0f64, 0f64, 0f64);
     for case in vectors["cases"].as_array().unwrap() {
         let q = numbers(&case["q"]);
         let mut values = model.default_posture().values().to_vec();
@@ -161,6 +184,20 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
         let right = model.segment(vectors["right_hand_frame"].as_str().unwrap()).unwrap();
         let position = body.kinematics.placement(&model, right).translation.vector;
         frame = frame.max((position - vector(&case["right_hand_pos"])).norm());
+        let convert_rows = |rows: &[Vec<f64>]| -> Vec<f64> {
+            let picked = rows.iter().map(|row| pick(row));
+            picked.flat_map(|row| if free { to_local(&rotation, &row) } else { row }).collect()
+        };
+        let mut ours = convert_rows(&body.center_jacobian());
+        ours.iter_mut().for_each(|entry| *entry *= total / (total - root_mass));
+        moves = moves.max(relative(&ours, &matrix(&case["J_com"]).concat()));
+        for side in ["right", "left"] {
+            let segment = model.segment(vectors[format!("{side}_hand_frame")].as_str().unwrap()).unwrap();
+            let theirs = matrix(&case[format!("J_{side}_hand")]);
+            let (linear, angular) = (body.origin_jacobian(segment), body.rotation_jacobian(segment));
+            moves = moves.max(relative(&convert_rows(&linear), &theirs[..3].concat()));
+            moves = moves.max(relative(&convert_rows(&angular), &theirs[3..].concat()));
+        }
         // Static torque with a wrench at the hand, turning with it or not.
         let (force, couple) = (vector(&case["f_world"]), vector(&case["m_world"]));
         let back = body.kinematics.placement(&model, hand).rotation.inverse();
@@ -178,9 +215,10 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
         }
     }
     println!(
-        "{file}, {root:?}: torque {torque:.1e}, gradient {slope:.1e}, centre of mass {mass:.1e} m, hand {frame:.1e} m"
+        "{file}, {root:?}: torque {torque:.1e}, gradient {slope:.1e}, centre of mass {mass:.1e} m, hand {frame:.1e} m, \
+         Jacobians {moves:.1e}"
     );
-    assert!(torque < 1e-9 && slope < 1e-9 && mass < 1e-9 && frame < 1e-9);
+    assert!(torque < 1e-9 && slope < 1e-9 && mass < 1e-9 && frame < 1e-9 && moves < 1e-12);
 }
 
 #[test]
@@ -224,7 +262,7 @@ fn mujoco_cmu_suite() {
     let model = body.model.clone();
     let joints: Vec<&str> =
         vectors["joints"].as_array().unwrap().iter().skip(1).map(|j| j["name"].as_str().unwrap()).collect();
-    let (mut worst, mut springs, mut mass) = (0f64, 0f64, 0f64);
+    let (mut worst, mut springs, mut mass, mut moves) = (0f64, 0f64, 0f64, 0f64);
     for case in vectors["cases"].as_array().unwrap() {
         let q = numbers(&case["qpos"]);
         let mut values = model.default_posture().values().to_vec();
@@ -246,9 +284,21 @@ fn mujoco_cmu_suite() {
             .collect();
         springs = springs.max(relative(&passive, &numbers(&case["qfrc_passive"])));
         mass = mass.max((body.kinematics.center_of_mass(&model).unwrap() - vector(&case["com"])).norm());
+        let mut compare = |ours: Vec<Vec<f64>>, theirs: &Value| {
+            let ours: Vec<f64> = ours.iter().flat_map(|row| rates.iter().map(|&rate| row[rate])).collect();
+            moves = moves.max(relative(&ours, &matrix(theirs).concat()));
+        };
+        compare(body.center_jacobian(), &case["J_com"]);
+        for side in ["right", "left"] {
+            let hand = model.segment(vectors[format!("{side}_hand_body")].as_str().unwrap()).unwrap();
+            compare(body.origin_jacobian(hand), &case[format!("J_{side}_hand_pos")]);
+            compare(body.rotation_jacobian(hand), &case[format!("J_{side}_hand_rot")]);
+        }
     }
-    println!("CMU suite: torque {worst:.1e}, springs {springs:.1e}, centre of mass {mass:.1e} m");
-    assert!(worst < 1e-9 && springs < 1e-9 && mass < 1e-9);
+    println!(
+        "CMU suite: torque {worst:.1e}, springs {springs:.1e}, centre of mass {mass:.1e} m, Jacobians {moves:.1e}"
+    );
+    assert!(worst < 1e-9 && springs < 1e-9 && mass < 1e-9 && moves < 1e-12);
 }
 
 fn opensim(vectors: &str, file: &str) {
@@ -257,7 +307,7 @@ fn opensim(vectors: &str, file: &str) {
     let mut body = Body::new(osim::read(&bytes, file).unwrap().model().unwrap().model);
     let model = body.model.clone();
     let names: Vec<&str> = vectors["coordinates"].as_array().unwrap().iter().map(|x| x.as_str().unwrap()).collect();
-    let (mut worst, mut limits, mut mass) = (0f64, 0f64, 0f64);
+    let (mut worst, mut limits, mut mass, mut moves) = (0f64, 0f64, 0f64, 0f64);
     let parameters = &vectors["coordinate_limit_force"]["parameters"];
     for case in vectors["cases"].as_array().unwrap() {
         let mut values = model.default_posture().values().to_vec();
@@ -284,9 +334,17 @@ fn opensim(vectors: &str, file: &str) {
             limits = limits.max((ours - theirs).abs());
         }
         mass = mass.max((body.kinematics.center_of_mass(&model).unwrap() - vector(&case["com"])).norm());
+        let rates: Vec<usize> =
+            names.iter().map(|name| model.coordinates()[model.coordinate(name).unwrap()].rate.unwrap()).collect();
+        let ours = body.center_jacobian();
+        let ours: Vec<f64> = ours.iter().flat_map(|row| rates.iter().map(|&rate| row[rate])).collect();
+        moves = moves.max(relative(&ours, &matrix(&case["J_com_central_difference"]).concat()));
     }
-    println!("{file}: torque {worst:.1e} N m, limit forces {limits:.1e} N m, centre of mass {mass:.1e} m");
-    assert!(worst < 1e-6 && limits < 1e-6 && mass < 1e-9);
+    println!(
+        "{file}: torque {worst:.1e} N m, limit forces {limits:.1e} N m, centre of mass {mass:.1e} m, Jacobian {moves:.1e}"
+    );
+    // Their Jacobian is a central difference of step 1e-6.
+    assert!(worst < 1e-6 && limits < 1e-6 && mass < 1e-9 && moves < 1e-7);
 }
 
 #[test]

@@ -322,7 +322,7 @@ fn balls_and_free_joints() {
     assert!(difference(&model, &back, false) < 1e-12, "{}", written.text);
     assert_eq!(back.default_posture(), model.default_posture());
     // Elsewhere than at the world's origin it is three slides and a ball.
-    let skew = SegmentSpec { joint: "x".to_owned(), ..segment("a", None, JointKind::Free, named(&["x", "y", "z"])) };
+    let skew = SegmentSpec { joint: "r".to_owned(), ..segment("a", None, JointKind::Free, named(&["x", "y", "z"])) };
     let skew = build(vec![skew, ball()]);
     let back = read(&write::mjcf(&skew).unwrap().text, Mjcf);
     assert!(difference(&skew, &back, false) < 1e-12);

@@ -25,12 +25,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. Today relief moves each
-//! coordinate on its own; strict priorities, supports and contact come with later versions (see CHANGELOG.md).
+//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. [`ik`] finds
+//! postures from goals in strict priority; in [`simulation`] relief still moves each coordinate on its own, and supports and
+//! contact come with later versions (see CHANGELOG.md).
 
 pub mod constraint;
 pub mod fatigue;
 pub mod hybrid;
+pub mod ik;
 pub mod kinematics;
 pub mod math;
 pub mod model;

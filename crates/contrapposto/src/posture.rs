@@ -1,5 +1,7 @@
 //! Where does every coordinate stand?
 
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
 use crate::model::{LARGEST, Model};
 
 /// The values of all coordinates of a model, in its order: rad, m, or quaternion components.
@@ -83,4 +85,90 @@ impl Posture {
         }
         Ok(())
     }
+
+    /// Moves by a step of rates (rad, m): angles and distances add, a ball's quaternion `q` becomes `q exp(step)`, of length 1,
+    /// and coordinates that follow others are set from their leaders; their own step does nothing. Does not allocate.
+    ///
+    /// # Panics
+    /// When posture or step has another length than the model needs.
+    pub fn displace(&mut self, model: &Model, step: &[f64]) {
+        self.expect(model, step);
+        for part in parts(model) {
+            match part {
+                Part::Axis { rate, coordinate } => self.values[coordinate] += step[rate],
+                Part::Ball { rate, first } => {
+                    let turn = UnitQuaternion::from_scaled_axis(Vector3::from_column_slice(&step[rate..rate + 3]));
+                    let moved = self.quaternion(first) * turn;
+                    // Once more, so that rounding does not grow over many steps.
+                    let moved = UnitQuaternion::new_normalize(moved.into_inner());
+                    self.values[first..first + 4].copy_from_slice(&[moved.w, moved.i, moved.j, moved.k]);
+                }
+            }
+        }
+        for coupling in model.couplings() {
+            self.values[coupling.dependent] = coupling.function.value(self.values[coupling.independent]);
+        }
+    }
+
+    /// The step of rates (rad, m) that displaces this posture to `to`: balls the shorter way, 0 for coordinates that follow
+    /// others. Does not allocate.
+    ///
+    /// # Panics
+    /// When a posture or `step` has another length than the model needs.
+    pub fn difference(&self, model: &Model, to: &Self, step: &mut [f64]) {
+        self.expect(model, step);
+        to.expect(model, step);
+        for part in parts(model) {
+            match part {
+                Part::Axis { rate, coordinate } => step[rate] = to.values[coordinate] - self.values[coordinate],
+                Part::Ball { rate, first } => {
+                    step[rate..rate + 3].copy_from_slice(self.turn_to(first, to).as_slice());
+                }
+            }
+        }
+        for coupling in model.couplings() {
+            if let Some(rate) = model.coordinates[coupling.dependent].rate {
+                step[rate] = 0.0;
+            }
+        }
+    }
+
+    fn expect(&self, model: &Model, step: &[f64]) {
+        assert_eq!(self.values.len(), model.coordinates.len(), "the posture belongs to another model");
+        assert_eq!(step.len(), model.rates.len(), "a step has one entry a rate");
+    }
+
+    /// The turn of a ball, in its own axes, that leads to `to`; `first` is its first coordinate.
+    pub(crate) fn turn_to(&self, first: usize, to: &Self) -> Vector3<f64> {
+        (self.quaternion(first).inverse() * to.quaternion(first)).scaled_axis()
+    }
+
+    fn quaternion(&self, first: usize) -> UnitQuaternion<f64> {
+        let v = &self.values[first..first + 4];
+        UnitQuaternion::new_normalize(Quaternion::new(v[0], v[1], v[2], v[3]))
+    }
+}
+
+/// What one rate, or the three of a ball, changes.
+pub(crate) enum Part {
+    Axis { rate: usize, coordinate: usize },
+    Ball { rate: usize, first: usize },
+}
+
+/// All rates with the coordinates they change; balls stand in the same order among both.
+pub(crate) fn parts(model: &Model) -> impl Iterator<Item = Part> {
+    let (mut rate, mut balls) = (0, model.balls.iter());
+    std::iter::from_fn(move || {
+        let at = rate;
+        Some(match model.rates.get(at)?.coordinate {
+            Some(coordinate) => {
+                rate += 1;
+                Part::Axis { rate: at, coordinate }
+            }
+            None => {
+                rate += 3;
+                Part::Ball { rate: at, first: *balls.next()? }
+            }
+        })
+    })
 }

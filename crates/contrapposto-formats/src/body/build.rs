@@ -1,7 +1,7 @@
 //! What the readers share while they build a body.
 
 use super::{Body, BodyMotion, BodySegment, Coupling, Drive, Function, PassiveLawText};
-use nalgebra::{Isometry3, Unit, Vector3};
+use nalgebra::{Isometry3, Matrix3, Unit, Vector3};
 use std::collections::BTreeSet;
 
 /// The direction of a vector, unless it is too short to have one.
@@ -9,6 +9,12 @@ pub(crate) fn unit(vector: Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
     let largest = vector.amax();
     // Scaled first: the square of a very long or very short vector leaves the range of numbers.
     (largest >= 1e-14).then(|| Unit::new_normalize(vector / largest))
+}
+
+/// An inertia in turned axes. Rounding would leave it not quite symmetric: the upper triangle counts.
+pub(crate) fn turned(inertia: &Matrix3<f64>, by: &Matrix3<f64>) -> Matrix3<f64> {
+    let full = by * inertia * by.transpose();
+    Matrix3::from_fn(|row, column| full[(row.min(column), row.max(column))])
 }
 
 /// Complains about the first coordinate name that is there twice.

@@ -10,7 +10,7 @@ pub use contrapposto::math::{Function, Spline, SplineError};
 pub use model::{BodyError, Imported};
 pub use root::{BodyRoot, FREE_ENDINGS};
 
-pub(crate) use build::{compose_couplings, first_too_large, near, polynomial, unique_coordinates, unit};
+pub(crate) use build::{compose_couplings, first_too_large, near, polynomial, turned, unique_coordinates, unit};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 

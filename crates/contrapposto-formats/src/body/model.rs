@@ -57,46 +57,31 @@ impl Body {
     fn spec(&self, segment: &BodySegment, notes: &mut Vec<String>) -> Result<SegmentSpec, BodyError> {
         // The joint's own coordinates, in the file's order.
         let mut own: Vec<usize> = vec![];
-        let mut balls = false;
         for motion in &segment.motions {
             match motion {
                 BodyMotion::Hinge { drive, .. } | BodyMotion::Slide { drive, .. } => match drive {
                     Drive::Coordinate(c) | Drive::Function(_, c) => own.push(*c),
                     Drive::Constant(_) => {}
                 },
-                BodyMotion::Ball { .. } => balls = true,
+                BodyMotion::Ball { first } => own.extend(*first..first + 4),
             }
         }
         own.sort_unstable();
         own.dedup();
         let local = |c: usize| own.iter().position(|&o| o == c).unwrap_or(0);
-        let motions: Vec<_> = segment.motions.iter().map(motion_and_drive).collect();
-        // Every motion its own coordinate, in order: a plain chain. Balls only come so.
-        let plain = motions.iter().filter_map(|(_, drive)| *drive).zip(0..).all(|(drive, i)| match drive {
-            Drive::Coordinate(c) => local(*c) == i,
-            _ => false,
+        let motions: Vec<_> = segment.motions.iter().map(|motion| motion_and_drive(motion, local)).collect();
+        // Every motion its own coordinates, in order: a plain chain.
+        let mut next = 0;
+        let plain = motions.iter().all(|(motion, drive)| {
+            next += motion.coordinates();
+            *drive == ModelDrive::Coordinate(next - motion.coordinates())
         });
         let kind = match motions.as_slice() {
             [] => JointKind::Weld,
-            [(Motion::Hinge(axis), Some(Drive::Coordinate(_)))] => JointKind::Hinge(*axis),
-            [(Motion::Slide(axis), Some(Drive::Coordinate(_)))] => JointKind::Slide(*axis),
-            _ if balls || (plain && own.len() == motions.len()) => {
-                JointKind::Chain(motions.iter().map(|(motion, _)| *motion).collect())
-            }
-            _ => JointKind::Driven(
-                motions
-                    .iter()
-                    .map(|(motion, drive)| {
-                        let drive = match drive {
-                            Some(Drive::Coordinate(c)) => ModelDrive::Coordinate(local(*c)),
-                            Some(Drive::Function(function, c)) => ModelDrive::Function(function.clone(), local(*c)),
-                            Some(Drive::Constant(value)) => ModelDrive::Fixed(*value),
-                            None => ModelDrive::Fixed(0.0),
-                        };
-                        (*motion, drive)
-                    })
-                    .collect(),
-            ),
+            [(Motion::Hinge(axis), ModelDrive::Coordinate(_))] => JointKind::Hinge(*axis),
+            [(Motion::Slide(axis), ModelDrive::Coordinate(_))] => JointKind::Slide(*axis),
+            _ if plain => JointKind::Chain(motions.iter().map(|(motion, _)| *motion).collect()),
+            _ => JointKind::Driven(motions),
         };
         let coordinates = own.iter().map(|&c| self.coordinate(c, notes)).collect::<Result<_, _>>()?;
         Ok(SegmentSpec {
@@ -115,6 +100,11 @@ impl Body {
 
     fn coordinate(&self, index: usize, notes: &mut Vec<String>) -> Result<CoordinateSpec, BodyError> {
         let BodyCoordinate { name, kind, range, default, locked, .. } = &self.coordinates[index];
+        if *kind == BodyCoordinateKind::Quaternion {
+            let mut component = CoordinateSpec::new(name, (-1.0, 1.0));
+            component.default = default.clamp(-1.0, 1.0);
+            return Ok(component);
+        }
         let wide = (range.0.min(*default), range.1.max(*default));
         if wide != *range {
             notes.push(format!("`{name}`: its default {default} lies outside its range, which is widened to hold it"));
@@ -138,9 +128,8 @@ impl Body {
         let mut spec = CoordinateSpec::new(name, wide);
         spec.default = *default;
         spec.kind = match kind {
-            BodyCoordinateKind::Rotation => CoordinateKind::Rotation,
             BodyCoordinateKind::Translation => CoordinateKind::Translation,
-            BodyCoordinateKind::Quaternion => CoordinateKind::Quaternion,
+            _ => CoordinateKind::Rotation,
         };
         spec.locked = *locked;
         spec.passive = (!terms.is_empty()).then_some(PassiveLaw::Sum(terms));
@@ -148,11 +137,16 @@ impl Body {
     }
 }
 
-/// The motion, and what drives it; a ball is driven by its own coordinates.
-fn motion_and_drive(motion: &BodyMotion) -> (Motion, Option<&Drive>) {
+/// The motion, and what drives it, coordinates counted as `local` does; a ball is driven by its own.
+fn motion_and_drive(motion: &BodyMotion, local: impl Fn(usize) -> usize) -> (Motion, ModelDrive) {
+    let drive = |drive: &Drive| match drive {
+        Drive::Coordinate(c) => ModelDrive::Coordinate(local(*c)),
+        Drive::Function(function, c) => ModelDrive::Function(function.clone(), local(*c)),
+        Drive::Constant(value) => ModelDrive::Fixed(*value),
+    };
     match motion {
-        BodyMotion::Hinge { axis, drive } => (Motion::Hinge(Unit::new_normalize(*axis)), Some(drive)),
-        BodyMotion::Slide { axis, drive } => (Motion::Slide(Unit::new_normalize(*axis)), Some(drive)),
-        BodyMotion::Ball { .. } => (Motion::Ball, None),
+        BodyMotion::Hinge { axis, drive: by } => (Motion::Hinge(Unit::new_normalize(*axis)), drive(by)),
+        BodyMotion::Slide { axis, drive: by } => (Motion::Slide(Unit::new_normalize(*axis)), drive(by)),
+        BodyMotion::Ball { first } => (Motion::Ball, ModelDrive::Coordinate(local(*first))),
     }
 }

@@ -4,7 +4,7 @@ use super::attributes::{Attributes, Value};
 use super::compiler::Settings;
 use super::error::{MjcfError, MjcfRule, Unsupported};
 use super::orientation::{rotation, to_z};
-use crate::body::unit;
+use crate::body::{turned, unit};
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 use std::f64::consts::PI;
 
@@ -105,7 +105,7 @@ pub(super) fn solid(
     let mass = mass.unwrap_or(density * volume);
     let frame = outer * placed;
     let turn = frame.rotation.to_rotation_matrix();
-    let inertia = turn * Matrix3::from_diagonal(&(moments * mass)) * turn.inverse();
+    let inertia = turned(&Matrix3::from_diagonal(&(moments * mass)), turn.matrix());
     Ok(Some(Solid { mass, center: frame.translation.vector, inertia }))
 }
 

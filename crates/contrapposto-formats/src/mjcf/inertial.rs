@@ -7,6 +7,7 @@ use super::files::Item;
 use super::geom::{Solid, solid};
 use super::orientation::pose;
 use super::schema;
+use crate::body::turned;
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 /// A body's mass in its own frame, bounds and balance applied; total mass is not scaled yet.
@@ -71,8 +72,8 @@ fn explicit(item: Item<'_>, frame: &Isometry3<f64>, settings: &Settings) -> Resu
     if value < 0.0 {
         return Err(mass.invalid(MjcfRule::MassNotNegative));
     }
-    let turn = own.rotation.to_rotation_matrix();
-    Ok(Solid { mass: value, center: own.translation.vector, inertia: turn * inertia * turn.inverse() })
+    let inertia = turned(&inertia, own.rotation.to_rotation_matrix().matrix());
+    Ok(Solid { mass: value, center: own.translation.vector, inertia })
 }
 
 /// Principal moments and axes; none if the numbers overflow.
@@ -102,7 +103,7 @@ fn bounded(body: Item<'_>, mut solid: Solid, settings: &Settings) -> Result<Soli
         moments = Vector3::repeat(moments.mean());
     }
     if moments != before {
-        solid.inertia = axes * Matrix3::from_diagonal(&moments) * axes.transpose();
+        solid.inertia = turned(&Matrix3::from_diagonal(&moments), &axes);
     }
     Ok(solid)
 }

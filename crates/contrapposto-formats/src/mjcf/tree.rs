@@ -246,7 +246,8 @@ impl<'a, 'w> Walk<'a, 'w> {
         let mut turned = false;
         for (number, joint) in joints.iter().enumerate() {
             let joint_name = self.joint_name(joint, &segment.name, number)?;
-            if number == 0 {
+            // A ball's coordinates are named after its joint.
+            if number == 0 || joint.kind == Kind::Ball {
                 segment.joint.clone_from(&joint_name);
             }
             if joint.kind == Kind::Free {

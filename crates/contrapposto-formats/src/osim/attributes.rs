@@ -14,6 +14,13 @@ pub(super) struct Reader<'a> {
     defaults: HashMap<&'a str, Node<'a>>,
 }
 
+fn placed(translation: Vector3<f64>, angles: Vector3<f64>) -> Isometry3<f64> {
+    let turn = |axis, angle| Rotation3::from_axis_angle(&axis, angle);
+    let rotation =
+        turn(Vector3::x_axis(), angles.x) * turn(Vector3::y_axis(), angles.y) * turn(Vector3::z_axis(), angles.z);
+    Isometry3::from_parts(Translation3::from(translation), UnitQuaternion::from_rotation_matrix(&rotation))
+}
+
 type Result<T> = std::result::Result<T, OsimProblem>;
 
 impl<'a> Reader<'a> {
@@ -118,10 +125,16 @@ impl<'a> Reader<'a> {
     /// Translation and body-fixed x, y, z angles.
     pub(super) fn pose(&self, object: Node<'a>, translation: &str, orientation: &str) -> Result<Isometry3<f64>> {
         let zero = Some(Vector3::zeros());
+        Ok(placed(self.vector(object, translation, zero)?, self.vector(object, orientation, zero)?))
+    }
+
+    /// The pose of a joint inside a body. OpenSim 4 brings such documents up to date as it reads them, and its text of these
+    /// numbers has six digits: what it computes with, we do.
+    pub(super) fn old_pose(&self, object: Node<'a>, translation: &str, orientation: &str) -> Result<Isometry3<f64>> {
+        let six = |x: f64| format!("{x:.5e}").parse().unwrap_or(x);
+        let zero = Some(Vector3::zeros());
         let (t, r) = (self.vector(object, translation, zero)?, self.vector(object, orientation, zero)?);
-        let turn = |axis, angle| Rotation3::from_axis_angle(&axis, angle);
-        let rotation = turn(Vector3::x_axis(), r.x) * turn(Vector3::y_axis(), r.y) * turn(Vector3::z_axis(), r.z);
-        Ok(Isometry3::from_parts(Translation3::from(t), UnitQuaternion::from_rotation_matrix(&rotation)))
+        Ok(placed(t.map(six), r.map(six)))
     }
 
     /// Inertia about the centre of mass. It does not matter to statics: `None` if it is not finite.

@@ -231,10 +231,14 @@ fn axis_parts<'a>(
             gives_kind = kind == "LinearFunction" && matches!(read, Function::Linear { slope, .. } if slope == 1.0);
             vec![(read, Some(index))]
         }
-        ([], _) => {
-            let accepted = "a Constant, or the name of a coordinate in <coordinates>";
-            return Err(OsimProblem::unsupported(node.place(), "a function of no coordinate", accepted));
-        }
+        ([], _) => match functions::read(reader, function)? {
+            // OpenSim's scaling tool wraps constants.
+            constant @ Function::Constant(_) => vec![(constant, None)],
+            _ => {
+                let accepted = "a Constant, or the name of a coordinate in <coordinates>";
+                return Err(OsimProblem::unsupported(node.place(), "a function of no coordinate", accepted));
+            }
+        },
         (several, "LinearFunction") => {
             let coefficients = functions::linear(reader, function, several.len())?;
             gives_kind = coefficients[0] == 1.0;

@@ -205,9 +205,11 @@ impl<'a> Scene<'a> {
                 return Err(OsimProblem::unsupported(node.place(), &what, "a joint in <JointSet>"));
             }
             let parent = self.old_body(reader, node, "parent_body")?;
-            let parent =
-                Attachment { body: parent, pose: reader.pose(node, "location_in_parent", "orientation_in_parent")? };
-            let child = Attachment { body: Some(index), pose: reader.pose(node, "location", "orientation")? };
+            let parent = Attachment {
+                body: parent,
+                pose: reader.old_pose(node, "location_in_parent", "orientation_in_parent")?,
+            };
+            let child = Attachment { body: Some(index), pose: reader.old_pose(node, "location", "orientation")? };
             let (parent, child) = if reader.flag(node, "reverse", false)? { (child, parent) } else { (parent, child) };
             self.joints.push(SceneJoint { name: reader.name(node)?, node, parent, child, old: true });
         }

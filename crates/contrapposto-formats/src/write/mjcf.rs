@@ -12,6 +12,7 @@ use super::exact::Orientation;
 use super::law::{self, Part};
 use super::mjcf_body::{Group, Joint, group, solid};
 use super::names::Names;
+use super::steps::resting;
 use super::xml::{Xml, moments, number, numbers};
 use super::{FEATHER_INERTIA, FEATHER_MASS, PLACEHOLDER_LIMIT, WriteError, Written, common, exact, listed};
 use crate::body::{FREE_ENDINGS, Function};
@@ -98,13 +99,18 @@ impl<'m> Writer<'m> {
         self.frames[group.segment] = frame;
         let name = self.bodies.keep("segment", &segment.name, &mut self.lost);
         let free = self.free(group);
-        let orientation = match exact::orientation(&pose.rotation) {
+        // A free joint stands as its body does.
+        let stands = match free {
+            true => resting(&self.model.coordinates()[segment.coordinates.clone()][3..]),
+            false => pose.rotation,
+        };
+        let orientation = match exact::orientation(&stands) {
             Orientation::Quaternion(q) => ("quat", numbers(&q)),
             Orientation::Euler(angles) => ("euler", numbers(&angles)),
         };
         let position = numbers(&pose.translation.vector);
         let mut attributes = vec![("name", name.as_str()), ("pos", position.as_str())];
-        if pose.rotation != UnitQuaternion::identity() {
+        if stands != UnitQuaternion::identity() {
             attributes.push((orientation.0, &orientation.1));
         }
         self.xml.open("body", &attributes);

@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 use super::law::{self, Part};
 use super::names::Names;
 use super::osim_joint::{Axis, Driver, Piece, filler, pieces};
+use super::steps::resting;
 use super::xml::{Xml, moments, number, numbers};
 use super::{WriteError, Written, common, exact, listed, osim_functions};
 
@@ -161,13 +162,10 @@ impl<'m> Writer<'m> {
             xml.value("socket_parent_frame", "parent_offset");
             xml.value("socket_child_frame", "child_offset");
             xml.open("coordinates", &[]);
+            let all = self.model.coordinates();
             for c in piece.coordinates() {
-                coordinate(
-                    xml,
-                    &self.coordinates[c].0,
-                    piece.ball.is_some_and(|b| c >= b),
-                    &self.model.coordinates()[c],
-                );
+                let angle = piece.ball.filter(|&b| c >= b).map(|b| exact::xyz(&resting(&all[b..b + 4]))[c - b]);
+                coordinate(xml, &self.coordinates[c].0, angle, &all[c]);
             }
             xml.close();
             xml.open("frames", &[]);
@@ -233,9 +231,10 @@ fn body(xml: &mut Xml, name: &str, segment: Option<&Segment>) {
     xml.close();
 }
 
-fn coordinate(xml: &mut Xml, name: &str, of_ball: bool, source: &Coordinate) {
+/// A coordinate; of a ball, its angle at the default.
+fn coordinate(xml: &mut Xml, name: &str, ball: Option<f64>, source: &Coordinate) {
     let full = std::f64::consts::PI;
-    let (default, range) = if of_ball { (0.0, (-full, full)) } else { (source.default, source.range) };
+    let (default, range) = ball.map_or((source.default, source.range), |angle| (angle, (-full, full)));
     // OpenSim knows infinity by this word only; our reader takes any.
     let limit = |value: f64| match value {
         f64::INFINITY => "Inf".to_owned(),

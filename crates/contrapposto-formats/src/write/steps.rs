@@ -1,8 +1,8 @@
 //! A segment's elementary motions, whatever its joint is called.
 
 use contrapposto::math::Function;
-use contrapposto::model::{Drive, JointKind, Motion, Placement, Segment};
-use nalgebra::{Translation3, UnitQuaternion};
+use contrapposto::model::{Coordinate, Drive, JointKind, Motion, Placement, Segment};
+use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 
 /// What gives the value of a motion; coordinates by their index in the model.
 #[derive(Clone, Copy)]
@@ -30,6 +30,12 @@ pub(super) fn steps(segment: &Segment) -> Vec<(Motion, By<'_>)> {
         (motion, By::Coordinate(own))
     });
     numbered.collect()
+}
+
+/// How a ball with these four coordinates stands at their defaults.
+pub(super) fn resting(ball: &[Coordinate]) -> UnitQuaternion<f64> {
+    let [w, i, j, k] = [0, 1, 2, 3].map(|part| ball[part].default);
+    UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k))
 }
 
 /// Where a motion of this size leads.

@@ -5,6 +5,7 @@
 use contrapposto_formats::body::{Body, BodyMotion, Drive};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 pub fn here() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -91,7 +92,69 @@ pub fn mutate(base: &[u8], parts: &[&str], state: &mut u64) -> Vec<u8> {
     bytes
 }
 
-/// How many mutated inputs a test reads; `CONTRAPPOSTO_MUTATIONS` overrides it.
-pub fn mutations(usual: usize) -> usize {
-    std::env::var("CONTRAPPOSTO_MUTATIONS").ok().and_then(|s| s.parse().ok()).unwrap_or(usual)
+/// Reads mutated inputs, the bases in turn, and holds each to a second and all to 64 MiB. `read` tells whether it accepted
+/// its input, and panics if what it read is not sound. `CONTRAPPOSTO_MUTATIONS` sets how many; ten million of each format:
+///
+/// ```text
+/// CONTRAPPOSTO_MUTATIONS=10000000 cargo test -p contrapposto-formats mutated -- --nocapture --test-threads 1
+/// ```
+pub fn hammer(
+    format: &str,
+    seed: u64,
+    usual: usize,
+    bases: &[&[u8]],
+    parts: &[&str],
+    mut read: impl FnMut(&[u8]) -> bool,
+) {
+    let asked: Option<usize> = std::env::var("CONTRAPPOSTO_MUTATIONS").ok().and_then(|s| s.parse().ok());
+    let count = asked.unwrap_or(usual);
+    let (mut state, mut accepted, mut slowest) = (seed, 0, Duration::ZERO);
+    let (start, before) = (Instant::now(), peak_memory());
+    for i in 0..count {
+        let text = mutate(bases[i % bases.len()], parts, &mut state);
+        let begin = Instant::now();
+        accepted += usize::from(read(&text));
+        slowest = slowest.max(begin.elapsed());
+    }
+    let grown = peak_memory().saturating_sub(before) >> 10;
+    println!(
+        "{format}: seed {seed}, {count} inputs, {accepted} accepted, slowest {slowest:.1?}, {grown} MiB more, {:.1?}",
+        start.elapsed()
+    );
+    assert!(slowest < Duration::from_secs(1), "{format}: {slowest:?}");
+    assert!(asked.is_none() || grown < 64, "{format}: {grown} MiB"); // usually other tests run beside
+    assert!(accepted > count / 50 && accepted < count, "{format}: {accepted} of {count} accepted");
+}
+
+/// Largest memory of the process so far, KiB; 0 where the system does not tell.
+fn peak_memory() -> usize {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    peak.and_then(|text| text.split_whitespace().next()?.parse().ok()).unwrap_or(0)
+}
+
+/// Twice as much takes less than two and a half times as long, after what `work` makes of a size. Time on the processor where
+/// the system tells it: other programs do not count. Machines are busy all the same: one of ten measurements must do.
+pub fn assert_linear<T>(name: &str, size: usize, make: impl Fn(usize) -> T, work: impl Fn(&T)) {
+    let start = Instant::now();
+    let now = || {
+        let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+        let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
+        on_processor.map_or_else(|| start.elapsed(), Duration::from_nanos)
+    };
+    let (once, twice) = (make(size), make(2 * size));
+    let time = |input: &T| {
+        let start = now();
+        (0..5).for_each(|_| work(input));
+        (now() - start).as_secs_f64()
+    };
+    let mut best = f64::INFINITY;
+    for _ in 0..10 {
+        best = best.min(time(&twice) / time(&once));
+        if best < 2.2 {
+            break;
+        }
+    }
+    println!("{name}, {size} and twice as much: {best:.2} times as long");
+    assert!(best < 2.5, "{name}: {best}");
 }

@@ -1,5 +1,11 @@
 //! Where is every part of the body in a posture?
 
+mod center_of_mass;
+mod jacobian;
+
+pub(crate) use center_of_mass::Carried;
+pub use center_of_mass::CenterOfMass;
+
 use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::model::{Drive, Model, Motion, Placement};
@@ -50,7 +56,7 @@ impl Kinematics {
     fn fill(&mut self, model: &Model, posture: &[f64]) {
         self.values.copy_from_slice(posture);
         for (coupling, derivatives) in model.couplings.iter().zip(&mut self.couplings) {
-            let [value, slope, curvature] = coupling.function.value_slope_curvature(posture[coupling.independent]);
+            let [value, slope, curvature] = coupling.function.value_slope_curvature(self.values[coupling.independent]);
             self.values[coupling.dependent] = value;
             *derivatives = (slope, curvature);
         }

@@ -29,8 +29,8 @@ pub struct SegmentSpec {
     pub in_parent: Placement,
     /// The joint's moved frame in this segment's frame.
     pub in_segment: Placement,
-    /// One spec for every hinge and slide of the joint, in the order of its motions. Balls take none: their components
-    /// are named `{joint}_qw` and so on, so a joint has one ball at most.
+    /// One spec for every hinge and slide of the joint, in the order of its motions. A ball takes none, or four whose
+    /// defaults count: its components are named `{joint}_qw` and so on, so a joint has one ball at most.
     pub coordinates: Vec<CoordinateSpec>,
 }
 
@@ -216,11 +216,11 @@ impl ModelBuilder {
         Ok(())
     }
 
-    /// Makes `dependent` follow `function(independent)`.
+    /// Makes `dependent` follow `function(independent)`; the leader may follow another coordinate itself.
     ///
     /// # Errors
     /// [`ModelError::Coupling`] for a name that is not there, a quaternion component, a coordinate that already follows
-    /// another one, or one that leads.
+    /// another one, or a circle.
     pub fn couple(&mut self, dependent: &str, independent: &str, function: Function) -> Result<(), ModelError> {
         let refuse = |problem| {
             let (dependent, independent) = (dependent.to_owned(), independent.to_owned());
@@ -230,9 +230,12 @@ impl ModelBuilder {
         let (Some(d), Some(i)) = (index(dependent), index(independent)) else {
             return refuse("both must be angles or distances of the model");
         };
-        let couplings = &self.model.couplings;
-        if d == i || couplings.iter().any(|c| c.dependent == d || c.independent == d || c.dependent == i) {
-            return refuse("a coordinate follows one leader at most, and a leader follows none");
+        let leader = |c| self.model.couplings.iter().find(|k| k.dependent == c).map(|k| k.independent);
+        if leader(d).is_some() {
+            return refuse("it already follows another coordinate");
+        }
+        if std::iter::successors(Some(i), |&c| leader(c)).any(|c| c == d) {
+            return refuse("it would follow itself");
         }
         self.model.couplings.push(Coupling { dependent: d, independent: i, function });
         Ok(())
@@ -241,6 +244,7 @@ impl ModelBuilder {
     /// The finished model.
     pub fn build(mut self) -> Model {
         let model = &mut self.model;
+        model.order_couplings();
         let plain = |m: &Mobility| matches!(m.drive, Drive::Coordinate(_));
         let in_order = model.elements.iter().enumerate().all(|(i, rate)| *rate == Some(i));
         model.direct = model.couplings.is_empty()
@@ -272,6 +276,25 @@ impl Model {
 }
 
 impl Model {
+    /// Puts every coupling behind the one that its leader follows by, if there is one; the order stays where it can.
+    fn order_couplings(&mut self) {
+        let mut waiting: Vec<Option<Coupling>> = self.couplings.drain(..).map(Some).collect();
+        let mut by_follower = vec![None; self.coordinates.len()];
+        for (k, coupling) in waiting.iter().enumerate() {
+            if let Some(coupling) = coupling {
+                by_follower[coupling.dependent] = Some(k);
+            }
+        }
+        for start in 0..waiting.len() {
+            let (mut chain, mut next) = (vec![], Some(start));
+            while let Some(coupling) = next.and_then(|k| waiting[k].take()) {
+                next = by_follower[coupling.independent];
+                chain.push(coupling);
+            }
+            self.couplings.extend(chain.into_iter().rev());
+        }
+    }
+
     /// Lists the hinges and balls between a new mobility and the root.
     fn add_ancestors(&mut self, parent: Option<usize>) {
         let mut next = parent;
@@ -361,7 +384,8 @@ fn coordinate_specs(
     }
     let mut given = spec.coordinates.iter().cloned();
     let axes = motions.iter().filter(|m| **m != Motion::Ball).count();
-    if spec.coordinates.len() != axes {
+    let full = motions.iter().map(|m| m.coordinates()).sum::<usize>() == spec.coordinates.len();
+    if spec.coordinates.len() != axes && !full {
         return Err(ModelError::Coordinates { joint: spec.joint.clone(), given: spec.coordinates.len(), needed: axes });
     }
     let mut all = vec![];
@@ -369,30 +393,47 @@ fn coordinate_specs(
         match motion {
             Motion::Hinge(_) => all.extend(given.next().map(|c| (c, CoordinateKind::Rotation))),
             Motion::Slide(_) => all.extend(given.next().map(|c| (c, CoordinateKind::Translation))),
-            Motion::Ball => all.extend(["qw", "qx", "qy", "qz"].into_iter().map(|axis| {
-                let mut component = CoordinateSpec::new(&format!("{}_{axis}", spec.joint), (-1.0, 1.0));
-                component.default = if axis == "qw" { 1.0 } else { 0.0 };
-                (component, CoordinateKind::Quaternion)
-            })),
+            Motion::Ball if full => all.extend(quaternion(&spec.joint, given.by_ref().map(|c| c.default))),
+            Motion::Ball => all.extend(quaternion(&spec.joint, [1.0, 0.0, 0.0, 0.0].into_iter())),
         }
     }
     Ok(all)
 }
 
-/// The coordinates of a joint driven by functions: as many as were given, each of the kind that was given.
+/// The components of a ball at these defaults.
+fn quaternion(
+    joint: &str,
+    defaults: impl Iterator<Item = f64>,
+) -> impl Iterator<Item = (CoordinateSpec, CoordinateKind)> {
+    ["qw", "qx", "qy", "qz"].into_iter().zip(defaults).map(move |(axis, default)| {
+        let mut component = CoordinateSpec::new(&format!("{joint}_{axis}"), (-1.0, 1.0));
+        component.default = default;
+        (component, CoordinateKind::Quaternion)
+    })
+}
+
+/// The coordinates of a joint driven by functions: as many as were given, each of the kind that was given; those of a ball
+/// are its components.
 fn driven_specs(
     spec: &SegmentSpec,
     motions: &[(Motion, Drive)],
 ) -> Result<Vec<(CoordinateSpec, CoordinateKind)>, ModelError> {
     let given = spec.coordinates.len();
+    let mut all: Vec<_> = spec.coordinates.iter().map(|c| (c.clone(), c.kind)).collect();
     for (motion, drive) in motions {
-        let needed = match drive {
-            Drive::Coordinate(c) | Drive::Function(_, c) => c + 1,
-            Drive::Fixed(_) => 0,
+        let needed = match (motion, drive) {
+            (_, Drive::Coordinate(c)) => c + motion.coordinates(),
+            (Motion::Ball, _) => given + 1,
+            (_, Drive::Function(_, c)) => c + 1,
+            (_, Drive::Fixed(_)) => 0,
         };
-        if needed > given || *motion == Motion::Ball {
+        if needed > given {
             return Err(ModelError::Coordinates { joint: spec.joint.clone(), given, needed });
         }
+        if let (Motion::Ball, Drive::Coordinate(c)) = (motion, drive) {
+            let defaults: Vec<f64> = all[*c..].iter().map(|(component, _)| component.default).collect();
+            all.splice(*c..c + 4, quaternion(&spec.joint, defaults.into_iter()));
+        }
     }
-    Ok(spec.coordinates.iter().map(|c| (c.clone(), c.kind)).collect())
+    Ok(all)
 }

@@ -34,7 +34,8 @@ pub enum JointKind {
     Free,
     /// Any chain of hinges, slides and balls, one coordinate (a ball four) each: six-coordinate roots.
     Chain(Vec<Motion>),
-    /// A chain of hinges and slides driven by functions of the joint's coordinates (OpenSim's CustomJoint).
+    /// A chain of hinges and slides driven by functions of the joint's coordinates (OpenSim's CustomJoint), and balls, each
+    /// driven by the first of its four coordinates.
     Driven(Vec<(Motion, Drive)>),
 }
 

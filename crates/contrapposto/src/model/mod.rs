@@ -160,6 +160,13 @@ impl Model {
         self.segments.iter().position(|s| s.name == name)
     }
 
+    /// The same body under another gravity, m/s^2 in ground axes.
+    #[must_use]
+    pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
+        self.gravity = gravity;
+        self
+    }
+
     /// The same body with another passive curve at one coordinate.
     #[must_use]
     pub fn with_passive(mut self, coordinate: usize, curve: PassiveCurve) -> Self {
@@ -210,7 +217,7 @@ impl Model {
         self
     }
 
-    /// Coordinates that follow another one.
+    /// Coordinates that follow another one; a leader that follows itself stands before its followers.
     pub fn couplings(&self) -> &[Coupling] {
         &self.couplings
     }

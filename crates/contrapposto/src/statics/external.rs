@@ -17,16 +17,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{FixedIn, Gradient, Load, LoadError, LoadKind};
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Carried, CenterOfMass, Kinematics};
 use crate::model::{Model, Motion};
-
-/// The weight at and beyond one mobility, in ground axes.
-#[derive(Clone, Copy, Debug, Default)]
-struct Carried {
-    mass: f64,
-    /// Mass times position, kg m.
-    first_moment: Vector3<f64>,
-}
 
 /// The loads at and beyond one mobility, in ground axes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -60,7 +52,7 @@ pub struct ExternalTorque {
     raw: Vec<f64>,
     /// By elementary rate.
     pub(super) elements: Vec<f64>,
-    carried: Vec<Carried>,
+    center_of_mass: CenterOfMass,
     pulls: Vec<Pull>,
     pulled: bool,
     /// Some load is a couple or fixed in a segment.
@@ -76,7 +68,7 @@ impl ExternalTorque {
             torques: vec![0.0; model.rates.len()],
             raw: vec![0.0; model.rates.len()],
             elements: vec![0.0; model.elements.len()],
-            carried: vec![Carried::default(); model.mobilities.len()],
+            center_of_mass: CenterOfMass::new(model),
             pulls: vec![Pull::default(); model.mobilities.len()],
             pulled: false,
             twisted: false,
@@ -92,11 +84,7 @@ impl ExternalTorque {
         for load in loads {
             load.check(model)?;
         }
-        for (i, (carried, mobility)) in self.carried.iter_mut().zip(&model.mobilities).enumerate() {
-            carried.mass = mobility.mass;
-            carried.first_moment =
-                kinematics.rotations[i] * mobility.first_moment + mobility.mass * kinematics.origins[i];
-        }
+        self.center_of_mass.gather(model, kinematics);
         if self.pulled {
             self.pulls.fill(Pull::default());
         }
@@ -106,16 +94,12 @@ impl ExternalTorque {
             self.add_load(model, kinematics, load);
         }
         for i in (0..model.mobilities.len()).rev() {
-            if let Some(parent) = model.mobilities[i].parent {
-                let Carried { mass, first_moment } = self.carried[i];
-                self.carried[parent].mass += mass;
-                self.carried[parent].first_moment += first_moment;
-                if self.pulled {
-                    let pull = self.pulls[i];
-                    self.pulls[parent].add(&pull);
-                }
+            let carried = self.center_of_mass.carry(model, i);
+            if let (true, Some(parent)) = (self.pulled, model.mobilities[i].parent) {
+                let pull = self.pulls[i];
+                self.pulls[parent].add(&pull);
             }
-            self.torques_of(model, kinematics, i);
+            self.torques_of(model, kinematics, i, carried);
         }
         if model.direct {
             self.torques.copy_from_slice(&self.elements);
@@ -155,10 +139,10 @@ impl ExternalTorque {
     }
 
     /// Torques and `v_d` of one mobility, whose carried sums are complete.
-    fn torques_of(&mut self, model: &Model, kinematics: &Kinematics, i: usize) {
+    fn torques_of(&mut self, model: &Model, kinematics: &Kinematics, i: usize, carried: Carried) {
         let mobility = &model.mobilities[i];
         let gravity = model.gravity;
-        let Carried { mass, first_moment } = self.carried[i];
+        let Carried { mass, first_moment } = carried;
         let point = kinematics.origins[i];
         let lever = first_moment - mass * point;
         let along = lever.dot(&gravity);
@@ -247,17 +231,9 @@ impl ExternalTorque {
         gradient.fold(model, kinematics, &self.elements, &self.raw);
     }
 
-    /// Centre of mass of the whole body in ground, m, from the sums that the last update carried to the root; `None` for a
-    /// body without mass.
-    pub fn center_of_mass(&self, model: &Model) -> Option<Vector3<f64>> {
-        let (mut mass, mut moment) = model.fixed;
-        for (carried, mobility) in self.carried.iter().zip(&model.mobilities) {
-            if mobility.parent.is_none() {
-                mass += carried.mass;
-                moment += carried.first_moment;
-            }
-        }
-        (mass > 0.0).then(|| moment / mass)
+    /// Centre of mass of the whole body, from the sums that the last update carried to the root.
+    pub fn center_of_mass(&self) -> &CenterOfMass {
+        &self.center_of_mass
     }
 
     /// What couples and body-fixed forces add to the gradient; neither is symmetric.

@@ -2,7 +2,8 @@
 //!
 //! By the chain rule. An elementary motion `u = f(q)` gives its coordinate `tau_q = f'(q) tau_u`; a coordinate that follows,
 //! `q_d = g(q_i)`, gives its leader `g'(q_i) tau_d`. Gradients follow with the second derivatives:
-//! `H_q = F^T H_u F + tau_u f''`, then `H_i = G^T H_q G + tau_d g''`.
+//! `H_q = F^T H_u F + tau_u f''`, then `H_i = G^T H_q G + tau_d g''`. Chains of followers are folded from their ends, so the
+//! `tau_d` of a leader that follows has its own followers in it already.
 
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -15,6 +16,8 @@ pub struct Gradient {
     entries: Vec<f64>,
     /// The matrix of elementary motions, where it is not the same.
     elements: Vec<f64>,
+    /// Torque of each rate with its followers folded in, its own leader not yet served.
+    carried: Vec<f64>,
     /// Entries that plain weights and forces leave at zero may hold something.
     dirty: bool,
 }
@@ -23,7 +26,8 @@ impl Gradient {
     /// Space for `model`.
     pub fn new(model: &Model) -> Self {
         let (n, m) = (model.rates.len(), model.elements.len());
-        Self { n, entries: vec![0.0; n * n], elements: vec![0.0; if model.direct { 0 } else { m * m }], dirty: false }
+        let elements = vec![0.0; if model.direct { 0 } else { m * m }];
+        Self { n, entries: vec![0.0; n * n], elements, carried: vec![0.0; n], dirty: false }
     }
 
     /// Number of rows and columns.
@@ -69,7 +73,8 @@ impl Gradient {
             }
             self.entries[row * n + row] += curvature * torques[i];
         }
-        for (coupling, &(slope, curvature)) in model.couplings.iter().zip(&kinematics.couplings) {
+        self.carried.copy_from_slice(raw);
+        for (coupling, &(slope, curvature)) in model.couplings.iter().zip(&kinematics.couplings).rev() {
             let rate = |coordinate: usize| model.coordinates[coordinate].rate;
             let (Some(d), Some(i)) = (rate(coupling.dependent), rate(coupling.independent)) else { continue };
             for row in 0..n {
@@ -80,7 +85,8 @@ impl Gradient {
                 let entry = std::mem::take(&mut self.entries[d * n + column]);
                 self.entries[i * n + column] += slope * entry;
             }
-            self.entries[i * n + i] += curvature * raw[d];
+            self.entries[i * n + i] += curvature * self.carried[d];
+            self.carried[i] += slope * self.carried[d];
         }
     }
 }
@@ -99,11 +105,10 @@ impl Kinematics {
     /// Torques by rate, as if nothing were coupled, become torques with every follower folded into its leader.
     pub fn fold_couplings(&self, model: &Model, raw: &[f64], folded: &mut [f64]) {
         folded.copy_from_slice(raw);
-        for (coupling, (slope, _)) in model.couplings.iter().zip(&self.couplings) {
+        for (coupling, (slope, _)) in model.couplings.iter().zip(&self.couplings).rev() {
             let rate = |coordinate: usize| model.coordinates[coordinate].rate;
             if let (Some(d), Some(i)) = (rate(coupling.dependent), rate(coupling.independent)) {
-                folded[i] += slope * raw[d];
-                folded[d] = 0.0;
+                folded[i] += slope * std::mem::take(&mut folded[d]);
             }
         }
     }

@@ -1,0 +1,71 @@
+//! How long does one lexicographic least-squares problem take? As large and as layered as inverse kinematics of a whole body
+//! makes them, and growing from 10 to 200 unknowns and 1 to 8 levels.
+
+use std::hint::black_box;
+
+use contrapposto::math::lexicographic::{Level, Problem, Solver};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+/// Levels of so many random equations each, then a rest posture; unknowns within `room`.
+fn problem(random: &mut Pcg64Mcg, n: usize, rows: &[usize], room: f64) -> Problem {
+    let mut problem = Problem::new(n);
+    problem.lower.fill(-room);
+    problem.upper.fill(room);
+    for &rows in rows {
+        let mut level = Level::default();
+        for _ in 0..rows {
+            let row: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
+            let right = random.random_range(-0.2..0.2);
+            level.push(&row, right, right);
+        }
+        problem.levels.push(level);
+    }
+    let mut rest = Level::default();
+    for i in 6.min(n / 4)..n {
+        let mut row = vec![0.0; n];
+        row[i] = 1.0;
+        let right = random.random_range(-0.3..0.3);
+        rest.push(&row, right, right);
+    }
+    problem.levels.push(rest);
+    problem
+}
+
+fn solve(c: &mut Criterion) {
+    let mut random = Pcg64Mcg::new(1);
+    let mut group = c.benchmark_group("lexicographic/54 unknowns, levels of 12, 2, 3, 3 and 48 rows");
+    for (name, room) in [("no bound active", 1e3), ("bounds active", 0.25)] {
+        let problem = problem(&mut random, 54, &[12, 2, 3, 3], room);
+        let mut solver = Solver::new();
+        solver.solve(&problem).expect("a problem");
+        let changes = solver.changes();
+        group.bench_function(format!("{name}, cold ({changes} changes)"), |b| {
+            b.iter(|| solver.solve(black_box(&problem)));
+        });
+        group.bench_function(format!("{name}, active set known"), |b| {
+            b.iter(|| solver.solve_next(black_box(&problem)));
+        });
+    }
+    group.finish();
+}
+
+fn growth(c: &mut Criterion) {
+    let mut random = Pcg64Mcg::new(2);
+    for levels in [1, 2, 4, 8] {
+        let mut group = c.benchmark_group(format!("lexicographic/growth, {levels} levels and a rest posture"));
+        for n in [10, 20, 50, 100, 200] {
+            let rows = vec![n / 2 / levels; levels];
+            let problem = problem(&mut random, n, &rows, 0.5);
+            let mut solver = Solver::new();
+            group.bench_with_input(BenchmarkId::from_parameter(n), &n, |b, _| {
+                b.iter(|| solver.solve_next(black_box(&problem)));
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, solve, growth);
+criterion_main!(benches);

@@ -1,0 +1,96 @@
+//! Over which ground do points carry the body?
+//!
+//! The convex hull of the points seen along gravity, as half-planes `normal . x <= offset` in ground coordinates with unit
+//! normals square to gravity. Monotone chain (Andrew 1979, "Another efficient algorithm for convex hulls in two dimensions").
+
+use nalgebra::{Vector2, Vector3};
+
+/// `normal . x <= offset`, in ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfPlane {
+    /// Outward normal, of unit length.
+    pub normal: Vector3<f64>,
+    /// Where the edge lies along the normal, m.
+    pub offset: f64,
+}
+
+impl HalfPlane {
+    /// How far `point` (m) lies outside, m; not positive inside.
+    pub fn excess(&self, point: &Vector3<f64>) -> f64 {
+        self.normal.dot(point) - self.offset
+    }
+}
+
+/// A hull thinner than this, m, counts as a stretch, and a shorter stretch as a place: corners so sharp would not hold.
+const THIN: f64 = 1e-6;
+
+/// Corners nearer to each other than this, m, are one.
+const SAME: f64 = 1e-9;
+
+/// The half-planes whose intersection is the convex hull of `points` (ground, m) seen along `gravity`. Points on one line, or
+/// all in one place (to a micrometre), give the half-planes that close that stretch or place in. Empty without points or
+/// without gravity.
+pub fn half_planes(points: &[Vector3<f64>], gravity: Vector3<f64>) -> Vec<HalfPlane> {
+    let Some(down) = gravity.try_normalize(0.0) else { return vec![] };
+    let right = down.cross(&Vector3::ith(down.iamin(), 1.0)).normalize();
+    let ahead = down.cross(&right);
+    // Minus zero becomes zero, which sorting tells apart.
+    let seen: Vec<Vector2<f64>> =
+        points.iter().map(|p| Vector2::new(p.dot(&right) + 0.0, p.dot(&ahead) + 0.0)).collect();
+    let corners = corners(seen);
+    // The half-plane to the left of `along`.
+    let left_of = |at: &Vector2<f64>, along: Vector2<f64>| {
+        let outward = Vector2::new(along.y, -along.x).normalize();
+        HalfPlane { normal: outward.x * right + outward.y * ahead, offset: outward.dot(at) }
+    };
+    let four = |a: &Vector2<f64>, b: &Vector2<f64>, along: Vector2<f64>| {
+        let across = Vector2::new(along.y, -along.x);
+        vec![left_of(a, along), left_of(b, -across), left_of(b, -along), left_of(a, across)]
+    };
+    let far = |from: Vector2<f64>| {
+        corners.iter().copied().max_by(|p, q| (p - from).norm_squared().total_cmp(&(q - from).norm_squared()))
+    };
+    let Some((a, b)) = corners.first().and_then(|first| far(*first)).and_then(|a| Some((a, far(a)?))) else {
+        return vec![];
+    };
+    let along = b - a;
+    if along.norm() < THIN {
+        return four(&a, &a, Vector2::x());
+    }
+    if corners.iter().all(|p| along.perp(&(p - a)).abs() < THIN * along.norm()) {
+        return four(&a, &b, along);
+    }
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(p, q)| left_of(p, q - p)).collect()
+}
+
+/// Corners of the convex hull, anticlockwise.
+fn corners(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
+    points.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let chain = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
+        let mut hull: Vec<Vector2<f64>> = vec![];
+        for point in points {
+            while let [.., o, p] = hull[..] {
+                if (p - o).perp(&(point - o)) > 0.0 {
+                    break;
+                }
+                hull.pop();
+            }
+            hull.push(*point);
+        }
+        hull.pop();
+        hull
+    };
+    let mut hull = chain(&mut points.iter());
+    hull.extend(chain(&mut points.iter().rev()));
+    // Edges this short have the direction of their rounding errors.
+    hull.dedup_by(|q, p| (*q - *p).norm() < SAME);
+    if hull.len() > 1 && (hull[hull.len() - 1] - hull[0]).norm() < SAME {
+        hull.pop();
+    }
+    hull
+}

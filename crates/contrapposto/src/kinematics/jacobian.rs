@@ -1,0 +1,105 @@
+//! How fast does a point or segment move with every rate?
+//!
+//! An elementary hinge (or axis of a ball) `r` through `p` moves a carried point `x` by `r x (x - p)` and turns its segment by
+//! `r`; a slide moves it by `r`. A drive `u = f(q)` gives its coordinate `f'(q)` times that, and a coordinate that follows
+//! another one hands its column to its leader with the slope of the coupling, as `statics/fold.rs` does with torques.
+//!
+//! All matrices have three rows (ground x, y, z) and one column a rate of the model, row after row.
+
+use nalgebra::Vector3;
+
+use super::Kinematics;
+use crate::model::{Model, Motion};
+
+impl Kinematics {
+    /// `d point / d rates` of a point fixed in a segment (m, its frame): 3 rows in ground axes, m/rad (m/m for slides),
+    /// overwritten. Columns of coordinates that follow others are zero. Does not allocate.
+    ///
+    /// # Panics
+    /// Unless `rows` has three times as many entries as the model has rates.
+    pub fn point_jacobian(&self, model: &Model, segment: usize, point: Vector3<f64>, rows: &mut [f64]) {
+        let point = self.station(model, segment, point);
+        let mut columns = Columns::over(model, self, rows);
+        let mut next = model.segments[segment].mobility;
+        while let Some(i) = next {
+            let mobility = &model.mobilities[i];
+            if let Motion::Slide(_) = mobility.motion {
+                columns.add(mobility.rate, self.axes[mobility.rate]);
+            } else {
+                let arm = point - self.origins[i];
+                for element in mobility.rate..mobility.rate + mobility.motion.rates() {
+                    columns.add(element, self.axes[element].cross(&arm));
+                }
+            }
+            next = mobility.parent;
+        }
+        self.fold_columns(model, rows);
+    }
+
+    /// Angular velocity of a segment per rate: 3 rows in ground axes, rad/rad (rad/m for slides that drive hinges),
+    /// overwritten. Columns of coordinates that follow others are zero. Does not allocate.
+    ///
+    /// # Panics
+    /// Unless `rows` has three times as many entries as the model has rates.
+    pub fn rotation_jacobian(&self, model: &Model, segment: usize, rows: &mut [f64]) {
+        let mut columns = Columns::over(model, self, rows);
+        let mut next = model.segments[segment].mobility;
+        while let Some(i) = next {
+            let mobility = &model.mobilities[i];
+            if !matches!(mobility.motion, Motion::Slide(_)) {
+                for element in mobility.rate..mobility.rate + mobility.motion.rates() {
+                    columns.add(element, self.axes[element]);
+                }
+            }
+            next = mobility.parent;
+        }
+        self.fold_columns(model, rows);
+    }
+
+    /// Rows of derivatives by rates as if nothing were coupled become rows with every follower's column folded into its
+    /// leader's. Does not allocate.
+    pub fn fold_columns(&self, model: &Model, rows: &mut [f64]) {
+        for (coupling, (slope, _)) in model.couplings.iter().zip(&self.couplings).rev() {
+            let rate = |coordinate: usize| model.coordinates[coordinate].rate;
+            if let (Some(d), Some(i)) = (rate(coupling.dependent), rate(coupling.independent)) {
+                for row in rows.chunks_exact_mut(model.rates.len()) {
+                    row[i] += slope * std::mem::take(&mut row[d]);
+                }
+            }
+        }
+    }
+}
+
+/// Three rows that take columns of elementary motions.
+pub(super) struct Columns<'a> {
+    model: &'a Model,
+    kinematics: &'a Kinematics,
+    x: &'a mut [f64],
+    y: &'a mut [f64],
+    z: &'a mut [f64],
+}
+
+impl<'a> Columns<'a> {
+    /// Clears `rows`.
+    pub(super) fn over(model: &'a Model, kinematics: &'a Kinematics, rows: &'a mut [f64]) -> Self {
+        let n = model.rates.len();
+        assert_eq!(rows.len(), 3 * n, "a Jacobian has three rows of {n} entries");
+        rows.fill(0.0);
+        let (x, rest) = rows.split_at_mut(n);
+        let (y, z) = rest.split_at_mut(n);
+        Self { model, kinematics, x, y, z }
+    }
+
+    /// Adds what an elementary motion does to the rate it belongs to.
+    #[inline]
+    pub(super) fn add(&mut self, element: usize, column: Vector3<f64>) {
+        if self.model.direct {
+            (self.x[element], self.y[element], self.z[element]) = (column.x, column.y, column.z);
+        } else if let Some(rate) = self.model.elements[element] {
+            let slope = self.kinematics.drives[element].0;
+            self.x[rate] += slope * column.x;
+            self.y[rate] += slope * column.y;
+            self.z[rate] += slope * column.z;
+        }
+    }
+}

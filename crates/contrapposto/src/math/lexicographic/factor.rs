@@ -1,0 +1,142 @@
+//! Which directions are still free? Rows that are fixed or active, as `C = L Q1^T`: `L` lower triangular, `Q` a product of
+//! Householder reflections, one a row. What is left of `Q` spans the null space of all rows so far.
+//!
+//! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others).
+
+use super::dense::{add_scaled, dot, norm};
+
+/// What a row of the factor stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Entry {
+    /// The bound of an unknown.
+    Bound(usize),
+    /// A row, counted through all levels.
+    Row(usize),
+}
+
+/// See the module's text.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Factor {
+    /// Unknowns that are not left out.
+    pub(super) free: Vec<usize>,
+    /// What each row stands for.
+    pub(super) entries: Vec<Entry>,
+    /// `L[r][..r]`, one row after the other, as long as `free`.
+    lower: Vec<f64>,
+    /// The reflections' vectors, [`Factor::padded`] long: zero before place `r` and behind `free`, so that sums may run over
+    /// whole eights.
+    vectors: Vec<f64>,
+    diagonal: Vec<f64>,
+    scale: Vec<f64>,
+}
+
+impl Factor {
+    /// No rows; the unknowns marked in `fixed` are left out.
+    pub(super) fn reset(&mut self, fixed: impl Iterator<Item = bool>) {
+        self.free.clear();
+        self.free.extend(fixed.enumerate().filter(|(_, fixed)| !fixed).map(|(i, _)| i));
+        self.truncate(0);
+    }
+
+    /// Number of rows.
+    pub(super) fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Number of unknowns that are not left out.
+    pub(super) fn width(&self) -> usize {
+        self.free.len()
+    }
+
+    /// The width up to the next eight: so long are turned rows, zero behind [`Factor::width`].
+    pub(super) fn padded(&self) -> usize {
+        self.free.len().next_multiple_of(8)
+    }
+
+    /// Forgets all rows from `len` on.
+    pub(super) fn truncate(&mut self, len: usize) {
+        self.entries.truncate(len);
+        self.lower.truncate(len * self.free.len());
+        self.vectors.truncate(len * self.padded());
+        self.diagonal.truncate(len);
+        self.scale.truncate(len);
+    }
+
+    /// The entries of `x` at the free unknowns, then zeros.
+    pub(super) fn gather(&self, x: &[f64], out: &mut [f64]) {
+        for (out, &i) in out.iter_mut().zip(&self.free) {
+            *out = x[i];
+        }
+        out[self.free.len()..self.padded()].fill(0.0);
+    }
+
+    /// `t -= scale (v . t) v` with the vector of row `r`.
+    #[inline]
+    fn reflect(&self, r: usize, t: &mut [f64]) {
+        let c = self.padded();
+        let first = r / 8 * 8;
+        let (v, t) = (&self.vectors[r * c + first..(r + 1) * c], &mut t[first..c]);
+        let s = self.scale[r] * dot(v, t);
+        add_scaled(t, -s, v);
+    }
+
+    /// Applies the reflections of rows `from..to` to `t`: `Q^T t`, as far as they go.
+    pub(super) fn turn(&self, t: &mut [f64], from: usize, to: usize) {
+        for r in from..to {
+            self.reflect(r, t);
+        }
+    }
+
+    /// Applies all reflections backwards: `Q t`.
+    pub(super) fn turn_back(&self, t: &mut [f64]) {
+        for r in (0..self.len()).rev() {
+            self.reflect(r, t);
+        }
+    }
+
+    /// Adds a turned row, `Q^T` times it: its part beyond [`Factor::len`] must not vanish.
+    pub(super) fn append(&mut self, t: &[f64], entry: Entry) {
+        let r = self.len();
+        let w = self.free.len();
+        let length = norm(&t[r..w]);
+        let beta = if t[r] > 0.0 { -length } else { length };
+        self.lower.extend_from_slice(&t[..w]);
+        let start = self.vectors.len();
+        self.vectors.extend_from_slice(&t[..self.padded()]);
+        self.vectors[start..start + r].fill(0.0);
+        self.vectors[start + r] = t[r] - beta;
+        self.diagonal.push(beta);
+        self.scale.push(-1.0 / (beta * (t[r] - beta)));
+        self.entries.push(entry);
+    }
+
+    /// `y` with `L y = c` for the rows `from..`, whose right-hand sides are `c`; entries before `from` count as zero.
+    pub(super) fn solve_lower(&self, from: usize, c: &[f64], y: &mut [f64]) {
+        let w = self.free.len();
+        for r in from..self.len() {
+            let row = &self.lower[r * w..r * w + r];
+            y[r - from] = (c[r - from] - dot(&row[from..], &y[..r - from])) / self.diagonal[r];
+        }
+    }
+
+    /// Replaces `h[..len]` by the solution of `L[..len]^T z = h`.
+    pub(super) fn solve_upper(&self, len: usize, h: &mut [f64]) {
+        let w = self.free.len();
+        for r in (0..len).rev() {
+            h[r] /= self.diagonal[r];
+            let z = h[r];
+            add_scaled(&mut h[..r], -z, &self.lower[r * w..r * w + r]);
+        }
+    }
+
+    /// `L[r][r]`.
+    pub(super) fn diagonal(&self, r: usize) -> f64 {
+        self.diagonal[r]
+    }
+
+    /// `L[r][..r]`.
+    pub(super) fn lower_row(&self, r: usize) -> &[f64] {
+        let w = self.free.len();
+        &self.lower[r * w..r * w + r]
+    }
+}

@@ -1,0 +1,147 @@
+//! What is asked: bounds on the unknowns that always hold, and levels of rows in strict order of priority.
+
+/// One level of priority: `lower <= A x <= upper`, as nearly as every level above allows.
+///
+/// What is left over, `residual_i = a_i x - upper_i` above, `a_i x - lower_i` below, 0 between, is as short as it can be
+/// in the Euclidean norm; an equation has `lower == upper`. Rows keep the scale they are given in: a row multiplied by 10
+/// weighs 100 times as much against the others of its level.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Level {
+    /// `A`, row after row, each as long as there are unknowns.
+    pub matrix: Vec<f64>,
+    /// Lower limit of each row; may be minus infinity.
+    pub lower: Vec<f64>,
+    /// Upper limit of each row, not below the lower one; may be infinite.
+    pub upper: Vec<f64>,
+    /// `mu >= 0`: the level minimises `|residual|^2 + mu^2 |x|^2`, as far as its own rows reach; 0 for none. What the rows
+    /// do not touch is left to the levels below, and the levels above feel nothing of it.
+    pub damping: f64,
+    /// The level is meant to hold: a residual makes the answer [`super::Status::Infeasible`].
+    pub hard: bool,
+}
+
+impl Level {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// Takes all rows away and keeps the space.
+    pub fn clear(&mut self) {
+        self.matrix.clear();
+        self.lower.clear();
+        self.upper.clear();
+        self.damping = 0.0;
+        self.hard = false;
+    }
+
+    /// Adds the row `lower <= row . x <= upper`.
+    pub fn push(&mut self, row: &[f64], lower: f64, upper: f64) {
+        self.matrix.extend_from_slice(row);
+        self.lower.push(lower);
+        self.upper.push(upper);
+    }
+}
+
+/// Bounds and levels over a number of unknowns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Problem {
+    /// Lower bound of each unknown; may be minus infinity.
+    pub lower: Vec<f64>,
+    /// Upper bound of each unknown, not below the lower one; may be infinite.
+    pub upper: Vec<f64>,
+    /// The first is the most important.
+    pub levels: Vec<Level>,
+}
+
+impl Problem {
+    /// `n` unknowns without bounds, no levels.
+    pub fn new(n: usize) -> Self {
+        Self { lower: vec![f64::NEG_INFINITY; n], upper: vec![f64::INFINITY; n], levels: vec![] }
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.lower.len()
+    }
+}
+
+/// Why a problem was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProblemError {
+    /// A list has another length than it must have.
+    #[error("{what} has {given} numbers; it must have {needed}")]
+    Length {
+        /// Which list.
+        what: String,
+        /// Its length.
+        given: usize,
+        /// The length it must have.
+        needed: usize,
+    },
+    /// A number without meaning.
+    #[error("{what} is {value}; it must be {accepted}")]
+    Number {
+        /// Which number.
+        what: String,
+        /// The number.
+        value: f64,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+}
+
+/// Coefficients and finite limits must be at most this in size: squares and products of what is accepted stay finite.
+const LARGEST: f64 = 1e60;
+
+impl Problem {
+    /// Do all lengths fit and all numbers have a meaning?
+    ///
+    /// # Errors
+    /// [`ProblemError`] names the first thing that does not.
+    pub fn check(&self) -> Result<(), ProblemError> {
+        let n = self.unknowns();
+        check_limits(&self.lower, &self.upper, n, &|| "bound of an unknown".to_owned())?;
+        for (k, level) in self.levels.iter().enumerate() {
+            let (given, needed) = (level.matrix.len(), level.rows() * n);
+            if given != needed {
+                return Err(ProblemError::Length { what: format!("matrix of level {k}"), given, needed });
+            }
+            check_limits(&level.lower, &level.upper, level.rows(), &|| format!("limit of a row of level {k}"))?;
+            // Sixteen at a time without a branch: this runs for every problem.
+            let fits = |a: &[f64]| a.iter().fold(true, |fits, a| fits & (a.abs() <= LARGEST));
+            let wrong = level.matrix.chunks(16).find(|part| !fits(part));
+            if let Some(&value) = wrong.and_then(|part| part.iter().find(|a| !fits(&[**a]))) {
+                let what = format!("coefficient of level {k}");
+                return Err(ProblemError::Number { what, value, accepted: "finite and at most 1e60 in size" });
+            }
+            if !(0.0..=LARGEST).contains(&level.damping) {
+                let what = format!("damping of level {k}");
+                return Err(ProblemError::Number { what, value: level.damping, accepted: "between 0 and 1e60" });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_limits(lower: &[f64], upper: &[f64], needed: usize, what: &dyn Fn() -> String) -> Result<(), ProblemError> {
+    if upper.len() != needed || lower.len() != needed {
+        let given = if upper.len() == needed { lower.len() } else { upper.len() };
+        return Err(ProblemError::Length { what: format!("list of the {}s", what()), given, needed });
+    }
+    for (&lower, &upper) in lower.iter().zip(upper) {
+        let number =
+            |side, value, accepted| Err(ProblemError::Number { what: format!("{side} {}", what()), value, accepted });
+        if lower.is_nan() || lower == f64::INFINITY || (lower.is_finite() && lower.abs() > LARGEST) {
+            return number("lower", lower, "at most 1e60 in size, or minus infinity");
+        }
+        if upper.is_nan() || upper == f64::NEG_INFINITY || (upper.is_finite() && upper.abs() > LARGEST) {
+            return number("upper", upper, "at most 1e60 in size, or infinity");
+        }
+        if lower > upper {
+            return number("lower", lower, "not above the upper one");
+        }
+    }
+    Ok(())
+}

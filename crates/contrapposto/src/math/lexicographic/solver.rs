@@ -1,0 +1,428 @@
+//! Down the levels: what is fixed, what is active, what is still free.
+
+use super::dense::{LeastSquares, dot, norm};
+use super::diagonal::Diagonal;
+use super::factor::{Entry, Factor};
+use super::multipliers::{Multipliers, Table};
+use super::problem::{Problem, ProblemError};
+
+/// How it ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Every level is as small as the levels above allow, and every hard level holds.
+    Solved,
+    /// As [`Status::Solved`], but a level marked hard keeps a residual: the first such level.
+    Infeasible {
+        /// Which.
+        level: usize,
+    },
+    /// It did not come to an end: the answer keeps the bounds, and is not the best.
+    Stopped,
+}
+
+/// Which limit is active.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    None,
+    Lower,
+    Upper,
+    /// Lower and upper limit are the same number.
+    Both,
+}
+
+/// What a row is to the level that is being solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Holds, and is not active.
+    Out,
+    /// Its residual is being minimised.
+    Soft,
+    /// Holds and is active; a level below may leave it.
+    Active,
+    /// Never changes again.
+    Fixed,
+}
+
+/// Relative size below which a row adds no new direction.
+pub(super) const INDEPENDENT: f64 = 1e-10;
+/// Relative size of what counts as rounding in the value of a row.
+const ROUNDING: f64 = 1e-12;
+/// Relative size of a multiplier that counts as zero.
+pub(super) const MULTIPLIER: f64 = 1e-11;
+/// Rows shorter than this count as zero.
+const NOTHING: f64 = 1e-60;
+
+/// Solves a [`Problem`]; keeps its space, its last answer and what was active there. Nothing is allocated when a problem
+/// of the same size is solved again.
+#[derive(Clone, Debug, Default)]
+pub struct Solver {
+    pub(super) x: Vec<f64>,
+    /// Where the rows of each level begin; one more at the end.
+    pub(super) offsets: Vec<usize>,
+    pub(super) bounds: Vec<Side>,
+    /// Bounds that a level above needs: they are not left again.
+    pub(super) held: Vec<bool>,
+    /// By row, counted through all levels.
+    pub(super) sides: Vec<Side>,
+    pub(super) roles: Vec<Role>,
+    pub(super) norms: Vec<f64>,
+    /// The only unknown in a row, where there is but one.
+    pub(super) single: Vec<Option<usize>>,
+    /// The larger of the row's finite limits, in size.
+    limits: Vec<f64>,
+    /// Length of `x`.
+    length: f64,
+    residuals: Vec<f64>,
+    pub(super) factor: Factor,
+    /// Fixed rows that say nothing new beside those in the factor.
+    dependents: Vec<usize>,
+    pub(super) table: Table,
+    /// Rows of the level in question, turned; their indices; their right-hand sides.
+    pub(super) turned: Vec<f64>,
+    pub(super) left: Vec<(f64, f64)>,
+    pub(super) soft: Vec<usize>,
+    pub(super) right: Vec<f64>,
+    /// What the best step leaves of each soft row.
+    pub(super) kept: Vec<f64>,
+    /// How strongly the soft rows pull, all together.
+    pub(super) size: f64,
+    pub(super) y: Vec<f64>,
+    pub(super) step: Vec<f64>,
+    pub(super) gradient: Vec<f64>,
+    pub(super) work: Vec<f64>,
+    entries: Vec<Entry>,
+    pub(super) least: LeastSquares,
+    pub(super) diagonal: Diagonal,
+    changes: usize,
+    limit: usize,
+}
+
+impl Solver {
+    /// Knows nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Solves from zero (or the bound nearest to it), nothing active.
+    ///
+    /// # Errors
+    /// [`ProblemError`] for lengths that do not fit and numbers without meaning.
+    pub fn solve(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
+        problem.check()?;
+        self.forget();
+        Ok(self.run(problem))
+    }
+
+    /// Forgets the last answer and what was active there.
+    pub fn forget(&mut self) {
+        self.x.clear();
+        self.bounds.clear();
+        self.sides.clear();
+    }
+
+    /// Solves from zero, with what was active in the last answer: for the next of a sequence of alike problems. The same
+    /// answer as [`Solver::solve`] where the levels leave nothing open, usually with less work.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn solve_next(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
+        problem.check()?;
+        self.x.clear();
+        Ok(self.run(problem))
+    }
+
+    /// Solves from the last answer and what was active there.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn solve_again(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
+        problem.check()?;
+        Ok(self.run(problem))
+    }
+
+    /// The unknowns, `x`.
+    pub fn solution(&self) -> &[f64] {
+        &self.x
+    }
+
+    /// What is left of each row of a level, recomputed from the problem at the end.
+    pub fn residual(&self, level: usize) -> &[f64] {
+        &self.residuals[self.offsets[level]..self.offsets[level + 1]]
+    }
+
+    /// Length of [`Solver::residual`].
+    pub fn residual_norm(&self, level: usize) -> f64 {
+        norm(self.residual(level))
+    }
+
+    /// What the levels above and the bounds cost a level.
+    pub fn multipliers(&self, level: usize) -> Multipliers<'_> {
+        self.table.level(level)
+    }
+
+    /// Unknowns that stand at a bound which was active at the end; `true` for the upper one.
+    pub fn active_bounds(&self) -> impl Iterator<Item = (usize, bool)> {
+        let active = self.bounds.iter().enumerate().filter(|(_, side)| **side != Side::None);
+        active.map(|(i, side)| (i, *side != Side::Lower))
+    }
+
+    /// How often the active set changed.
+    pub fn changes(&self) -> usize {
+        self.changes
+    }
+
+    fn run(&mut self, problem: &Problem) -> Status {
+        self.prepare(problem);
+        let last = problem.levels.len().wrapping_sub(1);
+        let mut done = true;
+        for k in 0..problem.levels.len() {
+            let single = if k == last { self.diagonal_level(problem, k) } else { None };
+            done = single.unwrap_or_else(|| self.level(problem, k));
+            if !done {
+                break;
+            }
+        }
+        for (k, level) in problem.levels.iter().enumerate() {
+            for i in 0..level.rows() {
+                let row = self.offsets[k] + i;
+                let value = self.value(problem, row, &self.x);
+                self.residuals[row] = (value - level.upper[i]).max(0.0) + (value - level.lower[i]).min(0.0);
+            }
+        }
+        if !done || self.residuals.iter().chain(&self.x).any(|v| !v.is_finite()) {
+            return Status::Stopped;
+        }
+        let broken = |k: &usize| {
+            problem.levels[*k].hard
+                && (0..problem.levels[*k].rows()).any(|i| {
+                    let row = self.offsets[*k] + i;
+                    self.residuals[row].abs() > self.rounding(row)
+                })
+        };
+        (0..problem.levels.len()).find(broken).map_or(Status::Solved, |level| Status::Infeasible { level })
+    }
+
+    fn prepare(&mut self, problem: &Problem) {
+        let n = problem.unknowns();
+        if self.x.len() != n {
+            self.x.clear();
+            self.x.resize(n, 0.0);
+        }
+        self.offsets.clear();
+        let mut rows = 0;
+        self.offsets.push(0);
+        for level in &problem.levels {
+            rows += level.rows();
+            self.offsets.push(rows);
+        }
+        if self.bounds.len() != n {
+            self.bounds.clear();
+            self.bounds.resize(n, Side::None);
+        }
+        if self.sides.len() != rows {
+            self.sides.clear();
+            self.sides.resize(rows, Side::None);
+        }
+        for i in 0..n {
+            let (lower, upper) = (problem.lower[i], problem.upper[i]);
+            self.bounds[i] = match self.bounds[i] {
+                _ if lower == upper => Side::Both,
+                Side::Lower if lower.is_finite() => Side::Lower,
+                Side::Upper if upper.is_finite() => Side::Upper,
+                _ => Side::None,
+            };
+            self.x[i] = match self.bounds[i] {
+                Side::Lower | Side::Both => lower,
+                Side::Upper => upper,
+                Side::None => self.x[i].max(lower).min(upper),
+            };
+        }
+        let reset = |v: &mut Vec<f64>, len: usize| {
+            v.clear();
+            v.resize(len, 0.0);
+        };
+        for v in [&mut self.step, &mut self.gradient, &mut self.y] {
+            reset(v, n);
+        }
+        reset(&mut self.work, n.next_multiple_of(8));
+        reset(&mut self.residuals, rows);
+        self.norms.clear();
+        self.limits.clear();
+        self.single.clear();
+        let finite = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
+        for level in &problem.levels {
+            for i in 0..level.rows() {
+                let row = &level.matrix[i * n..(i + 1) * n];
+                let single = only_unknown(row);
+                self.norms.push(single.map_or_else(|| norm(row), |c| row[c].abs()));
+                self.single.push(single);
+                self.limits.push(finite(level.lower[i]).max(finite(level.upper[i])));
+            }
+        }
+        self.length = norm(&self.x);
+        self.held.clear();
+        self.held.resize(n, false);
+        self.roles.clear();
+        self.roles.resize(rows, Role::Out);
+        self.table.reset(n, &self.offsets);
+        self.dependents.clear();
+        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
+        self.changes = 0;
+        self.limit = 100 + 10 * (n + rows);
+    }
+
+    /// One more change of the active set; `false` when there were too many.
+    pub(super) fn may_change(&mut self) -> bool {
+        self.changes += 1;
+        self.changes <= self.limit
+    }
+
+    /// Level and row within it.
+    pub(super) fn place(&self, row: usize) -> (usize, usize) {
+        let k = self.offsets.partition_point(|&start| start <= row) - 1;
+        (k, row - self.offsets[k])
+    }
+
+    /// Rounding to be expected in the value of a row.
+    pub(super) fn rounding(&self, row: usize) -> f64 {
+        ROUNDING * (self.limits[row] + self.norms[row] * self.length) + f64::MIN_POSITIVE
+    }
+
+    /// `a . x` of a row.
+    pub(super) fn value(&self, problem: &Problem, row: usize, x: &[f64]) -> f64 {
+        value(problem, &self.offsets, self.single[row], row, x)
+    }
+
+    /// Does a row have any direction at all?
+    pub(super) fn is_something(&self, row: usize) -> bool {
+        self.norms[row] > NOTHING
+    }
+
+    /// Adds the bound of unknown `i` behind what is in the factor. `false` if it says nothing new.
+    pub(super) fn activate_bound(&mut self, problem: &Problem, i: usize, side: Side) -> bool {
+        self.bounds[i] = side;
+        self.x[i] = if side == Side::Lower { problem.lower[i] } else { problem.upper[i] };
+        self.work.fill(0.0);
+        let Some(column) = self.factor.free.iter().position(|&f| f == i) else { return false };
+        self.work[column] = 1.0;
+        self.append(Entry::Bound(i), 1.0)
+    }
+
+    /// Adds the row that stands in `work`, not turned yet.
+    fn append(&mut self, entry: Entry, size: f64) -> bool {
+        let (r, w) = (self.factor.len(), self.factor.width());
+        self.factor.turn(&mut self.work, 0, r);
+        let new = r < w && norm(&self.work[r..w]) > INDEPENDENT * size;
+        if new {
+            self.factor.append(&self.work, entry);
+        }
+        new
+    }
+
+    /// Adds a row of a level behind what is in the factor.
+    pub(super) fn activate_row(&mut self, problem: &Problem, row: usize) -> bool {
+        let (k, i) = self.place(row);
+        let n = problem.unknowns();
+        self.factor.gather(&problem.levels[k].matrix[i * n..(i + 1) * n], &mut self.work);
+        self.append(Entry::Row(row), self.norms[row])
+    }
+
+    /// Leaves an active bound or row, and factorises the rest anew.
+    pub(super) fn leave(&mut self, problem: &Problem, dropped: Entry) {
+        match dropped {
+            Entry::Bound(i) => self.bounds[i] = Side::None,
+            Entry::Row(row) => (self.roles[row], self.sides[row]) = (Role::Out, Side::None),
+        }
+        self.refactor(problem);
+    }
+
+    /// Factorises what is active and fixed anew, bounds as columns left out.
+    pub(super) fn refactor(&mut self, problem: &Problem) {
+        self.entries.clear();
+        self.entries.extend_from_slice(&self.factor.entries);
+        self.entries.extend(self.dependents.iter().map(|&row| Entry::Row(row)));
+        self.dependents.clear();
+        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
+        for e in 0..self.entries.len() {
+            let Entry::Row(row) = self.entries[e] else { continue };
+            if self.roles[row] != Role::Out && !self.activate_row(problem, row) {
+                self.lay_aside(row);
+            }
+        }
+    }
+
+    /// A row that says nothing new: kept in mind if it is fixed, not active otherwise.
+    pub(super) fn lay_aside(&mut self, row: usize) {
+        if self.roles[row] == Role::Fixed {
+            self.dependents.push(row);
+        } else {
+            (self.roles[row], self.sides[row]) = (Role::Out, Side::None);
+        }
+    }
+
+    /// The first limit that the step meets before its end: how far (0 to 1), and whose.
+    pub(super) fn first_block(&self, problem: &Problem, k: usize) -> (f64, Option<(Entry, Side)>) {
+        let length = norm(&self.step);
+        let mut found = (1.0, None);
+        let mut meet = |room: f64, speed: f64, entry: Entry, side: Side| {
+            let share = (room / speed).max(0.0);
+            if share < found.0 {
+                found = (share, Some((entry, side)));
+            }
+        };
+        for (i, &speed) in self.step.iter().enumerate() {
+            if self.bounds[i] != Side::None || speed.abs() <= 1e-14 * length {
+                continue;
+            }
+            if speed > 0.0 {
+                meet(problem.upper[i] - self.x[i], speed, Entry::Bound(i), Side::Upper);
+            } else {
+                meet(problem.lower[i] - self.x[i], speed, Entry::Bound(i), Side::Lower);
+            }
+        }
+        for j in 0..=k {
+            let level = &problem.levels[j];
+            for i in 0..level.rows() {
+                let row = self.offsets[j] + i;
+                if self.roles[row] != Role::Out || (level.lower[i].is_infinite() && level.upper[i].is_infinite()) {
+                    continue;
+                }
+                let speed = self.value(problem, row, &self.step);
+                if speed.abs() <= 1e-14 * length * self.norms[row] || !self.is_something(row) {
+                    continue;
+                }
+                let value = self.value(problem, row, &self.x);
+                if speed > 0.0 {
+                    meet(level.upper[i] - value, speed, Entry::Row(row), Side::Upper);
+                } else {
+                    meet(level.lower[i] - value, speed, Entry::Row(row), Side::Lower);
+                }
+            }
+        }
+        found
+    }
+
+    /// `x += share step`, bounds kept exactly.
+    pub(super) fn advance(&mut self, problem: &Problem, share: f64) {
+        for i in 0..self.x.len() {
+            if self.bounds[i] == Side::None {
+                self.x[i] = (self.x[i] + share * self.step[i]).max(problem.lower[i]).min(problem.upper[i]);
+            }
+        }
+        self.length = norm(&self.x);
+    }
+}
+
+/// `a . x` of a row that may have a single unknown.
+pub(super) fn value(problem: &Problem, offsets: &[usize], single: Option<usize>, row: usize, x: &[f64]) -> f64 {
+    let k = offsets.partition_point(|&start| start <= row) - 1;
+    let i = row - offsets[k];
+    let a = &problem.levels[k].matrix[i * x.len()..(i + 1) * x.len()];
+    single.map_or_else(|| dot(a, x), |c| a[c] * x[c])
+}
+
+/// The place of the only entry that is not zero.
+fn only_unknown(row: &[f64]) -> Option<usize> {
+    let first = row.iter().position(|a| *a != 0.0)?;
+    row[first + 1..].iter().all(|a| *a == 0.0).then_some(first)
+}

@@ -1,0 +1,348 @@
+//! Is an answer the best there is? The optimality conditions (Karush, Kuhn & Tucker) of every level, and the residuals that
+//! follow from what an answer calls active, both in numbers of 32 digits.
+
+use crate::double_double::{Double, dot, inner};
+use crate::generator::{Draw, Row, outside};
+use contrapposto::math::lexicographic::{Problem, Solver};
+
+/// A residual above this, in rows of scale one, is one; below, its row counts as holding.
+pub const RESIDUAL: f64 = 1e-9;
+
+/// As [`RESIDUAL`], for a level with these scales: the heaviest rows keep residuals as much smaller than those of the
+/// lightest as the squares of their scales say.
+pub fn residual_of(scales: impl Iterator<Item = f64> + Clone) -> f64 {
+    let (least, most) = (scales.clone().fold(f64::INFINITY, f64::min), scales.fold(0.0, f64::max));
+    (RESIDUAL * (least / most).powi(2)).max(UNSEEN)
+}
+
+/// No residual below this, in rows of scale one, can be told from rounding.
+const UNSEEN: f64 = 1e-13;
+
+/// A multiplier below this, in rows of scale one, does not press.
+const PRESSING: f64 = 1e-13;
+/// A multiplier above this, relative to the square of the level's least scale, locks its side for all levels below: to
+/// leave it would cost the level something, so what it presses with at levels below may have either sign (the multipliers
+/// of one side are positive in the lexicographic sense).
+const LOCKING: f64 = 1e-8;
+
+/// What a solver says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    pub x: Vec<f64>,
+    pub residuals: Vec<Vec<f64>>,
+    /// By level: of bounds, of the rows of all levels above.
+    pub multipliers: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Answer {
+    pub fn of(solver: &Solver, levels: usize) -> Self {
+        let multipliers = |k| {
+            let m = solver.multipliers(k);
+            (m.bounds.to_vec(), m.rows.to_vec())
+        };
+        Self {
+            x: solver.solution().to_vec(),
+            residuals: (0..levels).map(|k| solver.residual(k).to_vec()).collect(),
+            multipliers: (0..levels).map(multipliers).collect(),
+        }
+    }
+}
+
+/// `a x` of every row of a level.
+pub fn products(problem: &Problem, k: usize, x: &[f64]) -> Vec<Double> {
+    let n = x.len();
+    if n == 0 {
+        return vec![Double::ZERO; problem.levels[k].rows()];
+    }
+    problem.levels[k].matrix.chunks(n).map(|a| dot(a, x)).collect()
+}
+
+/// The residual of a row whose `a x` is `value`.
+pub fn residual(value: Double, lower: f64, upper: f64) -> Double {
+    let (above, below) = (value - Double::from(upper), value - Double::from(lower));
+    if upper.is_finite() && above.value() > 0.0 {
+        above
+    } else if lower.is_finite() && below.value() < 0.0 {
+        below
+    } else {
+        Double::ZERO
+    }
+}
+
+/// The largest misses; all should be a little rounding.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Misses {
+    /// Reported residuals against those recomputed.
+    pub residual: f64,
+    /// Unknowns outside their bounds.
+    pub bounds: f64,
+    /// Gradient of the Lagrangian.
+    pub stationarity: f64,
+    /// Multipliers at no side, or at the wrong one.
+    pub sign: f64,
+}
+
+impl Misses {
+    pub fn largest(&mut self, other: &Self) {
+        self.residual = self.residual.max(other.residual);
+        self.bounds = self.bounds.max(other.bounds);
+        self.stationarity = self.stationarity.max(other.stationarity);
+        self.sign = self.sign.max(other.sign);
+    }
+
+    pub fn are_rounding(&self) -> bool {
+        self.residual < 1e-13 && self.bounds == 0.0 && self.stationarity < 1e-11 && self.sign < 1e-11
+    }
+}
+
+/// How well an answer satisfies the conditions of all levels; undamped. Gradients are relative to the square of the
+/// level's largest scale.
+pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses {
+    let (n, x) = (problem.unknowns(), &answer.x);
+    let mut misses = Misses::default();
+    for ((&x, &lower), &upper) in x.iter().zip(&problem.lower).zip(&problem.upper) {
+        let outside = if x.is_finite() { outside(x, lower, upper).abs() } else { f64::INFINITY };
+        misses.bounds = misses.bounds.max(outside);
+    }
+    let mut values: Vec<Vec<Double>> = vec![];
+    let smallest: Vec<f64> = scales.iter().map(|level| residual_of(level.iter().copied())).collect();
+    // Levels of such scales that a heavy row at its side may keep a residual nobody can see: either sign is right there.
+    let mut unseen = vec![];
+    let mut locked: Vec<Vec<bool>> = scales.iter().map(|level| vec![false; level.len()]).collect();
+    let mut locked_bounds = vec![false; n];
+    for (k, level) in problem.levels.iter().enumerate() {
+        let (products, scale) = (products(problem, k, x), scales[k].iter().copied().fold(0.0, f64::max));
+        let locking = LOCKING * scales[k].iter().copied().fold(f64::INFINITY, f64::min).powi(2);
+        let (mut sum, mut size) = (vec![Double::ZERO; n], vec![0.0; n]);
+        let mut add = |a: &[f64], factor: Double| {
+            for (j, a) in a.iter().enumerate() {
+                let product = Double::from(*a) * factor;
+                sum[j] += product;
+                size[j] += product.value().abs();
+            }
+        };
+        for (i, a) in level.matrix.chunks(n.max(1)).enumerate() {
+            let (lower, upper) = (level.lower[i], level.upper[i]);
+            let residual = residual(products[i], lower, upper);
+            add(a, residual);
+            let size: f64 = a.iter().zip(x).map(|(a, x)| (a * x).abs()).sum();
+            let side = [lower, upper].into_iter().filter(|s| s.is_finite()).fold(0.0, |m: f64, s| m.max(s.abs()));
+            let miss = (answer.residuals[k][i] - residual.value()).abs() / (size + side).max(f64::MIN_POSITIVE);
+            misses.residual = misses.residual.max(miss);
+        }
+        let keeps = answer.residuals[k].iter().zip(&scales[k]).any(|(r, scale)| r.abs() > smallest[k] * scale);
+        unseen.push(keeps && smallest[k] == UNSEEN);
+        values.push(products);
+        let (bounds, rows) = &answer.multipliers[k];
+        let above = problem.levels[..k].iter().enumerate();
+        let above = above.flat_map(|(j, level)| (0..level.rows()).map(move |i| (j, i, level)));
+        assert_eq!(above.clone().count(), rows.len(), "a multiplier for every row above");
+        let mut signs = vec![];
+        for ((j, i, level), &factor) in above.zip(rows) {
+            add(&level.matrix[i * n..(i + 1) * n], Double::from(factor));
+            let (lower, upper, scale) = (level.lower[i], level.upper[i], scales[j][i]);
+            let free = residual(values[j][i], lower, upper).value().abs() > smallest[j] * scale;
+            if !free && lower != upper && !locked[j][i] {
+                let off = |side: f64| {
+                    let off = (values[j][i] - Double::from(side)).value().abs();
+                    off.is_nan() || off > RESIDUAL * (scale + side.abs())
+                };
+                let (side, other) = if factor > 0.0 { (upper, lower) } else { (lower, upper) };
+                if off(side) && (off(other) || !unseen[j]) {
+                    signs.push(factor.abs() * scale);
+                } else {
+                    locked[j][i] = factor.abs() * scale > locking;
+                }
+            }
+        }
+        for (j, &factor) in bounds.iter().enumerate() {
+            let side = if factor > 0.0 { problem.upper[j] } else { problem.lower[j] };
+            if problem.lower[j] != problem.upper[j] && !locked_bounds[j] {
+                if x[j] == side {
+                    locked_bounds[j] = factor.abs() > locking;
+                } else {
+                    signs.push(factor.abs());
+                }
+            }
+        }
+        for (j, factor) in bounds.iter().enumerate() {
+            sum[j] += Double::from(*factor);
+            size[j] += factor.abs();
+        }
+        // Relative to all that is summed, but to no less than a residual of one.
+        let size = scale * scale + size.iter().copied().fold(0.0, f64::max);
+        let stationarity = sum.iter().map(|s| s.value().abs()).fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
+        let sign = signs.iter().copied().fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
+        misses.stationarity = misses.stationarity.max(stationarity);
+        misses.sign = misses.sign.max(sign);
+    }
+    misses
+}
+
+/// A row `a x = value` that is held, and the side of an inequality it stands for.
+struct Held<'a> {
+    a: &'a [f64],
+    value: Double,
+    multiplier: f64,
+    inequality: bool,
+}
+
+/// The residuals (of rows before scaling) that follow from what the answer calls active. With the right signs of their
+/// multipliers they are the best there are, whatever `x` may say.
+pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> {
+    let n = draw.n;
+    let units: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| if i == j { 1.0 } else { 0.0 }).collect()).collect();
+    let mut known: Vec<Vec<Double>> = vec![];
+    // The side an inequality is locked at: 1 upper, -1 lower, 0 none.
+    let mut locks: Vec<f64> = vec![];
+    let mut bound_locks = vec![0.0; n];
+    for (k, rows) in draw.levels.iter().enumerate() {
+        let largest = rows.iter().map(|row| row.scale).fold(0.0, f64::max);
+        let least_scale = rows.iter().map(|row| row.scale).fold(f64::INFINITY, f64::min);
+        let locking = LOCKING * (least_scale / largest).powi(2);
+        let (bounds, factors) = &answer.multipliers[k];
+        let mut held = vec![];
+        for (j, a) in units.iter().enumerate() {
+            let multiplier = bounds[j] / (largest * largest);
+            let fixed = draw.lower[j] == draw.upper[j];
+            if fixed || multiplier.abs() > PRESSING {
+                let inequality = !fixed && bound_locks[j] == 0.0;
+                let upper = if inequality { multiplier > 0.0 } else { bound_locks[j] > 0.0 };
+                let value = Double::from(if upper { draw.upper[j] } else { draw.lower[j] });
+                held.push(Held { a, value, multiplier, inequality });
+                if inequality && multiplier.abs() > locking {
+                    bound_locks[j] = multiplier.signum();
+                }
+            }
+        }
+        let smallest = |rows: &[Row]| residual_of(rows.iter().map(|row| row.scale));
+        let above = draw.levels[..k].iter().zip(&known).flat_map(|(rows, known)| {
+            let smallest = smallest(rows);
+            rows.iter().zip(known).map(move |(row, known)| (row, known, known.value().abs() > smallest))
+        });
+        locks.resize(factors.len(), 0.0);
+        for (((row, &known, short), factor), lock) in above.zip(factors).zip(&mut locks) {
+            let multiplier = factor * row.scale / (largest * largest);
+            let kept = row.equation() || short;
+            if kept || multiplier.abs() > PRESSING {
+                let inequality = !kept && *lock == 0.0;
+                let side = [known.value(), *lock, multiplier].into_iter().find(|side| *side != 0.0);
+                let value = Double::from(if side > Some(0.0) { row.upper } else { row.lower }) + known;
+                held.push(Held { a: &row.a, value, multiplier, inequality });
+                if inequality && multiplier.abs() > locking {
+                    *lock = multiplier.signum();
+                }
+            }
+        }
+        // The rows that are short of their side.
+        let smallest = smallest(rows);
+        let mut short = vec![];
+        for (row, residual) in rows.iter().zip(&answer.residuals[k]) {
+            if row.equation() || residual.abs() > smallest * row.scale {
+                let side = if *residual > 0.0 { row.upper } else { row.lower };
+                short.push((row.a.as_slice(), Double::from(side), row.scale / largest));
+            }
+        }
+        let (found, wrong) = least(n, &held, &short);
+        if wrong.iter().any(|wrong| *wrong) {
+            // A row that pulls instead of pressing: does it matter?
+            let pressing: Vec<Held<'_>> =
+                held.into_iter().zip(&wrong).filter(|(_, wrong)| !**wrong).map(|(held, _)| held).collect();
+            let (better, _) = least(n, &pressing, &short);
+            let change = found.iter().zip(&better).map(|(a, b)| (*a - *b).value().abs()).fold(0.0, f64::max);
+            if change > 1e-9 {
+                return Err(format!("level {k}: without rows that pull, residuals change by {change:.1e}"));
+            }
+        }
+        let mut found = found.into_iter();
+        let all = rows.iter().zip(&answer.residuals[k]).map(|(row, residual)| {
+            let short = row.equation() || residual.abs() > smallest * row.scale;
+            if short { found.next().unwrap() } else { Double::ZERO }
+        });
+        known.push(all.collect());
+    }
+    Ok(known.iter().map(|level| level.iter().map(|r| r.value()).collect()).collect())
+}
+
+/// Least squares of `short` (row, side, weight) with `held` exactly held: residuals before weighting, and which of `held`
+/// have a multiplier of the wrong sign.
+fn least(n: usize, held: &[Held<'_>], short: &[(&[f64], Double, f64)]) -> (Vec<Double>, Vec<bool>) {
+    let plain = |a: &[f64]| a.iter().map(|a| Double::from(*a)).collect::<Vec<_>>();
+    let axpy = |y: &mut [Double], factor: Double, x: &[Double]| {
+        for (y, x) in y.iter_mut().zip(x) {
+            *y += factor * *x;
+        }
+    };
+    // Orthonormal directions of the held rows, the longest rest first; `x` satisfies them.
+    let mut rests: Vec<Vec<Double>> = held.iter().map(|held| plain(held.a)).collect();
+    let mut directions: Vec<Vec<Double>> = vec![];
+    let mut order: Vec<usize> = vec![];
+    let mut x = vec![Double::ZERO; n];
+    loop {
+        let lengths: Vec<f64> = rests.iter().map(|rest| inner(rest, rest).value()).collect();
+        let candidates = (0..held.len()).filter(|i| !order.contains(i));
+        let Some(next) = candidates.max_by(|a, b| lengths[*a].total_cmp(&lengths[*b])) else { break };
+        if lengths[next] < 1e-18 {
+            break;
+        }
+        let length = inner(&rests[next], &rests[next]).sqrt();
+        let direction: Vec<Double> = rests[next].iter().map(|r| *r / length).collect();
+        let missing = held[next].value - inner(&plain(held[next].a), &x);
+        axpy(&mut x, missing / length, &direction);
+        for rest in &mut rests {
+            let share = inner(rest, &direction);
+            axpy(rest, -share, &direction);
+        }
+        order.push(next);
+        directions.push(direction);
+    }
+    // The short rows in what is left, weighted, as columns.
+    let mut columns = vec![vec![Double::ZERO; short.len()]; n];
+    let mut residuals = vec![];
+    for (i, (a, side, weight)) in short.iter().enumerate() {
+        let mut row = plain(a);
+        residuals.push((inner(&row, &x) - *side) * Double::from(*weight));
+        for direction in &directions {
+            let share = inner(&row, direction);
+            axpy(&mut row, -share, direction);
+        }
+        for (column, entry) in columns.iter_mut().zip(row) {
+            column[i] = entry * Double::from(*weight);
+        }
+    }
+    for _ in 0..n.min(short.len()) {
+        let Some(longest) = columns.iter().max_by(|a, b| inner(a, a).value().total_cmp(&inner(b, b).value())) else {
+            break;
+        };
+        let length = inner(longest, longest).sqrt();
+        if length.value() < 1e-12 {
+            break;
+        }
+        let direction: Vec<Double> = longest.iter().map(|c| *c / length).collect();
+        for column in columns.iter_mut().chain([&mut residuals]) {
+            let share = inner(column, &direction);
+            axpy(column, -share, &direction);
+        }
+    }
+    // Multipliers: those of the answer, corrected on the rows that gave a direction.
+    let mut gradient = vec![Double::ZERO; n];
+    for ((a, _, weight), residual) in short.iter().zip(&residuals) {
+        axpy(&mut gradient, *residual * Double::from(*weight), &plain(a));
+    }
+    let mut multipliers: Vec<Double> = held.iter().map(|held| Double::from(held.multiplier)).collect();
+    for (held, multiplier) in held.iter().zip(&multipliers) {
+        axpy(&mut gradient, *multiplier, &plain(held.a));
+    }
+    for (&i, direction) in order.iter().zip(&directions).rev() {
+        let a = plain(held[i].a);
+        let correction = -inner(&gradient, direction) / inner(&a, direction);
+        multipliers[i] += correction;
+        axpy(&mut gradient, correction, &a);
+    }
+    let wrong = held.iter().zip(&multipliers).map(|(held, multiplier)| {
+        let wrong = if held.multiplier > 0.0 { -multiplier.value() } else { multiplier.value() };
+        held.inequality && wrong > 1e-14
+    });
+    let found = residuals.iter().zip(short).map(|(residual, (_, _, weight))| *residual / Double::from(*weight));
+    (found.collect(), wrong.collect())
+}

@@ -1,0 +1,200 @@
+//! The answer by a cascade of quadratic programs, each solved by Clarabel.
+//!
+//! A level asks for the least `|v|` with `lower <= A x - v <= upper`, the levels above unchanged: rows that are equations or
+//! keep a residual stay where they are (they are eliminated: `x = x0 + Z y`), rows that hold go on holding.
+//! Scales are taken out of the rows and put into the objective.
+
+use crate::generator::{Draw, Row, matrix_of};
+use crate::linear::{least_squares, null_space};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
+use nalgebra::{DMatrix, DVector};
+
+/// A residual above this keeps its row where it is.
+const KEPT: f64 = 1e-6;
+/// A row whose free part is below this does not move any more.
+const STILL: f64 = 1e-9;
+
+/// Where a cascade stands: a point, and the directions that are left to it.
+pub struct Cascade<'a> {
+    draw: &'a Draw,
+    pub x: DVector<f64>,
+    free: DMatrix<f64>,
+    /// Rows that hold and shall go on holding.
+    holding: Vec<&'a Row>,
+}
+
+#[derive(Debug)]
+pub enum Trouble {
+    /// Clarabel says something else than `Solved`.
+    Unsolved,
+    /// The rows that are kept have no clear rank.
+    Unclear,
+}
+
+impl<'a> Cascade<'a> {
+    pub fn new(draw: &'a Draw) -> Self {
+        let n = draw.n;
+        let fixed: Vec<usize> = (0..n).filter(|i| draw.lower[*i] == draw.upper[*i]).collect();
+        let loose: Vec<usize> = (0..n).filter(|i| !fixed.contains(i)).collect();
+        let free = DMatrix::from_fn(n, loose.len(), |i, j| if loose[j] == i { 1.0 } else { 0.0 });
+        let x = DVector::from_fn(n, |i, _| 0.0_f64.max(draw.lower[i]).min(draw.upper[i]));
+        Self { draw, x, free, holding: vec![] }
+    }
+
+    /// Takes a level to its optimum, and returns its residuals (of rows before scaling).
+    pub fn optimum(&mut self, k: usize) -> Result<Vec<f64>, Trouble> {
+        let rows = &self.draw.levels[k];
+        if self.free.ncols() > 0 {
+            let y = self.solve(rows)?;
+            self.x += &self.free * y;
+        }
+        Ok(rows.iter().map(|row| row.outside(row.dot(&self.x))).collect())
+    }
+
+    /// What the levels below must leave alone.
+    pub fn keep(&mut self, k: usize, residuals: &[f64]) -> Result<(), Trouble> {
+        let rows = &self.draw.levels[k];
+        let kept = |i: usize| rows[i].equation() || residuals[i].abs() > KEPT;
+        let matrix = matrix_of(self.draw.n, (0..rows.len()).filter(|i| kept(*i)).map(|i| &rows[i]));
+        self.free = null_space(&matrix, &self.free, 1e-5, 1e-9).ok_or(Trouble::Unclear)?;
+        self.holding.extend((0..rows.len()).filter(|i| !kept(*i)).map(|i| &rows[i]));
+        Ok(())
+    }
+
+    /// The step to the optimum of a level, by Clarabel, then polished.
+    fn solve(&self, rows: &[Row]) -> Result<DVector<f64>, Trouble> {
+        let (p, m) = (self.free.ncols(), rows.len());
+        // Where every residual can be zero, weights say nothing and only spoil the numbers.
+        let largest = rows.iter().map(|row| row.scale).fold(0.0, f64::max);
+        let weight = |row: &Row| if self.draw.conflicting { row.scale / largest } else { 1.0 };
+        let weights: Vec<f64> = rows.iter().map(weight).collect();
+        let lines = self.lines(rows);
+        let equations = lines.iter().filter(|line| line.equation).count();
+        let (mut places, mut columns, mut values) = (vec![], vec![], vec![]);
+        for (at, line) in lines.iter().enumerate() {
+            let entries = line.direction.iter().copied().enumerate();
+            for (column, value) in entries.chain(line.residual.map(|i| (p + i, -line.sign))) {
+                places.push(at);
+                columns.push(column);
+                values.push(value);
+            }
+        }
+        let a = CscMatrix::new_from_triplets(lines.len(), p + m, places, columns, values);
+        let right: Vec<f64> = lines.iter().map(|line| line.room).collect();
+        let diagonal: Vec<usize> = (p..p + m).collect();
+        let squares = weights.iter().map(|w| w * w).collect();
+        let objective = CscMatrix::new_from_triplets(p + m, p + m, diagonal.clone(), diagonal, squares);
+        let cones = [ZeroConeT(equations), NonnegativeConeT(lines.len() - equations)];
+        let attempt = |tolerance: f64, regularization: f64| {
+            let settings = DefaultSettings {
+                verbose: false,
+                tol_gap_abs: tolerance,
+                tol_gap_rel: tolerance,
+                tol_feas: 10.0 * tolerance,
+                static_regularization_constant: regularization,
+                max_threads: 1,
+                ..DefaultSettings::default()
+            };
+            let mut solver = DefaultSolver::new(&objective, &vec![0.0; p + m], &a, &right, &cones, settings).unwrap();
+            solver.solve();
+            solver.solution
+        };
+        let mut answer = attempt(1e-12, 1e-10);
+        if answer.status != SolverStatus::Solved {
+            answer = attempt(1e-10, 1e-8);
+        }
+        if answer.status != SolverStatus::Solved {
+            return Err(Trouble::Unsolved);
+        }
+        let y = DVector::from_column_slice(&answer.x[..p]);
+        let pressing = |i: usize, _: f64| lines[i].equation || answer.z[i] > answer.s[i];
+        let near = |i: usize, room: f64| lines[i].equation || room < 1e-5;
+        let y = polish(&lines, &weights, y, pressing);
+        Ok(polish(&lines, &weights, y, near))
+    }
+
+    /// All that holds for a step `y`, equations first.
+    fn lines(&self, rows: &[Row]) -> Vec<Line> {
+        let mut lines = vec![];
+        let direction = |a: &[f64]| self.free.tr_mul(&DVector::from_column_slice(a));
+        for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.equation()) {
+            let room = row.upper - row.dot(&self.x);
+            lines.push(Line { direction: direction(&row.a), sign: 1.0, residual: Some(i), room, equation: true });
+        }
+        let mut two_sided = |direction: DVector<f64>, at: f64, lower: f64, upper: f64, residual: Option<usize>| {
+            if upper.is_finite() {
+                let direction = direction.clone();
+                lines.push(Line { direction, sign: 1.0, residual, room: upper - at, equation: false });
+            }
+            if lower.is_finite() {
+                lines.push(Line { direction: -direction, sign: -1.0, residual, room: at - lower, equation: false });
+            }
+        };
+        for (i, row) in rows.iter().enumerate().filter(|(_, row)| !row.equation()) {
+            two_sided(direction(&row.a), row.dot(&self.x), row.lower, row.upper, Some(i));
+        }
+        for row in &self.holding {
+            let g = direction(&row.a);
+            if g.norm() > STILL {
+                two_sided(g, row.dot(&self.x), row.lower, row.upper, None);
+            }
+        }
+        for i in 0..self.draw.n {
+            let g = self.free.row(i).transpose();
+            if g.norm() > STILL {
+                two_sided(g, self.x[i], self.draw.lower[i], self.draw.upper[i], None);
+            }
+        }
+        lines
+    }
+}
+
+/// `direction y - sign v <= room`, `v` the residual of a row of the level.
+struct Line {
+    direction: DVector<f64>,
+    sign: f64,
+    residual: Option<usize>,
+    room: f64,
+    equation: bool,
+}
+
+/// An interior point stops a little off the sides that hold it. Put exactly on those of `active`, in the sense of least
+/// squares; kept if nothing is worse than before.
+fn polish(lines: &[Line], weights: &[f64], y: DVector<f64>, active: impl Fn(usize, f64) -> bool) -> DVector<f64> {
+    let p = y.len();
+    let room = |i: usize, y: &DVector<f64>| lines[i].room - lines[i].direction.dot(y);
+    let (mut firm, mut soft) = (vec![], vec![]);
+    for i in (0..lines.len()).filter(|i| active(*i, room(*i, &y))) {
+        if lines[i].residual.is_some() { soft.push(i) } else { firm.push(i) }
+    }
+    if firm.is_empty() && soft.is_empty() {
+        return y;
+    }
+    let weight = |i: usize| lines[i].residual.map_or(1.0, |row| weights[row]);
+    let stack =
+        |which: &[usize]| DMatrix::from_fn(which.len(), p, |i, j| weight(which[i]) * lines[which[i]].direction[j]);
+    let rooms = |which: &[usize], y: &DVector<f64>| {
+        DVector::from_iterator(which.len(), which.iter().map(|i| weight(*i) * room(*i, y)))
+    };
+    let hard = stack(&firm);
+    let Some(free) = null_space(&hard, &DMatrix::identity(p, p), 1e-7, 1e-9) else { return y };
+    let mut next = &y + least_squares(&hard, &rooms(&firm, &y), 1e-9);
+    let step = least_squares(&(stack(&soft) * &free), &rooms(&soft, &next), 1e-13);
+    next += free * step;
+    // Most any line of another level is passed, and what the level is about.
+    let merit = |y: &DVector<f64>| {
+        let (mut passed, mut sum) = (0.0_f64, 0.0);
+        for (i, line) in lines.iter().enumerate() {
+            let over = if line.equation { room(i, y) } else { room(i, y).min(0.0) };
+            if line.residual.is_some() {
+                sum += (weight(i) * over).powi(2);
+            } else {
+                passed = passed.max(-over);
+            }
+        }
+        (passed, sum)
+    };
+    let (before, after) = (merit(&y), merit(&next));
+    if after.0 <= before.0.max(1e-14) && after.1 <= before.1 * (1.0 + 1e-15) + 1e-30 { next } else { y }
+}
