@@ -48,7 +48,8 @@ impl Peer {
         let model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
         let file: Value = serde_json::from_slice(&text).unwrap();
         // x y z, quaternion x y z w, then the joints by name.
-        let names: Vec<&str> = file["joint_names"].as_array().unwrap()[2..].iter().map(|n| n.as_str().unwrap()).collect();
+        let names: Vec<&str> =
+            file["joint_names"].as_array().unwrap()[2..].iter().map(|n| n.as_str().unwrap()).collect();
         let q = numbers(&file["rest_q"]);
         let place = |name: &str| match name {
             "root_tx" => 0,
@@ -192,7 +193,11 @@ fn out_of_reach_the_hand_settles_at_its_nearest_and_nothing_above_gives() {
         let gain = peer.gain(&pose.posture, target(case), 1e-3);
         println!(
             "target {i}: {} steps, feet {:.1e}, centre {:.1e}, hand {:+.3} mm from the best known, still to gain {:.1e} m, last moves {last:.1e} rad",
-            pose.steps, levels[0].length, levels[1].length, 1e3 * excess, gain
+            pose.steps,
+            levels[0].length,
+            levels[1].length,
+            1e3 * excess,
+            gain
         );
         assert!(levels[0].length < 1e-6 && levels[1].length < 1e-6 && peer.excess(&pose.posture) < 1e-9, "target {i}");
         assert!(last < 1e-6, "target {i}: still moving by {last:.1e} rad");
