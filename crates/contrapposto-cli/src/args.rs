@@ -20,6 +20,8 @@ pub(crate) enum Verb {
     Simulate(SimulateArgs),
     /// Run a built-in scenario (the paper's Figure 8); needs no file.
     Demo(DemoArgs),
+    /// Solve one posture: supports and tasks in order of priority in, posture out.
+    Pose(PoseArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.
     Figures(FiguresArgs),
     /// Decide single joints: one JSON problem a line in, one JSON decision a line out.
@@ -58,6 +60,21 @@ pub(crate) struct DemoArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Print the summary as JSON instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Example:\n  contrapposto pose scenarios/reach-shelf.toml --out out\n\n\
+    Writes pose.json, pose.mot, pose.csv and pose.svg into DIR. A task that yields to those above it is no failure; supports \
+    that cannot hold, and steps that run out, are (exit code 1).")]
+pub(crate) struct PoseArgs {
+    /// Scenario file (TOML) with tasks; `-` reads standard input.
+    pub(crate) scenario: PathBuf,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Print pose.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -14,6 +14,7 @@ mod minimize;
 mod model_file;
 mod output;
 mod passive;
+mod pose;
 mod simulate;
 mod torques;
 
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
     let result = match Args::parse().verb {
         Verb::Simulate(args) => simulate::simulate(&args),
         Verb::Demo(args) => simulate::demo(&args),
+        Verb::Pose(args) => pose::pose(&args),
         Verb::Figures(args) => figures::figures(&args),
         Verb::Minimize(args) => minimize::minimize(&args),
         Verb::Passive(args) => passive::passive(&args),

@@ -139,7 +139,7 @@ fn great_files_are_refused_with_a_short_answer() {
         ("long-title.toml", GOOD.replace("attack", &long), "the title has 1000000 characters; 200 at most"),
         ("long-key.toml", format!("format = 1\n{long} = 2\n"), "unknown key `xxx"),
         ("long-name.toml", GOOD.replace("elbow_flex_r", &long), "the body has no coordinate `xxx"),
-        ("long-comment.toml", format!("# {long}\nformat = 3\n"), ":1:1]"),
+        ("long-comment.toml", format!("# {long}\nformat = 3\n"), ":2:10]"),
         ("long-number.toml", GOOD.replace("0.1", &("1".repeat(400_000) + ".0")), "is not a finite number"),
         ("long-line.toml", format!("title = \"{long}\" format = 1"), "long-line.toml:1:1000012]"),
         ("no-end.toml", format!("title = \"{long}"), "no-end.toml:1:1000010]"),

@@ -16,6 +16,7 @@ pub mod xml;
 mod input_error;
 mod minimize;
 mod overlay;
+mod pose;
 mod scenario;
 mod summary;
 mod trajectory_csv;
@@ -23,6 +24,9 @@ mod trajectory_csv;
 pub use input_error::{InputError, nearest, utf8};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
 pub use overlay::{Overlaid, OverlayChange, overlay};
-pub use scenario::{MOST_BYTES, ScenarioText, read_scenario, scenario_schema};
+pub use pose::{PoseLevelText, PoseText};
+pub use scenario::{
+    MOST_BYTES, ModelFile, PoseScenario, ScenarioText, read_pose, read_scenario, scenario_model, scenario_schema,
+};
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use trajectory_csv::{csv_header, csv_row};

@@ -10,24 +10,21 @@ use nalgebra::Vector3;
 
 use super::Located;
 use super::text::{
-    DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PartText, PassiveText, ReshapeText, ScenarioText,
-    SexText, StrategyKindText, TablesText,
+    AdultText, DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PartText, PassiveText, ReshapeText,
+    RunText, ScenarioText, SexText, StrategyKindText, StrategyText, TablesText,
 };
 use crate::input_error::{InputError, suggestion};
 
 pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, InputError> {
-    if text.format != 1 {
-        let message = format!("format is {}; this program reads format 1", text.format);
-        return Err(at.error(&["format"], message, None));
-    }
-    check_title(at, &text.title)?;
-    let model = body(at, text)?;
+    check_head(at, text)?;
+    let (strategy, run) = simulated(at, text)?;
+    let model = body(at, text, None)?;
     let mut start = model.default_posture();
     for (key, &value) in &text.posture {
-        let (index, value) = posture_value(at, &model, key, value)?;
+        let (index, value) = posture_value(at, &model, &["posture", key], value)?;
         start.values_mut()[index] = value;
     }
-    let free = free(at, &model, text)?;
+    let free = free(at, &model, text, Coordinate::can_be_relieved)?;
     let loads =
         text.load.iter().enumerate().map(|(i, load)| self::load(at, &model, i, load)).collect::<Result<_, _>>()?;
     let mut start_fatigue = vec![[0.0; 2]; model.coordinates().len()];
@@ -49,11 +46,11 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, In
         free,
         loads,
         strategy: StrategySettings {
-            kind: match text.strategy.kind {
+            kind: match strategy.kind {
                 StrategyKindText::Active => Strategy::Active,
                 StrategyKindText::Passive => Strategy::Passive,
             },
-            minimum_decrease_ratio: text.strategy.minimum_decrease_ratio,
+            minimum_decrease_ratio: strategy.minimum_decrease_ratio,
         },
         relief: ReliefSettings {
             step_gain: text.relief.step_gain,
@@ -69,14 +66,47 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, In
             recovery_level: text.fatigue.recovery_level,
         },
         start_fatigue,
-        run: RunSettings {
-            duration: text.run.duration_s,
-            step: text.run.step_s,
-            stop_when_settled: text.run.stop_when_settled,
-        },
+        run: RunSettings { duration: run.duration_s, step: run.step_s, stop_when_settled: run.stop_when_settled },
     };
-    scenario.check().map_err(|error| at.error(&place(&error), told(&error, text), None))?;
+    scenario.check().map_err(|error| at.error(&place(&error), told(&error, text, run), None))?;
     Ok(scenario)
+}
+
+/// Format and title, which every scenario has.
+pub(super) fn check_head(at: &Located, text: &ScenarioText) -> Result<(), InputError> {
+    if text.format != 1 {
+        let message = format!("format is {}; this program reads format 1", text.format);
+        return Err(at.error(&["format"], message, None));
+    }
+    check_title(at, &text.title)
+}
+
+/// What `simulate` needs; what only `pose` can do is refused, not passed over.
+fn simulated<'a>(at: &Located, text: &'a ScenarioText) -> Result<(&'a StrategyText, &'a RunText), InputError> {
+    let help = || Some("`contrapposto pose` solves them; `simulate` keeps neither supports nor tasks yet".to_owned());
+    for (key, given) in
+        [("support", !text.support.is_empty()), ("task", !text.task.is_empty()), ("solver", text.solver.is_some())]
+    {
+        if given {
+            return Err(at.error(&[key, "0"], format!("[{key}] is for poses, not for simulations"), help()));
+        }
+    }
+    for (key, given) in [
+        ("file", text.model.file.is_some()),
+        ("overlay", text.model.overlay.is_some()),
+        ("root", text.model.root.is_some()),
+    ] {
+        if given {
+            let help = Some("leave it out: `simulate` runs the built-in adult".to_owned());
+            let message = format!("`{key}`: model files are for `contrapposto pose`");
+            return Err(at.key_error(&["model", key], message, help));
+        }
+    }
+    let missing = |key: &str| {
+        let help = Some("`contrapposto schema` lists all keys".to_owned());
+        at.error(&[], format!("the key `{key}` is missing"), help)
+    };
+    Ok((text.strategy.as_ref().ok_or_else(|| missing("strategy"))?, text.run.as_ref().ok_or_else(|| missing("run"))?))
 }
 
 /// Longest title, characters: it stands above the pictures.
@@ -95,11 +125,11 @@ fn check_title(at: &Located, title: &str) -> Result<(), InputError> {
 }
 
 /// The complaint in the words and units of the file.
-fn told(error: &ScenarioError, text: &ScenarioText) -> String {
+fn told(error: &ScenarioError, text: &ScenarioText, run: &RunText) -> String {
     let ScenarioError::Setting { name, value, accepted } = error else { return error.to_string() };
     match (*name, place(error).last()) {
         ("number of steps", _) => {
-            let (duration, step) = (shown(text.run.duration_s), shown(text.run.step_s));
+            let (duration, step) = (shown(run.duration_s), shown(run.step_s));
             format!("{duration} s in steps of {step} s are {} steps; ten million at most", shown(*value))
         }
         ("greatest step (rad)", Some(key)) => {
@@ -111,7 +141,7 @@ fn told(error: &ScenarioError, text: &ScenarioText) -> String {
 }
 
 /// A number without a row of three hundred digits.
-fn shown(x: f64) -> String {
+pub(super) fn shown(x: f64) -> String {
     if x != 0.0 && !(1e-6..1e9).contains(&x.abs()) { format!("{x:e}") } else { x.to_string() }
 }
 
@@ -131,8 +161,23 @@ fn place(error: &ScenarioError) -> Vec<&'static str> {
     }
 }
 
-fn body(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
-    let size = &text.model.adult;
+/// The body: that of the model file if there is one, else the built-in adult, with its own passive curves and fatigue laws.
+pub(super) fn body(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Model, InputError> {
+    let mut model = match file {
+        Some(model) => model,
+        None => built_in(at, text)?,
+    };
+    for (name, passive) in &text.passive {
+        let index = coordinate(at, &model, &["passive", name], name)?;
+        let curve = passive_curve(at, &["passive", name], &model.coordinates()[index], None, passive)?;
+        model = model.with_passive(index, curve);
+    }
+    Ok(model)
+}
+
+fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
+    let default = AdultText::default();
+    let size = text.model.adult.as_ref().unwrap_or(&default);
     let sex = match size.sex {
         SexText::Female => Sex::Female,
         SexText::Male => Sex::Male,
@@ -166,55 +211,76 @@ fn body(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
         let help = Some("add `law = \"endurance\"`, or leave `curve` out".to_owned());
         return Err(at.key_error(&["fatigue", "curve"], "an endurance curve needs the endurance law", help));
     }
-    for (name, passive) in &text.passive {
-        let index = coordinate(at, &model, &["passive", name], name)?;
-        let curve = passive_curve(at, &["passive", name], &model.coordinates()[index], None, passive)?;
-        model = model.with_passive(index, curve);
-    }
     Ok(model)
 }
 
-fn coordinate(at: &Located, model: &Model, path: &[&str], name: &str) -> Result<usize, InputError> {
+pub(super) fn coordinate(at: &Located, model: &Model, path: &[&str], name: &str) -> Result<usize, InputError> {
     model.coordinate(name).ok_or_else(|| {
         let help = suggestion(name, model.coordinates().iter().map(|c| c.name.as_str()));
         at.key_error(path, format!("the body has no coordinate `{name}`"), help)
     })
 }
 
-fn posture_value(at: &Located, model: &Model, key: &str, value: f64) -> Result<(usize, f64), InputError> {
-    let path = ["posture", key];
+/// Index and value of the coordinate that the key at the end of `path` names: `NAME_deg`, `NAME_m`, or a quaternion's bare
+/// name.
+pub(super) fn posture_value(
+    at: &Located,
+    model: &Model,
+    path: &[&str],
+    value: f64,
+) -> Result<(usize, f64), InputError> {
+    const ENDINGS: &str = "rotations end in _deg, slides in _m";
+    /// Beyond a limit by so little is rounding of degrees, rad or m.
+    const ROUNDING: f64 = 1e-9;
+    let key = path.last().copied().unwrap_or_default();
     let (name, unit) = match key.rsplit_once('_') {
+        _ if model.coordinate(key).is_some_and(|i| model.coordinates()[i].kind == CoordinateKind::Quaternion) => {
+            (key, CoordinateKind::Quaternion)
+        }
         Some((name, "deg")) => (name, CoordinateKind::Rotation),
         Some((name, "m")) => (name, CoordinateKind::Translation),
         _ => {
-            let keys: Vec<String> = model.coordinates().iter().map(|c| format!("{}_deg", c.name)).collect();
-            let message = format!("posture key `{key}` names no unit; rotations end in _deg, slides in _m");
-            return Err(at.key_error(&path, message, suggestion(key, keys.iter().map(String::as_str))));
+            let message = format!("posture key `{key}` names no unit; {ENDINGS}");
+            return Err(at.key_error(path, message, suggestion(key, keys(model).iter().map(String::as_str))));
         }
     };
     let index = model.coordinate(name).ok_or_else(|| {
-        let keys: Vec<String> = model.coordinates().iter().map(|c| format!("{}_deg", c.name)).collect();
-        let help = suggestion(key, keys.iter().map(String::as_str));
-        at.key_error(&path, format!("the body has no coordinate `{name}`"), help)
+        let help = suggestion(key, keys(model).iter().map(String::as_str));
+        at.key_error(path, format!("the body has no coordinate `{name}`"), help)
     })?;
     let found = &model.coordinates()[index];
     if found.kind != unit {
         let message = format!("`{name}` is not measured in the unit that `{key}` names");
-        return Err(at.key_error(&path, message, Some("rotations end in _deg, slides in _m".into())));
+        return Err(at.key_error(path, message, Some(ENDINGS.into())));
     }
     let inside = if unit == CoordinateKind::Rotation { value.to_radians() } else { value };
     let (min, max) = found.range;
-    if inside < min || inside > max {
+    if inside < min - ROUNDING || inside > max + ROUNDING {
         let show = |x: f64| if unit == CoordinateKind::Rotation { x.to_degrees() } else { x };
         let word = if unit == CoordinateKind::Rotation { "deg" } else { "m" };
         let (min, max) = (show(min), show(max));
         let message = format!("`{name}` is {} {word}, outside its range {min:.4}..{max:.4} {word}", shown(value));
-        return Err(at.error(&path, message, Some(format!("give an angle from {min:.4} to {max:.4} {word}"))));
+        return Err(at.error(path, message, Some(format!("give an angle from {min:.4} to {max:.4} {word}"))));
     }
-    Ok((index, inside))
+    Ok((index, inside.max(min).min(max)))
 }
 
-fn free(at: &Located, model: &Model, text: &ScenarioText) -> Result<Vec<bool>, InputError> {
+/// What keys of postures may be.
+fn keys(model: &Model) -> Vec<String> {
+    let key = |c: &Coordinate| match c.kind {
+        CoordinateKind::Rotation => format!("{}_deg", c.name),
+        CoordinateKind::Translation => format!("{}_m", c.name),
+        CoordinateKind::Quaternion => c.name.clone(),
+    };
+    model.coordinates().iter().map(key).collect()
+}
+
+pub(super) fn free(
+    at: &Located,
+    model: &Model,
+    text: &ScenarioText,
+    otherwise: impl Fn(&Coordinate) -> bool,
+) -> Result<Vec<bool>, InputError> {
     let n = model.coordinates().len();
     let (list, key, listed) = match (&text.coordinates.free, &text.coordinates.locked) {
         (Some(_), Some(_)) => {
@@ -223,7 +289,7 @@ fn free(at: &Located, model: &Model, text: &ScenarioText) -> Result<Vec<bool>, I
         }
         (Some(list), None) => (list, "free", true),
         (None, Some(list)) => (list, "locked", false),
-        (None, None) => return Ok(model.coordinates().iter().map(Coordinate::can_be_relieved).collect()),
+        (None, None) => return Ok(model.coordinates().iter().map(otherwise).collect()),
     };
     let mut flags = vec![!listed; n];
     for (i, name) in list.iter().enumerate() {
@@ -232,7 +298,7 @@ fn free(at: &Located, model: &Model, text: &ScenarioText) -> Result<Vec<bool>, I
     Ok(flags)
 }
 
-fn load(at: &Located, model: &Model, i: usize, text: &LoadText) -> Result<Load, InputError> {
+pub(super) fn load(at: &Located, model: &Model, i: usize, text: &LoadText) -> Result<Load, InputError> {
     let number = i.to_string();
     let path = |key| ["load", &number, key];
     let Some(segment) = model.segment(&text.segment) else {

@@ -1,9 +1,13 @@
 //! From the text of a scenario file to a checked experiment, or to a complaint with file, line and column.
 
 mod convert;
+mod pose;
+mod task;
+mod task_text;
 mod text;
 
 pub(crate) use convert::{double_exponential, passive_curve};
+pub use pose::{ModelFile, PoseScenario, read_pose, scenario_model};
 pub use text::ScenarioText;
 pub(crate) use text::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, StrategyKindText};
 
@@ -65,6 +69,11 @@ impl Located<'_> {
     /// A complaint about the key at the end of `path`.
     pub(crate) fn key_error(&self, path: &[&str], message: impl Into<String>, help: Option<String>) -> InputError {
         self.source.error(placed(self.span(path, true)), message, "here", help)
+    }
+
+    /// Is there a table of that name?
+    pub(crate) fn has(&self, table: &str) -> bool {
+        self.tree.get(table).is_some()
     }
 
     fn span(&self, path: &[&str], key: bool) -> Option<Range<usize>> {

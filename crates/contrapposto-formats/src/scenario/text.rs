@@ -6,7 +6,9 @@ use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-/// An experiment: a body, its posture and loads, the relief wanted, how long.
+use super::task_text::{SolverText, SupportText, TaskText};
+
+/// An experiment: a body, its posture and loads; for `simulate` the relief wanted and how long, for `pose` supports and tasks.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioText {
@@ -21,7 +23,7 @@ pub struct ScenarioText {
     /// Passive curves by coordinate; the built-in curve of each coordinate when left out.
     #[serde(default)]
     pub passive: BTreeMap<String, PassiveText>,
-    /// Start: `NAME_deg` for rotations. What is not named is at its default.
+    /// Start: `NAME_deg` for rotations, `NAME_m` for slides, bare names for quaternions. What is not named is at its default.
     #[serde(default)]
     pub posture: BTreeMap<String, f64>,
     /// Which coordinates may move; all when left out.
@@ -30,25 +32,48 @@ pub struct ScenarioText {
     /// Held weights and forces.
     #[serde(default)]
     pub load: Vec<LoadText>,
-    /// What kind of relief is wanted.
-    pub strategy: StrategyText,
-    /// How relief is carried out.
+    /// What carries weight (`pose`).
+    #[serde(default)]
+    pub support: Vec<SupportText>,
+    /// What the body should do, in order of priority (`pose`).
+    #[serde(default)]
+    pub task: Vec<TaskText>,
+    /// How a pose is solved (`pose`).
+    pub solver: Option<SolverText>,
+    /// What kind of relief is wanted; `simulate` needs it.
+    pub strategy: Option<StrategyText>,
+    /// How relief is carried out (`simulate`).
     #[serde(default)]
     pub relief: ReliefText,
-    /// How muscle groups tire.
+    /// How muscle groups tire (`simulate`).
     #[serde(default)]
     pub fatigue: FatigueText,
-    /// How long.
-    pub run: RunText,
+    /// How long; `simulate` needs it.
+    pub run: Option<RunText>,
 }
 
-/// Which body.
+/// Which body: a file, or the built-in adult.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelText {
     /// The built-in adult.
-    #[serde(default)]
-    pub adult: AdultText,
+    pub adult: Option<AdultText>,
+    /// Model file (.osim, .urdf, MJCF .xml), its path as seen from the scenario's folder (`pose`).
+    pub file: Option<String>,
+    /// Ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the file; its path as that of `file`.
+    pub overlay: Option<String>,
+    /// How the root of a URDF or MJCF file is attached; as the file says when left out.
+    pub root: Option<RootText>,
+}
+
+/// How a root is attached.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RootText {
+    /// Fixed to ground.
+    Fixed,
+    /// Free: coordinates root_tx .. root_qz.
+    Free,
 }
 
 /// Size of the built-in adult.
@@ -339,14 +364,14 @@ fn default_step() -> f64 {
 }
 
 /// Exactly so many numbers: the TOML reader itself passes over surplus ones.
-fn numbers<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<[f64; N]>, D::Error> {
+pub(super) fn numbers<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<[f64; N]>, D::Error> {
     let list = Vec::<f64>::deserialize(from)?;
     let given = list.len();
     list.try_into().map(Some).map_err(|_| D::Error::custom(format!("{given} numbers are given; {N} are due")))
 }
 
 /// Rows of exactly so many numbers.
-fn rows<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<Vec<[f64; N]>>, D::Error> {
+pub(super) fn rows<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<Vec<[f64; N]>>, D::Error> {
     let rows = Vec::<Vec<f64>>::deserialize(from)?;
     let row = |row: Vec<f64>| {
         let given = row.len();

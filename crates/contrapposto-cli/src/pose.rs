@@ -1,0 +1,145 @@
+//! `contrapposto pose`: one posture from goals in order of priority.
+
+mod drawing;
+
+use std::path::{Path, PathBuf};
+
+use contrapposto::ik::{Engine, Pose, Reason};
+use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::motion::{write_csv, write_sto};
+use contrapposto_formats::{MOST_BYTES, ModelFile, PoseLevelText, PoseScenario, PoseText, read_pose, scenario_model};
+use contrapposto_plot::pose_views;
+
+use crate::args::{ModelArgs, PoseArgs, RootChoice};
+use crate::fail::Fail;
+use crate::input::read;
+use crate::model_file::{open, tell};
+use crate::output::{Folder, print};
+use crate::torques::plain_table;
+
+const FILES: [&str; 4] = ["pose.json", "pose.mot", "pose.csv", "pose.svg"];
+
+pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
+    let bytes = read(&args.scenario, MOST_BYTES)?;
+    let name = args.scenario.display().to_string();
+    let model = match scenario_model(&name, &bytes)? {
+        None => None,
+        Some(file) => {
+            let opened = open(&model_args(&args.scenario, &file), true)?;
+            opened.notes.iter().for_each(|note| tell("note", note));
+            Some(opened.model)
+        }
+    };
+    let scenario = read_pose(&name, &bytes, model)?;
+    if !scenario.unused.is_empty() {
+        let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
+        tell("note", &format!("{} is for `simulate` and has no part in a pose", list.join(", ")));
+    }
+    let refused = |error: contrapposto::ik::GoalError| Fail::Refused(format!("{name}: {error}"));
+    let mut engine =
+        Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
+    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
+    let pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
+    let text = PoseText::new(&scenario, &pose, FILES.map(str::to_owned).to_vec());
+    let json = write(&scenario, &pose, &text, &args.out)?;
+    let folder = Folder::open(&args.out)?;
+    print(&if args.json { json } else { report(&scenario, &pose, &text, &folder) })?;
+    verdict(&scenario, &pose, &text)
+}
+
+/// How the scenario's model file is opened: its paths are seen from the scenario's folder.
+fn model_args(scenario: &Path, file: &ModelFile) -> ModelArgs {
+    let folder = scenario.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let path = |name: &String| -> PathBuf { folder.join(name) };
+    ModelArgs {
+        model: path(&file.file),
+        overlay: file.overlay.as_ref().map(path),
+        root: file.root.map(|root| match root {
+            BodyRoot::Fixed => RootChoice::Fixed,
+            BodyRoot::Free => RootChoice::Free,
+        }),
+        passive: None,
+    }
+}
+
+/// Writes all files, and gives back the text of `pose.json`.
+fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> Result<String, Fail> {
+    let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
+    let rows = [pose.posture.values()];
+    let title = if scenario.title.is_empty() { "pose" } else { &scenario.title };
+    let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
+    let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
+    let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
+    let picture = pose_views(&drawing::views(scenario, pose, &subtitle(text))?).svg();
+    let folder = Folder::open(out)?;
+    let mut files = vec![];
+    for (name, bytes) in FILES.into_iter().zip([json.as_bytes(), mot.as_bytes(), csv.as_bytes(), picture.as_bytes()]) {
+        let mut file = folder.begin(name)?;
+        file.append(bytes)?;
+        files.push(file);
+    }
+    folder.commit(files)?;
+    Ok(json)
+}
+
+/// `12 steps: point hand_r 0.0 mm; look_at head 3.1 deg`.
+fn subtitle(text: &PoseText) -> String {
+    let missing: Vec<String> = text
+        .levels
+        .iter()
+        .filter(|level| !level.reached)
+        .map(|level| format!("{} {}", level.task, left(level)))
+        .collect();
+    if missing.is_empty() { "everything is reached".to_owned() } else { format!("left: {}", missing.join("; ")) }
+}
+
+/// `0.412 mm`, in units that people read.
+fn left(level: &PoseLevelText) -> String {
+    let (value, unit) = match level.unit {
+        "m" => (1e3 * level.residual, " mm"),
+        "rad" => (level.residual.to_degrees(), " deg"),
+        _ => (level.residual, " of strength"),
+    };
+    if value != 0.0 && value < 1e-3 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
+}
+
+fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, folder: &Folder) -> String {
+    let mut table = plain_table();
+    table.set_header(["priority", "task", "what is left", ""]);
+    for level in &text.levels {
+        table.add_row([
+            level.priority.to_string(),
+            level.task.clone(),
+            left(level),
+            if level.reached { "reached" } else { "" }.to_owned(),
+        ]);
+    }
+    let reason = match pose.reason {
+        Reason::Reached => "everything is reached",
+        Reason::Closest => "nothing moves any more: what is left is as near as the tasks above allow",
+        Reason::Steps => "the largest number of steps was made, and the body still moves",
+    };
+    let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
+    let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };
+    format!("{title}{table}\n{reason} ({steps})\npicture: {}\n", folder.path("pose.svg").display())
+}
+
+/// A task that yields is no failure; supports that slip, and steps that ran out, are.
+fn verdict(scenario: &PoseScenario, pose: &Pose, text: &PoseText) -> Result<(), Fail> {
+    if !text.supports_hold {
+        let lost: Vec<String> = text
+            .levels
+            .iter()
+            .filter(|level| scenario.goals[level.priority - 1].hard && !level.reached)
+            .map(|level| format!("{} {}", level.task, left(level)))
+            .collect();
+        return Err(Fail::Job(format!("supports do not stay where they are: {}", lost.join(", "))));
+    }
+    match pose.reason {
+        Reason::Steps => Err(Fail::Job(format!(
+            "no end after {} steps; the best posture is written. [solver] max_steps allows more",
+            pose.steps
+        ))),
+        Reason::Reached | Reason::Closest => Ok(()),
+    }
+}

@@ -1,0 +1,154 @@
+//! From a posture to the lines of a stick figure, seen from the front and from the side.
+
+use contrapposto::ik::Pose;
+use contrapposto::ik::task::{Goal, Task};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto_formats::PoseScenario;
+use contrapposto_plot::{PoseView, PoseViews};
+use nalgebra::Vector3;
+
+use crate::fail::Fail;
+
+/// Shorter lines, m, are not drawn.
+const SHORT: f64 = 1e-9;
+
+/// More joints than this at one segment are joined to its origin, not to each other.
+const MOST_JOINTS: usize = 64;
+
+type Lines = Vec<Vec<Vector3<f64>>>;
+
+/// The picture of a solved pose.
+pub(crate) fn views(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<PoseViews, Fail> {
+    let model = &scenario.model;
+    let mut kinematics = Kinematics::new(model);
+    let mut sticks_at = |posture: &Posture| -> Result<Lines, Fail> {
+        kinematics.update(model, posture).map_err(|error| Fail::job("picture", error))?;
+        Ok(sticks(model, &kinematics))
+    };
+    let (start, end) = (sticks_at(&scenario.start)?, sticks_at(&pose.posture)?);
+    let center = kinematics.center_of_mass(model);
+    let mut targets = vec![];
+    let mut gazes = vec![];
+    for task in scenario.goals.iter().filter(|goal| !goal.hard).flat_map(|goal| &goal.tasks) {
+        match task {
+            Task::Point(task) => {
+                targets.push(unasked(task.axes, task.target, || kinematics.station(model, task.segment, task.point)))
+            }
+            Task::Placement(task) => targets.push(task.target.translation.vector),
+            Task::LookAt(task) => {
+                targets.push(task.target);
+                gazes.push([kinematics.station(model, task.segment, task.eye), task.target]);
+            }
+            Task::CenterOfMass(task) => {
+                if let Goal::At { target, axes } = &task.goal {
+                    targets.push(unasked(*axes, *target, || center.unwrap_or(*target)));
+                }
+            }
+            _ => {}
+        }
+    }
+    let [right, ahead, up] = directions(model);
+    let side = |label: &str, across: Vector3<f64>| {
+        let view = |p: &Vector3<f64>| [across.dot(p), up.dot(p)];
+        let lines = |lines: &Lines| lines.iter().map(|line| line.iter().map(view).collect()).collect();
+        PoseView {
+            label: label.to_owned(),
+            start: lines(&start),
+            end: lines(&end),
+            targets: targets.iter().map(view).collect(),
+            gazes: gazes.iter().map(|gaze| [view(&gaze[0]), view(&gaze[1])]).collect(),
+            center_of_mass: center.as_ref().map(view),
+        }
+    };
+    Ok(PoseViews {
+        title: scenario.title.clone(),
+        subtitle: subtitle.to_owned(),
+        // Face to face with the body its right hand is on the left.
+        views: vec![side("from the front", -right), side("from the right", ahead)],
+    })
+}
+
+/// A target on some axes only: the others are where the body is.
+fn unasked(axes: [bool; 3], mut target: Vector3<f64>, present: impl Fn() -> Vector3<f64>) -> Vector3<f64> {
+    for k in (0..3).filter(|&k| !axes[k]) {
+        target[k] = present()[k];
+    }
+    target
+}
+
+/// Right, ahead and up in ground: up is against gravity (y without any), ahead the ground's x axis, or z where x is upright.
+fn directions(model: &Model) -> [Vector3<f64>; 3] {
+    let up = (-model.gravity()).try_normalize(0.0).unwrap_or_else(Vector3::y);
+    let x = if up.x.abs() > 0.9 { Vector3::z() } else { Vector3::x() };
+    let ahead = (x - up * up.dot(&x)).normalize();
+    [ahead.cross(&up), ahead, up]
+}
+
+/// Lines of the body: within every segment the shortest that join its own joint and those it carries; a last segment through
+/// its centre of mass to as far beyond; a circle for the head.
+fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
+    let segments = model.segments();
+    let origin = |segment: usize| kinematics.placement(model, segment).translation.vector;
+    let mut joints: Vec<Vec<Vector3<f64>>> = (0..segments.len()).map(|s| vec![origin(s)]).collect();
+    for (child, segment) in segments.iter().enumerate() {
+        if let Some(parent) = segment.parent {
+            joints[parent].push(origin(child));
+        }
+    }
+    let mut lines = vec![];
+    for (s, joints) in joints.into_iter().enumerate() {
+        if joints.len() > 1 {
+            lines.extend(joined(&joints));
+            continue;
+        }
+        let (start, center) = (joints[0], kinematics.station(model, s, segments[s].center_of_mass));
+        let reach = center - start;
+        if segments[s].name.eq_ignore_ascii_case("head") && reach.norm() > SHORT {
+            let radius = 0.7 * reach.norm();
+            lines.push(vec![start, start + 0.3 * reach]);
+            lines.extend(circle(center, radius, model));
+        } else {
+            lines.push(vec![start, start + 2.0 * reach]);
+        }
+    }
+    lines.retain(|line| line.windows(2).any(|pair| (pair[1] - pair[0]).norm() > SHORT));
+    lines
+}
+
+/// The shortest lines that join all points (Prim 1957), from the first one on.
+fn joined(points: &[Vector3<f64>]) -> Lines {
+    let (first, rest) = (points[0], &points[1..]);
+    if rest.len() > MOST_JOINTS {
+        return rest.iter().map(|end| vec![first, *end]).collect();
+    }
+    // Nearest point of the tree, for every point outside of it.
+    let mut outside: Vec<(Vector3<f64>, Vector3<f64>)> = rest.iter().map(|point| (*point, first)).collect();
+    let mut lines = vec![];
+    let length = |(from, to): &(Vector3<f64>, Vector3<f64>)| (from - to).norm();
+    while let Some(next) = (0..outside.len()).min_by(|&i, &j| length(&outside[i]).total_cmp(&length(&outside[j]))) {
+        let (point, from) = outside.swap_remove(next);
+        lines.push(vec![from, point]);
+        for (other, near) in &mut outside {
+            if (*other - point).norm() < (*other - *near).norm() {
+                *near = point;
+            }
+        }
+    }
+    lines
+}
+
+/// A ring seen from the front and one seen from the side: a ball in both views.
+fn circle(center: Vector3<f64>, radius: f64, model: &Model) -> Lines {
+    const CORNERS: u32 = 32;
+    let [right, ahead, up] = directions(model);
+    let ring = |across: Vector3<f64>| {
+        let corner = |i: u32| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(CORNERS)).sin_cos();
+            center + radius * (cos * across + sin * up)
+        };
+        (0..=CORNERS).map(corner).collect()
+    };
+    vec![ring(right), ring(ahead)]
+}

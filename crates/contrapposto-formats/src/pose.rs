@@ -1,0 +1,108 @@
+//! What `pose.json` says of a solved posture.
+
+use std::collections::BTreeMap;
+
+use contrapposto::ik::task::Task;
+use contrapposto::ik::{Pose, Reason};
+use contrapposto::kinematics::Kinematics;
+use serde::Serialize;
+
+use crate::scenario::PoseScenario;
+
+/// The whole file.
+#[derive(Clone, Debug, Serialize)]
+pub struct PoseText {
+    /// Title of the scenario.
+    pub title: String,
+    /// Name of the body.
+    pub model: String,
+    /// `reached`: every level is; `closest`: nothing moves any more, and what is left is as near as the levels above allow;
+    /// `steps`: the largest number of steps was made.
+    pub reason: &'static str,
+    /// Steps made.
+    pub steps: usize,
+    /// Whether all supports are where they were at the start.
+    pub supports_hold: bool,
+    /// The order of coordinates in tables.
+    pub coordinate_order: Vec<String>,
+    /// Their values: rad, m, components of quaternions.
+    pub coordinates: BTreeMap<String, f64>,
+    /// Centre of mass in ground, m; `null` for a body without mass.
+    pub center_of_mass_m: Option<[f64; 3]>,
+    /// What is left of every task, in order of priority; a task of two units (placement, posture) has an entry for each.
+    pub levels: Vec<PoseLevelText>,
+    /// Files beside this one.
+    pub files: Vec<String>,
+}
+
+/// What is left of a task in one unit.
+#[derive(Clone, Debug, Serialize)]
+pub struct PoseLevelText {
+    /// 1 is the most important; tasks of the same priority share it.
+    pub priority: usize,
+    /// Kind and segment: `point hand_r`, `support calcn_l`.
+    pub task: String,
+    /// Length of its error, in `unit`.
+    pub residual: f64,
+    /// `m`, `rad`, or `1` for shares of strength.
+    pub unit: &'static str,
+    /// Whether that counts as nothing.
+    pub reached: bool,
+}
+
+impl PoseText {
+    /// From a solved pose. `files`: names of the files written beside it.
+    pub fn new(scenario: &PoseScenario, pose: &Pose, files: Vec<String>) -> Self {
+        let model = &scenario.model;
+        let mut levels = vec![];
+        for (k, (goal, reached)) in scenario.goals.iter().zip(&pose.levels).enumerate() {
+            let mut errors = reached.errors.as_slice();
+            for (task, label) in goal.tasks.iter().zip(&scenario.labels[k]) {
+                let (own, rest) = errors.split_at(task.rows().min(errors.len()));
+                errors = rest;
+                levels.extend(lengths(scenario, task, own).into_iter().map(|(unit, residual)| PoseLevelText {
+                    priority: k + 1,
+                    task: label.clone(),
+                    residual,
+                    unit,
+                    reached: residual <= scenario.options.reached,
+                }));
+            }
+        }
+        let hold = |(goal, reached): (&contrapposto::ik::Goal, &contrapposto::ik::Reached)| {
+            !goal.hard || reached.length <= scenario.options.reached
+        };
+        let mut kinematics = Kinematics::new(model);
+        let center = kinematics.update(model, &pose.posture).ok().and_then(|()| kinematics.center_of_mass(model));
+        let names = || model.coordinates().iter().map(|c| c.name.clone());
+        Self {
+            title: scenario.title.clone(),
+            model: model.name().to_owned(),
+            reason: match pose.reason {
+                Reason::Reached => "reached",
+                Reason::Closest => "closest",
+                Reason::Steps => "steps",
+            },
+            steps: pose.steps,
+            supports_hold: scenario.goals.iter().zip(&pose.levels).all(hold),
+            coordinate_order: names().collect(),
+            coordinates: names().zip(pose.posture.values().iter().copied()).collect(),
+            center_of_mass_m: center.map(Into::into),
+            levels,
+            files,
+        }
+    }
+}
+
+/// Length of the error in every unit of the task, in the order in which they come.
+fn lengths(scenario: &PoseScenario, task: &Task, errors: &[f64]) -> Vec<(&'static str, f64)> {
+    let mut sums: Vec<(&'static str, f64)> = vec![];
+    for (row, error) in errors.iter().enumerate() {
+        let unit = task.unit(&scenario.model, row);
+        match sums.iter_mut().find(|(known, _)| *known == unit) {
+            Some((_, sum)) => *sum += error * error,
+            None => sums.push((unit, error * error)),
+        }
+    }
+    sums.into_iter().map(|(unit, sum)| (unit, sum.sqrt())).collect()
+}
