@@ -65,8 +65,8 @@ pub(crate) struct DemoArgs {
 }
 
 #[derive(Debug, Parser)]
-#[command(after_help = "Example:\n  contrapposto pose scenarios/reach-shelf.toml --out out\n\n\
-    Writes pose.json, pose.mot, pose.csv and pose.svg into DIR. A task that yields to those above it is no failure; supports \
+#[command(after_help = "Example:\n  contrapposto pose scenarios/poses/reach-shelf.toml --out out\n\n\
+    Writes pose.json, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to those above it is no failure; supports \
     that cannot hold, and steps that run out, are (exit code 1).")]
 pub(crate) struct PoseArgs {
     /// Scenario file (TOML) with tasks; `-` reads standard input.

@@ -17,7 +17,7 @@ use crate::model_file::{open, tell};
 use crate::output::{Folder, print};
 use crate::torques::plain_table;
 
-const FILES: [&str; 4] = ["pose.json", "pose.mot", "pose.csv", "pose.svg"];
+const FILES: [&str; 5] = ["pose.json", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
@@ -70,10 +70,12 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
-    let picture = pose_views(&drawing::views(scenario, pose, &subtitle(text))?).svg();
+    let picture = pose_views(&drawing::views(scenario, pose, &subtitle(text))?);
+    let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
     let mut files = vec![];
-    for (name, bytes) in FILES.into_iter().zip([json.as_bytes(), mot.as_bytes(), csv.as_bytes(), picture.as_bytes()]) {
+    let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    for (name, bytes) in FILES.into_iter().zip(contents) {
         let mut file = folder.begin(name)?;
         file.append(bytes)?;
         files.push(file);
@@ -82,15 +84,26 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     Ok(json)
 }
 
-/// `12 steps: point hand_r 0.0 mm; look_at head 3.1 deg`.
+/// `left: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
 fn subtitle(text: &PoseText) -> String {
-    let missing: Vec<String> = text
-        .levels
-        .iter()
-        .filter(|level| !level.reached)
-        .map(|level| format!("{} {}", level.task, left(level)))
+    let missing: Vec<String> = tasks(text)
+        .filter(|entries| !reached(entries))
+        .map(|entries| format!("{} {}", entries[0].task, all_left(entries)))
         .collect();
     if missing.is_empty() { "everything is reached".to_owned() } else { format!("left: {}", missing.join("; ")) }
+}
+
+/// The entries of each task: one, or one for each of its units.
+fn tasks(text: &PoseText) -> impl Iterator<Item = &[PoseLevelText]> {
+    text.levels.chunk_by(|a, b| a.priority == b.priority && a.task == b.task && a.unit != b.unit)
+}
+
+fn reached(entries: &[PoseLevelText]) -> bool {
+    entries.iter().all(|entry| entry.reached)
+}
+
+fn all_left(entries: &[PoseLevelText]) -> String {
+    entries.iter().map(left).collect::<Vec<_>>().join(", ")
 }
 
 /// `0.412 mm`, in units that people read.
@@ -100,18 +113,19 @@ fn left(level: &PoseLevelText) -> String {
         "rad" => (level.residual.to_degrees(), " deg"),
         _ => (level.residual, " of strength"),
     };
-    if value != 0.0 && value < 1e-3 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
+    // What counts as nothing is not worth its digits.
+    if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
 }
 
 fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, folder: &Folder) -> String {
     let mut table = plain_table();
     table.set_header(["priority", "task", "what is left", ""]);
-    for level in &text.levels {
+    for entries in tasks(text) {
         table.add_row([
-            level.priority.to_string(),
-            level.task.clone(),
-            left(level),
-            if level.reached { "reached" } else { "" }.to_owned(),
+            entries[0].priority.to_string(),
+            entries[0].task.clone(),
+            all_left(entries),
+            if reached(entries) { "reached" } else { "" }.to_owned(),
         ]);
     }
     let reason = match pose.reason {
@@ -127,11 +141,9 @@ fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, folder: &Folder
 /// A task that yields is no failure; supports that slip, and steps that ran out, are.
 fn verdict(scenario: &PoseScenario, pose: &Pose, text: &PoseText) -> Result<(), Fail> {
     if !text.supports_hold {
-        let lost: Vec<String> = text
-            .levels
-            .iter()
-            .filter(|level| scenario.goals[level.priority - 1].hard && !level.reached)
-            .map(|level| format!("{} {}", level.task, left(level)))
+        let lost: Vec<String> = tasks(text)
+            .filter(|entries| scenario.goals[entries[0].priority - 1].hard && !reached(entries))
+            .map(|entries| format!("{} {}", entries[0].task, all_left(entries)))
             .collect();
         return Err(Fail::Job(format!("supports do not stay where they are: {}", lost.join(", "))));
     }

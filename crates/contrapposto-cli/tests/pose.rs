@@ -27,7 +27,7 @@ fn pose(scenario: &Path, out: &Path, more: &[&str]) -> Run {
 }
 
 fn shelf() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/reach-shelf.toml")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/poses/reach-shelf.toml")
 }
 
 fn residuals(pose: &Value, task: &str) -> Vec<f64> {

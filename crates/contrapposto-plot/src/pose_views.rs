@@ -66,7 +66,7 @@ pub fn pose_views(picture: &PoseViews) -> Figure {
     let top = heading(&mut canvas, &picture.title, &picture.subtitle, MARGIN) + 22.0;
     let views = &picture.views[..picture.views.len().min(MOST_VIEWS)];
     let count = views.len().max(1) as f64;
-    let left = 0.7 * FRAME_LEFT;
+    let left = FRAME_LEFT;
     let width = (WIDTH - left - MARGIN - BETWEEN * (count - 1.0)) / count;
     let boxes: Vec<Bounds> = views.iter().map(Bounds::of).collect();
     let scale = boxes.iter().map(|b| b.scale(width)).fold(f64::INFINITY, f64::min);
@@ -258,5 +258,5 @@ fn legend(canvas: &mut Canvas, left: f64, y: f64, views: &[PoseView], outside: u
     if any(&|view| !view.gazes.is_empty()) {
         say(canvas, "gaze", &line(GAZE_PEN));
     }
-    say(canvas, "grid in m", &|_, _| ());
+    canvas.text((x, y + 4.0), "grid in m", SMALL_SIZE, Align::Left, QUIET_TEXT);
 }

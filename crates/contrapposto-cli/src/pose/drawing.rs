@@ -14,9 +14,6 @@ use crate::fail::Fail;
 /// Shorter lines, m, are not drawn.
 const SHORT: f64 = 1e-9;
 
-/// More joints than this at one segment are joined to its origin, not to each other.
-const MOST_JOINTS: usize = 64;
-
 type Lines = Vec<Vec<Vector3<f64>>>;
 
 /// The picture of a solved pose.
@@ -86,8 +83,8 @@ fn directions(model: &Model) -> [Vector3<f64>; 3] {
     [ahead.cross(&up), ahead, up]
 }
 
-/// Lines of the body: within every segment the shortest that join its own joint and those it carries; a last segment through
-/// its centre of mass to as far beyond; a circle for the head.
+/// Lines of the body: those that join the joints of every segment; a last segment through its centre of mass to as far beyond;
+/// a circle for the head.
 fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
     let segments = model.segments();
     let origin = |segment: usize| kinematics.placement(model, segment).translation.vector;
@@ -117,26 +114,18 @@ fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
     lines
 }
 
-/// The shortest lines that join all points (Prim 1957), from the first one on.
+/// A line from the first point to the farthest one, and from that line the shortest ones to all others: a spine and shoulders.
 fn joined(points: &[Vector3<f64>]) -> Lines {
     let (first, rest) = (points[0], &points[1..]);
-    if rest.len() > MOST_JOINTS {
-        return rest.iter().map(|end| vec![first, *end]).collect();
-    }
-    // Nearest point of the tree, for every point outside of it.
-    let mut outside: Vec<(Vector3<f64>, Vector3<f64>)> = rest.iter().map(|point| (*point, first)).collect();
-    let mut lines = vec![];
-    let length = |(from, to): &(Vector3<f64>, Vector3<f64>)| (from - to).norm();
-    while let Some(next) = (0..outside.len()).min_by(|&i, &j| length(&outside[i]).total_cmp(&length(&outside[j]))) {
-        let (point, from) = outside.swap_remove(next);
-        lines.push(vec![from, point]);
-        for (other, near) in &mut outside {
-            if (*other - point).norm() < (*other - *near).norm() {
-                *near = point;
-            }
-        }
-    }
-    lines
+    let far = |p: &&Vector3<f64>| (*p - first).norm();
+    let Some(end) = rest.iter().max_by(|p, q| far(p).total_cmp(&far(q))) else { return vec![] };
+    let spine = end - first;
+    let from = |point: &Vector3<f64>| {
+        let share = if spine.norm() > SHORT { (point - first).dot(&spine) / spine.norm_squared() } else { 0.0 };
+        first + share.clamp(0.0, 1.0) * spine
+    };
+    let others = rest.iter().map(|point| vec![from(point), *point]);
+    std::iter::once(vec![first, *end]).chain(others).collect()
 }
 
 /// A ring seen from the front and one seen from the side: a ball in both views.
