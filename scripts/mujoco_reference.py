@@ -2,14 +2,20 @@
 """Reference numbers of MJCF models, as MuJoCo resolves them: crates/contrapposto-formats/tests/data/mujoco_reference.json.
 
     python3 -m venv mjvenv && mjvenv/bin/pip install mujoco==4.0.0 numpy
-    mjvenv/bin/python scripts/mujoco_reference.py
+    mjvenv/bin/python scripts/mujoco_reference.py [FOLDER]
 
 The models: our own files in crates/contrapposto-formats/tests/models, and published ones that lie beside the repository
 (../shared/models), of which only numbers are kept: dm_control's CMU humanoid (Apache 2.0).
+
+With FOLDER: of every MJCF model in it that MuJoCo reads, `MODEL.xml.reference.json` beside each, with torques, springs and Jacobians on
+20 postures; the test `published_robots` of contrapposto-formats compares us with them where CONTRAPPOSTO_ROBOT_MODELS names
+FOLDER. Humanoids: `pip download --no-deps gymnasium==1.4.0 dm_control==1.0.50 brax==0.14.2`, then unzip. Coordinates and rates
+are ours in order, external torque is minus `qfrc_bias` at rest, and MuJoCo has no derivative of it to compare with.
 """
 
 import json
 import pathlib
+import sys
 
 import mujoco
 import numpy as np
@@ -96,7 +102,83 @@ def reference(path):
     }
 
 
+def pose(model, data, random):
+    """A random posture; followers of equality constraints in their place."""
+    mujoco.mj_resetData(model, data)
+    for joint in range(model.njnt):
+        at, kind = model.jnt_qposadr[joint], model.jnt_type[joint]
+        if kind == mujoco.mjtJoint.mjJNT_FREE:
+            data.qpos[at : at + 3] = random.uniform(-1, 1, 3)
+            at += 3
+        if kind in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL):
+            turn = random.normal(size=4)
+            data.qpos[at : at + 4] = turn / np.linalg.norm(turn)
+        else:
+            low, high = model.jnt_range[joint] if model.jnt_limited[joint] else (-1, 1)
+            data.qpos[at] = random.uniform(low, high)
+    for k in range(model.neq):
+        if model.eq_type[k] == mujoco.mjtEq.mjEQ_JOINT and model.eq_active0[k]:
+            follower = model.jnt_qposadr[model.eq_obj1id[k]]
+            offset = 0.0
+            if model.eq_obj2id[k] >= 0:
+                leader = model.jnt_qposadr[model.eq_obj2id[k]]
+                offset = data.qpos[leader] - model.qpos0[leader]
+            data.qpos[follower] = model.qpos0[follower] + np.polyval(model.eq_data[k][4::-1], offset)
+    mujoco.mj_forward(model, data)
+
+
+def torques(model):
+    """A case for published_robots."""
+    data = mujoco.MjData(model)
+    random = np.random.default_rng(20)
+    coupled = any(model.eq_type[k] == mujoco.mjtEq.mjEQ_JOINT and model.eq_active0[k] for k in range(model.neq))
+    named = [b for b in range(1, model.nbody) if model.body(b).name]
+    cases = []
+    for _ in range(20):
+        pose(model, data, random)
+        links = {}
+        rows, turns = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        for body in [] if coupled else named[:: max(1, len(named) // 4)]:
+            mujoco.mj_jacBody(model, data, rows, turns, body)
+            links[model.body(body).name] = {
+                "position": data.xpos[body].tolist(),
+                "rotation": data.xmat[body].tolist(),
+                "jacobian": [*rows.tolist(), *turns.tolist()],
+            }
+        mujoco.mj_jacSubtreeCom(model, data, rows, 0)
+        cases.append(
+            {
+                "values": data.qpos.tolist(),
+                "raw": (-data.qfrc_bias).tolist(),
+                "torque": None if coupled else (-data.qfrc_bias).tolist(),
+                "gradient": None,
+                "passive": data.qfrc_spring.tolist(),
+                "center": data.subtree_com[0].tolist(),
+                "center_jacobian": None if coupled else rows.tolist(),
+                "links": links,
+            }
+        )
+    return {"root": "file", "rates": None, "cases": cases}
+
+
+def published(folder):
+    for path in sorted(folder.rglob("*.xml")):
+        if "<mujoco" not in path.read_text(errors="replace"):
+            continue
+        try:
+            model = mujoco.MjModel.from_xml_path(str(path))
+        except (ValueError, RuntimeError) as refusal:
+            print(f"{path}: {str(refusal).splitlines()[0]}")
+            continue
+        written = {"made_by": "scripts/mujoco_reference.py", "tool": f"mujoco {mujoco.__version__}", "model": path.name, "roots": [torques(model)]}
+        path.with_name(path.name + ".reference.json").write_text(json.dumps(written))
+        print(f"{path}: {model.nv} rates")
+
+
 def main():
+    if len(sys.argv) > 1:
+        published(pathlib.Path(sys.argv[1]))
+        return
     out = HERE / "crates/contrapposto-formats/tests/data/mujoco_reference.json"
     found = [path for path in MODELS if path.exists()]
     result = {"tool": f"mujoco {mujoco.__version__}", "script": "scripts/mujoco_reference.py"}

@@ -100,6 +100,16 @@ def functions():
         data = {"x": x.tolist(), "y": y.tolist()}
         add("simm_spline", data, spline, [*points, *x])
         add("piecewise_linear", data, lines, points)
+    own = numpy.random.RandomState(8)
+    for n in [4, 5, 6, 9, 15, 40]:
+        x = numpy.sort(own.uniform(-2, 2, n))
+        y = own.uniform(-1, 1, n)
+        spline = opensim.GCVSpline()
+        spline.setDegree(3)
+        for a, b in zip(x, y):
+            spline.addPoint(float(a), float(b))
+        inside = own.uniform(x[0], x[-1], 12)
+        add("gcv_spline_cubic", {"x": x.tolist(), "y": y.tolist()}, spline, [x[0] - 1, x[0] - 1e-3, x[-1] + 1e-3, x[-1] + 2, *inside, *x])
     points = [-1.5, -0.2, 0.0, 0.4, 2.0]
     coefficients = opensim.Vector(4, 0.0)
     for i, c in enumerate([0.5, -1.5, 2.0, 0.25]):

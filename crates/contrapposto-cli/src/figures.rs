@@ -114,7 +114,7 @@ pub(crate) fn figures(args: &FiguresArgs) -> Result<(), Fail> {
 
 fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Table) -> Result<FigureText, Fail> {
     let file_name = format!("scenarios/figure-{:02}.toml", figure.number);
-    let mut scenario = read_scenario(&file_name, figure.scenario.as_bytes())?;
+    let mut scenario = read_scenario(&file_name, figure.scenario.as_bytes(), None)?;
     let elbow = elbow(&scenario)?;
     if curve == ElbowCurve::Measured {
         scenario = with_measured_curve(scenario, elbow)?;

@@ -5,6 +5,7 @@ mod drawing;
 use std::path::{Path, PathBuf};
 
 use contrapposto::ik::{Engine, Pose, Reason};
+use contrapposto::model::Model;
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::{MOST_BYTES, ModelFile, PoseLevelText, PoseScenario, PoseText, read_pose, scenario_model};
@@ -22,14 +23,7 @@ const FILES: [&str; 5] = ["pose.json", "pose.mot", "pose.csv", "pose.svg", "pose
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
     let name = args.scenario.display().to_string();
-    let model = match scenario_model(&name, &bytes)? {
-        None => None,
-        Some(file) => {
-            let opened = open(&model_args(&args.scenario, &file), true)?;
-            opened.notes.iter().for_each(|note| tell("note", note));
-            Some(opened.model)
-        }
-    };
+    let model = model_of(&args.scenario, &name, &bytes)?;
     let scenario = read_pose(&name, &bytes, model)?;
     if !scenario.unused.is_empty() {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
@@ -45,6 +39,14 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let folder = Folder::open(&args.out)?;
     print(&if args.json { json } else { report(&scenario, &pose, &text, &folder) })?;
     verdict(&scenario, &pose, &text)
+}
+
+/// The model file that a scenario names, if it names one.
+pub(crate) fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<Model>, Fail> {
+    let Some(file) = scenario_model(name, bytes)? else { return Ok(None) };
+    let opened = open(&model_args(scenario, &file), true)?;
+    opened.notes.iter().for_each(|note| tell("note", note));
+    Ok(Some(opened.model))
 }
 
 /// How the scenario's model file is opened: its paths are seen from the scenario's folder.

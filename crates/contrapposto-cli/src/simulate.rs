@@ -16,6 +16,7 @@ use crate::chart::{Course, Sweep};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::output::{Folder, print};
+use crate::pose::model_of;
 
 /// The scenario of `contrapposto demo`.
 const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../scenarios/figure-08.toml"));
@@ -25,12 +26,14 @@ const FILES: [&str; 6] =
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
-    let scenario = read_scenario(&args.scenario.display().to_string(), &bytes)?;
+    let name = args.scenario.display().to_string();
+    let model = model_of(&args.scenario, &name, &bytes)?;
+    let scenario = read_scenario(&name, &bytes, model)?;
     carry_out(&scenario, &args.out, args.json)
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
-    let scenario = read_scenario(DEMO.0, DEMO.1.as_bytes())?;
+    let scenario = read_scenario(DEMO.0, DEMO.1.as_bytes(), None)?;
     carry_out(&scenario, &args.out, args.json)
 }
 

@@ -28,6 +28,9 @@ pub struct Options {
 /// Gravity of URDF files, which have none of their own: m/s^2 along -z.
 pub const GRAVITY: f64 = 9.81;
 
+/// A moment of inertia that is less than zero by no more than this, kg m2 a kg of its link, is zero and rounded.
+const ROUNDING: f64 = 1e-15;
+
 /// Reads a URDF file. `file_name` serves as the body's name if the robot has none.
 ///
 /// # Errors
@@ -142,11 +145,12 @@ fn segment(link: Node<'_>, name: &str, ignored: &mut Ignored) -> Result<BodySegm
     }
     let [xx, yy, zz, xy, xz, yz] = moments;
     for (value, attribute) in [(xx, "ixx"), (yy, "iyy"), (zz, "izz")] {
-        if value < 0.0 {
+        if value < -ROUNDING * segment.mass {
             return Err(rule(inertia, attribute, value, UrdfRule::InertiaNotNegative));
         }
     }
     let frame = origin(inertial)?;
+    let [xx, yy, zz] = [xx, yy, zz].map(|moment| moment.max(0.0));
     let own = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     segment.center_of_mass = frame.translation.vector;
     segment.inertia = turned(&own, frame.rotation.to_rotation_matrix().matrix());

@@ -171,6 +171,7 @@ fn functions_are_those_of_opensim() {
         let list = |name: &str| numbers(&row[name]);
         let function = match row["kind"].as_str().unwrap() {
             "simm_spline" => Function::Spline(Spline::simm(&list("x"), &list("y")).unwrap()),
+            "gcv_spline_cubic" => Function::NaturalSpline(Spline::natural(&list("x"), &list("y")).unwrap()),
             "piecewise_linear" => Function::Spline(Spline::piecewise_linear(&list("x"), &list("y")).unwrap()),
             "polynomial_highest_first" => Function::Polynomial(list("coefficients").into_iter().rev().collect()),
             "sine" => {

@@ -5,7 +5,7 @@
 mod common;
 
 use common::hammer;
-use contrapposto_formats::body::PassiveLawText;
+use contrapposto_formats::body::{BodyMotion, Drive, PassiveLawText};
 use contrapposto_formats::osim;
 use std::path::Path;
 
@@ -27,6 +27,15 @@ const PIN: &str = "<coordinates><Coordinate name=\"q\"/></coordinates>";
 
 fn custom(axis: &str) -> String {
     joint("CustomJoint", &format!("{PIN}<SpatialTransform>\n{axis}</SpatialTransform>"))
+}
+
+fn gcv(inside: &str) -> String {
+    document(
+        &custom(&format!(
+            "<TransformAxis name=\"rotation1\"><coordinates>q</coordinates><axis>1 0 0</axis><GCVSpline name=\"function\">{inside}</GCVSpline></TransformAxis>"
+        )),
+        "",
+    )
 }
 
 fn error(text: &str) -> String {
@@ -60,7 +69,7 @@ fn what_matters_and_is_not_supported_is_an_error_with_its_place() {
             "<BushingForce> at line 8, column 1: force BushingForce is not supported; accepted: CoordinateLimitForce",
         ),
         (force("<Ligament name=\"x\"/>"), "force Ligament is not supported"),
-        (force("<HuntCrossleyForce name=\"x\"/>"), "force HuntCrossleyForce is not supported"),
+        (force("<MeyerFregly2016Force name=\"x\"/>"), "force MeyerFregly2016Force is not supported"),
         (force("<PrescribedForce name=\"x\"/>"), "force PrescribedForce is not supported"),
         (
             force("<SpringGeneralizedForce><coordinate>r</coordinate></SpringGeneralizedForce>"),
@@ -116,14 +125,19 @@ fn what_matters_and_is_not_supported_is_an_error_with_its_place() {
             ),
             "`0 0 0`: an axis must have a length",
         ),
+        (gcv("<half_order>3</half_order>"), "<GCVSpline> at line 6, column 79: GCVSpline with half_order 3 is not"),
+        (gcv(""), "GCVSpline with half_order 0 is not supported; accepted: Constant"),
         (
-            document(
-                &custom(
-                    "<TransformAxis name=\"rotation1\"><coordinates>q</coordinates><axis>1 0 0</axis><GCVSpline name=\"function\"/></TransformAxis>",
-                ),
-                "",
-            ),
-            "<GCVSpline> at line 6, column 79: function GCVSpline is not supported; accepted: Constant",
+            gcv("<half_order>2</half_order><error_variance>0.1</error_variance>"),
+            "GCVSpline with error_variance 0.1 is not supported",
+        ),
+        (
+            gcv("<half_order>2</half_order><x>0 1 2</x><y>1 2 0</y>"),
+            "<GCVSpline> at line 6, column 79: 3 points; at least 4 are needed",
+        ),
+        (
+            gcv("<half_order>2</half_order><x>0 1 1 2</x><y>1 2 0 1</y>"),
+            "two points are at x = 1, or nearer than 1e-7; it must rise from point to point",
         ),
         (document(&custom("<TransformAxis name=\"turn\"/>"), ""), "`turn`: rotation1 to rotation3 and translation1"),
         (
@@ -187,6 +201,40 @@ fn couplings_in_a_circle_and_forces_on_balls_are_refused() {
     assert!(error(&set(follow("a", "a"))).contains("follows itself"));
     assert!(error(&set(follow("a", "c") + &follow("b", "c"))).contains("follows two others"));
     assert!(error(&set(follow("a b", "c"))).contains("several coordinates"));
+}
+
+/// Weights and an empty list of coefficients come with it, as OpenSim writes them.
+#[test]
+fn interpolating_splines_are_natural() {
+    let text = gcv("<half_order>2</half_order><error_variance>0</error_variance><x> -2 -1 0 1 2</x>\
+                    <weights> 1 3 1 1 1</weights><y> 0 1 0.2 0.4 -3</y><coefficients> 0 0 0 0 0</coefficients>");
+    let body = osim::read(text.as_bytes(), "f").unwrap();
+    let BodyMotion::Hinge { drive: Drive::Function(function, 0), .. } = &body.segments[0].motions[0] else {
+        panic!("{:?}", body.segments[0].motions)
+    };
+    // OpenSim 4.6 at these places.
+    let theirs = [
+        (-3.0, -1.6178571428571358),
+        (-1.5, 0.7316964285714262),
+        (-1.0, 0.9999999999999977),
+        (0.5, 0.44866071428571497),
+        (2.5, -5.2339285714285655),
+    ];
+    for (q, theirs) in theirs {
+        assert!((function.value(q) - theirs).abs() < 1e-13, "{q}: {}", function.value(q));
+    }
+}
+
+#[test]
+fn contacts_are_read_past_and_counted() {
+    let contacts = ["HuntCrossleyForce", "ElasticFoundationForce", "SmoothSphereHalfSpaceForce"]
+        .map(|kind| format!("<{kind} name=\"x\"/>"))
+        .concat();
+    let off = "<HuntCrossleyForce name=\"y\"><appliesForce>false</appliesForce></HuntCrossleyForce>";
+    let set = format!("<ForceSet><objects>{contacts}{off}</objects></ForceSet>");
+    let body = osim::read(document(&joint("PinJoint", PIN), &set).as_bytes(), "f").unwrap();
+    let notes = body.model().unwrap().notes;
+    assert_eq!(notes, ["3 contact forces (supports carry the body instead) ignored", "1 forces switched off ignored"]);
 }
 
 #[test]
@@ -332,6 +380,7 @@ fn mutated_files_never_panic() {
         "\u{ff}",
         "<Coordinate name=\"x\"/>",
         "<LinearFunction name=\"function\"><coefficients>1 0</coefficients></LinearFunction>",
+        "<GCVSpline name=\"function\"><half_order>2</half_order><x>0 1 2 3</x><y>1 0 2 1</y></GCVSpline>",
     ];
     hammer("OpenSim", 99, 10_000, &sources.each_ref().map(Vec::as_slice), &parts, |text| match osim::read(text, "f") {
         Ok(body) => {

@@ -3,24 +3,22 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::Path;
-use std::time::Instant;
+mod common;
 
+use std::path::Path;
+
+use common::toml::{ODD, hammer_toml, numbers};
 use contrapposto::simulation::{Sample, Scenario, run};
 use contrapposto_formats::{csv_header, csv_row, read_scenario};
-
-const SEED: u64 = 20_070_902;
-
-/// Mutated texts a run; `CONTRAPPOSTO_MUTANTS` asks for more.
-const MUTANTS: usize = 20_000;
 
 /// Every scenario of the repository that runs over time, and one with every table a scenario may have.
 fn corpus() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.is_file()); // poses have a folder of their own
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     paths.sort();
     let mut texts: Vec<String> = paths.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    texts.retain(|text| text.contains("[run]"));
     assert!(texts.len() >= 10);
     texts.push(FULL.to_owned());
     texts
@@ -100,151 +98,23 @@ fn complaint(error: contrapposto_formats::InputError) -> String {
     text
 }
 
-/// SplitMix64 (Steele, Lea & Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Below `end`, which is not 0.
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end as u64) as usize
-    }
-
-    fn byte(&mut self) -> u8 {
-        self.next().to_le_bytes()[7]
-    }
-
-    /// In 0..1.
-    fn share(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
-/// What strangers write instead of a number.
-const ODD: [&str; 22] = [
-    "nan",
-    "-inf",
-    "inf",
-    "1e999",
-    "1e308",
-    "-1e308",
-    "1e300",
-    "1e150",
-    "1e16",
-    "-0.0",
-    "0",
-    "5e-324",
-    "1e-300",
-    "-1",
-    "0.5",
-    "1",
-    "9223372036854775807",
-    "-9223372036854775808",
-    "99999999999999999999",
-    "0x7fff",
-    "\"1\"",
-    "[]",
-];
-
-fn mutated(texts: &[String], random: &mut Random) -> Vec<u8> {
-    let mut bytes = texts[random.below(texts.len())].clone().into_bytes();
-    for _ in 0..1 + random.below(3) {
-        if bytes.is_empty() {
-            break;
-        }
-        let at = random.below(bytes.len());
-        match random.below(16) {
-            0 => bytes[at] = random.byte(),
-            1 => drop(bytes.remove(at)),
-            2 => bytes.insert(at, random.byte()),
-            3 => bytes.truncate(at),
-            4 => {
-                let other = texts[random.below(texts.len())].as_bytes();
-                let from = random.below(other.len());
-                let to = other.len().min(from + 1 + random.below(80));
-                bytes.splice(at..at, other[from..to].iter().copied());
-            }
-            5 => {
-                let to = bytes.len().min(at + 1 + random.below(60));
-                bytes.drain(at..to);
-            }
-            6 => {
-                let lines: Vec<&[u8]> = bytes.split(|&b| b == b'\n').collect();
-                let (one, two) = (random.below(lines.len()), random.below(lines.len()));
-                let mut lines = lines;
-                lines.swap(one, two);
-                bytes = lines.join(&b'\n');
-            }
-            // Numbers are what gets through: most mutants change one.
-            _ => {
-                let numbers = numbers(&bytes);
-                if let Some(&(from, to)) = numbers.get(random.below(numbers.len().max(1))) {
-                    let odd = if random.share() < 0.5 {
-                        ODD[random.below(ODD.len())].to_owned()
-                    } else {
-                        let value: f64 = std::str::from_utf8(&bytes[from..to]).unwrap().parse().unwrap_or(1.0);
-                        format!("{:?}", value * 10f64.powf(6.0 * random.share() - 3.0))
-                    };
-                    bytes.splice(from..to, odd.into_bytes());
-                }
-            }
-        }
-    }
-    bytes
-}
-
-/// Places of the numbers: what stands after a space or a bracket and begins with a digit, a sign or a point.
-fn numbers(bytes: &[u8]) -> Vec<(usize, usize)> {
-    let part = |b: u8| b.is_ascii_digit() || matches!(b, b'.' | b'-' | b'+' | b'e');
-    let mut found = vec![];
-    let mut at = 0;
-    while at < bytes.len() {
-        let starts = bytes[at].is_ascii_digit() || bytes[at] == b'-';
-        if starts && (at == 0 || matches!(bytes[at - 1], b' ' | b'[')) {
-            let end = (at..bytes.len()).find(|&i| !part(bytes[i])).unwrap_or(bytes.len());
-            found.push((at, end));
-            at = end;
-        }
-        at += 1;
-    }
-    found
-}
-
 #[test]
 fn mutated_scenarios_never_panic() {
-    let count = std::env::var("CONTRAPPOSTO_MUTANTS").ok().and_then(|n| n.parse().ok()).unwrap_or(MUTANTS);
-    println!("seed {SEED}, {count} mutants");
-    let texts = corpus();
-    let mut random = Random(SEED);
-    let start = Instant::now();
-    let (mut accepted, mut slowest) = (0, 0.0f64);
-    for i in 0..count {
-        let bytes = mutated(&texts, &mut random);
-        let told = || format!("mutant {i}:\n{}", String::from_utf8_lossy(&bytes));
-        let begin = Instant::now();
-        match read_scenario("mutant.toml", &bytes) {
+    hammer_toml("scenario", 20_070_902, 20_000, &corpus(), |bytes| {
+        let told = || String::from_utf8_lossy(bytes).into_owned();
+        match read_scenario("mutant.toml", bytes, None) {
             Ok(scenario) => {
-                accepted += 1;
                 assert_sound(scenario, &told);
+                true
             }
             Err(error) => {
                 let text = complaint(error);
                 assert!(text.contains("mutant.toml"), "no place: {text}\n{}", told());
                 assert!(!text.contains('\u{1b}'), "{text:?}");
+                false
             }
         }
-        slowest = slowest.max(begin.elapsed().as_secs_f64());
-    }
-    let seconds = start.elapsed().as_secs_f64();
-    println!("{accepted} of {count} accepted and run; {seconds:.1} s, slowest {:.1} ms", 1e3 * slowest);
-    assert!(accepted * 10 > count, "mutants must reach deep: {accepted}");
-    assert!(slowest < 2.0, "{slowest} s");
+    });
 }
 
 /// NaN, infinities, the ends of the doubles, negative zero and a subnormal in each number in turn.
@@ -258,7 +128,7 @@ fn odd_numbers_in_every_field() {
         for odd in ODD {
             let text = format!("{}{odd}{}", &full[..from], &full[to..]);
             let told = || format!("{odd} for {} in\n{text}", &full[from..to]);
-            match read_scenario("odd.toml", text.as_bytes()) {
+            match read_scenario("odd.toml", text.as_bytes(), None) {
                 Ok(scenario) => {
                     let finite = odd.parse::<f64>().map_or(true, f64::is_finite);
                     assert!(finite, "accepted {}", told());
@@ -283,11 +153,11 @@ fn odd_numbers_in_every_field() {
 fn the_full_scenario_is_read() {
     for text in corpus() {
         let scenario =
-            read_scenario("corpus.toml", text.as_bytes()).unwrap_or_else(|error| panic!("{}", complaint(error)));
+            read_scenario("corpus.toml", text.as_bytes(), None).unwrap_or_else(|error| panic!("{}", complaint(error)));
         assert_sound(scenario, &|| text.clone());
         // Line ends and a byte order mark are the editor's business.
-        read_scenario("crlf.toml", text.replace('\n', "\r\n").as_bytes()).unwrap();
-        read_scenario("bom.toml", format!("\u{feff}{text}").as_bytes()).unwrap();
+        read_scenario("crlf.toml", text.replace('\n', "\r\n").as_bytes(), None).unwrap();
+        read_scenario("bom.toml", format!("\u{feff}{text}").as_bytes(), None).unwrap();
     }
 }
 
@@ -296,7 +166,7 @@ fn the_full_scenario_is_read() {
 fn truncated_scenarios_never_panic() {
     let full = corpus().pop().unwrap();
     for end in 0..full.len() {
-        if let Err(error) = read_scenario("cut.toml", &full.as_bytes()[..end]) {
+        if let Err(error) = read_scenario("cut.toml", &full.as_bytes()[..end], None) {
             assert!(complaint(error).contains("cut.toml"));
         }
     }

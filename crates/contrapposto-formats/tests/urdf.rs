@@ -135,6 +135,17 @@ fn other_published_models_are_read() {
     assert_eq!(body.segments.len(), 37);
 }
 
+/// What Pinocchio reads and published robots hold: mimics that mean nothing, and moments that rounding left below zero.
+#[test]
+fn small_mistakes_are_read_past_and_counted() {
+    let body = file(&here().join("tests/models/humanoid.urdf"), BodyRoot::Fixed);
+    let count = |kind: &str| body.ignored.iter().find(|(k, _)| k == kind).map(|(_, n)| *n);
+    assert_eq!(count("mimic of a fixed joint"), Some(1));
+    assert_eq!(count("mimic of a joint that is not there"), Some(1));
+    assert_eq!(body.couplings.len(), 2);
+    assert!(body.segments.iter().all(|s| s.inertia.diagonal().min() >= 0.0));
+}
+
 #[test]
 fn refusals_say_where() {
     let robot = |inside: &str| format!("<robot name='r'>\n{inside}\n</robot>");
@@ -202,6 +213,12 @@ fn refusals_say_where() {
             robot("<link name='a'><inertial><mass value='-1'/></inertial></link>"),
             "<mass value> at line 2, column 32: `-1`: a mass is zero or more, kg",
         ),
+        (
+            robot(
+                "<link name='a'><inertial><mass value='1'/><inertia ixx='-1e-9' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>",
+            ),
+            "<inertia ixx> at line 2, column 52: `-0.000000001`: a moment of inertia is zero or more, kg m2",
+        ),
         (robot("<link name='a'><inertial/></link>"), "<inertial> at line 2, column 16: <mass> is missing inside"),
     ] {
         assert_eq!(read(text.as_bytes(), BodyRoot::Fixed).expect_err(&text).to_string(), expected, "{text}");
@@ -235,7 +252,8 @@ fn coordinates_are_capped() {
 
 #[test]
 fn mutated_files_never_panic_and_give_finite_numbers() {
-    let base = std::fs::read(here().join("tests/models/arm.urdf")).unwrap();
+    let bases =
+        ["arm", "humanoid"].map(|name| std::fs::read(here().join(format!("tests/models/{name}.urdf"))).unwrap());
     let parts = [
         "<joint name='x' type='fixed'>",
         "</joint>",
@@ -252,7 +270,7 @@ fn mutated_files_never_panic_and_give_finite_numbers() {
         "\"",
         "/>",
     ];
-    hammer("URDF", 48, 100_000, &[&base], &parts, |text| {
+    hammer("URDF", 48, 100_000, &bases.each_ref().map(Vec::as_slice), &parts, |text| {
         let Ok(body) = read(text, BodyRoot::Free) else { return false };
         assert!(body.segments.iter().all(|s| s.mass.is_finite() && s.inertia.iter().all(|x| x.is_finite())));
         true

@@ -26,6 +26,10 @@ fn ten_minutes() -> Scenario {
         model,
         start,
         free,
+        supports: vec![],
+        tasks: vec![],
+        events: vec![],
+        strategies: vec![],
         strategy: StrategySettings { kind: Strategy::Passive, minimum_decrease_ratio: 0.9 },
         relief: ReliefSettings {
             step_gain: 0.3,

@@ -30,6 +30,7 @@
 //! contact come with later versions (see CHANGELOG.md).
 
 pub mod constraint;
+pub mod contact;
 pub mod fatigue;
 pub mod hybrid;
 pub mod ik;
@@ -38,6 +39,7 @@ pub mod math;
 pub mod model;
 pub mod passive;
 pub mod posture;
+pub mod relax;
 pub mod simulation;
 pub mod statics;
 pub mod strength;

@@ -27,6 +27,10 @@ fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
         model,
         start,
         free,
+        supports: vec![],
+        tasks: vec![],
+        events: vec![],
+        strategies: vec![],
         strategy: StrategySettings { kind: Strategy::Passive, minimum_decrease_ratio: 0.9 },
         relief: ReliefSettings {
             step_gain: 0.3,

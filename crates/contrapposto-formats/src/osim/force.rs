@@ -12,7 +12,9 @@ use crate::xml::Node;
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End};
 
 const FORCES: &str = "CoordinateLimitForce, ExponentialCoordinateLimitForce, SpringGeneralizedForce, \
-                      ExpressionBasedCoordinateForce, muscles, actuators, and forces with <appliesForce>false</appliesForce>";
+                      ExpressionBasedCoordinateForce, muscles, actuators, contacts, and forces with <appliesForce>false</appliesForce>";
+/// Contacts of the body with the ground, which a scenario's supports stand for.
+const CONTACTS: [&str; 3] = ["HuntCrossleyForce", "ElasticFoundationForce", "SmoothSphereHalfSpaceForce"];
 const CONSTRAINTS: &str = "CoordinateCouplerConstraint, and constraints with <isEnforced>false</isEnforced>";
 
 /// Reads couplings and passive torques.
@@ -42,6 +44,8 @@ pub(super) fn read<'a>(
             ignored.add("actuators", 1);
         } else if !reader.flag(node, "appliesForce", true)? || reader.flag(node, "isDisabled", false)? {
             ignored.add("forces switched off", 1);
+        } else if CONTACTS.contains(&kind) {
+            ignored.add("contact forces (supports carry the body instead)", 1);
         } else {
             body.passive.push(passive(reader, node, coordinates)?);
         }

@@ -6,7 +6,7 @@ use crate::body::{Function, Spline, SplineError};
 use crate::xml::Node;
 
 const ACCEPTED: &str = "Constant, LinearFunction, PolynomialFunction, SimmSpline (natCubicSpline, NaturalCubicSpline), \
-                        PiecewiseLinearFunction, Sine, MultiplierFunction";
+                        GCVSpline (half_order 2, error_variance 0), PiecewiseLinearFunction, Sine, MultiplierFunction";
 
 /// Whether an element's name is that of a function, supported or not.
 pub(super) fn is_function(name: &str) -> bool {
@@ -39,8 +39,21 @@ pub(super) fn read<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<Function, 
             coefficients.reverse();
             Ok(Function::Polynomial(coefficients))
         }
-        "SimmSpline" | "natCubicSpline" | "NaturalCubicSpline" => points(reader, node, Spline::simm),
-        "PiecewiseLinearFunction" => points(reader, node, Spline::piecewise_linear),
+        "SimmSpline" | "natCubicSpline" | "NaturalCubicSpline" => {
+            points(reader, node, Spline::simm).map(Function::Spline)
+        }
+        "PiecewiseLinearFunction" => points(reader, node, Spline::piecewise_linear).map(Function::Spline),
+        "GCVSpline" => {
+            // Its weights say how closely it passes points, and without error variance it meets them all.
+            for (property, default, accepted) in [("half_order", 0.0, 2.0), ("error_variance", 0.0, 0.0)] {
+                let found = reader.number(node, property, Some(default))?;
+                if found != accepted {
+                    let what = format!("GCVSpline with {property} {found}");
+                    return Err(OsimProblem::unsupported(node.place(), &what, ACCEPTED));
+                }
+            }
+            points(reader, node, Spline::natural).map(Function::NaturalSpline)
+        }
         "Sine" => Ok(Function::Sine {
             amplitude: reader.number(node, "amplitude", Some(1.0))?,
             omega: reader.number(node, "omega", Some(1.0))?,
@@ -64,8 +77,7 @@ fn points<'a>(
     reader: &Reader<'a>,
     node: Node<'a>,
     make: impl Fn(&[f64], &[f64]) -> Result<Spline, SplineError>,
-) -> Result<Function, OsimProblem> {
+) -> Result<Spline, OsimProblem> {
     let list = |name| Ok::<_, OsimProblem>(reader.list(node, name)?.unwrap_or_default());
-    let spline = make(&list("x")?, &list("y")?);
-    spline.map(Function::Spline).map_err(|problem| OsimProblem::Spline { place: node.place(), problem })
+    make(&list("x")?, &list("y")?).map_err(|problem| OsimProblem::Spline { place: node.place(), problem })
 }

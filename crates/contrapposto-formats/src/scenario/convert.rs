@@ -1,30 +1,46 @@
 //! Names become indices, degrees radians, and every number is checked where it stands.
 
+use std::collections::BTreeMap;
+
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
+use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, AdultError, Coordinate, CoordinateKind, Model, Part, Sex, adult, data};
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveError, Tabulated};
-use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables};
+use contrapposto::simulation::{
+    Event, ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables, TaskSettings,
+};
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use nalgebra::Vector3;
 
-use super::Located;
+use super::pose::{Ranked, ranked, set};
+use super::task::Stage;
 use super::text::{
-    AdultText, DoubleExponentialText, EndText, FixedInText, LawText, LoadText, PartText, PassiveText, ReshapeText,
-    RunText, ScenarioText, SexText, StrategyKindText, StrategyText, TablesText,
+    AdultText, DoubleExponentialText, EndText, EventText, FixedInText, LawText, LoadText, PartText, PassiveText,
+    ReshapeText, RunText, ScenarioText, SexText, StrategyKindText, StrategyText, TablesText,
 };
+use super::{Located, support};
 use crate::input_error::{InputError, suggestion};
 
-pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, InputError> {
+pub(super) fn scenario(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<Scenario, InputError> {
     check_head(at, text)?;
     let (strategy, run) = simulated(at, text)?;
-    let model = body(at, text, None)?;
+    let model = body(at, text, model)?;
     let mut start = model.default_posture();
-    for (key, &value) in &text.posture {
-        let (index, value) = posture_value(at, &model, &["posture", key], value)?;
-        start.values_mut()[index] = value;
-    }
-    let free = free(at, &model, text, Coordinate::can_be_relieved)?;
+    set(at, &model, &["posture"], &text.posture, &mut start)?;
+    start.displace(&model, &vec![0.0; model.rates().len()]);
+    let mut kinematics = Kinematics::new(&model);
+    kinematics.update(&model, &start).map_err(|error| at.error(&["posture"], error.to_string(), None))?;
+    let supports = support::supports(at, &model, &text.support, &kinematics)?;
+    let standing = supports.iter().map(|support| support.segment).collect();
+    let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: standing };
+    let ranked = ranked(&stage, &text.task)?;
+    let tasks: Vec<TaskSettings> =
+        ranked.into_iter().map(|Ranked { goal, above_relief, .. }| TaskSettings { goal, above_relief }).collect();
+    let whole = !supports.is_empty() || !tasks.is_empty();
+    let free = free(at, &model, text, |coordinate| whole || coordinate.can_be_relieved())?;
+    let strategies = strategies(at, &model, &["strategy", "of"], kind(strategy.kind), &strategy.of)?;
+    let events = events(at, &model, text, &tasks, &strategies)?;
     let loads =
         text.load.iter().enumerate().map(|(i, load)| self::load(at, &model, i, load)).collect::<Result<_, _>>()?;
     let mut start_fatigue = vec![[0.0; 2]; model.coordinates().len()];
@@ -45,11 +61,12 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText) -> Result<Scenario, In
         start,
         free,
         loads,
+        supports,
+        tasks,
+        events,
+        strategies,
         strategy: StrategySettings {
-            kind: match strategy.kind {
-                StrategyKindText::Active => Strategy::Active,
-                StrategyKindText::Passive => Strategy::Passive,
-            },
+            kind: kind(strategy.kind),
             minimum_decrease_ratio: strategy.minimum_decrease_ratio,
         },
         relief: ReliefSettings {
@@ -83,30 +100,134 @@ pub(super) fn check_head(at: &Located, text: &ScenarioText) -> Result<(), InputE
 
 /// What `simulate` needs; what only `pose` can do is refused, not passed over.
 fn simulated<'a>(at: &Located, text: &'a ScenarioText) -> Result<(&'a StrategyText, &'a RunText), InputError> {
-    let help = || Some("`contrapposto pose` solves them; `simulate` keeps neither supports nor tasks yet".to_owned());
-    for (key, given) in
-        [("support", !text.support.is_empty()), ("task", !text.task.is_empty()), ("solver", text.solver.is_some())]
-    {
-        if given {
-            return Err(at.error(&[key, "0"], format!("[{key}] is for poses, not for simulations"), help()));
-        }
-    }
-    for (key, given) in [
-        ("file", text.model.file.is_some()),
-        ("overlay", text.model.overlay.is_some()),
-        ("root", text.model.root.is_some()),
-    ] {
-        if given {
-            let help = Some("leave it out: `simulate` runs the built-in adult".to_owned());
-            let message = format!("`{key}`: model files are for `contrapposto pose`");
-            return Err(at.key_error(&["model", key], message, help));
-        }
+    if text.solver.is_some() {
+        let help = Some("leave it out; `contrapposto pose` takes it".to_owned());
+        return Err(at.error(&["solver"], "[solver] is for poses, not for simulations", help));
     }
     let missing = |key: &str| {
         let help = Some("`contrapposto schema` lists all keys".to_owned());
         at.error(&[], format!("the key `{key}` is missing"), help)
     };
     Ok((text.strategy.as_ref().ok_or_else(|| missing("strategy"))?, text.run.as_ref().ok_or_else(|| missing("run"))?))
+}
+
+fn kind(text: StrategyKindText) -> Strategy {
+    match text {
+        StrategyKindText::Active => Strategy::Active,
+        StrategyKindText::Passive => Strategy::Passive,
+    }
+}
+
+/// Strategy of every coordinate: `otherwise`, but for the regions and coordinates named.
+fn strategies(
+    at: &Located,
+    model: &Model,
+    path: &[&str],
+    otherwise: Strategy,
+    of: &BTreeMap<String, StrategyKindText>,
+) -> Result<Vec<Strategy>, InputError> {
+    change_strategies(at, model, path, vec![otherwise; model.coordinates().len()], of)
+}
+
+fn change_strategies(
+    at: &Located,
+    model: &Model,
+    path: &[&str],
+    mut all: Vec<Strategy>,
+    of: &BTreeMap<String, StrategyKindText>,
+) -> Result<Vec<Strategy>, InputError> {
+    let region = |name: &str| data::library().sources(name).map(|sources| sources.region);
+    // Regions first, so that a coordinate that is named itself has the last word.
+    let (single, regions): (Vec<_>, Vec<_>) = of.iter().partition(|(name, _)| model.coordinate(name).is_some());
+    for (name, &text) in regions {
+        let within: Vec<usize> = (0..all.len())
+            .filter(|&i| region(&model.coordinates()[i].name).is_some_and(|region| region == name))
+            .collect();
+        if within.is_empty() {
+            let path: Vec<&str> = path.iter().copied().chain([name.as_str()]).collect();
+            let names = ["spine", "neck", "arms", "legs"]
+                .into_iter()
+                .chain(model.coordinates().iter().map(|c| c.name.as_str()));
+            let help = suggestion(name, names);
+            return Err(at.key_error(&path, format!("the body has no region or coordinate `{name}`"), help));
+        }
+        within.into_iter().for_each(|i| all[i] = kind(text));
+    }
+    for (name, &text) in single {
+        if let Some(i) = model.coordinate(name) {
+            all[i] = kind(text);
+        }
+    }
+    Ok(all)
+}
+
+fn events(
+    at: &Located,
+    model: &Model,
+    text: &ScenarioText,
+    tasks: &[TaskSettings],
+    strategies: &[Strategy],
+) -> Result<Vec<Event>, InputError> {
+    let mut order: Vec<(usize, &EventText)> = text.event.iter().enumerate().collect();
+    order.sort_by(|a, b| a.1.at_s.total_cmp(&b.1.at_s));
+    let mut strategies = strategies.to_vec();
+    let mut events = vec![];
+    for (i, text) in order {
+        let number = i.to_string();
+        let path = |key| ["event", &number, key];
+        if text.at_s < 0.0 {
+            return Err(at.error(
+                &path("at_s"),
+                format!("at_s is {}; it must not be negative", shown(text.at_s)),
+                None,
+            ));
+        }
+        let mut event = Event { time: text.at_s, ..Event::default() };
+        if let Some(all) = text.strategy {
+            strategies.fill(kind(all));
+        }
+        if text.strategy.is_some() || !text.strategy_of.is_empty() {
+            strategies = change_strategies(at, model, &path("strategy_of"), strategies, &text.strategy_of)?;
+            event.strategies = Some(strategies.clone());
+        }
+        if let Some(loads) = &text.load {
+            let loads = loads.iter().enumerate();
+            let loads = loads.map(|(j, load)| load_at(at, model, &["event", &number, "load", &j.to_string()], load));
+            event.loads = Some(loads.collect::<Result<_, _>>()?);
+        }
+        match (text.task, text.target_m) {
+            (Some(task), Some(target)) => {
+                let Some(settings) = task.checked_sub(1).and_then(|place| tasks.get(place)) else {
+                    let message =
+                        format!("there is no task {task}; the scenario has {} priorities of them", tasks.len());
+                    return Err(at.error(&path("task"), message, Some("1 is the first".to_owned())));
+                };
+                let mut goal = settings.goal.clone();
+                let moved = goal
+                    .tasks
+                    .iter_mut()
+                    .map(|given| given.retarget(Vector3::from(target)))
+                    .filter(|moved| *moved)
+                    .count();
+                if moved == 0 {
+                    let message = "the task has no place as its target".to_owned();
+                    return Err(at.error(&path("task"), message, None));
+                }
+                event.tasks.push((task - 1, goal));
+            }
+            (None, None) => {}
+            (Some(_), None) => return Err(at.error(&path("task"), "a new target is missing: `target_m`", None)),
+            (None, Some(_)) => {
+                return Err(at.error(&path("target_m"), "which task is meant? `task = 1` is the first", None));
+            }
+        }
+        if event.strategies.is_none() && event.loads.is_none() && event.tasks.is_empty() {
+            let help = Some("give it `strategy`, `strategy_of`, `load`, or `task` and `target_m`".to_owned());
+            return Err(at.error(&["event", &number], "nothing changes at this event", help));
+        }
+        events.push(event);
+    }
+    Ok(events)
 }
 
 /// Longest title, characters: it stands above the pictures.
@@ -150,6 +271,7 @@ fn place(error: &ScenarioError) -> Vec<&'static str> {
     let ScenarioError::Setting { name, .. } = error else { return vec![] };
     match *name {
         "minimum decrease ratio" => vec!["strategy", "minimum_decrease_ratio"],
+        "time of an event (s)" => vec!["event"],
         "step gain" => vec!["relief", "step_gain"],
         "greatest step (rad)" => vec!["relief", "max_step_deg"],
         "torque tolerance (N m)" => vec!["relief", "torque_tolerance_nm"],
@@ -299,8 +421,11 @@ pub(super) fn free(
 }
 
 pub(super) fn load(at: &Located, model: &Model, i: usize, text: &LoadText) -> Result<Load, InputError> {
-    let number = i.to_string();
-    let path = |key| ["load", &number, key];
+    load_at(at, model, &["load", &i.to_string()], text)
+}
+
+fn load_at(at: &Located, model: &Model, table: &[&str], text: &LoadText) -> Result<Load, InputError> {
+    let path = |key| table.iter().copied().chain([key]).collect::<Vec<&str>>();
     let Some(segment) = model.segment(&text.segment) else {
         let help = suggestion(&text.segment, model.segments().iter().map(|s| s.name.as_str()));
         return Err(at.error(&path("segment"), format!("the body has no segment `{}`", text.segment), help));
@@ -321,7 +446,7 @@ pub(super) fn load(at: &Located, model: &Model, i: usize, text: &LoadText) -> Re
         }
         _ => {
             let help = Some("give one of `mass_kg` and `force_n`".to_owned());
-            return Err(at.error(&["load", &number], "a load is either a weight or a force", help));
+            return Err(at.error(table, "a load is either a weight or a force", help));
         }
     };
     let load = Load { segment, point, kind };

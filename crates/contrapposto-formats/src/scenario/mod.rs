@@ -2,6 +2,7 @@
 
 mod convert;
 mod pose;
+mod support;
 mod task;
 mod task_text;
 mod text;
@@ -13,6 +14,7 @@ pub(crate) use text::{CoordinateLimitForceText, DoubleExponentialText, PassiveTe
 
 use std::ops::Range;
 
+use contrapposto::model::Model;
 use contrapposto::simulation::Scenario;
 use toml::de::{DeTable, DeValue};
 
@@ -21,12 +23,12 @@ use crate::input_error::{InputError, Source, suggestion, utf8};
 /// Largest scenario file, bytes.
 pub const MOST_BYTES: u64 = 1 << 20;
 
-/// Reads a scenario. `name` is the file's name for messages.
+/// Reads a scenario of a run. `name` is the file's name for messages; `model` is what [`scenario_model`] asked for.
 ///
 /// # Errors
 /// [`InputError`] says what is wrong, where, and what would be right.
-pub fn read_scenario(name: &str, bytes: &[u8]) -> Result<Scenario, InputError> {
-    read_toml(name, bytes, convert::scenario)
+pub fn read_scenario(name: &str, bytes: &[u8], model: Option<Model>) -> Result<Scenario, InputError> {
+    read_toml(name, bytes, |at, text| convert::scenario(at, text, model))
 }
 
 /// Reads a TOML file of ours: known keys, finite numbers, and whatever else `convert` asks of it.

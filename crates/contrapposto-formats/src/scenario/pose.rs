@@ -10,10 +10,11 @@ use nalgebra::Vector3;
 
 use super::convert::{body, check_head, free, load, posture_value, shown};
 use super::task::{Stage, task};
+use super::task_text::TaskText;
 use super::text::{RootText, ScenarioText};
-use super::{Located, read_toml};
+use super::{Located, read_toml, support};
 use crate::body::BodyRoot;
-use crate::input_error::{InputError, suggestion};
+use crate::input_error::InputError;
 
 /// A posture to be solved for.
 #[derive(Clone, Debug)]
@@ -112,23 +113,9 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
         labels.push(names.collect());
         goals.push(Goal { tasks: supports, hard: true, ..Goal::default() });
     }
-    for (i, text) in text.task.iter().enumerate() {
-        let task = task(&stage, i, text)?;
-        let label = task.label(&model);
-        match (goals.last_mut(), labels.last_mut()) {
-            (Some(goal), Some(labels)) if text.same_priority && i > 0 => {
-                goal.tasks.push(task);
-                labels.push(label);
-            }
-            _ if text.same_priority => {
-                let path = ["task", &i.to_string(), "same_priority"];
-                return Err(at.key_error(&path, "no task stands before the first one", Some("leave it out".into())));
-            }
-            _ => {
-                goals.push(task.into());
-                labels.push(vec![label]);
-            }
-        }
+    for Ranked { goal, labels: own, .. } in ranked(&stage, &text.task)? {
+        goals.push(goal);
+        labels.push(own);
     }
     if goals.is_empty() {
         let help = Some("add a [[task]] with a `kind`; docs/scenario.md lists the kinds".to_owned());
@@ -152,6 +139,36 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
         start,
         model,
     })
+}
+
+/// Tasks of one priority.
+pub(super) struct Ranked {
+    pub(super) goal: Goal,
+    pub(super) labels: Vec<String>,
+    pub(super) above_relief: bool,
+}
+
+/// The tasks of a scenario by priority.
+pub(super) fn ranked(stage: &Stage<'_>, texts: &[TaskText]) -> Result<Vec<Ranked>, InputError> {
+    let mut all: Vec<Ranked> = vec![];
+    for (i, text) in texts.iter().enumerate() {
+        let task = task(stage, i, text)?;
+        let label = task.label(stage.model);
+        match all.last_mut() {
+            Some(before) if text.same_priority => {
+                before.goal.tasks.push(task);
+                before.labels.push(label);
+                before.above_relief |= text.above_relief;
+            }
+            None if text.same_priority => {
+                let path = ["task", &i.to_string(), "same_priority"];
+                let help = Some("leave it out".to_owned());
+                return Err(stage.at.key_error(&path, "no task stands before the first one", help));
+            }
+            _ => all.push(Ranked { goal: task.into(), labels: vec![label], above_relief: text.above_relief }),
+        }
+    }
+    Ok(all)
 }
 
 /// Farthest a quaternion may be from unit length.
@@ -234,26 +251,10 @@ fn locked(at: &Located, model: &Model, text: &ScenarioText, free: &[bool]) -> Re
 }
 
 fn supports(text: &ScenarioText, stage: &mut Stage<'_>) -> Result<Vec<Task>, InputError> {
-    let (at, model) = (stage.at, stage.model);
     let mut tasks = vec![];
     for (i, support) in text.support.iter().enumerate() {
-        let number = i.to_string();
-        let path = |key| ["support", &number, key];
-        let Some(segment) = model.segment(&support.segment) else {
-            let help = suggestion(&support.segment, model.segments().iter().map(|s| s.name.as_str()));
-            return Err(at.error(&path("segment"), format!("the body has no segment `{}`", support.segment), help));
-        };
-        if stage.supports.contains(&segment) {
-            let message = format!("`{}` is a support already", support.segment);
-            return Err(at.error(&path("segment"), message, Some("keep one of the two".to_owned())));
-        }
-        for (key, value, most) in [("friction", support.friction, 10.0), ("share_max", support.share_max, 1.0)] {
-            if let Some(value) = value.filter(|value| !(0.0..=most).contains(value)) {
-                let message = format!("{key} is {}; it must lie in 0..{most}", shown(value));
-                return Err(at.error(&path(key), message, None));
-            }
-        }
-        let target = stage.kinematics.placement(model, segment);
+        let segment = support::segment(stage.at, stage.model, i, support, &stage.supports)?;
+        let target = stage.kinematics.placement(stage.model, segment);
         tasks.push(Task::Placement(Placement { segment, point: Vector3::zeros(), target }));
         stage.supports.push(segment);
     }

@@ -17,19 +17,48 @@ pub struct SupportText {
     /// What it stands on.
     #[serde(default)]
     pub on: OnText,
-    /// Coefficient of friction, 0 to 10. Has no part in a pose yet.
+    /// Coefficient of friction, 0 to 10; 0.6 when left out. Has no part in a pose.
     pub friction: Option<f64>,
-    /// Greatest share of body weight that it carries, 0 to 1. Has no part in a pose yet.
+    /// Greatest share of body weight that it should carry, 0 to 1: "rest this leg". Has no part in a pose.
     pub share_max: Option<f64>,
+    /// Corners of the patch that touches, in the segment's frame, m; that of the model when left out (sole, palm, seat of the
+    /// built-in adult). Has no part in a pose.
+    #[serde(default, deserialize_with = "rows")]
+    pub corners_m: Option<Vec<[f64; 3]>>,
 }
 
-/// What a support stands on.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+/// What a support stands on: `"ground"`, or a plane.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
 pub enum OnText {
-    /// The ground.
-    #[default]
+    /// By name.
+    Named(GroundText),
+    /// A plane.
+    Plane(PlaneText),
+}
+
+impl Default for OnText {
+    fn default() -> Self {
+        Self::Named(GroundText::Ground)
+    }
+}
+
+/// A plane with a name.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GroundText {
+    /// Horizontal, where the support is at the start.
     Ground,
+}
+
+/// Seat, table, wall.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneText {
+    /// The direction in which it pushes, ground axes; its length does not matter.
+    pub normal: [f64; 3],
+    /// A point of it, ground, m: checked against where the support is at the start.
+    pub point_m: Option<[f64; 3]>,
 }
 
 /// Something the body should do; the first task is the most important.
@@ -41,7 +70,7 @@ pub struct TaskText {
     /// As important as the task before; else the task yields to all before it.
     #[serde(default)]
     pub same_priority: bool,
-    /// For `simulate`, where it will rank above the relief of tired muscles. Has no part in a pose.
+    /// Ranks above the relief of tired muscles (`simulate`). Has no part in a pose.
     #[serde(default)]
     pub above_relief: bool,
     /// point, orientation, placement, look_at (`head` when left out): which segment.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::task_text::{SolverText, SupportText, TaskText};
 
-/// An experiment: a body, its posture and loads; for `simulate` the relief wanted and how long, for `pose` supports and tasks.
+/// An experiment: a body, its posture, loads, supports and tasks; for `simulate` the relief wanted and how long.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioText {
@@ -32,10 +32,10 @@ pub struct ScenarioText {
     /// Held weights and forces.
     #[serde(default)]
     pub load: Vec<LoadText>,
-    /// What carries weight (`pose`).
+    /// What carries weight.
     #[serde(default)]
     pub support: Vec<SupportText>,
-    /// What the body should do, in order of priority (`pose`).
+    /// What the body should do, in order of priority.
     #[serde(default)]
     pub task: Vec<TaskText>,
     /// How a pose is solved (`pose`).
@@ -48,8 +48,31 @@ pub struct ScenarioText {
     /// How muscle groups tire (`simulate`).
     #[serde(default)]
     pub fatigue: FatigueText,
+    /// What changes on the way (`simulate`).
+    #[serde(default)]
+    pub event: Vec<EventText>,
     /// How long; `simulate` needs it.
     pub run: Option<RunText>,
+}
+
+/// Something that changes during a run.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EventText {
+    /// When, s.
+    pub at_s: f64,
+    /// Strategy of the whole body from then on.
+    pub strategy: Option<StrategyKindText>,
+    /// Strategy of regions (`spine`, `neck`, `arms`, `legs`) or coordinates from then on.
+    #[serde(default)]
+    pub strategy_of: BTreeMap<String, StrategyKindText>,
+    /// Loads from then on, in place of those before; empty to put everything down.
+    pub load: Option<Vec<LoadText>>,
+    /// Which task (1 is the first) gets a new target.
+    pub task: Option<usize>,
+    /// The new target, ground, m.
+    #[serde(default, deserialize_with = "numbers")]
+    pub target_m: Option<[f64; 3]>,
 }
 
 /// Which body: a file, or the built-in adult.
@@ -58,7 +81,7 @@ pub struct ScenarioText {
 pub struct ModelText {
     /// The built-in adult.
     pub adult: Option<AdultText>,
-    /// Model file (.osim, .urdf, MJCF .xml), its path as seen from the scenario's folder (`pose`).
+    /// Model file (.osim, .urdf, MJCF .xml), its path as seen from the scenario's folder.
     pub file: Option<String>,
     /// Ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the file; its path as that of `file`.
     pub overlay: Option<String>,
@@ -256,6 +279,9 @@ pub struct StrategyText {
     /// `R_min`: share of the torque that an active solution must remove, 0 to 1; 0.9 when left out.
     #[serde(default = "default_ratio")]
     pub minimum_decrease_ratio: f64,
+    /// Other strategies for regions (`spine`, `neck`, `arms`, `legs`) or coordinates.
+    #[serde(default)]
+    pub of: BTreeMap<String, StrategyKindText>,
 }
 
 fn default_ratio() -> f64 {

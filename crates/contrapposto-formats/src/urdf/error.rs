@@ -49,13 +49,11 @@ pub enum UrdfError {
         /// The name.
         value: String,
     },
-    /// A joint names a link or joint that is not there.
-    #[error("{place}: there is no {kind} `{value}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
+    /// A joint names a link that is not there.
+    #[error("{place}: there is no link `{value}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
     UnknownName {
         /// Where.
         place: Place,
-        /// "link" or "joint".
-        kind: &'static str,
         /// The name.
         value: String,
         /// The nearest name there is.

@@ -80,6 +80,11 @@ impl<'a> Joint<'a> {
                 multiplier: number(part, "multiplier")?.unwrap_or(1.0),
                 offset: number(part, "offset")?.unwrap_or(0.0),
             }),
+            // Of a joint that was made fixed: it moves nothing.
+            Some(_) if kind == Kind::Fixed => {
+                ignored.add("mimic of a fixed joint");
+                None
+            }
             Some(part) => {
                 let value = name.to_owned();
                 return Err(UrdfError::Invalid { place: part.place(), value, needs: UrdfRule::MimicKind });

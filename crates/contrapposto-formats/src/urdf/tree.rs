@@ -85,13 +85,12 @@ pub(super) fn build(
         return Err(invalid(links[lost], UrdfRule::NoCycle));
     }
     unique_coordinates(body).map_err(|value| UrdfError::DuplicateName { place: robot.place(), value })?;
-    couple(body, joints, &by_name, &coordinate_of)
+    couple(body, joints, &by_name, &coordinate_of, ignored)
 }
 
 fn link_index(names: &Names<'_>, (node, name): (Node<'_>, &str)) -> Result<usize, UrdfError> {
     names.get(name).copied().ok_or_else(|| UrdfError::UnknownName {
         place: node.attribute_place("link"),
-        kind: "link",
         value: shorten(name),
         nearest: near(name, names.keys().copied()),
     })
@@ -103,17 +102,17 @@ fn couple(
     joints: &[Joint<'_>],
     by_name: &Names<'_>,
     coordinate_of: &[Option<usize>],
+    ignored: &mut Ignored,
 ) -> Result<(), UrdfError> {
     let mut followers = vec![];
     for (joint, dependent) in joints.iter().zip(coordinate_of) {
         let (Some(mimic), &Some(dependent)) = (&joint.mimic, dependent) else { continue };
         let place = || mimic.node.attribute_place("joint");
-        let leader = *by_name.get(mimic.joint).ok_or_else(|| UrdfError::UnknownName {
-            place: place(),
-            kind: "joint",
-            value: shorten(mimic.joint),
-            nearest: near(mimic.joint, by_name.keys().copied()),
-        })?;
+        // As in Pinocchio, the joint then moves by itself.
+        let Some(&leader) = by_name.get(mimic.joint) else {
+            ignored.add("mimic of a joint that is not there");
+            continue;
+        };
         let independent = coordinate_of[leader].ok_or_else(|| UrdfError::Invalid {
             place: place(),
             value: shorten(mimic.joint),

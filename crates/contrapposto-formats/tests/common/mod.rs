@@ -2,6 +2,8 @@
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
+pub mod toml;
+
 use contrapposto_formats::body::{Body, BodyMotion, Drive};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use std::path::{Path, PathBuf};
@@ -98,12 +100,16 @@ pub fn mutate(base: &[u8], parts: &[&str], state: &mut u64) -> Vec<u8> {
 /// ```text
 /// CONTRAPPOSTO_MUTATIONS=10000000 cargo test -p contrapposto-formats mutated -- --nocapture --test-threads 1
 /// ```
-pub fn hammer(
+pub fn hammer(format: &str, seed: u64, usual: usize, bases: &[&[u8]], parts: &[&str], read: impl FnMut(&[u8]) -> bool) {
+    hammer_mutants(format, seed, usual, |i, state| mutate(bases[i % bases.len()], parts, state), read);
+}
+
+/// [`hammer`] with what `mutant` makes of the number of the input and the state of [`next`].
+pub fn hammer_mutants(
     format: &str,
     seed: u64,
     usual: usize,
-    bases: &[&[u8]],
-    parts: &[&str],
+    mut mutant: impl FnMut(usize, &mut u64) -> Vec<u8>,
     mut read: impl FnMut(&[u8]) -> bool,
 ) {
     let asked: Option<usize> = std::env::var("CONTRAPPOSTO_MUTATIONS").ok().and_then(|s| s.parse().ok());
@@ -111,7 +117,7 @@ pub fn hammer(
     let (mut state, mut accepted, mut slowest) = (seed, 0, Duration::ZERO);
     let (start, before) = (Instant::now(), peak_memory());
     for i in 0..count {
-        let text = mutate(bases[i % bases.len()], parts, &mut state);
+        let text = mutant(i, &mut state);
         let begin = Instant::now();
         accepted += usize::from(read(&text));
         slowest = slowest.max(begin.elapsed());

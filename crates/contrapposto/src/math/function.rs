@@ -2,7 +2,8 @@
 //!
 //! The spline is SIMM's, as OpenSim has it: a cubic with continuous second derivative whose third derivative at either end is
 //! that of the cubic through the four outermost points (Forsythe, Malcolm & Moler 1977, chapter 4); beyond its ends it goes
-//! on straight.
+//! on straight. The natural spline, OpenSim's GCVSpline of half order 2 without error variance (Woltring 1986), does not bend at
+//! its ends.
 
 /// A function of one variable.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +33,8 @@ pub enum Function {
     },
     /// SIMM's natural cubic through points, and other piecewise cubics.
     Spline(Spline),
+    /// The natural cubic through points, [`Spline::natural`].
+    NaturalSpline(Spline),
 }
 
 /// Cubic pieces between knots, straight beyond the ends.
@@ -48,10 +51,12 @@ pub struct Spline {
 #[non_exhaustive]
 pub enum SplineError {
     /// Too few points.
-    #[error("{found} points; at least 2 are needed")]
+    #[error("{found} points; at least {needed} are needed")]
     TooFew {
         /// How many there are.
         found: usize,
+        /// How many there must be.
+        needed: usize,
     },
     /// As many x as y are needed.
     #[error("{x} values of x and {y} of y; as many of one as of the other are needed")]
@@ -68,6 +73,12 @@ pub enum SplineError {
         before: f64,
         /// The smaller one after it.
         after: f64,
+    },
+    /// x must rise.
+    #[error("two points are at x = {x}, or nearer than 1e-7; it must rise from point to point")]
+    Stays {
+        /// Of the first.
+        x: f64,
     },
 }
 
@@ -88,7 +99,7 @@ impl Function {
                 let (sin, cos) = (omega * x + phase).sin_cos();
                 [amplitude * sin + offset, amplitude * omega * cos, -amplitude * omega * omega * sin]
             }
-            Self::Spline(spline) => spline.value_slope_curvature(x),
+            Self::Spline(spline) | Self::NaturalSpline(spline) => spline.value_slope_curvature(x),
         }
     }
 
@@ -123,10 +134,8 @@ impl Function {
             Self::Sine { amplitude, omega, phase, offset } => {
                 Self::Sine { amplitude: amplitude * by, omega, phase, offset: offset * by }
             }
-            Self::Spline(mut spline) => {
-                spline.pieces.iter_mut().flatten().for_each(|c| *c *= by);
-                Self::Spline(spline)
-            }
+            Self::Spline(spline) => Self::Spline(spline.scaled(by)),
+            Self::NaturalSpline(spline) => Self::NaturalSpline(spline.scaled(by)),
         }
     }
 
@@ -143,7 +152,33 @@ impl Spline {
     /// # Errors
     /// [`SplineError`] for fewer than two points, lists of different length, or falling x.
     pub fn simm(x: &[f64], y: &[f64]) -> Result<Self, SplineError> {
-        let (h, slopes) = Self::steps(x, y)?;
+        let (h, slopes) = Self::steps(x, y, 2)?;
+        let n = x.len();
+        // Ends: the sixth of the third derivative there, (s[1] - s[0]) / h[0], is the third divided difference.
+        let span = |from: usize, to: usize| (x[to] - x[from]).max(LEAST_DISTANCE);
+        let second = |i: usize| (slopes[i + 1] - slopes[i]) / span(i, i + 2);
+        let third = |i: usize| (second(i + 1) - second(i)) / span(i, i + 3);
+        let (first, last) = if n > 3 { (third(0), third(n - 4)) } else { (0.0, 0.0) };
+        let (before, behind) = (h[0], h[n - 2]);
+        let ends = [(-before, before * before * first), (-behind, -behind * behind * last)];
+        Ok(Self::cubic(x, y, &h, &slopes, ends))
+    }
+
+    /// OpenSim's `GCVSpline` with half order 2 and no error variance: no second derivative at either end.
+    ///
+    /// # Errors
+    /// [`SplineError`] for fewer than four points (OpenSim's own limit), lists of different length, or x that does not rise.
+    pub fn natural(x: &[f64], y: &[f64]) -> Result<Self, SplineError> {
+        let (h, slopes) = Self::steps(x, y, 4)?;
+        if let Some(pair) = x.windows(2).find(|pair| pair[1] - pair[0] < LEAST_DISTANCE) {
+            return Err(SplineError::Stays { x: pair[0] });
+        }
+        // An infinite diagonal holds its unknown at zero.
+        Ok(Self::cubic(x, y, &h, &slopes, [(f64::INFINITY, 0.0); 2]))
+    }
+
+    /// The cubic with continuous second derivative. `ends`: diagonal and right side of the first and the last equation.
+    fn cubic(x: &[f64], y: &[f64], h: &[f64], slopes: &[f64], ends: [(f64, f64); 2]) -> Self {
         let n = x.len();
         // A sixth of the second derivative at each point, from the tridiagonal system of continuous slopes:
         //   h[i-1] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i] s[i+1] = slopes[i] - slopes[i-1].
@@ -153,16 +188,7 @@ impl Spline {
                 diagonal[i] = 2.0 * (h[i - 1] + h[i]);
                 s[i] = slopes[i] - slopes[i - 1];
             }
-            // Ends: the sixth of the third derivative there, (s[1] - s[0]) / h[0], is the third divided difference.
-            diagonal[0] = -h[0];
-            diagonal[n - 1] = -h[n - 2];
-            if n > 3 {
-                let span = |from: usize, to: usize| (x[to] - x[from]).max(LEAST_DISTANCE);
-                let third = |i: usize| (s[i + 2] / span(i + 1, i + 3) - s[i + 1] / span(i, i + 2)) / span(i, i + 3);
-                let (first, last) = (third(0), third(n - 4));
-                s[0] = h[0] * h[0] * first;
-                s[n - 1] = -h[n - 2] * h[n - 2] * last;
-            }
+            [(diagonal[0], s[0]), (diagonal[n - 1], s[n - 1])] = ends;
             for i in 1..n {
                 let factor = h[i - 1] / diagonal[i - 1];
                 diagonal[i] -= factor * h[i - 1];
@@ -178,7 +204,12 @@ impl Spline {
             .collect();
         let end_slope = slopes[n - 2] + h[n - 2] * (s[n - 2] + 2.0 * s[n - 1]);
         pieces.push([y[n - 1], end_slope, 3.0 * s[n - 1], pieces[n - 2][3]]);
-        Ok(Self { knots: x.to_vec(), pieces })
+        Self { knots: x.to_vec(), pieces }
+    }
+
+    fn scaled(mut self, by: f64) -> Self {
+        self.pieces.iter_mut().flatten().for_each(|c| *c *= by);
+        self
     }
 
     /// Straight lines between the points.
@@ -186,7 +217,7 @@ impl Spline {
     /// # Errors
     /// [`SplineError`] for fewer than two points, lists of different length, or falling x.
     pub fn piecewise_linear(x: &[f64], y: &[f64]) -> Result<Self, SplineError> {
-        let (_, slopes) = Self::steps(x, y)?;
+        let (_, slopes) = Self::steps(x, y, 2)?;
         let last = slopes[slopes.len() - 1];
         let pieces =
             y.iter().zip(slopes.iter().copied().chain([last])).map(|(&y, slope)| [y, slope, 0.0, 0.0]).collect();
@@ -194,12 +225,12 @@ impl Spline {
     }
 
     /// Distances of neighbours and slopes between them.
-    fn steps(x: &[f64], y: &[f64]) -> Result<(Vec<f64>, Vec<f64>), SplineError> {
+    fn steps(x: &[f64], y: &[f64], needed: usize) -> Result<(Vec<f64>, Vec<f64>), SplineError> {
         if x.len() != y.len() {
             return Err(SplineError::Unequal { x: x.len(), y: y.len() });
         }
-        if x.len() < 2 {
-            return Err(SplineError::TooFew { found: x.len() });
+        if x.len() < needed {
+            return Err(SplineError::TooFew { found: x.len(), needed });
         }
         if let Some(pair) = x.windows(2).find(|pair| pair[0] > pair[1]) {
             return Err(SplineError::Falls { before: pair[0], after: pair[1] });

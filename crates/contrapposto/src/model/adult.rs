@@ -123,16 +123,21 @@ pub fn adult(size: &Adult) -> Result<Model, AdultError> {
         Sex::Male => "adult, male",
     };
     let mut builder = ModelBuilder::new(name, Vector3::new(0.0, -GRAVITY, 0.0));
+    let mut patches = vec![];
     for left in [false, true] {
         for row in &recipe.library.adult.segment {
             let wanted = size.part == Part::Whole || (row.right_arm.is_some() && !left);
             if wanted && (row.mirrored || !left) {
                 builder.segment(recipe.segment(row, left)?)?;
+                patches.push(recipe.patch(row, left));
             }
         }
     }
     let mut model = builder.build();
     recipe.couple_legs(&mut model);
+    for (segment, patch) in patches.into_iter().enumerate() {
+        model = model.with_patch(segment, patch);
+    }
     Ok(model)
 }
 
@@ -231,6 +236,13 @@ impl Recipe<'_> {
             self.weigh(row, id, &mut spec)?;
         }
         Ok(spec)
+    }
+
+    /// Corners of the contact patch, m.
+    fn patch(&self, row: &SegmentRow, left: bool) -> Vec<Vector3<f64>> {
+        let side = if left { -1.0 } else { 1.0 };
+        let corners = row.patch.iter().flat_map(|patch| &patch.at_stature);
+        corners.map(|at| self.size.stature * Vector3::new(at[0], at[1], side * at[2])).collect()
     }
 
     /// Mass, centre and inertia from the anthropometry.

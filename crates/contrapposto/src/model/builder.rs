@@ -210,6 +210,7 @@ impl ModelBuilder {
             coordinates: first..model.coordinates.len(),
             in_parent: spec.in_parent,
             in_segment: spec.in_segment,
+            patch: vec![],
             mobility,
             offset,
         });

@@ -507,6 +507,15 @@ pub(super) struct SegmentRow {
     pub(super) right_arm: Option<InRightArm>,
     #[serde(default)]
     pub(super) motions: Vec<MotionRow>,
+    pub(super) patch: Option<PatchRow>,
+    #[expect(dead_code, reason = "stands in the file for its readers")]
+    reference: Reference,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PatchRow {
+    pub(super) at_stature: Vec<[f64; 3]>,
     #[expect(dead_code, reason = "stands in the file for its readers")]
     reference: Reference,
 }

@@ -50,6 +50,8 @@ pub struct Segment {
     pub in_parent: Placement,
     /// The joint's moved frame in this segment's frame.
     pub in_segment: Placement,
+    /// Corners of the patch that can rest on something (sole, palm, seat), segment frame, m; empty where none is known.
+    pub patch: Vec<Vector3<f64>>,
     /// The mobility that carries the segment; `None` when it is fixed to ground.
     pub(crate) mobility: Option<usize>,
     /// The segment's frame in the frame of that mobility (or in ground).
@@ -206,6 +208,13 @@ impl Model {
         found.range = range;
         found.default = found.default.max(range.0).min(range.1);
         Ok(self)
+    }
+
+    /// The same body with another contact patch of one segment (corners in its frame, m).
+    #[must_use]
+    pub fn with_patch(mut self, segment: usize, corners: Vec<Vector3<f64>>) -> Self {
+        self.segments[segment].patch = corners;
+        self
     }
 
     /// The same body with another fatigue law in both groups of one coordinate, if it has groups.

@@ -6,7 +6,10 @@
 mod scenario;
 mod step;
 mod summary;
+mod whole;
 
-pub use scenario::{ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables};
-pub use step::{Sample, Simulation};
+pub use scenario::{
+    Event, ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables, TaskSettings,
+};
+pub use step::{Contact, Relief, Sample, Simulation, Standing};
 pub use summary::{CoordinateSummary, StopReason, Summary, run};

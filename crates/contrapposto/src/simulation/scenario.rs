@@ -1,9 +1,13 @@
 //! What is the experiment? Body, start, loads, strategy and thresholds, all checked before the first step.
 
+use crate::contact::{Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
+use crate::ik::Goal;
+use crate::ik::task::{Task, TaskError};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
+use crate::relax::RelaxError;
 use crate::statics::{Load, LoadError};
 
 /// Which reading of Tables 1 and 2 decides.
@@ -48,6 +52,28 @@ pub struct RunSettings {
     pub stop_when_settled: bool,
 }
 
+/// What the body should do besides finding relief.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskSettings {
+    /// Tasks of one priority.
+    pub goal: Goal,
+    /// More important than the relief of tired muscles.
+    pub above_relief: bool,
+}
+
+/// Something that changes during a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Event {
+    /// When, s.
+    pub time: f64,
+    /// Strategy of every coordinate from then on.
+    pub strategies: Option<Vec<Strategy>>,
+    /// Loads from then on.
+    pub loads: Option<Vec<Load>>,
+    /// Places in [`Scenario::tasks`] and what is asked there from then on.
+    pub tasks: Vec<(usize, Goal)>,
+}
+
 /// A complete experiment.
 #[derive(Clone, Debug)]
 pub struct Scenario {
@@ -61,8 +87,16 @@ pub struct Scenario {
     pub free: Vec<bool>,
     /// What pulls on it besides its weight.
     pub loads: Vec<Load>,
+    /// What carries the body. Without supports its root is held as if by hand.
+    pub supports: Vec<Support>,
+    /// What it should do, the most important first.
+    pub tasks: Vec<TaskSettings>,
+    /// What changes on the way, the earliest first.
+    pub events: Vec<Event>,
     /// Relief wanted.
     pub strategy: StrategySettings,
+    /// Strategy of every coordinate at the start, where it is another than [`Scenario::strategy`]; empty for none.
+    pub strategies: Vec<Strategy>,
     /// Relief carried out.
     pub relief: ReliefSettings,
     /// When relief begins and ends.
@@ -83,6 +117,28 @@ pub enum ScenarioError {
     /// A load does not fit the model.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// A support does not fit the model.
+    #[error(transparent)]
+    Support(#[from] SupportError),
+    /// A task does not fit the model.
+    #[error("task {}: {error}", task + 1)]
+    Task {
+        /// Its place in the list.
+        task: usize,
+        /// Why.
+        error: TaskError,
+    },
+    /// No posture was found near the start in which the supports hold the body.
+    #[error("the supports cannot hold the body near the start: {force:.3} N and {moment:.3} N m are missing")]
+    CannotStand {
+        /// What is missing along the root's slides, N.
+        force: f64,
+        /// What is missing about the root's hinges, N m.
+        moment: f64,
+    },
+    /// The body cannot be moved toward its tasks.
+    #[error(transparent)]
+    Relax(#[from] RelaxError),
     /// A coordinate starts outside its range.
     #[error("`{coordinate}` starts at {value}, outside its range {}..{} (rad or m)", range.0, range.1)]
     OutsideRange {
@@ -111,7 +167,18 @@ pub enum ScenarioError {
 /// Most steps of one run: 30 steps a second for four days.
 const MOST_STEPS: f64 = 1e7;
 
+/// Do two goals ask for the same kinds of things?
+fn alike(a: &Goal, b: &Goal) -> bool {
+    let kinds = |goal: &Goal| goal.tasks.iter().map(Task::kind).collect::<Vec<_>>();
+    kinds(a) == kinds(b)
+}
+
 impl Scenario {
+    /// Does the body stand on something or have something to do? Otherwise each coordinate finds relief on its own.
+    pub fn is_whole(&self) -> bool {
+        !self.supports.is_empty() || !self.tasks.is_empty()
+    }
+
     /// Is everything in place?
     ///
     /// # Errors
@@ -121,11 +188,30 @@ impl Scenario {
         for load in &self.loads {
             load.check(&self.model)?;
         }
+        self.supports.iter().try_for_each(|support| support.check(&self.model))?;
+        let check = |task: usize, goal: &Goal| {
+            let tasks = goal.tasks.iter().map(|given| given.check(&self.model));
+            tasks.collect::<Result<(), _>>().map_err(|error| ScenarioError::Task { task, error })
+        };
+        self.tasks.iter().enumerate().try_for_each(|(i, task)| check(i, &task.goal))?;
         let count = self.model.coordinates().len() as f64;
         let setting = |ok: bool, name, value, accepted| {
             if ok { Ok(()) } else { Err(ScenarioError::Setting { name, value, accepted }) }
         };
         setting(self.free.len() as f64 == count, "number of free flags", self.free.len() as f64, "one a coordinate")?;
+        let given = self.strategies.len() as f64;
+        setting(given == 0.0 || given == count, "number of strategies", given, "none, or one a coordinate")?;
+        for event in &self.events {
+            setting(event.time >= 0.0 && event.time.is_finite(), "time of an event (s)", event.time, "not negative")?;
+            event.loads.iter().flatten().try_for_each(|load| load.check(&self.model))?;
+            let given = event.strategies.as_ref().map_or(count, |list| list.len() as f64);
+            setting(given == count, "number of strategies", given, "none, or one a coordinate")?;
+            for (i, goal) in &event.tasks {
+                let fits = self.tasks.get(*i).is_some_and(|task| alike(&task.goal, goal));
+                setting(fits, "place of a task that an event changes", *i as f64, "that of a task of the same kinds")?;
+                check(*i, goal)?;
+            }
+        }
         let given = self.start_fatigue.len() as f64;
         setting(given == count, "number of fatigue pairs", given, "one a coordinate")?;
         for ((coordinate, &value), &free) in self.model.coordinates().iter().zip(self.start.values()).zip(&self.free) {
@@ -133,7 +219,7 @@ impl Scenario {
             if value < range.0 || value > range.1 {
                 return Err(ScenarioError::OutsideRange { coordinate: coordinate.name.clone(), value, range });
             }
-            if free && !coordinate.can_be_relieved() {
+            if free && !self.is_whole() && !coordinate.can_be_relieved() {
                 return Err(ScenarioError::NoPassiveCurve(coordinate.name.clone()));
             }
         }

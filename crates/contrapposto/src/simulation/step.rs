@@ -1,13 +1,17 @@
 //! What happens in one time step?
 
+use nalgebra::Vector3;
+
+use super::whole::Whole;
 use super::{Scenario, ScenarioError, Tables};
 use crate::constraint::{HalfSpace, relief_step};
+use crate::contact::Balance;
 use crate::fatigue::FatigueState;
 use crate::hybrid::{Decision, Outcome, Problem, Strategy, minimise, minimise_literal};
 use crate::kinematics::Kinematics;
 use crate::model::Side;
 use crate::posture::Posture;
-use crate::statics::ExternalTorque;
+use crate::statics::{ExternalTorque, Load};
 
 /// Motion below this size, rad or m, counts as none.
 const SETTLED: f64 = 1e-6;
@@ -31,8 +35,60 @@ pub struct Sample<'a> {
     pub fatigue: &'a [[f64; 2]],
     /// The decision of every coordinate that asked for relief.
     pub decisions: &'a [Option<Decision>],
+    /// What became of the relief of every coordinate that asked for it, in the step that led here.
+    pub reliefs: &'a [Option<Relief>],
+    /// How it stands, for a body with supports or tasks.
+    pub standing: Option<&'a Standing>,
+    /// Strategy of every coordinate.
+    pub strategies: &'a [Strategy],
     /// Relief was asked for, and moves nothing any more.
     pub settled: bool,
+}
+
+/// What became of a relief.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Relief {
+    /// It was carried out: the change of active torque that the decision foretold, and the real one, N m.
+    Done {
+        /// From the slope along the motion.
+        predicted: f64,
+        /// Computed in the posture that was reached.
+        real: f64,
+    },
+    /// Something more important stood against it: supports, tasks above relief, or a more tired group.
+    Deferred,
+    /// It made its own torque and the whole effort larger, and was taken back.
+    TakenBack,
+    /// The joint cannot move without what stands above relief.
+    Blocked,
+    /// It was taken back so often that it waits for the next recovery.
+    GivenUp,
+}
+
+/// How a body stands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// One a support, in the order of the scenario.
+    pub contacts: Vec<Contact>,
+    /// Length of the error of each task, in its units.
+    pub errors: Vec<f64>,
+    /// How far supports are off their places, m and rad together.
+    pub slip: f64,
+    /// Centre of mass, ground, m.
+    pub center_of_mass: Vector3<f64>,
+    /// `sum (active torque / strength)^2` over all coordinates with known strength.
+    pub effort: f64,
+}
+
+/// What a support carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Force on the body, ground axes, N.
+    pub force: Vector3<f64>,
+    /// Its normal part as a share of body weight.
+    pub share: f64,
+    /// Where it acts, ground, m; `None` where nothing is carried.
+    pub center_of_pressure: Option<Vector3<f64>>,
 }
 
 /// A scenario under way.
@@ -52,6 +108,16 @@ pub struct Simulation<'a> {
     fatigue: Vec<[f64; 2]>,
     decisions: Vec<Option<Decision>>,
     settled: bool,
+    reliefs: Vec<Option<Relief>>,
+    standing: Standing,
+    /// The body with supports or tasks.
+    whole: Option<Whole<'a>>,
+    loads: Vec<Load>,
+    strategies: Vec<Strategy>,
+    next_event: usize,
+    /// Active torque before the last motion, and its change that each decision foretold.
+    active_before: Vec<f64>,
+    predicted: Vec<f64>,
     // What the relief of each coordinate asks for; the whole space where there is none.
     constraints: Vec<HalfSpace>,
     shift: Vec<f64>,
@@ -66,7 +132,12 @@ struct GroupState {
     load_at_trip: f64,
     /// The strategy its present recovery ended up with (docs/deviations.md, D4).
     accepted: Option<Strategy>,
+    /// How often its relief was taken back.
+    taken_back: u32,
 }
+
+/// A relief that was taken back so often is tried the other way, and twice as often given up.
+const PATIENCE: u32 = 3;
 
 impl<'a> Simulation<'a> {
     /// Ready for the first step.
@@ -77,11 +148,19 @@ impl<'a> Simulation<'a> {
         scenario.check()?;
         let model = &scenario.model;
         let n = model.coordinates().len();
-        let rested = GroupState { fatigue: None, recovering: false, load_at_trip: 0.0, accepted: None };
+        let rested = GroupState { fatigue: None, recovering: false, load_at_trip: 0.0, accepted: None, taken_back: 0 };
+        let (whole, start) = match scenario.is_whole() {
+            true => Whole::new(scenario).map(|(whole, start)| (Some(whole), start))?,
+            false => (None, scenario.start.clone()),
+        };
+        let strategies = match scenario.strategies.is_empty() {
+            true => vec![scenario.strategy.kind; n],
+            false => scenario.strategies.clone(),
+        };
         let mut simulation = Self {
             scenario,
             steps: 0,
-            posture: scenario.start.clone(),
+            posture: start,
             kinematics: Kinematics::new(model),
             external_torque: ExternalTorque::new(model),
             groups: vec![[rested; 2]; n],
@@ -92,6 +171,14 @@ impl<'a> Simulation<'a> {
             fatigue: vec![[0.0; 2]; n],
             decisions: vec![None; n],
             settled: false,
+            reliefs: vec![None; n],
+            standing: Standing::default(),
+            whole,
+            loads: scenario.loads.clone(),
+            strategies,
+            next_event: 0,
+            active_before: vec![0.0; n],
+            predicted: vec![0.0; n],
             constraints: vec![HalfSpace::new(n); n],
             shift: vec![0.0; n],
         };
@@ -113,10 +200,11 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// None for a scenario that was checked; the posture never leaves its ranges.
     pub fn step(&mut self) -> Result<Sample<'_>, ScenarioError> {
+        let time = self.steps as f64 * self.scenario.run.step;
+        self.events(time)?;
         self.torques()?;
         self.levels();
-        self.decide();
-        let time = self.steps as f64 * self.scenario.run.step;
+        self.decide()?;
         self.tire();
         self.steps += 1;
         // The motion is carried out at the start of the next step, so that the sample can be lent out as it is.
@@ -129,26 +217,138 @@ impl<'a> Simulation<'a> {
             load: &self.load,
             fatigue: &self.fatigue,
             decisions: &self.decisions,
+            reliefs: &self.reliefs,
+            standing: self.whole.is_some().then_some(&self.standing),
+            strategies: &self.strategies,
             settled: self.settled,
         })
     }
 
+    /// What changes now.
+    fn events(&mut self, time: f64) -> Result<(), ScenarioError> {
+        let scenario = self.scenario;
+        while let Some(event) = scenario.events.get(self.next_event).filter(|event| event.time <= time + 1e-9) {
+            self.next_event += 1;
+            if let Some(strategies) = &event.strategies {
+                self.strategies.clone_from(strategies);
+                // A new wish is a new recovery.
+                self.groups.iter_mut().flatten().for_each(|group| group.accepted = None);
+            }
+            if let Some(loads) = &event.loads {
+                self.loads.clone_from(loads);
+                if let Some(whole) = &mut self.whole {
+                    whole.set_loads(loads)?;
+                }
+            }
+            for (task, goal) in &event.tasks {
+                if let Some(whole) = &mut self.whole {
+                    whole.set_task(*task, goal);
+                }
+            }
+            if let Some(whole) = &mut self.whole {
+                whole.wake();
+            }
+        }
+        Ok(())
+    }
+
     /// Moves to where the last decisions asked, then computes all torques there.
     fn torques(&mut self) -> Result<(), ScenarioError> {
+        self.reliefs.fill(None);
+        if self.whole.is_some() {
+            return self.torques_of_the_whole();
+        }
         let model = &self.scenario.model;
         self.carry_out();
         self.kinematics.update(model, &self.posture)?;
-        self.external_torque.update(model, &self.kinematics, &self.scenario.loads)?;
+        self.external_torque.update(model, &self.kinematics, &self.loads)?;
         for (i, coordinate) in model.coordinates().iter().enumerate() {
-            let angle = self.posture.values()[i];
             self.external[i] = coordinate.rate.map_or(0.0, |rate| self.external_torque.torques()[rate]);
             self.passive[i] = coordinate.passive.as_ref().map_or(0.0, |law| law.torque(i, self.kinematics.values()));
+        }
+        self.weigh();
+        Ok(())
+    }
+
+    /// Active torque and relative load of every coordinate; gives the effort.
+    fn weigh(&mut self) -> f64 {
+        let mut effort = 0.0;
+        for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
             self.active[i] = -(self.passive[i] + self.external[i]);
             let side = Side::of(self.active[i]).index();
+            let angle = self.posture.values()[i];
             let strength = coordinate.groups.as_ref().map(|groups| groups[side].strength.torque(angle));
             self.load[i] = strength.map_or(0.0, |strength| self.active[i].abs() / strength);
+            effort += self.load[i] * self.load[i];
         }
+        effort
+    }
+
+    /// As [`Simulation::torques`], through the priorities of the whole body. A step that lets the body fall, or makes the torque
+    /// of a group that asked for relief larger and effort with it, is taken back.
+    fn torques_of_the_whole(&mut self) -> Result<(), ScenarioError> {
+        let Some(mut whole) = self.whole.take() else { return Ok(()) };
+        let mut asked: Vec<usize> = (0..self.decisions.len()).filter(|&i| self.decisions[i].is_some()).collect();
+        let tired = |i: &usize| self.fatigue[*i][0].max(self.fatigue[*i][1]);
+        asked.sort_by(|a, b| tired(b).total_cmp(&tired(a)));
+        let reliefs: Vec<(usize, &HalfSpace)> = asked.iter().map(|&i| (i, &self.constraints[i])).collect();
+        let mut deferred = vec![];
+        whole.carry_out(&mut self.posture, &reliefs, &mut deferred)?;
+        self.active_before.copy_from_slice(&self.active);
+        let before = self.standing.effort;
+        let mut effort = self.look(&mut whole)?;
+        let tolerance = self.scenario.relief.torque_tolerance;
+        let fell = whole.contact().balance() != Balance::Held;
+        let rose = |i: usize| self.active[i].abs() > self.active_before[i].abs() + tolerance;
+        let worse: Vec<usize> =
+            if fell { asked.clone() } else { asked.iter().copied().filter(|&i| rose(i) && effort > before).collect() };
+        if fell || !worse.is_empty() {
+            whole.take_back(&mut self.posture)?;
+            effort = self.look(&mut whole)?;
+        }
+        for &i in &asked {
+            self.reliefs[i] = Some(if worse.contains(&i) {
+                let side = self.asking_side(i);
+                self.groups[i][side.index()].taken_back += 1;
+                Relief::TakenBack
+            } else if deferred.contains(&i) || !worse.is_empty() {
+                Relief::Deferred
+            } else {
+                Relief::Done { predicted: self.predicted[i], real: self.active[i] - self.active_before[i] }
+            });
+        }
+        self.stand(&whole, effort);
+        self.whole = Some(whole);
         Ok(())
+    }
+
+    /// All torques where the body is; gives the effort.
+    fn look(&mut self, whole: &mut Whole<'a>) -> Result<f64, ScenarioError> {
+        whole.see(&self.posture)?;
+        for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
+            (self.external[i], self.passive[i]) = coordinate.rate.map_or((0.0, 0.0), |rate| whole.torques(rate));
+        }
+        Ok(self.weigh())
+    }
+
+    fn stand(&mut self, whole: &Whole<'a>, effort: f64) {
+        let model = &self.scenario.model;
+        let contact = whole.contact();
+        self.standing.contacts.clear();
+        self.standing.contacts.extend((0..contact.supports().len()).map(|support| Contact {
+            force: contact.force(support),
+            share: contact.share(support),
+            center_of_pressure: whole.center_of_pressure(model, support),
+        }));
+        self.standing.slip = whole.errors(&mut self.standing.errors);
+        self.standing.center_of_mass = whole.center_of_mass(model).unwrap_or_default();
+        self.standing.effort = effort;
+    }
+
+    /// The group of a coordinate that asks for relief: the one that works if it is tired, else the other one.
+    fn asking_side(&self, coordinate: usize) -> Side {
+        let works = Side::of(self.active_before[coordinate]);
+        if self.groups[coordinate][works.index()].recovering { works } else { Side::BOTH[1 - works.index()] }
     }
 
     /// Projects the posture into every half-space, free coordinates only, and into the ranges.
@@ -185,6 +385,7 @@ impl<'a> Simulation<'a> {
                     group.load_at_trip = load;
                 } else if !recovering {
                     group.accepted = None;
+                    group.taken_back = 0;
                 }
                 group.recovering = recovering;
             }
@@ -192,7 +393,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Asks the hybrid minimisation for every tired coordinate and builds its half-space.
-    fn decide(&mut self) {
+    fn decide(&mut self) -> Result<(), ScenarioError> {
         let Scenario { model, strategy, relief, free, .. } = self.scenario;
         let mut asked = false;
         let mut moved = false;
@@ -206,17 +407,32 @@ impl<'a> Simulation<'a> {
             let Some(side) = [works, Side::BOTH[1 - works.index()]].into_iter().find(|&side| asks(side)) else {
                 continue;
             };
+            let group = self.groups[i][side.index()];
+            if group.taken_back >= 2 * PATIENCE {
+                self.reliefs[i] = Some(Relief::GivenUp);
+                continue;
+            }
             let angle = self.posture.values()[i];
-            let Some(curve) = law.curve_at(i, self.kinematics.values(), coordinate.range) else { continue };
+            let (values, slope) = match &mut self.whole {
+                Some(whole) => {
+                    let Some(slope) = whole.slope(&self.posture, i, rate)? else {
+                        self.reliefs[i] = Some(Relief::Blocked);
+                        continue;
+                    };
+                    (whole.values(), slope)
+                }
+                None => (self.kinematics.values(), self.external_torque.own_slope(&self.kinematics, model, rate)),
+            };
+            let Some(curve) = law.curve_at(i, values, coordinate.range) else { continue };
             let problem = Problem {
                 curve: &curve,
                 angle,
                 external_torque: self.external[i],
-                external_slope: self.external_torque.own_slope(&self.kinematics, model, rate),
-                strategy: strategy.kind,
+                external_slope: slope,
+                strategy: if group.taken_back >= PATIENCE { Strategy::Passive } else { self.strategies[i] },
                 minimum_decrease_ratio: strategy.minimum_decrease_ratio,
                 torque_tolerance: relief.torque_tolerance,
-                accepted: self.groups[i][side.index()].accepted,
+                accepted: group.accepted,
             };
             let decision = match relief.tables {
                 Tables::Total => minimise(&problem),
@@ -227,14 +443,18 @@ impl<'a> Simulation<'a> {
             asked = true;
             self.groups[i][side.index()].accept(decision.outcome);
             self.shift.fill(0.0);
+            self.predicted[i] = 0.0;
             if let Some(goal) = decision.goal {
-                self.shift[i] = relief_step(goal, angle, relief.step_gain, relief.max_step);
+                let gain = relief.step_gain * 0.5f64.powi(group.taken_back.min(30) as i32);
+                self.shift[i] = relief_step(goal, angle, gain, relief.max_step);
+                self.predicted[i] = -(curve.slope(angle) + slope) * self.shift[i];
                 moved |= self.shift[i].abs() > SETTLED;
             }
             self.constraints[i].ask_for(self.posture.values(), &self.shift);
             self.decisions[i] = Some(decision);
         }
-        self.settled = asked && !moved;
+        self.settled = asked && !moved && self.whole.as_ref().is_none_or(Whole::still);
+        Ok(())
     }
 
     /// One time step of load on every muscle group.

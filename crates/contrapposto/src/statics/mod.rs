@@ -6,7 +6,9 @@
 mod external;
 mod fold;
 mod load;
+mod passive_torque;
 
 pub use external::ExternalTorque;
 pub use fold::Gradient;
 pub use load::{FixedIn, Load, LoadError, LoadKind};
+pub use passive_torque::PassiveTorque;

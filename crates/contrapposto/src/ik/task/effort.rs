@@ -29,7 +29,7 @@ impl Effort {
 
     pub(super) fn residual(&self, model: &Model, body: &Body, out: &mut Vec<f64>) {
         out.extend(self.coordinates.iter().map(|&coordinate| {
-            let active = -(external(model, body, coordinate) + passive(model, body, coordinate, [1.0, 0.0], None));
+            let active = active(model, body, coordinate);
             active / strength(model, body, coordinate, active).0
         }));
     }
@@ -75,6 +75,16 @@ impl Effort {
         }
         Ok(())
     }
+}
+
+/// Active torque of a coordinate, N m, followers folded in.
+fn active(model: &Model, body: &Body, coordinate: usize) -> f64 {
+    -(external(model, body, coordinate) + passive(model, body, coordinate, [1.0, 0.0], None))
+}
+
+/// What a torque on a coordinate of 1 N m takes from its effort: one over the strength of the group that works.
+pub(crate) fn share_of_strength(model: &Model, body: &Body, coordinate: usize) -> f64 {
+    1.0 / strength(model, body, coordinate, active(model, body, coordinate)).0
 }
 
 fn external(model: &Model, body: &Body, coordinate: usize) -> f64 {

@@ -13,10 +13,12 @@ mod placement;
 mod point;
 mod polygon;
 mod posture;
+mod pull;
 
 pub use center_of_mass::{CenterOfMass, Goal};
 pub use distance::Distance;
 pub use effort::Effort;
+pub(crate) use effort::share_of_strength;
 pub use look_at::LookAt;
 pub use orientation::Orientation;
 pub use placement::Placement;
@@ -151,6 +153,18 @@ impl Task {
             Self::Posture(_) => "posture",
             Self::Effort(_) => "effort",
         }
+    }
+
+    /// Gives it another place to reach, ground, m; `false` for a task that has none.
+    pub fn retarget(&mut self, to: Vector3<f64>) -> bool {
+        match self {
+            Self::Point(task) => task.target = to,
+            Self::Placement(task) => task.target.translation.vector = to,
+            Self::LookAt(task) => task.target = to,
+            Self::CenterOfMass(CenterOfMass { goal: Goal::At { target, .. } }) => *target = to,
+            _ => return false,
+        }
+        true
     }
 
     /// Its kind and what it moves, e.g. `point hand_r`. The task must have passed [`Task::check`].

@@ -1,0 +1,68 @@
+//! The overlay reader is total: any bytes give a model with finite torques, or a complaint that names the file. What an
+//! overlay means is tested with the program (`contrapposto-cli/tests/torques.rs`).
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::toml::hammer_toml;
+use contrapposto::model::{Adult, Model, adult};
+use contrapposto_formats::overlay;
+
+/// Every kind of law, on angles and a slide.
+const FULL: &str = r#"[coordinates.knee_angle_r]
+range_deg = [-5, 120]
+passive = { double_exponential = { lower = { torque_nm = 2, rate_per_rad = 8, angle_deg = -4 }, upper = { torque_nm = 2, rate_per_rad = 6, angle_deg = 110 }, stiffness_nm_per_rad = 0.4, neutral_deg = 30 }, reshape = { zone_deg = 5, end_torque_nm = 20 } }
+strength = { positive_nm = 100, negative_nm = 200 }
+fatigue = "knee"
+[coordinates.elbow_flex_r]
+passive = { curve = "elbow_neutral", sign = 1 }
+[coordinates.ankle_angle_r]
+range_deg = [-40, 30]
+passive = { coordinate_limit_force = { upper_stiffness_nm_per_deg = 1.5, upper_limit_deg = 20, lower_stiffness_nm_per_deg = 1.2, lower_limit_deg = -30, transition_deg = 8 } }
+[coordinates.wrist_flex_r]
+range_deg = [-70, 70]
+passive = { table_deg_nm = [[-70, 13.2], [-15, 0.5], [20, -1.6], [70, -9.9]], reshape = true }
+fatigue = "grip"
+[coordinates.pelvis_ty]
+range_m = [-1, 2.5]
+"#;
+
+#[test]
+fn mutated_overlays_never_panic() {
+    let model = adult(&Adult::default()).unwrap();
+    if let Err(error) = overlay("full.toml", FULL.as_bytes(), model.clone()) {
+        panic!("{error:?}");
+    }
+    hammer_toml("overlay", 20_070_904, 5_000, &[FULL.to_owned()], |bytes| {
+        let told = || String::from_utf8_lossy(bytes).into_owned();
+        match overlay("mutant.toml", bytes, model.clone()) {
+            Ok(laid) => {
+                assert!(!laid.changes.is_empty() && sound(&laid.model), "{}", told());
+                true
+            }
+            Err(error) => {
+                let mut text = String::new();
+                miette::NarratableReportHandler::new().render_report(&mut text, &error).unwrap();
+                assert!(text.contains("mutant.toml") && !text.contains('\u{1b}'), "{text:?}\n{}", told());
+                false
+            }
+        }
+    });
+}
+
+/// Ranges are ranges, defaults lie in them, and every torque in them is a number.
+fn sound(model: &Model) -> bool {
+    let mut values = model.default_posture().values().to_vec();
+    (0..values.len()).all(|i| {
+        let coordinate = &model.coordinates()[i];
+        let (min, max) = coordinate.range;
+        let inside = min < max && (min..=max).contains(&coordinate.default);
+        let torques = (0..=8).all(|k| {
+            values[i] = min + (max - min) * f64::from(k) / 8.0;
+            coordinate.passive.as_ref().is_none_or(|law| law.torque(i, &values).is_finite())
+        });
+        values[i] = coordinate.default;
+        inside && torques
+    })
+}

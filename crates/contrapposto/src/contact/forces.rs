@@ -1,0 +1,385 @@
+//! Which contact forces keep a body in a posture in equilibrium, at least effort?
+//!
+//! Unknown are the forces at all corners, each as normal force and friction along two axes of its plane, in body weights. In
+//! strict order of priority: friction stays inside its pyramid (and normal forces only push); the root is in equilibrium; no
+//! support carries more than its wished share; muscles work least, `sum (tau_a / S)^2`; the forces are small. Of supports whose
+//! friction has no limit the first row is left out. Strength `S` is that of the group that works, which depends on the answer:
+//! signs that changed are put right until they agree.
+
+use nalgebra::Vector3;
+
+use super::Support;
+use super::support::{SupportError, root_rates};
+use crate::kinematics::Kinematics;
+use crate::math::lexicographic::{Level, Problem, Solver, Status};
+use crate::model::{Model, Side};
+use crate::statics::{FixedIn, Load, LoadKind};
+
+/// Is the root in equilibrium?
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Balance {
+    /// To rounding.
+    Held,
+    /// No forces that the supports can give hold the body in this posture.
+    Short {
+        /// What is missing along the root's slides, N.
+        force: f64,
+        /// What is missing about the root's hinges, N m.
+        moment: f64,
+    },
+}
+
+/// What the solver leaves of the root's equations when they hold, in body weights (times 1 m).
+const HELD: f64 = 1e-9;
+/// How often signs of active torque are put right.
+const SIGNS: usize = 12;
+
+/// Contact forces in a posture. Depends on posture, loads and passive torque; filled by [`ContactForces::update`].
+#[derive(Clone, Debug)]
+pub struct ContactForces {
+    supports: Vec<Support>,
+    /// Rates that only supports can hold.
+    root: Vec<usize>,
+    /// Coordinates whose effort counts, and their rates.
+    working: Vec<(usize, usize)>,
+    sides: Vec<Side>,
+    /// Weight of the body, N; 1 for a body without weight.
+    weight: f64,
+    /// One a corner, world-fixed.
+    loads: Vec<Load>,
+    axes: Vec<[Vector3<f64>; 3]>,
+    /// By unknown, in body weights.
+    forces: Vec<f64>,
+    /// Torque of every rate at one body weight of each unknown, N m: one row an unknown.
+    columns: Vec<f64>,
+    /// Torque of every rate by all of them, N m.
+    torques: Vec<f64>,
+    jacobian: Vec<f64>,
+    row: Vec<f64>,
+    problem: Problem,
+    solver: Solver,
+    balance: Balance,
+    /// Of each rate: does it turn?
+    turning: Vec<bool>,
+}
+
+/// No corner gives more than so many body weights. Straight legs would press patches that cannot slip apart with forces
+/// without end to spare a muscle a little.
+const LARGEST: f64 = 2.0;
+
+/// Unknowns of a corner.
+pub(crate) const OF_A_CORNER: usize = 3;
+
+impl ContactForces {
+    /// Ready for `model` on its supports.
+    ///
+    /// # Errors
+    /// [`SupportError`] when a support does not fit the model.
+    pub fn new(model: &Model, supports: Vec<Support>) -> Result<Self, SupportError> {
+        supports.iter().try_for_each(|support| support.check(model))?;
+        let mut loads = vec![];
+        let mut axes = vec![];
+        for support in &supports {
+            for &point in &support.corners {
+                let kind = LoadKind::Force(Vector3::zeros(), FixedIn::World);
+                loads.push(Load { segment: support.segment, point, kind });
+                axes.push(support.axes());
+            }
+        }
+        let n = model.rates().len();
+        let unknowns = OF_A_CORNER * loads.len();
+        let mut problem = Problem::new(unknowns);
+        for i in 0..unknowns {
+            (problem.lower[i], problem.upper[i]) = bounds(i);
+        }
+        let weight = model.mass() * model.gravity().norm();
+        let coordinates = model.coordinates().iter().enumerate();
+        let working = coordinates.filter(|(i, c)| c.groups.is_some() && !model.is_dependent(*i));
+        let working: Vec<(usize, usize)> = working.filter_map(|(i, c)| Some((i, c.rate?))).collect();
+        let mut forces = Self {
+            sides: vec![Side::Positive; working.len()],
+            working,
+            root: root_rates(model),
+            weight: if weight > 0.0 { weight } else { 1.0 },
+            loads,
+            axes,
+            forces: vec![0.0; unknowns],
+            columns: vec![0.0; unknowns * n],
+            torques: vec![0.0; n],
+            jacobian: vec![0.0; 3 * n],
+            row: vec![0.0; unknowns],
+            problem,
+            solver: Solver::new(),
+            balance: Balance::Held,
+            turning: model.rates().iter().map(|rate| rate.rotational).collect(),
+            supports,
+        };
+        forces.problem.levels.resize(5, Level::default());
+        Ok(forces)
+    }
+
+    /// Finds the forces in the posture that `kinematics` holds. `external` and `passive` are torques of every rate without
+    /// contact forces, followers folded into their leaders, N m. Does not allocate once it has solved.
+    pub fn update(&mut self, model: &Model, kinematics: &Kinematics, external: &[f64], passive: &[f64]) -> Balance {
+        self.gather(model, kinematics);
+        self.hard_levels(external, passive);
+        for _ in 0..SIGNS {
+            self.effort_level(model, kinematics, external, passive);
+            // Every number was checked with the supports and the model.
+            if !matches!(self.solver.solve_next(&self.problem), Ok(Status::Solved | Status::Infeasible { .. })) {
+                self.solver.forget();
+                let _ = self.solver.solve(&self.problem);
+            }
+            self.forces.copy_from_slice(self.solver.solution());
+            self.sum();
+            if !self.turn_sides(external, passive) {
+                break;
+            }
+        }
+        self.balance = self.judge();
+        self.write_loads();
+        self.balance
+    }
+
+    /// Torque of every unknown force.
+    fn gather(&mut self, model: &Model, kinematics: &Kinematics) {
+        let n = model.rates().len();
+        for (i, (load, axes)) in self.loads.iter().zip(&self.axes).enumerate() {
+            kinematics.point_jacobian(model, load.segment, load.point, &mut self.jacobian);
+            let (x, rest) = self.jacobian.split_at(n);
+            let (y, z) = rest.split_at(n);
+            let columns = &mut self.columns[OF_A_CORNER * i * n..OF_A_CORNER * (i + 1) * n];
+            for (column, axis) in columns.chunks_exact_mut(n.max(1)).zip(axes) {
+                let force = self.weight * axis;
+                for (((torque, x), y), z) in column.iter_mut().zip(x).zip(y).zip(z) {
+                    *torque = force.x * x + force.y * y + force.z * z;
+                }
+            }
+        }
+    }
+
+    /// The row of a rate's torque, over all unknowns, divided by `size`.
+    fn fill_row(&mut self, rate: usize, size: f64) {
+        let n = self.torques.len();
+        for (j, entry) in self.row.iter_mut().enumerate() {
+            *entry = self.columns[j * n + rate] / size;
+        }
+    }
+
+    /// Friction, equilibrium of the root, shares, and small forces.
+    fn hard_levels(&mut self, external: &[f64], passive: &[f64]) {
+        self.problem.levels.iter_mut().for_each(Level::clear);
+        let unknowns = Unknowns { first: 0, now: None };
+        let mut corner = 0;
+        for support in &self.supports {
+            let corners = corner..corner + support.corners.len();
+            corner = corners.end;
+            friction_rows(&mut self.problem.levels[0], &mut self.row, support, corners.clone(), unknowns);
+            share_row(&mut self.problem.levels[2], &mut self.row, support, corners, unknowns);
+        }
+        for i in 0..self.root.len() {
+            let rate = self.root[i];
+            self.fill_row(rate, self.weight);
+            let rest = -(external[rate] + passive[rate]) / self.weight;
+            self.problem.levels[1].push(&self.row, rest, rest);
+        }
+        for i in 0..self.row.len() {
+            self.row.fill(0.0);
+            self.row[i] = 1.0;
+            self.problem.levels[4].push(&self.row, 0.0, 0.0);
+        }
+        self.problem.levels[0].hard = true;
+        self.problem.levels[1].hard = true;
+    }
+
+    fn effort_level(&mut self, model: &Model, kinematics: &Kinematics, external: &[f64], passive: &[f64]) {
+        self.problem.levels[3].clear();
+        for i in 0..self.working.len() {
+            let (coordinate, rate) = self.working[i];
+            let Some(groups) = &model.coordinates()[coordinate].groups else { continue };
+            let strength = groups[self.sides[i].index()].strength.torque(kinematics.values()[coordinate]);
+            self.fill_row(rate, strength);
+            let rest = -(external[rate] + passive[rate]) / strength;
+            self.problem.levels[3].push(&self.row, rest, rest);
+        }
+    }
+
+    /// Torques by all forces.
+    fn sum(&mut self) {
+        self.torques.fill(0.0);
+        for (column, force) in self.columns.chunks_exact(self.torques.len().max(1)).zip(&self.forces) {
+            self.torques.iter_mut().zip(column).for_each(|(torque, entry)| *torque += entry * force);
+        }
+    }
+
+    /// Puts the sides right on which muscles work; `false` if all were.
+    fn turn_sides(&mut self, external: &[f64], passive: &[f64]) -> bool {
+        let mut turned = false;
+        for (side, &(_, rate)) in self.sides.iter_mut().zip(&self.working) {
+            let now = Side::of(-(external[rate] + passive[rate] + self.torques[rate]));
+            turned |= now != *side;
+            *side = now;
+        }
+        turned
+    }
+
+    fn judge(&self) -> Balance {
+        let residual = self.solver.residual(1);
+        if residual.iter().all(|left| left.abs() <= HELD) {
+            return Balance::Held;
+        }
+        let mut missing = [0.0; 2];
+        for (left, &rate) in residual.iter().zip(&self.root) {
+            missing[usize::from(self.turning[rate])] += (left * self.weight).powi(2);
+        }
+        Balance::Short { force: missing[0].sqrt(), moment: missing[1].sqrt() }
+    }
+
+    fn write_loads(&mut self) {
+        for ((load, axes), force) in self.loads.iter_mut().zip(&self.axes).zip(self.forces.chunks_exact(OF_A_CORNER)) {
+            let force: Vector3<f64> = axes.iter().zip(force).map(|(axis, share)| *share * *axis).sum();
+            load.kind = LoadKind::Force(self.weight * force, FixedIn::World);
+        }
+    }
+
+    /// The supports.
+    pub fn supports(&self) -> &[Support] {
+        &self.supports
+    }
+
+    /// Rates that only supports can hold.
+    pub fn root(&self) -> &[usize] {
+        &self.root
+    }
+
+    /// What the last update found.
+    pub fn balance(&self) -> Balance {
+        self.balance
+    }
+
+    /// Weight of the body, N, which forces are counted in; 1 for a body without weight.
+    pub fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// One world-fixed force a corner, in the order of the supports: what a statics with contact takes as loads.
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// Torque of every rate by all contact forces, N m.
+    pub fn torques(&self) -> &[f64] {
+        &self.torques
+    }
+
+    /// By corner: the directions of its three forces, ground axes.
+    pub fn axes(&self) -> &[[Vector3<f64>; OF_A_CORNER]] {
+        &self.axes
+    }
+
+    /// By corner: normal force and friction along the two axes of the plane, in body weights.
+    pub fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    /// Torque of every rate at one body weight of each of [`ContactForces::forces`], N m: one row an unknown.
+    pub fn columns(&self) -> &[f64] {
+        &self.columns
+    }
+
+    /// Corners of a support, as places in [`ContactForces::loads`].
+    pub fn corners(&self, support: usize) -> std::ops::Range<usize> {
+        let start = self.supports[..support].iter().map(|support| support.corners.len()).sum();
+        start..start + self.supports[support].corners.len()
+    }
+
+    /// Whole force on the body at a support, ground axes, N.
+    pub fn force(&self, support: usize) -> Vector3<f64> {
+        self.loads[self.corners(support)].iter().map(force_of).sum()
+    }
+
+    /// Normal force at a support as a share of body weight.
+    pub fn share(&self, support: usize) -> f64 {
+        self.corners(support).map(|corner| self.forces[OF_A_CORNER * corner]).sum()
+    }
+
+    /// Where the normal force of a support acts, ground, m; `None` where it carries nothing.
+    pub fn center_of_pressure(&self, model: &Model, kinematics: &Kinematics, support: usize) -> Option<Vector3<f64>> {
+        let share = self.share(support);
+        let sum: Vector3<f64> = self
+            .corners(support)
+            .map(|corner| {
+                let load = &self.loads[corner];
+                self.forces[OF_A_CORNER * corner] * kinematics.station(model, load.segment, load.point)
+            })
+            .sum();
+        (share > 1e-9).then(|| sum / share)
+    }
+}
+
+fn force_of(load: &Load) -> Vector3<f64> {
+    if let LoadKind::Force(force, _) = load.kind { force } else { Vector3::zeros() }
+}
+
+/// Bounds of a force, in body weights: corners push and never pull.
+pub(crate) fn bounds(force: usize) -> (f64, f64) {
+    if force.is_multiple_of(OF_A_CORNER) { (0.0, LARGEST) } else { (-LARGEST, LARGEST) }
+}
+
+/// Where forces stand among the unknowns of a problem.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unknowns<'a> {
+    /// Place of the first one.
+    pub(crate) first: usize,
+    /// Present forces, where the unknowns are their changes.
+    pub(crate) now: Option<&'a [f64]>,
+}
+
+impl Unknowns<'_> {
+    fn now(&self, force: usize) -> f64 {
+        self.now.map_or(0.0, |now| now[force])
+    }
+}
+
+/// Rows that keep the friction of a support's corners inside its pyramid. `row` has an entry for every unknown.
+pub(crate) fn friction_rows(
+    level: &mut Level,
+    row: &mut [f64],
+    support: &Support,
+    corners: std::ops::Range<usize>,
+    unknowns: Unknowns<'_>,
+) {
+    if support.friction.is_infinite() {
+        return;
+    }
+    let most = support.friction / (super::FACES as f64 / 2.0).sqrt();
+    for normal in corners.map(|corner| OF_A_CORNER * corner) {
+        for (axis, sign) in [(1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)] {
+            row.fill(0.0);
+            row[unknowns.first + normal] = -most;
+            row[unknowns.first + normal + axis] = sign;
+            let excess = sign * unknowns.now(normal + axis) - most * unknowns.now(normal);
+            level.push(row, f64::NEG_INFINITY, -excess);
+        }
+    }
+}
+
+/// The row that wishes a support to carry no more than its share; arguments as of [`friction_rows`].
+pub(crate) fn share_row(
+    level: &mut Level,
+    row: &mut [f64],
+    support: &Support,
+    corners: std::ops::Range<usize>,
+    unknowns: Unknowns<'_>,
+) {
+    if support.share_max >= 1.0 {
+        return;
+    }
+    row.fill(0.0);
+    let mut share = 0.0;
+    for normal in corners.map(|corner| OF_A_CORNER * corner) {
+        row[unknowns.first + normal] = 1.0;
+        share += unknowns.now(normal);
+    }
+    level.push(row, f64::NEG_INFINITY, support.share_max - share);
+}

@@ -1,0 +1,107 @@
+//! Which part of the body rests on what?
+
+use nalgebra::Vector3;
+
+use crate::model::{LARGEST, Model, Motion};
+
+/// Faces of the pyramid that stands for the cone of friction. Its edges lie on the cone, so every force it allows holds:
+/// along each of two axes of the plane, square to each other, friction is at most `friction / sqrt(2)` times the normal force.
+pub const FACES: usize = 4;
+
+/// A patch of a segment that rests on a plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    /// Index of the segment.
+    pub segment: usize,
+    /// Corners of the patch, segment frame, m. The centre of pressure stays within their convex hull.
+    pub corners: Vec<Vector3<f64>>,
+    /// The direction in which the plane pushes, ground axes, of unit length.
+    pub normal: Vector3<f64>,
+    /// Coefficient of friction, not negative; infinite for a patch that cannot slip.
+    pub friction: f64,
+    /// The normal force should not exceed this share of the whole weight, loads included; 1 or more for no wish.
+    pub share_max: f64,
+}
+
+/// Why a support was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SupportError {
+    /// There is no such segment.
+    #[error("support on segment number {segment}; the model has {count} segments")]
+    Segment {
+        /// The index given.
+        segment: usize,
+        /// Number of segments.
+        count: usize,
+    },
+    /// A number has no meaning.
+    #[error("{what} of the support on `{segment}` is {value}; it must be {accepted}")]
+    Number {
+        /// Name of the segment.
+        segment: String,
+        /// The quantity with its unit.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+}
+
+impl Support {
+    /// Does it fit `model`?
+    ///
+    /// # Errors
+    /// [`SupportError`] names the first thing that does not.
+    pub fn check(&self, model: &Model) -> Result<(), SupportError> {
+        let count = model.segments().len();
+        let Some(segment) = model.segments().get(self.segment) else {
+            return Err(SupportError::Segment { segment: self.segment, count });
+        };
+        let check = |ok: bool, what, value, accepted| {
+            let segment = segment.name.clone();
+            if ok { Ok(()) } else { Err(SupportError::Number { segment, what, value, accepted }) }
+        };
+        let corners = self.corners.len();
+        check((1..=64).contains(&corners), "number of corners", corners as f64, "from 1 to 64")?;
+        for &value in self.corners.iter().flatten() {
+            check(value.abs() <= LARGEST, "a corner (m)", value, "finite and at most 1e9 in size")?;
+        }
+        let length = self.normal.norm();
+        check((length - 1.0).abs() <= 1e-6, "length of the normal", length, "1")?;
+        check(self.friction >= 0.0, "friction", self.friction, "not negative")?;
+        check(self.share_max >= 0.0, "greatest share of weight", self.share_max, "not negative")
+    }
+
+    /// Normal, and two axes of the plane.
+    pub(super) fn axes(&self) -> [Vector3<f64>; 3] {
+        let across = self.normal.cross(&Vector3::ith(self.normal.iamin(), 1.0)).normalize();
+        [self.normal, across, self.normal.cross(&across)]
+    }
+}
+
+/// The rates at which the body as a whole moves against ground, held by no muscle: those of joints to ground that slide along
+/// two axes at least (or turn and slide freely) and have no muscle groups. Their torques must come from supports.
+pub fn root_rates(model: &Model) -> Vec<usize> {
+    let mut found = vec![];
+    for segment in model.segments().iter().filter(|segment| segment.parent.is_none()) {
+        let slides = segment.joint_kind.motions().iter().filter(|motion| matches!(motion, Motion::Slide(_))).count();
+        if slides < 2 {
+            continue;
+        }
+        let coordinates = segment.coordinates.clone();
+        let loose = coordinates.clone().filter(|&i| model.coordinates()[i].groups.is_none() && !model.is_dependent(i));
+        found.extend(loose.filter_map(|i| model.coordinates()[i].rate));
+        let quaternions = coordinates.filter(|&i| model.coordinates()[i].rate.is_none()).count();
+        if quaternions > 0 {
+            // The ball's rates follow one another; they have no coordinate of their own.
+            let before = model.coordinates()[..segment.coordinates.start].iter();
+            let balls = before.filter(|c| c.rate.is_none()).count() / 4;
+            let turning = (0..model.rates().len()).filter(|&i| model.rates()[i].coordinate.is_none());
+            found.extend(turning.skip(3 * balls).take(3 * quaternions / 4));
+        }
+    }
+    found.sort_unstable();
+    found
+}

@@ -1,0 +1,12 @@
+//! Which posture needs little effort, with feet on the ground and hands where they should be?
+//!
+//! Posture and contact forces are found together. Each step of the [`Engine`] is one lexicographic problem in the changes of
+//! both: friction and equilibrium of the root first, then supports stay where they are, then no support carries more than it
+//! should, then the goals in their order, of which one may be effort. After every step the contact forces are found anew for
+//! the posture reached ([`crate::contact`]), so that what is reported is in equilibrium exactly.
+
+mod curvature;
+mod engine;
+mod probe;
+
+pub use engine::{Engine, Options, Reason, RelaxError, Relaxed, Step};

@@ -1,0 +1,195 @@
+//! How is relief carried out by a body on its feet, with something to do?
+//!
+//! Reliefs are half-spaces (Eqs. 4-6) in the priorities of [`crate::relax::Engine`]: supports, tasks that stand above relief,
+//! the reliefs, the most tired group first, then the other tasks. Each is a level of its own, so reliefs that conflict are
+//! decided by fatigue, and of equals by the order of the model.
+
+use crate::constraint::HalfSpace;
+use crate::contact::{Balance, ContactForces};
+use crate::ik::Goal;
+use crate::model::Model;
+use crate::posture::Posture;
+use crate::relax::{Engine, Options};
+
+use super::{Scenario, ScenarioError};
+
+/// Most reliefs at once; the less tired groups wait.
+const MOST: usize = 16;
+/// Largest change of a joint in one time step, rad or m.
+const MAX_STEP: f64 = 0.1;
+/// The body is still when nothing changes by more in a time step, rad or m.
+const STILL: f64 = 1e-9;
+/// A slope is computed anew when some coordinate has moved so far, rad or m.
+const MOVED: f64 = 0.005;
+/// A half-space that is missed by more was not kept, rad or m.
+const MISSED: f64 = 1e-6;
+
+/// A body under way with supports and tasks.
+#[derive(Clone, Debug)]
+pub(super) struct Whole<'a> {
+    engine: Engine<'a>,
+    /// Goals above the reliefs.
+    above: usize,
+    /// Place of each of the scenario's tasks among the engine's goals.
+    places: Vec<usize>,
+    /// By coordinate: where the slope was computed, and what it is.
+    slopes: Vec<Option<Slope>>,
+    before: Posture,
+    largest: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Slope {
+    at: Posture,
+    value: Option<f64>,
+}
+
+impl<'a> Whole<'a> {
+    /// The body at the posture nearest to the scenario's start in which its supports hold it and its tasks are done.
+    pub(super) fn new(scenario: &'a Scenario) -> Result<(Self, Posture), ScenarioError> {
+        let model = &scenario.model;
+        let (above, below): (Vec<_>, Vec<_>) = (0..scenario.tasks.len()).partition(|&i| scenario.tasks[i].above_relief);
+        let goal = |i: &usize| scenario.tasks[*i].goal.clone();
+        let supports = || scenario.supports.clone();
+        let goals: Vec<Goal> = above.iter().chain(&below).map(goal).collect();
+        let lock = |engine: &mut Engine<'a>| {
+            for (i, rate) in model.rates().iter().enumerate() {
+                if rate.coordinate.is_some_and(|c| !scenario.free[c]) {
+                    engine.lock(i);
+                }
+            }
+        };
+        let options = Options { max_step: MAX_STEP, ..Options::default() };
+        let mut first = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
+        lock(&mut first);
+        let start = first.solve(&scenario.start)?;
+        if let Balance::Short { force, moment } = start.balance {
+            return Err(ScenarioError::CannotStand { force, moment });
+        }
+        let reliefs = std::iter::repeat_n(Goal::default(), MOST);
+        let goals: Vec<Goal> = above.iter().map(goal).chain(reliefs).chain(below.iter().map(goal)).collect();
+        let mut places = vec![0; scenario.tasks.len()];
+        above.iter().enumerate().for_each(|(place, &i)| places[i] = place);
+        below.iter().enumerate().for_each(|(place, &i)| places[i] = above.len() + MOST + place);
+        let options = Options { guarded: false, ..options };
+        // Supports stay where they were at the scenario's start, not where the first solution left them.
+        let mut engine = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
+        lock(&mut engine);
+        let whole = Self {
+            engine,
+            above: above.len(),
+            places,
+            slopes: vec![None; model.coordinates().len()],
+            before: start.posture.clone(),
+            largest: f64::INFINITY,
+        };
+        Ok((whole, start.posture))
+    }
+
+    /// Moves by one step toward the reliefs (the most tired first) and the tasks. Coordinates whose relief was not kept go to
+    /// `deferred`.
+    pub(super) fn carry_out(
+        &mut self,
+        posture: &mut Posture,
+        reliefs: &[(usize, &HalfSpace)],
+        deferred: &mut Vec<usize>,
+    ) -> Result<(), ScenarioError> {
+        deferred.clear();
+        self.before.values_mut().copy_from_slice(posture.values());
+        if reliefs.is_empty() && self.largest <= STILL {
+            return Ok(());
+        }
+        for (slot, goal) in self.engine.goals_mut()[self.above..self.above + MOST].iter_mut().enumerate() {
+            goal.half_spaces.truncate(usize::from(slot < reliefs.len()));
+            match (reliefs.get(slot), goal.half_spaces.first_mut()) {
+                (Some((_, space)), Some(kept)) => kept.clone_from(space),
+                (Some((_, space)), None) => goal.half_spaces.push((*space).clone()),
+                _ => {}
+            }
+        }
+        self.largest = self.engine.step(posture)?.largest;
+        let kept = |(slot, (_, space)): &(usize, &(usize, &HalfSpace))| {
+            *slot < MOST && space.violation(posture.values()) <= MISSED
+        };
+        deferred.extend(reliefs.iter().enumerate().filter(|relief| !kept(relief)).map(|(_, (i, _))| *i));
+        Ok(())
+    }
+
+    /// Computes everything in a posture.
+    pub(super) fn see(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
+        Ok(self.engine.see(posture)?)
+    }
+
+    /// Goes back to where the last step began, and takes shorter ones for a while.
+    pub(super) fn take_back(&mut self, posture: &mut Posture) -> Result<(), ScenarioError> {
+        posture.values_mut().copy_from_slice(self.before.values());
+        self.see(posture)
+    }
+
+    /// Slope of a coordinate's external torque along the motion that everything above relief allows; `None` where it is held
+    /// fast.
+    pub(super) fn slope(
+        &mut self,
+        posture: &Posture,
+        coordinate: usize,
+        rate: usize,
+    ) -> Result<Option<f64>, ScenarioError> {
+        let far = |at: &Posture| at.values().iter().zip(posture.values()).any(|(a, b)| (a - b).abs() > MOVED);
+        if let Some(slope) = self.slopes[coordinate].as_ref().filter(|slope| !far(&slope.at)) {
+            return Ok(slope.value);
+        }
+        let value = self.engine.slope_along(posture, rate, self.above)?;
+        self.slopes[coordinate] = Some(Slope { at: posture.clone(), value });
+        Ok(value)
+    }
+
+    /// Something changed: the body moves again.
+    pub(super) fn wake(&mut self) {
+        self.largest = f64::INFINITY;
+        self.slopes.fill(None);
+    }
+
+    pub(super) fn set_loads(&mut self, loads: &[crate::statics::Load]) -> Result<(), ScenarioError> {
+        self.wake();
+        Ok(self.engine.set_loads(loads)?)
+    }
+
+    pub(super) fn set_task(&mut self, task: usize, goal: &Goal) {
+        self.wake();
+        self.engine.goals_mut()[self.places[task]].clone_from(goal);
+    }
+
+    pub(super) fn still(&self) -> bool {
+        self.largest <= STILL
+    }
+
+    pub(super) fn contact(&self) -> &ContactForces {
+        self.engine.contact()
+    }
+
+    /// External torque, contact included, and passive torque of a rate, N m.
+    pub(super) fn torques(&self, rate: usize) -> (f64, f64) {
+        (self.engine.body().external_torque().torques()[rate], self.engine.passive()[rate])
+    }
+
+    pub(super) fn values(&self) -> &[f64] {
+        self.engine.body().kinematics().values()
+    }
+
+    /// Length of the error of each of the scenario's tasks, and how far supports have slipped.
+    pub(super) fn errors(&self, errors: &mut Vec<f64>) -> f64 {
+        errors.clear();
+        errors.extend(self.places.iter().map(|&place| self.engine.error(place)));
+        self.engine.slip()
+    }
+
+    /// Where the centre of mass stands, ground, m.
+    pub(super) fn center_of_mass(&self, model: &Model) -> Option<nalgebra::Vector3<f64>> {
+        self.engine.body().kinematics().center_of_mass(model)
+    }
+
+    /// Where the normal force of a support acts, ground, m.
+    pub(super) fn center_of_pressure(&self, model: &Model, support: usize) -> Option<nalgebra::Vector3<f64>> {
+        self.contact().center_of_pressure(model, self.engine.body().kinematics(), support)
+    }
+}

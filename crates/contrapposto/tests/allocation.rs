@@ -1,0 +1,206 @@
+//! What is called for every frame and step allocates nothing once its workspace is as large as the problem asks. Allocations of
+//! this thread are counted.
+
+#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto::ik::task::{CenterOfMass, Distance, Goal as Place, LookAt, Placement, Point, Posture, Task};
+use contrapposto::ik::{Engine, Goal, Options};
+use contrapposto::kinematics::{self, Kinematics};
+use contrapposto::math::lexicographic::{Level, Problem, Solver, Status};
+use contrapposto::model::{Adult, Model, adult};
+use contrapposto::posture;
+use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
+use nalgebra::Vector3;
+use rand::RngExt;
+use rand_pcg::Pcg64;
+
+type V = Vector3<f64>;
+
+fn random() -> Pcg64 {
+    Pcg64::new(20_070_902, 0)
+}
+
+const CALLS: usize = 50;
+
+/// `work` is given the numbers 0..CALLS twice over; from call number `warm` on it must not allocate.
+fn assert_silent(what: &str, warm: usize, mut work: impl FnMut(usize)) {
+    for call in 0..2 * CALLS {
+        let made = allocation_counter::measure(|| work(call % CALLS)).count_total;
+        assert!(made == 0 || call < warm, "{what}: call {call} allocates {made} times");
+    }
+}
+
+/// Anywhere inside the ranges; the root about its default.
+fn inside(rng: &mut Pcg64, model: &Model) -> posture::Posture {
+    let values = model.coordinates().iter().map(|c| {
+        let (low, high) = (c.range.0.max(c.default - 1.0), c.range.1.min(c.default + 1.0));
+        low + rng.random_range(0.02..0.98) * (high - low)
+    });
+    posture::Posture::new(values.collect())
+}
+
+/// The whole adult, whose six root coordinates are free, and postures of it.
+fn body() -> (Model, Vec<posture::Posture>) {
+    let model = adult(&Adult::default()).unwrap();
+    let mut rng = random();
+    let postures = (0..CALLS).map(|_| inside(&mut rng, &model)).collect();
+    (model, postures)
+}
+
+/// What the hands hold: a weight, and a force that turns with the segment.
+fn loads(model: &Model) -> [Load; 2] {
+    let hand = |name| model.segment(name).unwrap();
+    [
+        Load::weight(model, hand("hand_r"), 3.0),
+        Load {
+            segment: hand("hand_l"),
+            point: V::new(0.0, -0.08, 0.0),
+            kind: LoadKind::Force(V::new(5.0, -20.0, 3.0), FixedIn::Segment),
+        },
+    ]
+}
+
+#[test]
+fn the_counter_counts() {
+    let made = allocation_counter::measure(|| drop(std::hint::black_box(vec![1.0; 10]))).count_total;
+    assert_eq!(made, 1);
+}
+
+#[test]
+fn statics_allocate_nothing() {
+    let (model, postures) = body();
+    let loads = loads(&model);
+    let (mut kinematics, mut external) = (Kinematics::new(&model), ExternalTorque::new(&model));
+    let mut gradient = Gradient::new(&model);
+    let mut folded = vec![0.0; model.rates().len()];
+    assert_silent("torque and gradient", 1, |i| {
+        kinematics.update(&model, &postures[i]).unwrap();
+        external.update(&model, &kinematics, &loads).unwrap();
+        external.gradient(&model, &kinematics, &mut gradient);
+        folded.copy_from_slice(external.torques());
+    });
+    assert!(folded.iter().any(|&torque| torque != 0.0) && gradient.row(0).len() == folded.len());
+}
+
+#[test]
+fn jacobians_allocate_nothing() {
+    let (model, postures) = body();
+    let hand = model.segment("hand_r").unwrap();
+    let mut kinematics = Kinematics::new(&model);
+    let mut center = kinematics::CenterOfMass::new(&model);
+    let mut rows = vec![0.0; 3 * model.rates().len()];
+    let mut height = 0.0;
+    assert_silent("centre of mass and Jacobians", 1, |i| {
+        kinematics.update(&model, &postures[i]).unwrap();
+        center.update(&model, &kinematics);
+        height += center.position().unwrap().y + kinematics.station(&model, hand, V::x()).y;
+        height += kinematics.center_of_mass(&model).unwrap().y;
+        center.jacobian(&model, &kinematics, &mut rows);
+        kinematics.rotation_jacobian(&model, hand, &mut rows);
+        kinematics.point_jacobian(&model, hand, V::y(), &mut rows);
+        kinematics.fold_columns(&model, &mut rows);
+    });
+    assert!(height != 0.0 && rows.iter().any(|&entry| entry != 0.0));
+}
+
+/// Levels of random equations and a rest posture, as inverse kinematics makes them, with bounds that are active.
+fn levels(rng: &mut Pcg64) -> Problem {
+    let n = 40;
+    let mut problem = Problem::new(n);
+    problem.lower.fill(-0.25);
+    problem.upper.fill(0.25);
+    for rows in [9, 2, 3] {
+        let mut level = Level::default();
+        for _ in 0..rows {
+            let row: Vec<f64> = (0..n).map(|_| rng.random_range(-1.0..1.0)).collect();
+            let right = rng.random_range(-0.2..0.2);
+            level.push(&row, right, if rng.random_range(0..4) == 0 { right + 0.1 } else { right });
+        }
+        level.damping = rng.random_range(0.0..0.01);
+        problem.levels.push(level);
+    }
+    let mut rest = Level::default();
+    for i in 0..n {
+        let mut row = vec![0.0; n];
+        row[i] = 1.0;
+        let right = rng.random_range(-0.3..0.3);
+        rest.push(&row, right, right);
+    }
+    problem.levels.push(rest);
+    problem
+}
+
+#[test]
+fn solver_allocates_nothing() {
+    let mut rng = random();
+    // What is kept of an active set grows with it: every problem is seen once before.
+    let problems: Vec<Problem> = (0..CALLS).map(|_| levels(&mut rng)).collect();
+    let mut solver = Solver::new();
+    assert_silent("solve_again", CALLS, |i| assert_eq!(solver.solve_again(&problems[i]), Ok(Status::Solved)));
+    assert!(solver.active_bounds().count() > 0);
+    let mut solver = Solver::new();
+    assert_silent("solve_next", CALLS, |i| assert_eq!(solver.solve_next(&problems[i]), Ok(Status::Solved)));
+    let mut solver = Solver::new();
+    assert_silent("solve", CALLS, |i| assert_eq!(solver.solve(&problems[i]), Ok(Status::Solved)));
+    assert!(solver.changes() > 0);
+}
+
+/// Goals of most kinds that `there` fulfils, and what is left as at the start.
+fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> Vec<Goal> {
+    let mut at = Kinematics::new(model);
+    at.update(model, there).unwrap();
+    let segment = |name| model.segment(name).unwrap();
+    let [foot, right, left, head] = ["calcn_r", "hand_r", "hand_l", "head"].map(segment);
+    let point = V::new(0.0, -0.08, 0.0);
+    let (a, b) = (at.station(model, right, point), at.station(model, left, V::zeros()));
+    vec![
+        Goal {
+            tasks: vec![Task::Placement(Placement {
+                segment: foot,
+                point: V::zeros(),
+                target: at.placement(model, foot),
+            })],
+            hard: true,
+            ..Goal::default()
+        },
+        Task::CenterOfMass(CenterOfMass {
+            goal: Place::At { target: at.center_of_mass(model).unwrap(), axes: [true, false, true] },
+        })
+        .into(),
+        Task::Point(Point { segment: right, point, target: a, axes: [true; 3] }).into(),
+        Task::LookAt(LookAt {
+            segment: head,
+            eye: V::zeros(),
+            direction: V::x_axis(),
+            target: at.station(model, head, 3.0 * V::x()),
+        })
+        .into(),
+        Task::Distance(Distance { a: (right, point), b: (left, V::zeros()), lower: 0.0, upper: (a - b).norm() }).into(),
+        Task::Posture(Posture::whole(model, start.clone())).into(),
+    ]
+}
+
+/// Steps until the goals are reached.
+const STEPS: usize = 25;
+
+#[test]
+fn steps_allocate_nothing() {
+    let (model, _) = body();
+    let start = model.default_posture();
+    let mut there = start.clone();
+    for (name, angle) in [("elbow_flex_r", 0.6), ("arm_flex_r", 0.5), ("knee_angle_r", 0.2), ("neck_rotation", 0.1)] {
+        there.values_mut()[model.coordinate(name).unwrap()] += angle;
+    }
+    let mut engine = Engine::new(&model, goals(&model, &start, &there), &loads(&model), Options::default()).unwrap();
+    let mut posture = start.clone();
+    assert_silent("step", STEPS, |i| {
+        if i % STEPS == 0 {
+            engine.restart();
+            posture.values_mut().copy_from_slice(start.values());
+        }
+        engine.step(&mut posture).unwrap();
+    });
+    let left = engine.errors()[2];
+    let moved = posture.values().iter().zip(start.values()).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(moved > 0.05 && left < 1e-3, "moved by {moved}, {left} m are left");
+}
