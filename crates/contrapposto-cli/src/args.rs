@@ -32,6 +32,8 @@ pub(crate) enum Verb {
     Inspect(InspectArgs),
     /// External, passive and active torque of every coordinate, for one posture or a motion.
     Torques(TorquesArgs),
+    /// Which muscle group fails first in a recorded motion, when, and what would relieve it.
+    Assess(AssessArgs),
     /// Write a model in another format: OpenSim, URDF or MJCF.
     Convert(ConvertArgs),
     /// Print the JSON Schema of the scenario file.
@@ -212,6 +214,48 @@ pub(crate) struct TorquesArgs {
     pub(crate) model: ModelArgs,
     /// Postures: .mot, .sto or .csv, one row a frame; or `default`.
     pub(crate) postures: PathBuf,
+    #[command(flatten)]
+    pub(crate) under: LoadArgs,
+    /// Also d external_i / d q_j.
+    #[arg(long)]
+    pub(crate) gradient: bool,
+    /// Write the table to a file: .csv, .sto or .mot, or .json.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print JSON, in rad, m, N m, instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  contrapposto assess subject.osim lifting.mot --grf forces.mot --out out\n  \
+    contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
+    Each posture counts as held at rest, and loads change in a straight line from one to the next. Writes assess.json, \
+    torques.sto and fatigue.sto into DIR.")]
+pub(crate) struct AssessArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Recorded motion: .mot, .sto or .csv, one row a frame, with times.
+    pub(crate) motion: PathBuf,
+    #[command(flatten)]
+    pub(crate) under: LoadArgs,
+    /// Segments that carry the body in every frame; their forces are found, at least effort of the muscles.
+    #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", conflicts_with = "grf")]
+    pub(crate) support: Vec<String>,
+    /// Where a supporting segment touches, corners in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
+    #[arg(long, value_name = "PATCH", requires = "support")]
+    pub(crate) patch: Vec<String>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print assess.json instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What pulls and pushes on a body in given postures, and how those are read.
+#[derive(Debug, clap::Args)]
+pub(crate) struct LoadArgs {
     /// A held weight, at the segment's centre of mass unless told: "hand_r 3kg", "hand_r 3kg at 0,-0.08,0".
     #[arg(long, value_name = "LOAD")]
     pub(crate) load: Vec<String>,
@@ -224,21 +268,12 @@ pub(crate) struct TorquesArgs {
     /// Segments that the ground reactions act on, in the order of the file's columns; guessed by name when left out.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", requires = "grf")]
     pub(crate) grf_on: Vec<String>,
-    /// Also d external_i / d q_j.
-    #[arg(long)]
-    pub(crate) gradient: bool,
-    /// Angles of POSTURES are degrees, whatever the file says.
+    /// Angles of the postures are degrees, whatever the file says.
     #[arg(long, conflicts_with = "radians")]
     pub(crate) degrees: bool,
-    /// Angles of POSTURES are radians, whatever the file says.
+    /// Angles of the postures are radians, whatever the file says.
     #[arg(long)]
     pub(crate) radians: bool,
-    /// Write the table to a file: .csv, .sto or .mot, or .json.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: Option<PathBuf>,
-    /// Print JSON, in rad, m, N m, instead of a table.
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
 #[derive(Debug, Parser)]

@@ -4,6 +4,7 @@
 //! input. A closed pipe is no failure.
 
 mod args;
+mod assess;
 mod chart;
 mod convert;
 mod fail;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Verb::Passive(args) => passive::passive(&args),
         Verb::Inspect(args) => inspect::inspect(&args),
         Verb::Torques(args) => torques::torques(&args),
+        Verb::Assess(args) => assess::assess(&args),
         Verb::Convert(args) => convert::convert(&args),
         Verb::Schema => output::print(&format!("{:#}\n", contrapposto_formats::scenario_schema())),
     };

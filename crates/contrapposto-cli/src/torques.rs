@@ -13,15 +13,17 @@ use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::motion::{self, Units, postures, read_table};
 
-use crate::args::TorquesArgs;
+use crate::args::{LoadArgs, TorquesArgs};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::{Opened, Tissue, open, tell};
 use crate::output::{Folder, Pending};
-use frames::{Order, Statics};
-use ground::GroundReaction;
+use frames::Statics;
+pub(crate) use frames::{Frame, Order, Row, Torques};
+pub(crate) use ground::GroundReaction;
+pub(crate) use loads::{no_segment, patch};
 use residual::Residual;
-pub(crate) use text::plain_table;
+pub(crate) use text::{header, plain_table, row};
 
 /// What the command works on.
 pub(crate) struct Job {
@@ -40,21 +42,17 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let mut opened = open(&args.model, true)?;
     let mut notes = std::mem::take(&mut opened.notes);
     let model = &opened.model;
-    let frames = frames_of(args, model, &mut notes)?;
-    let mut loads = vec![];
-    for text in &args.load {
-        loads.push(loads::weight(model, text)?);
-    }
-    for text in &args.force {
-        loads.push(loads::force(model, text)?);
-    }
-    let ground = match &args.grf {
-        None => None,
-        Some(path) => Some(GroundReaction::read(path, &args.grf_on, model, &mut notes)?),
+    let frames = match args.postures == Path::new("default") {
+        true => vec![(0.0, model.default_posture())],
+        false => {
+            let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
+            read_motion(&args.postures, accepted, &args.under, model, &mut notes)?
+        }
     };
+    let (loads, ground) = loads_of(&args.under, model, &mut notes)?;
+    outside(&opened, &frames, &mut notes);
     let job = Job { opened, frames, loads, ground, gradient: args.gradient };
     job.check()?;
-    outside(&job, &mut notes);
     notes.iter().for_each(|note| tell("note", note));
 
     let order = Order::new(&job.opened.model);
@@ -110,8 +108,8 @@ fn table(
     residual: &mut Residual,
     sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
 ) -> Result<(), Fail> {
-    sink(&text::header(&job.opened.model, order, job.frames.len(), separator, job.gradient))?;
-    job.run(order, residual, |frame| sink(&text::row(order, frame, separator)))
+    sink(&header(&job.opened.model, order, job.frames.len(), separator, job.gradient))?;
+    job.run(order, residual, |frame| sink(&row(order, frame, separator)))
 }
 
 impl Job {
@@ -149,13 +147,34 @@ impl Job {
     }
 }
 
-fn frames_of(args: &TorquesArgs, model: &Model, notes: &mut Vec<String>) -> Result<Vec<(f64, Posture)>, Fail> {
-    if args.postures == Path::new("default") {
-        return Ok(vec![(0.0, model.default_posture())]);
+/// Held weights and forces, and ground reactions if there are any.
+pub(crate) fn loads_of(
+    args: &LoadArgs,
+    model: &Model,
+    notes: &mut Vec<String>,
+) -> Result<(Vec<Load>, Option<GroundReaction>), Fail> {
+    let mut loads = vec![];
+    for text in &args.load {
+        loads.push(loads::weight(model, text)?);
     }
-    let name = args.postures.display().to_string();
-    let bytes = read(&args.postures, motion::MOST_BYTES as u64).map_err(|fail| match fail {
-        Fail::Refused(why) => Fail::Refused(format!("{why}\n  POSTURES is a .mot, .sto or .csv file, or `default`")),
+    for text in &args.force {
+        loads.push(loads::force(model, text)?);
+    }
+    let ground = args.grf.as_ref().map(|path| GroundReaction::read(path, &args.grf_on, model, notes)).transpose()?;
+    Ok((loads, ground))
+}
+
+/// The postures of a table, with their times. `accepted`: what the file may be.
+pub(crate) fn read_motion(
+    path: &Path,
+    accepted: &str,
+    args: &LoadArgs,
+    model: &Model,
+    notes: &mut Vec<String>,
+) -> Result<Vec<(f64, Posture)>, Fail> {
+    let name = path.display().to_string();
+    let bytes = read(path, motion::MOST_BYTES as u64).map_err(|fail| match fail {
+        Fail::Refused(why) => Fail::Refused(format!("{why}\n  {accepted}")),
         other => other,
     })?;
     let table = read_table(&name, &bytes)?;
@@ -185,18 +204,18 @@ fn first_of(names: &[String]) -> String {
 }
 
 /// Says which coordinates leave their range, and which what their built-in curve is meant for.
-fn outside(job: &Job, notes: &mut Vec<String>) {
+pub(crate) fn outside(opened: &Opened, frames: &[(f64, Posture)], notes: &mut Vec<String>) {
     /// Beyond a limit without a word, rad or m.
     const SLACK: f64 = 1e-3;
-    let model = &job.opened.model;
-    let tissue = Tissue::new(&job.opened);
+    let model = &opened.model;
+    let tissue = Tissue::new(opened);
     let (mut beyond, mut held) = (vec![], vec![]);
     for (index, coordinate) in model.coordinates().iter().enumerate() {
         let (min, max) = coordinate.range;
         if coordinate.kind == CoordinateKind::Quaternion || model.is_dependent(index) {
             continue;
         }
-        let any = |test: &dyn Fn(f64) -> bool| job.frames.iter().any(|(_, posture)| test(posture.values()[index]));
+        let any = |test: &dyn Fn(f64) -> bool| frames.iter().any(|(_, posture)| test(posture.values()[index]));
         if any(&|value| value < min - SLACK || value > max + SLACK) {
             beyond.push(format!("`{}`", coordinate.name));
         }

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use contrapposto::model::{CoordinateKind, Model, MuscleGroup, data};
+use contrapposto::model::{CoordinateKind, LARGEST, Model, MuscleGroup, data};
 use contrapposto::passive::{PassiveCurve, PassiveLaw};
 use contrapposto::strength::Strength;
 use serde::Deserialize;
@@ -174,6 +174,10 @@ impl Table<'_> {
         }
         let rad = |x: f64| if unit == CoordinateKind::Rotation { x.to_radians() } else { x };
         let range = (rad(min), rad(max));
+        if let Some(limit) = [min, max].into_iter().find(|limit| rad(*limit).abs() > LARGEST) {
+            let message = format!("a limit of the range is {limit:e}; it must be at most 1e9 rad or m in size");
+            return Err(self.value_error(key, message, None));
+        }
         let before = found.default;
         let changed = model.clone().with_range(index, range);
         *model = changed.map_err(|error| self.value_error(key, error.to_string(), None))?;

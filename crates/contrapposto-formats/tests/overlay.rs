@@ -51,6 +51,37 @@ fn mutated_overlays_never_panic() {
     });
 }
 
+/// No product of accepted numbers overflows: limits are at most 1e9 rad or m in size.
+#[test]
+fn ranges_without_end_are_refused_where_they_stand() {
+    let model = adult(&Adult::default()).unwrap();
+    let lay = |lines: &str| {
+        let laid = overlay("wide.toml", format!("[coordinates.{lines}\n").as_bytes(), model.clone());
+        let mut text = String::new();
+        if let Err(error) = laid {
+            miette::NarratableReportHandler::new().render_report(&mut text, &error).unwrap();
+        }
+        text
+    };
+    for (lines, limit) in [
+        ("knee_angle_r]\nrange_deg = [0x7fff, 1e308]", "1e308"),
+        ("knee_angle_r]\nrange_deg = [-6e10, 0]", "-6e10"),
+        ("pelvis_ty]\nrange_m = [0, 1.1e9]", "1.1e9"),
+    ] {
+        let text = lay(lines);
+        assert!(
+            text.contains("line 2, column") && text.contains(&format!("is {limit}; it must be at most 1e9")),
+            "{text}"
+        );
+    }
+    assert_eq!(lay("pelvis_ty]\nrange_m = [0, 1e9]"), "");
+    assert!(
+        model.clone().with_range(0, (0.0, 1.0000001e9)).is_err()
+            && model.clone().with_range(0, (f64::NEG_INFINITY, 0.0)).is_err()
+    );
+    assert_eq!(model.with_range(0, (-1e9, 1e9)).unwrap().coordinates()[0].range, (-1e9, 1e9));
+}
+
 /// Ranges are ranges, defaults lie in them, and every torque in them is a number.
 fn sound(model: &Model) -> bool {
     let mut values = model.default_posture().values().to_vec();

@@ -378,7 +378,6 @@ fn mistakes_are_refused_where_they_stand() {
             "does not go with a polygon",
         ),
         ("[[task]]\nkind = \"posture\"\ncoordinates = [\"elbow\"]\n", "4, column 16", "no coordinate `elbow`"),
-        ("[[task]]\nkind = \"posture\"\ncoordinates = []\n", "3, column 8", "asks for no coordinate"),
         (
             "[[task]]\nkind = \"posture\"\ncoordinates = [\"elbow_flex_r\", \"elbow_flex_r\"]\n",
             "4, column 32",
@@ -388,6 +387,13 @@ fn mistakes_are_refused_where_they_stand() {
         ("[[task]]\nkind = \"posture\"\nvalues = { elbow_flex_r_deg = 170 }\n", "4, column 31", "outside its range"),
         ("[[task]]\nkind = \"posture\"\nvalues = { elbow_flex_r = 17 }\n", "4, column 12", "did you mean"),
         ("[[task]]\nkind = \"effort\"\ncoordinates = [\"pelvis_tx\"]\n", "4, column 15", "no known strength"),
+        ("[[task]]\nkind = \"effort\"\ncoordinates = []\n", "4, column 15", "names no coordinate"),
+        ("[[task]]\nkind = \"posture\"\ncoordinates = []\n", "4, column 15", "names no coordinate"),
+        (
+            "[[task]]\nkind = \"posture\"\ncoordinates = [\"elbow_flex_r\"]\nweights = { elbow_flex_r = 0 }\n",
+            "5, column 11",
+            "all weights are 0",
+        ),
         ("[[support]]\nsegment = \"calcn\"\n", "3, column 11", "did you mean `calcn_"),
         ("[[support]]\n", "2, column 1", "`segment` is missing"),
         (
@@ -395,14 +401,36 @@ fn mistakes_are_refused_where_they_stand() {
             "5, column 11",
             "a support already",
         ),
-        ("[[support]]\nsegment = \"calcn_r\"\non = \"chair\"\n", "4, column 6", "unknown value `chair`"),
+        ("[[support]]\nsegment = \"calcn_r\"\non = \"chair\"\n", "4, column 6", "neither the ground nor a plane"),
         (
             "[[support]]\nsegment = \"calcn_r\"\non = { point_m = [0, 0, 0] }\n",
-            "4, column 8",
-            "unknown value `point_m`",
+            "4, column 6",
+            "write \"ground\", or { normal = [x, y, z], point_m",
         ),
+        (
+            "[[support]]\nsegment = \"calcn_r\"\non = { normal = [0, 1, 0, 0] }\n",
+            "4, column 6",
+            "neither the ground nor a plane",
+        ),
+        (
+            "[[support]]\nsegment = \"calcn_r\"\non = { normal = [0, 1e300, 0] }\n",
+            "4, column 6",
+            "a number of the plane is too large",
+        ),
+        (
+            "[[support]]\nsegment = \"calcn_r\"\ncorners_m = [[0, 0]]\n",
+            "4, column 13",
+            "a row of 2 numbers; 3 are due in each",
+        ),
+        ("[[support]]\nsegment = \"calcn_r\"\ncorners_m = []\n", "4, column 13", "a patch has 1 to 64 corners"),
         ("[[support]]\nsegment = \"calcn_r\"\nfriction = -1\n", "4, column 12", "friction is -1"),
         ("[[support]]\nsegment = \"calcn_r\"\nshare_max = 1.5\n", "4, column 13", "share_max is 1.5"),
+        ("[solver]\nmax_step_deg = 5e-324\n[[task]]\nkind = \"posture\"\n", "3, column 16", "must be from 1e-9 to 180"),
+        (
+            "[solver]\nmax_step_deg = 0.001\nstill = 1e-4\n[[task]]\nkind = \"posture\"\n",
+            "4, column 9",
+            "still is 0.0001; it must be below the largest step, 0.0000174",
+        ),
         ("[solver]\nmax_step_deg = 0\n[[task]]\nkind = \"posture\"\n", "3, column 16", "max_step_deg is 0"),
         ("[solver]\nmax_steps = 0\n[[task]]\nkind = \"posture\"\n", "3, column 13", "max_steps is 0"),
         ("[solver]\nmax_steps = -5\n[[task]]\nkind = \"posture\"\n", "3, column 13", "a whole number"),
@@ -438,20 +466,23 @@ fn mistakes_are_refused_where_they_stand() {
     println!("{} mistakes", cases.len());
 }
 
-/// `simulate` does not pass over what it cannot do.
+/// What only a pose takes is refused in a simulation, and a model file that nobody opened in both.
 #[test]
-fn a_simulation_has_no_tasks() {
+fn a_simulation_is_no_pose() {
     let run = "[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n";
-    for (lines, part) in [
-        ("[[task]]\nkind = \"posture\"\n", "[task] is for poses"),
-        ("[[support]]\nsegment = \"calcn_r\"\n", "[support] is for poses"),
-        ("[solver]\nmax_steps = 5\n", "[solver] is for poses"),
-        ("[model]\nfile = \"a.urdf\"\n", "model files are for `contrapposto pose`"),
-    ] {
+    let file = "[model]\nfile = \"a.urdf\"\n";
+    for (lines, part) in
+        [("[solver]\nmax_steps = 5\n", "[solver] is for poses"), (file, "the model file was not opened")]
+    {
         let error = read_scenario("run.toml", format!("{HEAD}{lines}{run}").as_bytes(), None).unwrap_err();
         let text = complaint(&error);
-        assert!(text.contains(part) && text.contains("line 2, column") || text.contains("line 3, column"), "{text}");
+        assert!(text.contains(part), "{text}");
+        assert!(
+            text.contains(if lines == file { "label at line 3, columns 1 to 4" } else { "label at line 2" }),
+            "{text}"
+        );
     }
+    assert!(complaint(&read(file).unwrap_err()).contains("the model file was not opened"));
     // A pose takes the scenario of a run, and tells what it has no use for.
     let scenario = good(&format!("[[task]]\nkind = \"posture\"\n{run}"));
     assert_eq!(scenario.unused, ["strategy", "run"]);

@@ -8,17 +8,19 @@ mod common;
 use std::path::Path;
 
 use common::toml::{ODD, hammer_toml, numbers};
-use contrapposto::simulation::{Sample, Scenario, run};
-use contrapposto_formats::{csv_header, csv_row, read_scenario};
+use contrapposto::hybrid::Strategy;
+use contrapposto::ik::task::Task;
+use contrapposto::simulation::{Sample, Scenario, ScenarioError, run};
+use contrapposto_formats::{InputError, csv_header, csv_row, read_scenario};
 
-/// Every scenario of the repository that runs over time, and one with every table a scenario may have.
+/// Every scenario of the repository that moves single joints over time, and one with every table such a scenario may have.
 fn corpus() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     paths.sort();
     let mut texts: Vec<String> = paths.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
-    texts.retain(|text| text.contains("[run]"));
+    texts.retain(|text| text.contains("[run]") && !text.contains("[[support]]") && !text.contains("[[task]]"));
     assert!(texts.len() >= 10);
     texts.push(FULL.to_owned());
     texts
@@ -65,10 +67,63 @@ step_s = 0.0333
 stop_when_settled = false
 "#;
 
-/// Runs at most a second of it; every number of every sample must be finite, in memory and as written.
+/// A body on its feet, with every key of supports, events and strategies.
+const WHOLE: &str = r#"format = 1
+title = "On both feet"
+[model]
+adult = { sex = "female", stature_m = 1.65, mass_kg = 60 }
+[posture]
+elbow_flex_r_deg = 60
+[coordinates]
+locked = ["mtp_angle_r", "mtp_angle_l"]
+[[load]]
+segment = "hand_r"
+mass_kg = 2
+[[support]]
+segment = "calcn_r"
+on = "ground"
+friction = 0.8
+[[support]]
+segment = "calcn_l"
+on = { normal = [0, 2, 0], point_m = [0.1, 0.01, 0] }
+share_max = 0.4
+corners_m = [[-0.04, -0.02, -0.03], [-0.04, -0.02, 0.03], [0.12, -0.02, 0.04], [0.12, -0.02, -0.04]]
+[[task]]
+kind = "center_of_mass"
+margin_m = 0.01
+above_relief = true
+[[task]]
+kind = "look_at"
+target_m = [2, 1.4, 0]
+[[task]]
+kind = "point"
+segment = "hand_r"
+target = "start"
+same_priority = true
+[strategy]
+kind = "passive"
+of = { legs = "active", elbow_flex_r = "active" }
+[fatigue]
+start = { elbow_flex_r = { positive = 0.7 } }
+[[event]]
+at_s = 0.1
+load = [{ segment = "hand_r", mass_kg = 3 }, { segment = "hand_l", force_n = [0, -5, 0] }]
+task = 3
+target_m = [0.3, 0.9, 0.2]
+[[event]]
+at_s = 0.05
+strategy = "active"
+strategy_of = { arms = "passive", hip_adduction_r = "passive" }
+[run]
+duration_s = 0.2
+step_s = 0.05
+"#;
+
+/// Runs at most a second of it, of a whole body at most four steps; every number of every sample must be finite, in memory and as written.
 fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
     scenario.run.duration = scenario.run.duration.min(1.0);
-    scenario.run.step = scenario.run.step.max(scenario.run.duration / 40.0);
+    let steps = if scenario.is_whole() { 4.0 } else { 40.0 };
+    scenario.run.step = scenario.run.step.max(scenario.run.duration / steps);
     let columns = csv_header(&scenario.model).split(',').count();
     let mut row = String::new();
     let summary = run(&scenario, |sample: &Sample| {
@@ -87,20 +142,38 @@ fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
             assert!((0.0..=1.0).contains(&level) && torques.is_finite(), "fatigue {level}\n{}", told());
         }
     });
+    // That a body cannot stand is found out by trying.
+    if scenario.is_whole() && matches!(summary, Err(ScenarioError::CannotStand { .. } | ScenarioError::Relax(_))) {
+        return;
+    }
     let summary = summary.unwrap_or_else(|error| panic!("{error}\n{}", told()));
     assert!(summary.end_time.is_finite() && summary.samples > 0);
 }
 
 /// Complaints are printed, too: that must not panic either.
-fn complaint(error: contrapposto_formats::InputError) -> String {
+fn complaint(error: InputError) -> String {
     let mut text = String::new();
     miette::NarratableReportHandler::new().render_report(&mut text, &error).unwrap();
     text
 }
 
+fn read_whole(text: &str) -> Result<Scenario, InputError> {
+    read_scenario("whole.toml", text.as_bytes(), None)
+}
+
 #[test]
 fn mutated_scenarios_never_panic() {
-    hammer_toml("scenario", 20_070_902, 20_000, &corpus(), |bytes| {
+    hammer("scenario", 20_000, &corpus());
+}
+
+/// Fewer of them: a body on its feet takes a thousand times as long as a joint.
+#[test]
+fn mutated_whole_bodies_never_panic() {
+    hammer("whole body", 1_000, &[WHOLE.to_owned()]);
+}
+
+fn hammer(name: &str, usual: usize, texts: &[String]) {
+    hammer_toml(name, 20_070_902, usual, texts, |bytes| {
         let told = || String::from_utf8_lossy(bytes).into_owned();
         match read_scenario("mutant.toml", bytes, None) {
             Ok(scenario) => {
@@ -120,9 +193,13 @@ fn mutated_scenarios_never_panic() {
 /// NaN, infinities, the ends of the doubles, negative zero and a subnormal in each number in turn.
 #[test]
 fn odd_numbers_in_every_field() {
-    let full = corpus().pop().unwrap();
+    odd_numbers(FULL, 47);
+    odd_numbers(WHOLE, 47);
+}
+
+fn odd_numbers(full: &str, expected: usize) {
     let places = numbers(full.as_bytes());
-    assert_eq!(places.len(), 47, "numbers of the full scenario");
+    assert_eq!(places.len(), expected, "numbers of the scenario");
     let (mut accepted, mut refused) = (0, 0);
     for &(from, to) in &places {
         for odd in ODD {
@@ -170,4 +247,140 @@ fn truncated_scenarios_never_panic() {
             assert!(complaint(error).contains("cut.toml"));
         }
     }
+}
+
+/// What the keys of supports, tasks and events mean.
+#[test]
+fn a_whole_body_is_read() {
+    let scenario = read_whole(WHOLE).unwrap_or_else(|error| panic!("{}", complaint(error)));
+    let model = &scenario.model;
+    assert!(scenario.is_whole());
+    let [right, left] = [&scenario.supports[0], &scenario.supports[1]];
+    assert_eq!((right.segment, right.friction, right.share_max), (model.segment("calcn_r").unwrap(), 0.8, 1.0));
+    assert_eq!(right.corners, model.segments()[right.segment].patch);
+    assert_eq!((left.friction, left.share_max, left.corners.len(), left.corners[2].x), (0.6, 0.4, 4, 0.12));
+    for support in &scenario.supports {
+        assert_eq!(support.normal, nalgebra::Vector3::y());
+    }
+    let tasks: Vec<(usize, bool)> =
+        scenario.tasks.iter().map(|task| (task.goal.tasks.len(), task.above_relief)).collect();
+    assert_eq!(tasks, [(1, true), (2, false)]);
+    // A coordinate's own word, then its region's, then that of the whole body.
+    let strategy = |list: &[Strategy], name: &str| list[model.coordinate(name).unwrap()];
+    for (name, start, later) in [
+        ("elbow_flex_r", Strategy::Active, Strategy::Passive),
+        ("arm_flex_l", Strategy::Passive, Strategy::Passive),
+        ("knee_angle_r", Strategy::Active, Strategy::Active),
+        ("hip_adduction_r", Strategy::Active, Strategy::Passive),
+        ("lumbar_extension", Strategy::Passive, Strategy::Active),
+    ] {
+        assert_eq!(strategy(&scenario.strategies, name), start, "{name}");
+        assert_eq!(strategy(scenario.events[0].strategies.as_ref().unwrap(), name), later, "{name}");
+    }
+    // Events stand in the order of time; `task` counts the tasks of the file, of which two share a priority.
+    let times: Vec<f64> = scenario.events.iter().map(|event| event.time).collect();
+    assert_eq!(times, [0.05, 0.1]);
+    let event = &scenario.events[1];
+    assert_eq!((event.strategies.is_none(), event.loads.as_ref().unwrap().len()), (true, 2));
+    let (place, goal) = &event.tasks[0];
+    let before = &scenario.tasks[*place].goal;
+    assert_eq!((*place, &goal.tasks[0]), (1, &before.tasks[0]));
+    let Task::Point(point) = &goal.tasks[1] else { panic!("{:?}", goal.tasks[1]) };
+    assert_eq!(point.target, nalgebra::Vector3::new(0.3, 0.9, 0.2));
+    assert_sound(scenario, &|| WHOLE.to_owned());
+}
+
+/// A second event finds the targets where the first one left them.
+#[test]
+fn events_follow_one_another() {
+    let move_gaze = "[[event]]\nat_s = 0.15\ntask = 2\ntarget_m = [1, 1, 1]\n[run]";
+    let scenario = read_whole(&WHOLE.replace("[run]", move_gaze)).unwrap();
+    let goal = &scenario.events[2].tasks[0].1;
+    let (Task::LookAt(look), Task::Point(point)) = (&goal.tasks[0], &goal.tasks[1]) else { panic!("{goal:?}") };
+    assert_eq!((look.target.x, point.target.x), (1.0, 0.3));
+}
+
+/// What replaces a line of the whole body's scenario; where the complaint points, and a part of it.
+#[test]
+fn mistakes_are_refused_where_they_stand() {
+    let cases: &[(&str, &str, &str, &str)] = &[
+        ("segment = \"calcn_r\"", "segment = \"calcn\"", "column 11", "did you mean `calcn_"),
+        ("segment = \"calcn_l\"", "segment = \"femur_l\"", "column 6", "m off this plane"),
+        ("segment = \"calcn_r\"", "segment = \"head\"", "column 11", "add `corners_m = [[x, y, z], ...]`"),
+        ("segment = \"calcn_l\"", "segment = \"calcn_r\"", "column 11", "a support already"),
+        ("friction = 0.8", "friction = -1", "column 12", "it must lie in 0..10"),
+        ("friction = 0.8", "fricton = 1", "column 1", "did you mean `friction`"),
+        ("share_max = 0.4", "share_max = 1.1", "column 13", "it must lie in 0..1"),
+        ("on = \"ground\"", "on = \"floor\"", "column 6", "neither the ground nor a plane"),
+        (
+            "on = { normal = [0, 2, 0], point_m = [0.1, 0.01, 0] }",
+            "on = { normal = [0, 0, 0] }",
+            "column 6",
+            "has no length",
+        ),
+        (
+            "on = { normal = [0, 2, 0], point_m = [0.1, 0.01, 0] }",
+            "on = { normal = [0, 1, 0], point_m = [0, 0.45, 0] }",
+            "column 6",
+            "a support stays where it is at the start",
+        ),
+        ("point_m = [0.1, 0.01, 0]", "point_m = [0.1, 1e308, 0]", "column 6", "too large"),
+        (
+            "of = { legs = \"active\", elbow_flex_r = \"active\" }",
+            "of = { leg = \"active\" }",
+            "column 8",
+            "did you mean `legs`",
+        ),
+        (
+            "of = { legs = \"active\"",
+            "of = { legs = \"relaxed\"",
+            "column 15",
+            "did you mean `passive`|there are: active, passive",
+        ),
+        ("at_s = 0.1", "at_s = -0.1", "column 8", "must not be negative"),
+        ("at_s = 0.1", "", "column 1", "`at_s` is missing"),
+        ("strategy = \"active\"", "strategy = \"ready\"", "column 12", "unknown value `ready`"),
+        ("strategy_of = { arms", "strategy_of = { armes", "column 17", "did you mean `arms`"),
+        ("mass_kg = 3 }", "mass_kg = -3 }", "column 41", "mass (kg) of a load is -3"),
+        ("load = [{ segment = \"hand_r\"", "load = [{ segment = \"hand_rr\"", "column 21", "did you mean `hand_r`"),
+        ("force_n = [0, -5, 0]", "force = [0, -5, 0]", "column 68", "unknown key `force`"),
+        ("task = 3", "task = 4", "column 8", "there is no task 4; the scenario has 3 of them"),
+        ("task = 3", "task = 0", "column 8", "1 is the first"),
+        ("task = 3", "task = 1", "column 8", "task 1 (center_of_mass) has no place as its target"),
+        ("task = 3\n", "", "column 12", "which task is meant?"),
+        ("target_m = [0.3, 0.9, 0.2]", "", "column 8", "a new target is missing"),
+        ("target_m = [0.3, 0.9, 0.2]", "target_m = [0.3, 1e10, 0.2]", "column 12", "target (m) is 10000000000"),
+        ("target_m = [0.3, 0.9, 0.2]", "target_m = [0.3, 0.9]", "column 12", "2 numbers are given; 3 are due"),
+        (
+            "at_s = 0.05\nstrategy = \"active\"\nstrategy_of = { arms = \"passive\", hip_adduction_r = \"passive\" }\n",
+            "at_s = 0.05\n",
+            "column 1",
+            "nothing changes",
+        ),
+    ];
+    let mut wrong = vec![];
+    for (old, new, column, part) in cases {
+        assert!(WHOLE.contains(old), "{old}");
+        let changed = WHOLE.replacen(old, new, 1);
+        let text = read_whole(&changed).map_or_else(complaint, |_| "accepted".to_owned());
+        let text = text.replace(", columns ", ", column ");
+        // What is missing, and what two lines say together, is told a line away.
+        let line = WHOLE[..WHOLE.find(old).unwrap()].matches('\n').count() + 1;
+        let here = |line: usize| text.contains(&format!("label at line {line}, {column}"));
+        if !(line - 1..=line + 1).any(here) || !part.split('|').any(|part| text.contains(part)) {
+            wrong.push(format!("`{part}` at line {line}, {column} is not in\n{text}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n----\n"));
+    println!("{} mistakes", cases.len());
+}
+
+/// A free coordinate without a passive curve is refused where it is freed, but not where a whole body moves it.
+#[test]
+fn a_single_joint_needs_a_curve() {
+    let lines =
+        "format = 1\n[coordinates]\nfree = [\"pelvis_tx\"]\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 0\n";
+    let text = complaint(read_whole(lines).unwrap_err());
+    assert!(text.contains("`pelvis_tx` is free") && text.contains("line 3, column"), "{text}");
+    read_whole(&format!("{lines}[[task]]\nkind = \"posture\"\n")).unwrap();
 }

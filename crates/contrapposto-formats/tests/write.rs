@@ -274,6 +274,34 @@ fn driven_joints_and_couplings_in_osim() {
     assert!(matches!(write::mjcf(&model), Err(WriteError::Joint { .. })));
 }
 
+/// OpenSim's GCVSpline, as a joint's drive and as a coupling: what is read back is what was written, and so is its text.
+#[test]
+fn natural_splines_in_osim() {
+    let spline = |scale: f64| {
+        let y = [0.1, 0.3, -0.2, 1.0 / 3.0, 0.4].map(|y| scale * y);
+        Function::NaturalSpline(Spline::natural(&[-1.0, -0.2, 0.4, 1.3, 2.0], &y).unwrap())
+    };
+    let (x, z) = (axis(1.0, 0.0, 0.0), axis(0.0, 0.0, 1.0));
+    // Frames that turn nothing are written to the last digit.
+    let segment = |name: &str, parent: Option<&str>, kind, names: &[&str]| SegmentSpec {
+        in_parent: Placement::identity(),
+        in_segment: Placement::identity(),
+        ..segment(name, parent, kind, named(names))
+    };
+    let motions = vec![(Motion::Slide(x), Drive::Function(spline(0.5), 0)), (Motion::Hinge(z), Drive::Coordinate(0))];
+    let mut builder = ModelBuilder::new("natural", Vector3::new(0.0, -9.81, 0.0));
+    builder.segment(segment("a", None, JointKind::Driven(motions), &["p"])).unwrap();
+    builder.segment(segment("b", Some("a"), JointKind::Hinge(x), &["q"])).unwrap();
+    builder.couple("q", "p", spline(1.0)).unwrap();
+    let model = builder.build();
+    let written = write::osim(&model).unwrap();
+    assert_eq!((written.text.matches("<GCVSpline").count(), written.lost.len()), (2, 0), "{}", written.text);
+    let back = read(&written.text, Osim);
+    assert_eq!(back.couplings(), model.couplings());
+    assert!(difference(&model, &back, false) < 1e-12, "{}", written.text);
+    assert_eq!(write::osim(&back).unwrap().text, written.text);
+}
+
 #[test]
 fn linear_couplings_in_urdf_and_polynomials_in_mjcf() {
     let x = axis(1.0, 0.0, 0.0);

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
+use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
 use contrapposto::ik::task::{CenterOfMass, Distance, Goal as Place, LookAt, Placement, Point, Posture, Task};
 use contrapposto::ik::{Engine, Goal, Options};
 use contrapposto::kinematics::{self, Kinematics};
@@ -203,4 +204,32 @@ fn steps_allocate_nothing() {
     let left = engine.errors()[2];
     let moved = posture.values().iter().zip(start.values()).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     assert!(moved > 0.05 && left < 1e-3, "moved by {moved}, {left} m are left");
+}
+
+#[test]
+fn decisions_allocate_nothing() {
+    let model = adult(&Adult::default()).unwrap();
+    let curves: Vec<_> = model.coordinates().iter().filter_map(|c| c.curve()).collect();
+    assert!(curves.len() > 5);
+    let mut rng = random();
+    let problems: Vec<hybrid::Problem<'_>> = (0..CALLS)
+        .flat_map(|_| curves.clone())
+        .map(|curve| hybrid::Problem {
+            curve,
+            angle: rng.random_range(curve.range().0..curve.range().1),
+            external_torque: rng.random_range(-40.0..40.0),
+            external_slope: rng.random_range(-60.0..60.0),
+            strategy: if rng.random_range(0..2) == 0 { Strategy::Active } else { Strategy::Passive },
+            minimum_decrease_ratio: 0.9,
+            torque_tolerance: 0.05,
+            accepted: None,
+        })
+        .collect();
+    let mut decided = 0;
+    assert_silent("hybrid minimisation", 1, |i| {
+        for problem in &problems[i * curves.len()..(i + 1) * curves.len()] {
+            decided += usize::from(minimise(problem).is_ok()) + usize::from(minimise_literal(problem).is_ok());
+        }
+    });
+    assert!(decided > problems.len(), "{decided} of {}", 2 * problems.len());
 }

@@ -180,6 +180,7 @@ fn function_word(function: &Function) -> &'static str {
         Function::Polynomial(_) => "polynomial",
         Function::Sine { .. } => "sine",
         Function::Spline(_) => "spline",
+        Function::NaturalSpline(_) => "natural spline",
         _ => "other",
     }
 }

@@ -28,6 +28,11 @@ impl Tissue {
         Self { ranges: ranges.collect(), held: vec![] }
     }
 
+    /// By coordinate: the range outside of which its passive torque stays what it is at the limit, rad.
+    pub(crate) fn ranges(&self) -> &[Option<(f64, f64)>] {
+        &self.ranges
+    }
+
     /// Takes the values of all coordinates, those that follow others filled in.
     pub(crate) fn place(&mut self, values: &[f64]) {
         let clamp =

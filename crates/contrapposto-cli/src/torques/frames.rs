@@ -21,57 +21,57 @@ pub(super) struct Statics {
 
 /// The three torques of one rate, N m (N for slides), which add up to zero.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Torques {
-    pub(super) external: f64,
-    pub(super) passive: f64,
-    pub(super) active: f64,
+pub(crate) struct Torques {
+    pub(crate) external: f64,
+    pub(crate) passive: f64,
+    pub(crate) active: f64,
 }
 
 impl Torques {
-    fn new(external: f64, passive: f64) -> Self {
+    pub(crate) fn new(external: f64, passive: f64) -> Self {
         // Not the negative of the sum: that of 0 would be -0.
         Self { external, passive, active: 0.0 - (external + passive) }
     }
 }
 
 /// One rate that is told.
-pub(super) struct Row {
+pub(crate) struct Row {
     /// `knee_angle_r`, `root_fx`, `root_mz`.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Index of the rate.
-    pub(super) rate: usize,
+    pub(crate) rate: usize,
     /// It turns: N m, otherwise N.
-    pub(super) turns: bool,
+    pub(crate) turns: bool,
     /// The coordinate of the same name, if it has one.
-    pub(super) coordinate: Option<usize>,
+    pub(crate) coordinate: Option<usize>,
 }
 
 /// What is told of every frame, in which order.
-pub(super) struct Order {
+pub(crate) struct Order {
     /// Rates of coordinates that follow none.
-    pub(super) rows: Vec<Row>,
+    pub(crate) rows: Vec<Row>,
     /// Rates that a coupling joins.
-    pub(super) coupled: Vec<Row>,
+    pub(crate) coupled: Vec<Row>,
     /// Coordinates whose value has no place in `rows` or `coupled`: those of free joints and balls.
-    pub(super) values: Vec<usize>,
+    pub(crate) values: Vec<usize>,
 }
 
 /// One frame.
-pub(super) struct Frame<'a> {
-    pub(super) index: usize,
-    pub(super) time: f64,
+pub(crate) struct Frame<'a> {
+    pub(crate) index: usize,
+    pub(crate) time: f64,
     /// By coordinate.
-    pub(super) values: &'a [f64],
+    pub(crate) values: &'a [f64],
     /// By `Order::rows` and `Order::coupled`.
-    pub(super) rows: Vec<Torques>,
-    pub(super) coupled: Vec<Torques>,
-    pub(super) center_of_mass: Option<Vector3<f64>>,
+    pub(crate) rows: Vec<Torques>,
+    pub(crate) coupled: Vec<Torques>,
+    pub(crate) center_of_mass: Option<Vector3<f64>>,
     /// Rows and columns by `Order::rows`.
-    pub(super) gradient: Option<Vec<Vec<f64>>>,
+    pub(crate) gradient: Option<Vec<Vec<f64>>>,
 }
 
 impl Order {
-    pub(super) fn new(model: &Model) -> Self {
+    pub(crate) fn new(model: &Model) -> Self {
         let coordinates = model.coordinates();
         let is_coupled = |c: usize| model.couplings().iter().any(|k| k.dependent == c || k.independent == c);
         let mut order = Self { rows: vec![], coupled: vec![], values: vec![] };
@@ -121,12 +121,12 @@ impl Statics {
         }
     }
 
-    pub(super) fn kinematics(&self) -> &Kinematics {
+    pub(crate) fn kinematics(&self) -> &Kinematics {
         &self.kinematics
     }
 
     /// Brings the body to a posture, with its passive torque.
-    pub(super) fn place(&mut self, model: &Model, posture: &Posture) -> Result<(), String> {
+    pub(crate) fn place(&mut self, model: &Model, posture: &Posture) -> Result<(), String> {
         self.kinematics.update(model, posture).map_err(|error| error.to_string())?;
         let values = self.kinematics.values();
         self.tissue.place(values);
@@ -144,7 +144,7 @@ impl Statics {
     }
 
     /// Lets gravity and `loads` pull.
-    pub(super) fn pull(&mut self, model: &Model, loads: &[Load]) -> Result<(), String> {
+    pub(crate) fn pull(&mut self, model: &Model, loads: &[Load]) -> Result<(), String> {
         self.external.update(model, &self.kinematics, loads).map_err(|error| error.to_string())?;
         if let Some(gradient) = &mut self.gradient {
             self.external.gradient(model, &self.kinematics, gradient);
@@ -152,7 +152,7 @@ impl Statics {
         Ok(())
     }
 
-    pub(super) fn frame(&self, model: &Model, order: &Order, index: usize, time: f64) -> Frame<'_> {
+    pub(crate) fn frame(&self, model: &Model, order: &Order, index: usize, time: f64) -> Frame<'_> {
         let (folded, raw) = (self.external.torques(), self.external.uncoupled_torques(model));
         let torques = |rows: &[Row], external: &[f64], passive: &[f64]| -> Vec<Torques> {
             rows.iter().map(|row| Torques::new(external[row.rate], passive[row.rate])).collect()

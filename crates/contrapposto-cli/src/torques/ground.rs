@@ -20,7 +20,7 @@ use crate::input::read;
 const SLACK: f64 = 1e-6;
 
 /// Ground reactions over time.
-pub(super) struct GroundReaction {
+pub(crate) struct GroundReaction {
     name: String,
     table: Table,
     plates: Vec<Plate>,
@@ -35,7 +35,7 @@ struct Plate {
 
 impl GroundReaction {
     /// Reads the file; `on` names the segments, in the order of the plates. Notes say what was guessed.
-    pub(super) fn read(path: &Path, on: &[String], model: &Model, notes: &mut Vec<String>) -> Result<Self, Fail> {
+    pub(crate) fn read(path: &Path, on: &[String], model: &Model, notes: &mut Vec<String>) -> Result<Self, Fail> {
         let name = path.display().to_string();
         let table = read_table(&name, &read(path, motion::MOST_BYTES as u64)?)?;
         let refuse = |why: String| Fail::Refused(format!("{name}: {why}"));
@@ -85,7 +85,7 @@ impl GroundReaction {
     }
 
     /// Are there forces at all these times?
-    pub(super) fn check(&self, times: impl Iterator<Item = f64>) -> Result<(), Fail> {
+    pub(crate) fn check(&self, times: impl Iterator<Item = f64>) -> Result<(), Fail> {
         let all = &self.table.times;
         let (Some(first), Some(last)) = (all.first(), all.last()) else {
             return Err(Fail::Refused(format!("{}: holds no rows", self.name)));
@@ -103,7 +103,7 @@ impl GroundReaction {
 
     /// Adds the loads at `time` in the posture that `kinematics` holds: world-fixed forces at the points of the segments that
     /// now lie where the ground pushes.
-    pub(super) fn loads(&self, time: f64, model: &Model, kinematics: &Kinematics, loads: &mut Vec<Load>) {
+    pub(crate) fn loads(&self, time: f64, model: &Model, kinematics: &Kinematics, loads: &mut Vec<Load>) {
         let Table { times, rows, .. } = &self.table;
         let after = times.partition_point(|t| *t <= time).min(times.len() - 1);
         let before = after.saturating_sub(1);

@@ -6,6 +6,8 @@ use nalgebra::Vector3;
 
 use crate::fail::Fail;
 
+const PATCH_FORM: &str = "\"SEGMENT X,Y,Z X,Y,Z ...\" (m, the segment's axes): \
+    \"calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0\"";
 const LOAD_FORM: &str = "\"SEGMENT MASSkg\" or \"SEGMENT MASSkg at X,Y,Z\" (m, the segment's axes): \"hand_r 3kg\"";
 const FORCE_FORM: &str = "\"SEGMENT FX,FY,FZ\" (N), then if wanted \"at X,Y,Z\" (m, the segment's axes), then if wanted \
     \"world\" or \"segment\" (the force's axes): \"hand_r 0,-20,0 at 0,-0.08,0 world\"";
@@ -51,6 +53,14 @@ pub(super) fn force(model: &Model, text: &str) -> Result<Load, Fail> {
     checked(model, Load { segment, point, kind: LoadKind::Force(force, fixed_in) }).map_err(refuse)
 }
 
+/// Where a segment touches what supports it: the segment, and corners in its frame.
+pub(crate) fn patch(model: &Model, text: &str) -> Result<(usize, Vec<Vector3<f64>>), Fail> {
+    let refuse = |problem: String| Fail::Refused(format!("--patch \"{text}\": {problem}\n  accepted: {PATCH_FORM}"));
+    let (segment, words) = segment(model, text).map_err(refuse)?;
+    let corners = words.split_whitespace().map(vector).collect::<Result<Vec<_>, _>>().map_err(refuse)?;
+    if corners.is_empty() { Err(refuse("the corners are missing".to_owned())) } else { Ok((segment, corners)) }
+}
+
 fn checked(model: &Model, load: Load) -> Result<Load, String> {
     load.check(model).map(|()| load).map_err(|error| error.to_string())
 }
@@ -71,7 +81,7 @@ fn segment(model: &Model, text: &str) -> Result<(usize, String), String> {
 }
 
 /// "the model has no segment `han_r`; did you mean `hand_r`?"
-pub(super) fn no_segment(model: &Model, given: &str) -> String {
+pub(crate) fn no_segment(model: &Model, given: &str) -> String {
     let names = || model.segments().iter().map(|segment| segment.name.as_str());
     // The distance of two words costs their product.
     let near =

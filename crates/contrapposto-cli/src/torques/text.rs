@@ -62,7 +62,7 @@ pub(super) fn json<'a>(model: &'a Model, order: &'a Order, frame: &'a Frame<'_>)
 }
 
 /// Heads of the table, with OpenSim's own header where tabs separate.
-pub(super) fn header(model: &Model, order: &Order, frames: usize, separator: char, gradient: bool) -> String {
+pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: char, gradient: bool) -> String {
     let mut labels = vec!["time".to_owned()];
     for &c in &order.values {
         let coordinate = &model.coordinates()[c];
@@ -101,7 +101,7 @@ pub(super) fn header(model: &Model, order: &Order, frames: usize, separator: cha
 }
 
 /// One row of the table. Numbers are written in the shortest form that reads back the same.
-pub(super) fn row(order: &Order, frame: &Frame<'_>, separator: char) -> String {
+pub(crate) fn row(order: &Order, frame: &Frame<'_>, separator: char) -> String {
     let mut text = format!("{:?}", frame.time);
     let mut put = |value: f64| {
         let _ = write!(text, "{separator}{value:?}");

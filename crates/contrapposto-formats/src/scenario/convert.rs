@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
+use contrapposto::ik::Goal;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, AdultError, Coordinate, CoordinateKind, Model, Part, Sex, adult, data};
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveError, Tabulated};
@@ -15,6 +16,7 @@ use nalgebra::Vector3;
 
 use super::pose::{Ranked, ranked, set};
 use super::task::Stage;
+use super::task_text::TaskText;
 use super::text::{
     AdultText, DoubleExponentialText, EndText, EventText, FixedInText, LawText, LoadText, PartText, PassiveText,
     ReshapeText, RunText, ScenarioText, SexText, StrategyKindText, StrategyText, TablesText,
@@ -39,8 +41,10 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText, model: Option<Model>) 
         ranked.into_iter().map(|Ranked { goal, above_relief, .. }| TaskSettings { goal, above_relief }).collect();
     let whole = !supports.is_empty() || !tasks.is_empty();
     let free = free(at, &model, text, |coordinate| whole || coordinate.can_be_relieved())?;
-    let strategies = strategies(at, &model, &["strategy", "of"], kind(strategy.kind), &strategy.of)?;
-    let events = events(at, &model, text, &tasks, &strategies)?;
+    let strategies = vec![kind(strategy.kind); model.coordinates().len()];
+    let strategies = change_strategies(at, &model, &["strategy", "of"], strategies, &strategy.of)?;
+    let goals = tasks.iter().map(|task| task.goal.clone()).collect();
+    let events = events(at, &model, text, goals, strategies.clone())?;
     let loads =
         text.load.iter().enumerate().map(|(i, load)| self::load(at, &model, i, load)).collect::<Result<_, _>>()?;
     let mut start_fatigue = vec![[0.0; 2]; model.coordinates().len()];
@@ -118,17 +122,7 @@ fn kind(text: StrategyKindText) -> Strategy {
     }
 }
 
-/// Strategy of every coordinate: `otherwise`, but for the regions and coordinates named.
-fn strategies(
-    at: &Located,
-    model: &Model,
-    path: &[&str],
-    otherwise: Strategy,
-    of: &BTreeMap<String, StrategyKindText>,
-) -> Result<Vec<Strategy>, InputError> {
-    change_strategies(at, model, path, vec![otherwise; model.coordinates().len()], of)
-}
-
+/// Strategies of all coordinates, changed for the regions and coordinates named.
 fn change_strategies(
     at: &Located,
     model: &Model,
@@ -161,59 +155,52 @@ fn change_strategies(
     Ok(all)
 }
 
+/// The events, the earliest first. `goals` and `strategies` are those of the start; each event changes what the ones before it
+/// left.
 fn events(
     at: &Located,
     model: &Model,
     text: &ScenarioText,
-    tasks: &[TaskSettings],
-    strategies: &[Strategy],
+    mut goals: Vec<Goal>,
+    mut strategies: Vec<Strategy>,
 ) -> Result<Vec<Event>, InputError> {
     let mut order: Vec<(usize, &EventText)> = text.event.iter().enumerate().collect();
     order.sort_by(|a, b| a.1.at_s.total_cmp(&b.1.at_s));
-    let mut strategies = strategies.to_vec();
     let mut events = vec![];
-    for (i, text) in order {
+    for (i, event_text) in order {
         let number = i.to_string();
         let path = |key| ["event", &number, key];
-        if text.at_s < 0.0 {
-            return Err(at.error(
-                &path("at_s"),
-                format!("at_s is {}; it must not be negative", shown(text.at_s)),
-                None,
-            ));
+        if event_text.at_s < 0.0 {
+            let message = format!("at_s is {}; it must not be negative", shown(event_text.at_s));
+            return Err(at.error(&path("at_s"), message, None));
         }
-        let mut event = Event { time: text.at_s, ..Event::default() };
-        if let Some(all) = text.strategy {
+        let mut event = Event { time: event_text.at_s, ..Event::default() };
+        if let Some(all) = event_text.strategy {
             strategies.fill(kind(all));
         }
-        if text.strategy.is_some() || !text.strategy_of.is_empty() {
-            strategies = change_strategies(at, model, &path("strategy_of"), strategies, &text.strategy_of)?;
+        if event_text.strategy.is_some() || !event_text.strategy_of.is_empty() {
+            strategies = change_strategies(at, model, &path("strategy_of"), strategies, &event_text.strategy_of)?;
             event.strategies = Some(strategies.clone());
         }
-        if let Some(loads) = &text.load {
+        if let Some(loads) = &event_text.load {
             let loads = loads.iter().enumerate();
             let loads = loads.map(|(j, load)| load_at(at, model, &["event", &number, "load", &j.to_string()], load));
             event.loads = Some(loads.collect::<Result<_, _>>()?);
         }
-        match (text.task, text.target_m) {
+        match (event_text.task, event_text.target_m) {
             (Some(task), Some(target)) => {
-                let Some(settings) = task.checked_sub(1).and_then(|place| tasks.get(place)) else {
-                    let message =
-                        format!("there is no task {task}; the scenario has {} priorities of them", tasks.len());
+                let at_place = task.checked_sub(1).and_then(|i| places(&text.task).get(i).copied());
+                let Some((priority, place)) = at_place else {
+                    let message = format!("there is no task {task}; the scenario has {} of them", text.task.len());
                     return Err(at.error(&path("task"), message, Some("1 is the first".to_owned())));
                 };
-                let mut goal = settings.goal.clone();
-                let moved = goal
-                    .tasks
-                    .iter_mut()
-                    .map(|given| given.retarget(Vector3::from(target)))
-                    .filter(|moved| *moved)
-                    .count();
-                if moved == 0 {
-                    let message = "the task has no place as its target".to_owned();
+                let moved = &mut goals[priority].tasks[place];
+                if !moved.retarget(Vector3::from(target)) {
+                    let message = format!("task {task} ({}) has no place as its target", moved.kind());
                     return Err(at.error(&path("task"), message, None));
                 }
-                event.tasks.push((task - 1, goal));
+                moved.check(model).map_err(|error| at.error(&path("target_m"), error.to_string(), None))?;
+                event.tasks.push((priority, goals[priority].clone()));
             }
             (None, None) => {}
             (Some(_), None) => return Err(at.error(&path("task"), "a new target is missing: `target_m`", None)),
@@ -228,6 +215,19 @@ fn events(
         events.push(event);
     }
     Ok(events)
+}
+
+/// Where each task of the file stands: its priority, and its place among the tasks of that priority.
+fn places(texts: &[TaskText]) -> Vec<(usize, usize)> {
+    let mut places: Vec<(usize, usize)> = vec![];
+    for text in texts {
+        places.push(match places.last() {
+            Some(&(priority, place)) if text.same_priority => (priority, place + 1),
+            Some(&(priority, _)) => (priority + 1, 0),
+            None => (0, 0),
+        });
+    }
+    places
 }
 
 /// Longest title, characters: it stands above the pictures.
@@ -268,8 +268,12 @@ pub(super) fn shown(x: f64) -> String {
 
 /// Where a setting stands in the file.
 fn place(error: &ScenarioError) -> Vec<&'static str> {
-    let ScenarioError::Setting { name, .. } = error else { return vec![] };
-    match *name {
+    let name = match error {
+        ScenarioError::Setting { name, .. } => *name,
+        ScenarioError::NoPassiveCurve(_) => return vec!["coordinates", "free"],
+        _ => return vec![],
+    };
+    match name {
         "minimum decrease ratio" => vec!["strategy", "minimum_decrease_ratio"],
         "time of an event (s)" => vec!["event"],
         "step gain" => vec!["relief", "step_gain"],
@@ -285,9 +289,10 @@ fn place(error: &ScenarioError) -> Vec<&'static str> {
 
 /// The body: that of the model file if there is one, else the built-in adult, with its own passive curves and fatigue laws.
 pub(super) fn body(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Model, InputError> {
-    let mut model = match file {
-        Some(model) => model,
-        None => built_in(at, text)?,
+    let mut model = match (file, &text.model.file) {
+        (Some(model), _) => model,
+        (None, Some(_)) => return Err(at.key_error(&["model", "file"], "the model file was not opened", None)),
+        (None, None) => built_in(at, text)?,
     };
     for (name, passive) in &text.passive {
         let index = coordinate(at, &model, &["passive", name], name)?;

@@ -112,6 +112,10 @@ fn complaint(source: &Source, error: &toml::de::Error) -> InputError {
             let help = "write true, false, or { zone_deg = 5, end_torque_nm = 20 }".to_owned();
             ("not a way to reshape".to_owned(), Some(help))
         }
+        _ if message.ends_with("untagged enum OnText") => {
+            let help = Some("write \"ground\", or { normal = [x, y, z], point_m = [x, y, z] }".to_owned());
+            ("neither the ground nor a plane".to_owned(), help)
+        }
         _ => {
             let plain =
                 [("expected f64", "expected a number"), ("expected u32", "expected a whole number, not negative")];

@@ -94,9 +94,6 @@ pub fn read_pose(name: &str, bytes: &[u8], model: Option<Model>) -> Result<PoseS
 
 fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseScenario, InputError> {
     check_head(at, text)?;
-    if model.is_none() && text.model.file.is_some() {
-        return Err(at.key_error(&["model", "file"], "the model file was not opened", None));
-    }
     let model = body(at, text, model)?;
     let mut start = model.default_posture();
     set(at, &model, &["posture"], &text.posture, &mut start)?;
@@ -126,6 +123,7 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
         ("strategy", text.strategy.is_some()),
         ("relief", at.has("relief")),
         ("fatigue", at.has("fatigue")),
+        ("event", at.has("event")),
         ("run", text.run.is_some()),
     ];
     Ok(PoseScenario {
@@ -254,6 +252,7 @@ fn supports(text: &ScenarioText, stage: &mut Stage<'_>) -> Result<Vec<Task>, Inp
     let mut tasks = vec![];
     for (i, support) in text.support.iter().enumerate() {
         let segment = support::segment(stage.at, stage.model, i, support, &stage.supports)?;
+        support::numbers(stage.at, i, support)?;
         let target = stage.kinematics.placement(stage.model, segment);
         tasks.push(Task::Placement(Placement { segment, point: Vector3::zeros(), target }));
         stage.supports.push(segment);
@@ -266,8 +265,8 @@ fn options(at: &Located, text: &ScenarioText) -> Result<Options, InputError> {
     let refuse = |key: &str, value: f64, accepted: &str| {
         Err(at.error(&["solver", key], format!("{key} is {}; it must be {accepted}", shown(value)), None))
     };
-    if !(solver.max_step_deg > 0.0 && solver.max_step_deg <= 180.0) {
-        return refuse("max_step_deg", solver.max_step_deg, "above 0, at most 180");
+    if !(1e-9..=180.0).contains(&solver.max_step_deg) {
+        return refuse("max_step_deg", solver.max_step_deg, "from 1e-9 to 180");
     }
     if !(1..=100_000).contains(&solver.max_steps) {
         return refuse("max_steps", f64::from(solver.max_steps), "from 1 to 100000");
@@ -277,10 +276,9 @@ fn options(at: &Located, text: &ScenarioText) -> Result<Options, InputError> {
             return refuse(key, value, "from 1e-15 to 1");
         }
     }
-    Ok(Options {
-        max_step: solver.max_step_deg.to_radians(),
-        max_steps: solver.max_steps as usize,
-        still: solver.still,
-        reached: solver.reached,
-    })
+    let max_step = solver.max_step_deg.to_radians();
+    if solver.still >= max_step {
+        return refuse("still", solver.still, &format!("below the largest step, {} rad", shown(max_step)));
+    }
+    Ok(Options { max_step, max_steps: solver.max_steps as usize, still: solver.still, reached: solver.reached })
 }

@@ -35,6 +35,27 @@ pub(super) fn segment(
     Ok(segment)
 }
 
+/// Are the numbers of support number `i` in order?
+pub(super) fn numbers(at: &Located, i: usize, text: &SupportText) -> Result<(), InputError> {
+    let error = |key: &str, message: String| Err(at.error(&["support", &i.to_string(), key], message, None));
+    for (key, value, most) in [("friction", text.friction, 10.0), ("share_max", text.share_max, 1.0)] {
+        if let Some(value) = value.filter(|value| !(0.0..=most).contains(value)) {
+            return error(key, format!("{key} is {}; it must lie in 0..{most}", shown(value)));
+        }
+    }
+    if let Some(corners) = &text.corners_m
+        && (!(1..=64).contains(&corners.len()) || corners.iter().flatten().any(|value| value.abs() > LARGEST))
+    {
+        return error("corners_m", "a patch has 1 to 64 corners, none farther than 1e9 m".to_owned());
+    }
+    if let OnText::Plane(plane) = &text.on
+        && plane.normal.iter().chain(plane.point_m.iter().flatten()).any(|value| value.abs() > LARGEST)
+    {
+        return error("on", "a number of the plane is too large; 1e9 at most".to_owned());
+    }
+    Ok(())
+}
+
 /// All supports of a scenario, in its start.
 pub(super) fn supports(
     at: &Located,
@@ -46,14 +67,10 @@ pub(super) fn supports(
     for (i, text) in texts.iter().enumerate() {
         let before: Vec<usize> = supports.iter().map(|support| support.segment).collect();
         let segment = segment(at, model, i, text, &before)?;
+        numbers(at, i, text)?;
         let number = i.to_string();
         let error =
             |key: &str, message: String, help: Option<String>| at.error(&["support", &number, key], message, help);
-        for (key, value, most) in [("friction", text.friction, 10.0), ("share_max", text.share_max, 1.0)] {
-            if let Some(value) = value.filter(|value| !(0.0..=most).contains(value)) {
-                return Err(error(key, format!("{key} is {}; it must lie in 0..{most}", shown(value)), None));
-            }
-        }
         let corners: Vec<Vector3<f64>> = match &text.corners_m {
             Some(corners) => corners.iter().copied().map(Vector3::from).collect(),
             None => model.segments()[segment].patch.clone(),
@@ -63,16 +80,12 @@ pub(super) fn supports(
             let help = "add `corners_m = [[x, y, z], ...]`, corners of the patch in the segment's frame".to_owned();
             return Err(error("segment", message, Some(help)));
         }
-        if corners.iter().flatten().any(|value| value.abs() > LARGEST) || corners.len() > 64 {
-            let message = "a patch has at most 64 corners, none farther than 1e9 m".to_owned();
-            return Err(error("corners_m", message, None));
-        }
         let up = -model.gravity();
         let normal = match &text.on {
             OnText::Named(_) => up,
             OnText::Plane(plane) => Vector3::from(plane.normal),
         };
-        let Some(normal) = normal.try_normalize(1e-9).filter(|normal| normal.iter().all(|x| x.is_finite())) else {
+        let Some(normal) = normal.try_normalize(1e-9) else {
             let message = match &text.on {
                 OnText::Named(_) => "without gravity there is no ground; give a plane with its normal".to_owned(),
                 OnText::Plane(_) => "the normal of the plane has no length".to_owned(),

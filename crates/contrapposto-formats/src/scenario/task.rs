@@ -65,6 +65,7 @@ fn place(error: &TaskError) -> &'static str {
         ("margin (m)", "margin_m"),
         ("offset of an edge (m)", "polygon_m"),
         ("weight", "weights"),
+        ("coordinate (all weights are 0)", "weights"),
         ("coordinates", "coordinates"),
         ("coordinate", "coordinates"),
     ];
@@ -263,6 +264,10 @@ impl One<'_> {
     }
 
     fn coordinates(&self, names: &[String]) -> Result<Vec<usize>, InputError> {
+        if names.is_empty() {
+            let help = Some("leave it out for all of them".to_owned());
+            return Err(self.error("coordinates", "the list names no coordinate", help));
+        }
         let mut found = vec![];
         for (i, name) in names.iter().enumerate() {
             let path = ["task", &self.number, "coordinates", &i.to_string()];

@@ -68,7 +68,7 @@ pub struct EventText {
     pub strategy_of: BTreeMap<String, StrategyKindText>,
     /// Loads from then on, in place of those before; empty to put everything down.
     pub load: Option<Vec<LoadText>>,
-    /// Which task (1 is the first) gets a new target.
+    /// Which `[[task]]` of the file (1 is the first) gets a new target.
     pub task: Option<usize>,
     /// The new target, ground, m.
     #[serde(default, deserialize_with = "numbers")]

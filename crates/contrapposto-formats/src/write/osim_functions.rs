@@ -32,6 +32,15 @@ pub(super) fn write(xml: &mut Xml, name: Option<&str>, function: &Function) -> b
             xml.value("x", &numbers(&x));
             xml.value("y", &numbers(&y));
         }
+        Function::NaturalSpline(spline) => {
+            let (x, y): (Vec<f64>, Vec<f64>) = spline.points().unzip();
+            xml.open("GCVSpline", &named);
+            for (tag, numbers) in [("x", numbers(&x)), ("weights", numbers(&vec![1.0; x.len()])), ("y", numbers(&y))] {
+                xml.value(tag, &numbers);
+            }
+            xml.value("half_order", "2");
+            xml.value("error_variance", "0");
+        }
         _ => return false,
     }
     xml.close();

@@ -264,14 +264,29 @@ fn least_torque(problem: &Problem, active: &Extrapolation, present: f64) -> Goal
     best.1
 }
 
+/// So many ends of pieces are gathered at one look at the curve: more than any but a long table has.
+const GATHERED: usize = 8;
+
 /// The pieces of the range on which the extrapolated torque is monotone, from below.
 fn for_each_piece(problem: &Problem, active: &Extrapolation, mut visit: impl FnMut((Point, Point))) {
-    let (min, max) = active.limits();
-    let mut ends = vec![min, max];
-    problem.curve.crossings(-active.external_slope(), |angle| ends.push(active.at(angle)));
-    ends.sort_by(|a, b| a.angle.total_cmp(&b.angle));
-    for pair in ends.windows(2) {
-        visit((pair[0], pair[1]));
+    let (mut from, max) = active.limits();
+    while from.angle < max.angle {
+        // The nearest ends above, in order.
+        let mut ends = [max.angle; GATHERED];
+        problem.curve.crossings(-active.external_slope(), |angle| {
+            let place = ends.partition_point(|end| *end < angle);
+            if angle > from.angle && place < GATHERED && ends[place] != angle {
+                ends[place..].rotate_right(1);
+                ends[place] = angle;
+            }
+        });
+        for end in ends {
+            if end > from.angle {
+                let to = if end < max.angle { active.at(end) } else { max };
+                visit((from, to));
+                from = to;
+            }
+        }
     }
 }
 

@@ -194,16 +194,18 @@ impl Model {
     /// passive curve keeps the range that it was made for.
     ///
     /// # Errors
-    /// [`ModelError::Number`] unless the lower limit lies at or below the upper one.
+    /// [`ModelError::Number`] unless both limits are at most [`LARGEST`] in size and the lower one lies at or below the upper.
     pub fn with_range(mut self, coordinate: usize, range: (f64, f64)) -> Result<Self, ModelError> {
         let found = &mut self.coordinates[coordinate];
-        if range.0.is_nan() || range.1.is_nan() || range.0 > range.1 {
-            return Err(ModelError::Number {
-                name: found.name.clone(),
-                what: "lower limit of the range",
-                value: range.0,
-                accepted: "at or below the upper limit",
-            });
+        let refuse =
+            |what, value, accepted| Err(ModelError::Number { name: found.name.clone(), what, value, accepted });
+        for (what, limit) in [("lower limit of the range", range.0), ("upper limit of the range", range.1)] {
+            if limit.is_nan() || limit.abs() > LARGEST {
+                return refuse(what, limit, "finite and at most 1e9 in size");
+            }
+        }
+        if range.0 > range.1 {
+            return refuse("lower limit of the range", range.0, "at or below the upper limit");
         }
         found.range = range;
         found.default = found.default.max(range.0).min(range.1);

@@ -155,10 +155,9 @@ impl Curvature {
             }
             let share = 0.5 / h;
             for i in 0..n {
-                let row = self.body.gradient().row(i);
-                for j in 0..n {
-                    self.matrix[i * m + j] += 0.5 * share * row[j];
-                    self.matrix[j * m + i] += 0.5 * share * row[j];
+                for (j, slope) in self.body.gradient().row(i).iter().enumerate() {
+                    self.matrix[i * m + j] += 0.5 * share * slope;
+                    self.matrix[j * m + i] += 0.5 * share * slope;
                 }
             }
         }

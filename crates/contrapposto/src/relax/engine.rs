@@ -29,7 +29,7 @@ pub struct Options {
     pub still: f64,
     /// Steps end when several in a row lower the merit by less than this share of it.
     pub gain: f64,
-    /// Steps that made things worse are taken back; without it every step counts.
+    /// Steps that made things worse are taken back; without it every step counts, and the next one is shorter.
     pub guarded: bool,
 }
 
@@ -292,6 +292,12 @@ impl<'a> Engine<'a> {
         Ok(Step { largest: self.largest, taken_back, status })
     }
 
+    /// Lets the next step be as long as ever: something new is asked.
+    pub fn hurry(&mut self) {
+        self.reach = self.options.max_step;
+        self.errors[0].fill(f64::INFINITY);
+    }
+
     /// Forgets what earlier steps have shown.
     pub fn restart(&mut self) {
         self.errors.iter_mut().for_each(|errors| errors.fill(f64::INFINITY));
@@ -531,7 +537,7 @@ impl<'a> Engine<'a> {
 
     /// Did the last step make things worse?
     fn went_wrong(&mut self) -> bool {
-        if !self.options.guarded || self.effort_goal.is_none() || !self.merit(1).is_finite() {
+        if self.effort_goal.is_none() || !self.merit(1).is_finite() {
             return false;
         }
         let wrong = self.merit(0) > self.merit(1) * (1.0 + 1e-12) && self.largest > 1e-10;
@@ -541,12 +547,12 @@ impl<'a> Engine<'a> {
             *shift = 0.0;
         }
         self.reach = if wrong { 0.3 * self.largest } else { (2.0 * self.reach).min(self.options.max_step) };
-        if wrong {
+        if wrong && self.options.guarded {
             // What was before is now again.
             self.errors.swap(0, 1);
             self.effort[0] = self.effort[1];
         }
-        wrong
+        wrong && self.options.guarded
     }
 
     /// Gives the effort level its second derivative.

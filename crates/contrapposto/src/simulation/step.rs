@@ -57,7 +57,7 @@ pub enum Relief {
     },
     /// Something more important stood against it: supports, tasks above relief, or a more tired group.
     Deferred,
-    /// It made its own torque and the whole effort larger, and was taken back.
+    /// It made its own torque larger than foretold, and the whole effort with it, and was taken back.
     TakenBack,
     /// The joint cannot move without what stands above relief.
     Blocked,
@@ -118,6 +118,15 @@ pub struct Simulation<'a> {
     /// Active torque before the last motion, and its change that each decision foretold.
     active_before: Vec<f64>,
     predicted: Vec<f64>,
+    /// The relief of this recovery has led somewhere, and holds.
+    held: Vec<bool>,
+    /// Some relief asks for motion.
+    pressing: bool,
+    last_decisions: Vec<Option<Decision>>,
+    /// Effort when the present recovery of each coordinate first asked for relief.
+    effort_at_trip: Vec<f64>,
+    /// Largest active torque that each decision foretold on the way to its goal, N m.
+    foretold: Vec<f64>,
     // What the relief of each coordinate asks for; the whole space where there is none.
     constraints: Vec<HalfSpace>,
     shift: Vec<f64>,
@@ -134,10 +143,22 @@ struct GroupState {
     accepted: Option<Strategy>,
     /// How often its relief was taken back.
     taken_back: u32,
+    /// Which kind of relief leads it now, and how many decisions in a row asked for the other.
+    led: Option<Strategy>,
+    contrary: u32,
 }
+
+/// So many decisions in a row turn a relief round.
+const REPEATED: u32 = 30;
+
+/// Relief may cost the whole body so many times the effort there was before it.
+const DEAR: f64 = 2.0;
 
 /// A relief that was taken back so often is tried the other way, and twice as often given up.
 const PATIENCE: u32 = 3;
+
+/// Places between a joint and its goal at which the torque that a decision foretells is looked at.
+const ON_THE_WAY: u32 = 16;
 
 impl<'a> Simulation<'a> {
     /// Ready for the first step.
@@ -148,7 +169,15 @@ impl<'a> Simulation<'a> {
         scenario.check()?;
         let model = &scenario.model;
         let n = model.coordinates().len();
-        let rested = GroupState { fatigue: None, recovering: false, load_at_trip: 0.0, accepted: None, taken_back: 0 };
+        let rested = GroupState {
+            fatigue: None,
+            recovering: false,
+            load_at_trip: 0.0,
+            accepted: None,
+            taken_back: 0,
+            led: None,
+            contrary: 0,
+        };
         let (whole, start) = match scenario.is_whole() {
             true => Whole::new(scenario).map(|(whole, start)| (Some(whole), start))?,
             false => (None, scenario.start.clone()),
@@ -179,6 +208,11 @@ impl<'a> Simulation<'a> {
             next_event: 0,
             active_before: vec![0.0; n],
             predicted: vec![0.0; n],
+            foretold: vec![0.0; n],
+            held: vec![false; n],
+            pressing: false,
+            last_decisions: vec![None; n],
+            effort_at_trip: vec![f64::INFINITY; n],
             constraints: vec![HalfSpace::new(n); n],
             shift: vec![0.0; n],
         };
@@ -232,7 +266,7 @@ impl<'a> Simulation<'a> {
             if let Some(strategies) = &event.strategies {
                 self.strategies.clone_from(strategies);
                 // A new wish is a new recovery.
-                self.groups.iter_mut().flatten().for_each(|group| group.accepted = None);
+                self.groups.iter_mut().flatten().for_each(|group| (group.accepted, group.led) = (None, None));
             }
             if let Some(loads) = &event.loads {
                 self.loads.clone_from(loads);
@@ -285,28 +319,35 @@ impl<'a> Simulation<'a> {
     }
 
     /// As [`Simulation::torques`], through the priorities of the whole body. A step that lets the body fall, or makes the torque
-    /// of a group that asked for relief larger and effort with it, is taken back.
+    /// of a group that asked for relief larger than was foretold and effort with it, is taken back.
     fn torques_of_the_whole(&mut self) -> Result<(), ScenarioError> {
         let Some(mut whole) = self.whole.take() else { return Ok(()) };
-        let mut asked: Vec<usize> = (0..self.decisions.len()).filter(|&i| self.decisions[i].is_some()).collect();
+        let asks = |i: &usize| self.decisions[*i].is_some() || self.held[*i];
+        let mut asked: Vec<usize> = (0..self.decisions.len()).filter(asks).collect();
         let tired = |i: &usize| self.fatigue[*i][0].max(self.fatigue[*i][1]);
         asked.sort_by(|a, b| tired(b).total_cmp(&tired(a)));
         let reliefs: Vec<(usize, &HalfSpace)> = asked.iter().map(|&i| (i, &self.constraints[i])).collect();
         let mut deferred = vec![];
-        whole.carry_out(&mut self.posture, &reliefs, &mut deferred)?;
+        whole.carry_out(&mut self.posture, &reliefs, self.pressing, &mut deferred)?;
         self.active_before.copy_from_slice(&self.active);
         let before = self.standing.effort;
         let mut effort = self.look(&mut whole)?;
         let tolerance = self.scenario.relief.torque_tolerance;
         let fell = whole.contact().balance() != Balance::Held;
-        let rose = |i: usize| self.active[i].abs() > self.active_before[i].abs() + tolerance;
-        let worse: Vec<usize> =
-            if fell { asked.clone() } else { asked.iter().copied().filter(|&i| rose(i) && effort > before).collect() };
+        // A passive goal may lie beyond a rise that the decision foretold.
+        let rose = |i: usize| self.active[i].abs() > 1.5 * self.foretold[i] + tolerance;
+        // Relief that costs the rest of the body more than it is worth is given back.
+        let dear = |i: usize| effort > DEAR * self.effort_at_trip[i];
+        let worse = asked
+            .iter()
+            .copied()
+            .filter(|&i| self.decisions[i].is_some() && (fell || ((rose(i) || dear(i)) && effort > before)));
+        let worse: Vec<usize> = worse.collect();
         if fell || !worse.is_empty() {
             whole.take_back(&mut self.posture)?;
             effort = self.look(&mut whole)?;
         }
-        for &i in &asked {
+        for &i in asked.iter().filter(|&&i| self.decisions[i].is_some()) {
             self.reliefs[i] = Some(if worse.contains(&i) {
                 let side = self.asking_side(i);
                 self.groups[i][side.index()].taken_back += 1;
@@ -384,7 +425,7 @@ impl<'a> Simulation<'a> {
                 if recovering && !group.recovering {
                     group.load_at_trip = load;
                 } else if !recovering {
-                    group.accepted = None;
+                    (group.accepted, group.led) = (None, None);
                     group.taken_back = 0;
                 }
                 group.recovering = recovering;
@@ -399,6 +440,9 @@ impl<'a> Simulation<'a> {
         let mut moved = false;
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             self.decisions[i] = None;
+            if !self.groups[i].iter().any(|group| group.recovering) {
+                (self.held[i], self.last_decisions[i]) = (false, None);
+            }
             let (Some(law), Some(rate), true) = (&coordinate.passive, coordinate.rate, free[i]) else { continue };
             // The group that works asks; within the tolerance neither does, and either may.
             let within = self.active[i].abs() <= relief.torque_tolerance;
@@ -410,6 +454,7 @@ impl<'a> Simulation<'a> {
             let group = self.groups[i][side.index()];
             if group.taken_back >= 2 * PATIENCE {
                 self.reliefs[i] = Some(Relief::GivenUp);
+                self.held[i] = false;
                 continue;
             }
             let angle = self.posture.values()[i];
@@ -441,18 +486,36 @@ impl<'a> Simulation<'a> {
             // Every number was checked with the scenario, and the posture is clamped to its ranges.
             let Ok(decision) = decision else { continue };
             asked = true;
+            let decision = match (&self.whole, self.last_decisions[i]) {
+                (Some(_), Some(last)) if !self.groups[i][side.index()].believes(decision.outcome) => last,
+                _ => decision,
+            };
+            if self.last_decisions[i].is_none() {
+                self.effort_at_trip[i] = self.standing.effort;
+            }
+            self.last_decisions[i] = Some(decision);
             self.groups[i][side.index()].accept(decision.outcome);
             self.shift.fill(0.0);
             self.predicted[i] = 0.0;
+            self.foretold[i] = self.active[i].abs();
             if let Some(goal) = decision.goal {
+                for share in 1..=ON_THE_WAY {
+                    let way = (goal - angle) * f64::from(share) / f64::from(ON_THE_WAY);
+                    let active = curve.torque(angle + way) + self.external[i] + slope * way;
+                    self.foretold[i] = self.foretold[i].max(active.abs());
+                }
                 let gain = relief.step_gain * 0.5f64.powi(group.taken_back.min(30) as i32);
                 self.shift[i] = relief_step(goal, angle, gain, relief.max_step);
                 self.predicted[i] = -(curve.slope(angle) + slope) * self.shift[i];
                 moved |= self.shift[i].abs() > SETTLED;
             }
-            self.constraints[i].ask_for(self.posture.values(), &self.shift);
+            // Where it is relieved it stays for as long as it recovers, whatever less important tasks would like.
+            if self.whole.is_none() || !self.held[i] || self.shift[i].abs() > SETTLED {
+                self.held[i] = self.constraints[i].ask_for(self.posture.values(), &self.shift);
+            }
             self.decisions[i] = Some(decision);
         }
+        self.pressing = moved;
         self.settled = asked && !moved && self.whole.as_ref().is_none_or(Whole::still);
         Ok(())
     }
@@ -472,6 +535,23 @@ impl<'a> Simulation<'a> {
 }
 
 impl GroupState {
+    /// Is a decision to be followed that asks for another kind of relief than this recovery began with? The slope that it
+    /// extrapolates jumps where a foot's edge begins or ends to carry, so only if it is repeated.
+    fn believes(&mut self, outcome: Outcome) -> bool {
+        let kind = match outcome {
+            Outcome::Active => Some(Strategy::Active),
+            Outcome::Passive | Outcome::AtLimit => Some(Strategy::Passive),
+            Outcome::Stay | Outcome::None => None,
+        };
+        let contrary = kind.is_some() && self.led.is_some() && kind != self.led;
+        self.contrary = if contrary { self.contrary + 1 } else { 0 };
+        let follow = self.contrary == 0 || self.contrary > REPEATED;
+        if follow {
+            (self.contrary, self.led) = (0, kind.or(self.led));
+        }
+        follow
+    }
+
     /// Keeps the first strategy that led somewhere; from active it may fall back to passive once, never the other way.
     fn accept(&mut self, outcome: Outcome) {
         match outcome {

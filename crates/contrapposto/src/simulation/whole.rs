@@ -15,8 +15,8 @@ use super::{Scenario, ScenarioError};
 
 /// Most reliefs at once; the less tired groups wait.
 const MOST: usize = 16;
-/// Largest change of a joint in one time step, rad or m.
-const MAX_STEP: f64 = 0.1;
+/// Largest change of a joint in one time step, in largest steps of relief: the rest of the body must be able to follow.
+const FOLLOW: f64 = 2.0;
 /// The body is still when nothing changes by more in a time step, rad or m.
 const STILL: f64 = 1e-9;
 /// A slope is computed anew when some coordinate has moved so far, rad or m.
@@ -59,7 +59,7 @@ impl<'a> Whole<'a> {
                 }
             }
         };
-        let options = Options { max_step: MAX_STEP, ..Options::default() };
+        let options = Options { max_step: 0.1, ..Options::default() };
         let mut first = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut first);
         let start = first.solve(&scenario.start)?;
@@ -71,7 +71,7 @@ impl<'a> Whole<'a> {
         let mut places = vec![0; scenario.tasks.len()];
         above.iter().enumerate().for_each(|(place, &i)| places[i] = place);
         below.iter().enumerate().for_each(|(place, &i)| places[i] = above.len() + MOST + place);
-        let options = Options { guarded: false, ..options };
+        let options = Options { guarded: false, max_step: FOLLOW * scenario.relief.max_step, ..options };
         // Supports stay where they were at the scenario's start, not where the first solution left them.
         let mut engine = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut engine);
@@ -87,11 +87,12 @@ impl<'a> Whole<'a> {
     }
 
     /// Moves by one step toward the reliefs (the most tired first) and the tasks. Coordinates whose relief was not kept go to
-    /// `deferred`.
+    /// `deferred`. `pressing`: some relief asks for motion, not only to be kept.
     pub(super) fn carry_out(
         &mut self,
         posture: &mut Posture,
         reliefs: &[(usize, &HalfSpace)],
+        pressing: bool,
         deferred: &mut Vec<usize>,
     ) -> Result<(), ScenarioError> {
         deferred.clear();
@@ -106,6 +107,9 @@ impl<'a> Whole<'a> {
                 (Some((_, space)), None) => goal.half_spaces.push((*space).clone()),
                 _ => {}
             }
+        }
+        if pressing {
+            self.engine.hurry();
         }
         self.largest = self.engine.step(posture)?.largest;
         let kept = |(slot, (_, space)): &(usize, &(usize, &HalfSpace))| {
@@ -145,6 +149,7 @@ impl<'a> Whole<'a> {
 
     /// Something changed: the body moves again.
     pub(super) fn wake(&mut self) {
+        self.engine.hurry();
         self.largest = f64::INFINITY;
         self.slopes.fill(None);
     }

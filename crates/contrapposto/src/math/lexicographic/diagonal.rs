@@ -25,6 +25,8 @@ pub(super) struct Diagonal {
     /// `G G^T`, then its Cholesky factor.
     square: Vec<f64>,
     columns: Vec<f64>,
+    /// What is wanted of the unknowns, turned, as far as the rows above reach.
+    wanted: Vec<f64>,
 }
 
 impl Solver {
@@ -69,6 +71,10 @@ impl Solver {
                         self.gradient[i] = weight * weight * residual;
                         size += self.gradient[i].abs();
                     }
+                }
+                // What is left is what was wanted less the step, which is orthogonal to what is above.
+                for (work, wanted) in self.work.iter_mut().zip(&self.diagonal.wanted) {
+                    *work = -weight * weight * wanted;
                 }
                 let Some(entry) = self.multiply(problem, k, base, size, false) else { return Some(true) };
                 self.leave(problem, entry);
@@ -159,7 +165,7 @@ impl Solver {
     /// The step to the best point that what is active allows.
     fn diagonal_step(&mut self, problem: &Problem, k: usize) {
         let base = self.factor.len();
-        let Diagonal { asked, unasked, half, square, columns, .. } = &mut self.diagonal;
+        let Diagonal { asked, unasked, half, square, columns, wanted } = &mut self.diagonal;
         // What is wanted of each unknown, by unknown (`gradient`) and by column (`work`).
         for (i, asked) in asked.iter().enumerate() {
             let active = self.bounds[i] != Side::None;
@@ -192,6 +198,8 @@ impl Solver {
             }
         }
         self.factor.turn(&mut self.work, 0, base);
+        wanted.clear();
+        wanted.extend_from_slice(&self.work[..base]);
         self.work[..base].fill(0.0);
         self.factor.turn_back(&mut self.work);
         self.scatter_step();

@@ -3,10 +3,7 @@
 use super::dense::{add_scaled, dot, norm};
 use super::factor::Entry;
 use super::problem::Problem;
-use super::solver::{INDEPENDENT, MULTIPLIER, Role, Side, Solver};
-
-/// A multiplier so many times above zero belongs to what is needed for good.
-const NEEDED: f64 = 1e3;
+use super::solver::{INDEPENDENT, MULTIPLIER, NEEDED, Role, Side, Solver};
 
 impl Solver {
     /// Minimises level `k` and fixes what it reached. `false` if it did not come to an end.
@@ -23,7 +20,12 @@ impl Solver {
                 self.level_step(base);
                 let (share, block) = self.first_block(problem, k);
                 self.advance(problem, share);
-                let Some((entry, side)) = block else { continue };
+                let Some((entry, side)) = block else {
+                    if self.is_where_expected(problem) {
+                        break;
+                    }
+                    continue;
+                };
                 if !self.may_change() || !share.is_finite() {
                     return false;
                 }
@@ -37,9 +39,7 @@ impl Solver {
             }
             self.factor.truncate(base);
             match entry {
-                Entry::Row(row) if self.roles[row] == Role::Soft => {
-                    (self.roles[row], self.sides[row]) = (Role::Out, Side::None);
-                }
+                Entry::Row(row) if self.roles[row] == Role::Soft => self.let_go(problem, row),
                 _ => self.leave(problem, entry),
             }
         }
@@ -63,16 +63,32 @@ impl Solver {
         }
     }
 
+    /// A soft row that pulls the wrong way has come past its side: it holds, or is now short of its other side.
+    fn let_go(&mut self, problem: &Problem, row: usize) {
+        let (k, i) = self.place(row);
+        let (lower, upper) = (problem.levels[k].lower[i], problem.levels[k].upper[i]);
+        let value = self.value(problem, row, &self.x);
+        let rounding = self.rounding(row);
+        (self.roles[row], self.sides[row]) = match self.sides[row] {
+            Side::Lower if value > upper + rounding => (Role::Soft, Side::Upper),
+            Side::Upper if value < lower - rounding => (Role::Soft, Side::Lower),
+            _ => (Role::Out, Side::None),
+        };
+    }
+
     /// Equations, broken inequalities, and those that were active the last time.
     fn choose_soft_rows(&mut self, problem: &Problem, k: usize) {
         let level = &problem.levels[k];
         for i in 0..level.rows() {
             let row = self.offsets[k] + i;
             let (lower, upper) = (level.lower[i], level.upper[i]);
+            if lower == upper {
+                (self.roles[row], self.sides[row]) = (Role::Soft, Side::Both);
+                continue;
+            }
             let value = self.value(problem, row, &self.x);
             let rounding = self.rounding(row);
             self.sides[row] = match self.sides[row] {
-                _ if lower == upper => Side::Both,
                 _ if value > upper + rounding => Side::Upper,
                 _ if value < lower - rounding => Side::Lower,
                 Side::Upper if upper.is_finite() => Side::Upper,
@@ -169,13 +185,14 @@ impl Solver {
                     self.least.set(s, &self.turned[s * c + base..s * c + base + rank], self.right[s]);
                 }
             }
-            if damped > 0 {
-                self.factor.gather(&self.x, &mut self.work);
-                self.factor.turn(&mut self.work, 0, base + rank);
-                for r in 0..rank {
-                    self.least.set(rows + r, &[], -level.damping * self.work[base + r]);
-                    self.least.set_entry(rows + r, r, level.damping);
-                }
+            if level.damping > 0.0 {
+                self.turned_x.resize(c, 0.0);
+                self.factor.gather(&self.x, &mut self.turned_x);
+                self.factor.turn(&mut self.turned_x, 0, base + rank);
+            }
+            for r in 0..damped {
+                self.least.set(rows + r, &[], -level.damping * self.turned_x[base + r]);
+                self.least.set_entry(rows + r, r, level.damping);
             }
             self.least.solve(&mut self.y);
             self.kept.clear();
@@ -216,6 +233,14 @@ impl Solver {
         })
     }
 
+    /// Has a whole step left of each soft row what it should, up to rounding?
+    fn is_where_expected(&self, problem: &Problem) -> bool {
+        self.soft.iter().zip(&self.kept).all(|(&row, kept)| {
+            let left = self.value(problem, row, &self.x) - self.aim(problem, row);
+            10.0 * (left - kept).abs() <= self.rounding(row)
+        })
+    }
+
     /// A soft inequality that pulls the wrong way, the strongest one. Judged by what the least squares leave of it, which is
     /// right for light rows beside heavy ones; `nothing` is what counts as zero.
     fn wrong_soft_row(&self, nothing: f64) -> Option<usize> {
@@ -228,7 +253,7 @@ impl Solver {
                     Side::Both | Side::None => continue,
                 };
             // Beside heavy rows a light one still counts when it is wrong by more than its own rounding.
-            let zero = nothing.min(10.0 * self.rounding(row) * self.norms[row]);
+            let zero = if self.is_weary() { nothing } else { nothing.min(10.0 * self.rounding(row) * self.norms[row]) };
             if wrong > zero && found.is_none_or(|(most, _)| wrong > most) {
                 found = Some((wrong, row));
             }
@@ -240,41 +265,36 @@ impl Solver {
     fn weigh(&mut self, problem: &Problem, k: usize, base: usize) -> Option<Entry> {
         let n = problem.unknowns();
         let level = &problem.levels[k];
+        self.work.fill(0.0);
         self.gradient.fill(0.0);
         let mut size = 0.0;
-        let real = |(s, kept): (usize, &f64)| kept.abs() > self.rounding(self.soft[s]);
+        // A row of zeros keeps what nothing can change.
+        let real =
+            |(s, kept): (usize, &f64)| kept.abs() > self.rounding(self.soft[s]) && self.is_something(self.soft[s]);
         if self.kept.iter().enumerate().any(real) {
-            for (kept, &row) in self.kept.iter().zip(&self.soft) {
-                let i = row - self.offsets[k];
-                add_scaled(&mut self.gradient, *kept, &level.matrix[i * n..(i + 1) * n]);
-                size += kept.abs() * self.norms[row];
-            }
+            size = self.kept.iter().zip(&self.soft).map(|(kept, &row)| kept.abs() * self.norms[row]).sum();
             if let Some(row) = self.wrong_soft_row(MULTIPLIER * size) {
                 return Some(Entry::Row(row));
             }
+            for (kept, &row) in self.kept.iter().zip(&self.soft) {
+                let i = row - self.offsets[k];
+                add_scaled(&mut self.gradient, *kept, &level.matrix[i * n..(i + 1) * n]);
+            }
+            self.factor.gather(&self.gradient, &mut self.work);
+            self.factor.turn(&mut self.work, 0, base);
         }
         self.size = size;
         if level.damping > 0.0 {
-            let (w, len) = (self.factor.width(), self.factor.len());
             let square = level.damping * level.damping;
-            self.factor.gather(&self.x, &mut self.work);
-            self.factor.turn(&mut self.work, 0, len);
-            self.work[len..w].fill(0.0);
-            self.factor.turn_back(&mut self.work);
-            for (c, &i) in self.factor.free.iter().enumerate() {
-                self.gradient[i] += square * self.work[c];
-            }
-            for (i, side) in self.bounds.iter().enumerate() {
-                if *side != Side::None && self.factor.free.binary_search(&i).is_err() {
-                    self.gradient[i] += square * self.x[i];
-                }
-            }
+            add_scaled(&mut self.work[..base], square, &self.turned_x[..base]);
+            add_scaled(&mut self.gradient, square, &self.x);
             size += square * norm(&self.x);
         }
         self.multiply(problem, k, base, size, level.damping == 0.0)
     }
 
-    /// Multipliers of the first `base` entries and of the bounds for `gradient`, into the table. Answers the active bound or
+    /// Multipliers of the first `base` entries and of the bounds, into the table, for the gradient in `work` (turned) and
+    /// `gradient` (at the unknowns left out). Answers the active bound or
     /// row whose multiplier has the wrong sign, the worst one; otherwise notes (`hold`) which are needed from now on.
     pub(super) fn multiply(
         &mut self,
@@ -291,24 +311,27 @@ impl Solver {
         if size == 0.0 {
             return None;
         }
-        self.factor.gather(&self.gradient, &mut self.work);
-        self.factor.turn(&mut self.work, 0, base);
         self.factor.solve_upper(base, &mut self.work);
+        let left_out = self.factor.width() < n;
         for (e, entry) in self.factor.entries[..base].iter().enumerate() {
             let multiplier = -self.work[e];
             match *entry {
                 Entry::Bound(i) => bounds[i] = multiplier,
                 Entry::Row(row) => {
                     rows[row] = multiplier;
+                    if !left_out {
+                        continue;
+                    }
                     let j = self.offsets.partition_point(|&start| start <= row) - 1;
                     let i = row - self.offsets[j];
                     add_scaled(&mut self.gradient, multiplier, &problem.levels[j].matrix[i * n..(i + 1) * n]);
                 }
             }
         }
-        for (i, side) in self.bounds.iter().enumerate() {
-            if *side != Side::None && self.factor.free.binary_search(&i).is_err() {
-                bounds[i] = -self.gradient[i];
+        let mut free = self.factor.free.iter().peekable();
+        for (i, bound) in bounds.iter_mut().enumerate() {
+            if free.next_if_eq(&&i).is_none() {
+                *bound = -self.gradient[i];
             }
         }
         let nothing = MULTIPLIER * size;

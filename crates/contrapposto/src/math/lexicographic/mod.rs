@@ -28,6 +28,7 @@
 //! # Ok::<(), contrapposto::math::lexicographic::ProblemError>(())
 //! ```
 
+mod certificate;
 mod dense;
 mod diagonal;
 mod factor;

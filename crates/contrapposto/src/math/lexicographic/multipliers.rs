@@ -4,7 +4,8 @@
 /// term only for a damped level, and only as far as its rows and what is fixed above reach).
 ///
 /// At an upper side a multiplier is positive or zero, at a lower side negative or zero: the level would gain by passing it.
-/// Rows that are equations, or that keep a residual of their own, may have either sign. Of a hard first level that cannot
+/// Rows that are equations, or that keep a residual of their own, may have either sign; so may a side that a level between
+/// presses on (its multiplier there is not zero): to leave it would cost that level something, which no lower one may. Of a hard first level that cannot
 /// hold, residual and `bounds` are the certificate: with `y` the residual, `A^T y + bounds = 0`, and no `x` between the
 /// bounds satisfies the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -39,6 +39,8 @@ pub(super) enum Role {
     Soft,
     /// Holds and is active; a level below may leave it.
     Active,
+    /// Holds as long as what is active holds, of which it is a combination: steps do not change it.
+    Dependent,
     /// Never changes again.
     Fixed,
 }
@@ -49,6 +51,8 @@ pub(super) const INDEPENDENT: f64 = 1e-10;
 const ROUNDING: f64 = 1e-12;
 /// Relative size of a multiplier that counts as zero.
 pub(super) const MULTIPLIER: f64 = 1e-11;
+/// A multiplier so many times above what counts as zero belongs to what is needed for good.
+pub(super) const NEEDED: f64 = 1e3;
 /// Rows shorter than this count as zero.
 const NOTHING: f64 = 1e-60;
 
@@ -72,7 +76,10 @@ pub struct Solver {
     limits: Vec<f64>,
     /// Length of `x`.
     length: f64,
-    residuals: Vec<f64>,
+    /// What is left of each row.
+    pub(super) residuals: Vec<f64>,
+    /// Is the last answer an answer?
+    pub(super) came_to_an_end: bool,
     pub(super) factor: Factor,
     /// Fixed rows that say nothing new beside those in the factor.
     dependents: Vec<usize>,
@@ -90,6 +97,8 @@ pub struct Solver {
     pub(super) step: Vec<f64>,
     pub(super) gradient: Vec<f64>,
     pub(super) work: Vec<f64>,
+    /// `x` turned, for a damped level.
+    pub(super) turned_x: Vec<f64>,
     entries: Vec<Entry>,
     pub(super) least: LeastSquares,
     pub(super) diagonal: Diagonal,
@@ -116,6 +125,7 @@ impl Solver {
     /// Forgets the last answer and what was active there.
     pub fn forget(&mut self) {
         self.x.clear();
+        self.came_to_an_end = false;
         self.bounds.clear();
         self.sides.clear();
     }
@@ -131,12 +141,17 @@ impl Solver {
         Ok(self.run(problem))
     }
 
-    /// Solves from the last answer and what was active there.
+    /// Solves from the last answer and what was active there. Where the last answer, with its multipliers, satisfies the
+    /// optimality conditions of every level, it stays as it is, to the bit.
     ///
     /// # Errors
     /// As [`Solver::solve`].
     pub fn solve_again(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
         problem.check()?;
+        if self.is_still_best(problem) {
+            self.changes = 0;
+            return Ok(self.report(problem));
+        }
         Ok(self.run(problem))
     }
 
@@ -182,14 +197,17 @@ impl Solver {
                 break;
             }
         }
-        for (k, level) in problem.levels.iter().enumerate() {
-            for i in 0..level.rows() {
-                let row = self.offsets[k] + i;
-                let value = self.value(problem, row, &self.x);
-                self.residuals[row] = (value - level.upper[i]).max(0.0) + (value - level.lower[i]).min(0.0);
-            }
+        self.came_to_an_end = done;
+        self.report(problem)
+    }
+
+    /// Residuals, recomputed from the problem, and what they say.
+    fn report(&mut self, problem: &Problem) -> Status {
+        for row in 0..self.residuals.len() {
+            self.residuals[row] = self.row_residual(problem, row);
         }
-        if !done || self.residuals.iter().chain(&self.x).any(|v| !v.is_finite()) {
+        self.came_to_an_end &= self.residuals.iter().chain(&self.x).all(|v| v.is_finite());
+        if !self.came_to_an_end {
             return Status::Stopped;
         }
         let broken = |k: &usize| {
@@ -246,6 +264,22 @@ impl Solver {
         }
         reset(&mut self.work, n.next_multiple_of(8));
         reset(&mut self.residuals, rows);
+        self.measure(problem);
+        self.length = norm(&self.x);
+        self.held.clear();
+        self.held.resize(n, false);
+        self.roles.clear();
+        self.roles.resize(rows, Role::Out);
+        self.table.reset(n, &self.offsets);
+        self.dependents.clear();
+        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
+        self.changes = 0;
+        self.limit = 100 + 10 * (n + rows);
+    }
+
+    /// Sizes of all rows.
+    pub(super) fn measure(&mut self, problem: &Problem) {
+        let n = problem.unknowns();
         self.norms.clear();
         self.limits.clear();
         self.single.clear();
@@ -259,22 +293,17 @@ impl Solver {
                 self.limits.push(finite(level.lower[i]).max(finite(level.upper[i])));
             }
         }
-        self.length = norm(&self.x);
-        self.held.clear();
-        self.held.resize(n, false);
-        self.roles.clear();
-        self.roles.resize(rows, Role::Out);
-        self.table.reset(n, &self.offsets);
-        self.dependents.clear();
-        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
-        self.changes = 0;
-        self.limit = 100 + 10 * (n + rows);
     }
 
     /// One more change of the active set; `false` when there were too many.
     pub(super) fn may_change(&mut self) -> bool {
         self.changes += 1;
         self.changes <= self.limit
+    }
+
+    /// So many changes that rounding must be at work: light rows beside heavy ones are no longer judged by their own.
+    pub(super) fn is_weary(&self) -> bool {
+        self.changes > self.limit / 4
     }
 
     /// Level and row within it.
@@ -291,6 +320,13 @@ impl Solver {
     /// `a . x` of a row.
     pub(super) fn value(&self, problem: &Problem, row: usize, x: &[f64]) -> f64 {
         value(problem, &self.offsets, self.single[row], row, x)
+    }
+
+    /// What is left of a row, computed from the problem.
+    pub(super) fn row_residual(&self, problem: &Problem, row: usize) -> f64 {
+        let (k, i) = self.place(row);
+        let value = self.value(problem, row, &self.x);
+        (value - problem.levels[k].upper[i]).max(0.0) + (value - problem.levels[k].lower[i]).min(0.0)
     }
 
     /// Does a row have any direction at all?
@@ -342,6 +378,9 @@ impl Solver {
         self.entries.extend_from_slice(&self.factor.entries);
         self.entries.extend(self.dependents.iter().map(|&row| Entry::Row(row)));
         self.dependents.clear();
+        for role in self.roles.iter_mut().filter(|role| **role == Role::Dependent) {
+            *role = Role::Out;
+        }
         self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
         for e in 0..self.entries.len() {
             let Entry::Row(row) = self.entries[e] else { continue };
@@ -356,7 +395,7 @@ impl Solver {
         if self.roles[row] == Role::Fixed {
             self.dependents.push(row);
         } else {
-            (self.roles[row], self.sides[row]) = (Role::Out, Side::None);
+            (self.roles[row], self.sides[row]) = (Role::Dependent, Side::None);
         }
     }
 

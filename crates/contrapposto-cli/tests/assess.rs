@@ -1,0 +1,252 @@
+//! `contrapposto assess` through the real program: who fails when, the same from ground reactions as from supports, and what it
+//! says to files that make no sense.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
+mod program;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use contrapposto::contact::{Balance, ContactForces, Support};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Model, Side, adult};
+use contrapposto::statics::{ExternalTorque, LoadKind, PassiveTorque};
+use contrapposto_formats::motion::{Table, read_table};
+use nalgebra::Vector3;
+use program::{json, leg, refused, run, write};
+use serde_json::Value;
+
+fn table(path: &Path) -> Table {
+    read_table("table", &std::fs::read(path).unwrap()).unwrap()
+}
+
+fn group<'a>(report: &'a Value, coordinate: &str, side: &str) -> &'a Value {
+    let groups = report["groups"].as_array().unwrap();
+    groups.iter().find(|group| group["coordinate"] == coordinate && group["side"] == side).unwrap()
+}
+
+/// Every group that holds a constant load fails when its own law says, and those whose law lets them hold do not fail.
+#[test]
+fn a_constant_posture_fails_at_the_endurance_time() {
+    const END: f64 = 1000.0;
+    let folder = tempfile::tempdir().unwrap();
+    let hold = write(folder.path(), "hold.csv", &format!("time,elbow_flex_r_deg\n0,90\n{END},90\n"));
+    let report = json(&["assess", "adult", &hold, "--load", "hand_r 3kg", "--json"]);
+    let model = adult(&Adult::default()).unwrap();
+    let mut failed = 0;
+    for found in report["groups"].as_array().unwrap() {
+        let coordinate = &model.coordinates()[model.coordinate(found["coordinate"].as_str().unwrap()).unwrap()];
+        let side = Side::BOTH.into_iter().find(|side| found["side"] == side.word()).unwrap();
+        let group = &coordinate.groups.as_ref().unwrap()[side.index()];
+        assert_eq!(found["group"], group.name.as_str());
+        let expected = group.fatigue.endurance_time(found["peak_load"]["value"].as_f64().unwrap());
+        match found["exhausted_at_s"].as_f64() {
+            Some(time) => assert!((time - expected).abs() < 0.01 * expected, "{found}: {expected}"),
+            None => assert!(expected > 0.99 * END, "{found}: {expected}"),
+        }
+        failed += usize::from(expected < END);
+    }
+    assert!(failed >= 5, "{failed}");
+    // The arm that holds the weight is among them, at the load that `torques` says.
+    let elbow = group(&report, "elbow_flex_r", "positive");
+    let torque =
+        &json(&["torques", "adult", &hold, "--load", "hand_r 3kg", "--json"])[0]["coordinates"]["elbow_flex_r"];
+    let strength = &model.coordinates()[model.coordinate("elbow_flex_r").unwrap()].groups.as_ref().unwrap()[0].strength;
+    let load = torque["active"].as_f64().unwrap() / strength.torque(90f64.to_radians());
+    assert!((elbow["peak_load"]["value"].as_f64().unwrap() - load).abs() < 1e-12);
+    assert!(elbow["exhausted_at_s"].as_f64().unwrap() < END);
+    // The worst stand first.
+    let times =
+        report["groups"].as_array().unwrap().iter().map(|g| g["exhausted_at_s"].as_f64().unwrap_or(f64::INFINITY));
+    assert!(times.is_sorted());
+}
+
+/// Relief is what `minimize` says of the same joint.
+#[test]
+fn relief_is_proposed_at_the_peaks() {
+    let folder = tempfile::tempdir().unwrap();
+    let lower = write(folder.path(), "lower.csv", "time,elbow_flex_r_deg\n0,90\n60,90\n120,20\n");
+    let report = json(&["assess", "adult", &lower, "--load", "hand_r 3kg", "--json"]);
+    let elbow = group(&report, "elbow_flex_r", "positive");
+    assert_eq!(elbow["peak_load"]["at_s"], 0.0);
+    let proposals = elbow["proposals"].as_array().unwrap();
+    let kinds: Vec<_> =
+        proposals.iter().map(|p| (p["at"].as_str().unwrap(), p["strategy"].as_str().unwrap())).collect();
+    assert_eq!(kinds[..2], [("load", "active"), ("load", "passive")]);
+    for proposal in proposals {
+        let before = proposal["active_nm"].as_f64().unwrap().abs();
+        assert!(proposal["active_at_goal_nm"].as_f64().unwrap().abs() <= before && before > 0.0, "{proposal}");
+        assert!(proposal["sentence"].as_str().unwrap().starts_with("case "), "{proposal}");
+    }
+    assert!((proposals[0]["angle_deg"].as_f64().unwrap() - 90.0).abs() < 1e-9);
+    let answer = run(&["assess", "adult", &lower, "--load", "hand_r 3kg"]);
+    assert!(
+        answer.out.contains("muscle group") && answer.out.contains("relief, if that joint alone moved:"),
+        "{}",
+        answer.out
+    );
+}
+
+/// Three postures on both feet, and what the ground then gives: one plate a foot.
+fn standing(model: &Model, supports: &[Support]) -> (String, String) {
+    let mut motion = "time,lumbar_extension_deg,arm_flex_r_deg\n".to_owned();
+    let mut ground = "time".to_owned();
+    for plate in 1..=supports.len() {
+        for label in ["ground_force_v", "ground_force_p", "ground_torque_"] {
+            write!(ground, ",{plate}_{label}x,{plate}_{label}y,{plate}_{label}z").unwrap();
+        }
+    }
+    ground.push('\n');
+    let mut contact = ContactForces::new(model, supports.to_vec()).unwrap();
+    let (mut kinematics, mut external) = (Kinematics::new(model), ExternalTorque::new(model));
+    let mut passive = PassiveTorque::new(model);
+    for (time, back, arm) in [(0.0, 0.0, 0.0), (10.0, -4.0, 20.0), (20.0, 2.0, 40.0)] {
+        writeln!(motion, "{time},{back},{arm}").unwrap();
+        let mut posture = model.default_posture();
+        for (name, angle) in [("lumbar_extension", back), ("arm_flex_r", arm)] {
+            posture.values_mut()[model.coordinate(name).unwrap()] = f64::to_radians(angle);
+        }
+        kinematics.update(model, &posture).unwrap();
+        external.update(model, &kinematics, &[]).unwrap();
+        passive.update(model, &kinematics);
+        let balance = contact.update(model, &kinematics, external.torques(), passive.torques());
+        assert_eq!(balance, Balance::Held, "at {time} s");
+        write!(ground, "{time}").unwrap();
+        for (number, support) in supports.iter().enumerate() {
+            let at = kinematics.station(model, support.segment, support.corners[0]);
+            let mut couple = Vector3::zeros();
+            for load in &contact.loads()[contact.corners(number)] {
+                let LoadKind::Force(force, _) = load.kind else { panic!("{load:?}") };
+                couple += (kinematics.station(model, load.segment, load.point) - at).cross(&force);
+            }
+            for value in [contact.force(number), at, couple].iter().flatten() {
+                write!(ground, ",{value:?}").unwrap();
+            }
+        }
+        ground.push('\n');
+    }
+    (motion, ground)
+}
+
+#[test]
+fn ground_reaction_and_supports_give_the_same_torques() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = adult(&Adult::default()).unwrap();
+    let supports = ["calcn_r", "calcn_l"].map(|name| {
+        let segment = model.segment(name).unwrap();
+        let corners = model.segments()[segment].patch.clone();
+        Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+    });
+    let (motion, ground) = standing(&model, &supports);
+    let motion = write(folder.path(), "motion.csv", &motion);
+    let ground = write(folder.path(), "ground.csv", &ground);
+    let out = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let on = run(&["assess", "adult", &motion, "--support", "calcn_r,calcn_l", "--out", &out("on")]);
+    let grf = run(&["assess", "adult", &motion, "--grf", &ground, "--grf-on", "calcn_r,calcn_l", "--out", &out("grf")]);
+    for answer in [&on, &grf] {
+        assert_eq!(answer.code, 0, "{}", answer.told);
+        assert!(!answer.told.contains("warning"), "{}", answer.told);
+    }
+    let [on, grf] = ["on", "grf"].map(|name| table(&folder.path().join(name).join("torques.sto")));
+    assert_eq!((on.columns.len(), on.rows.len(), &on.columns), (grf.columns.len(), 3, &grf.columns));
+    let mut worst = 0.0_f64;
+    for (a, b) in on.rows.iter().flatten().zip(grf.rows.iter().flatten()) {
+        worst = worst.max((a - b).abs());
+    }
+    assert!(worst < 1e-7, "{worst} N m");
+    // The root is held, by the ground alone.
+    for (label, column) in on.columns.iter().zip(0..).filter(|(label, _)| label.starts_with("pelvis_")) {
+        if label.contains(".active_") {
+            assert!(on.rows.iter().all(|row| row[column].abs() < 1e-6), "{label}");
+        }
+    }
+}
+
+#[test]
+fn files_are_those_of_torques_and_json_is_what_is_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n5,60\n");
+    let out = folder.path().join("out");
+    let target = out.to_str().unwrap();
+    let answer = run(&["assess", "adult", &motion, "--load", "hand_r 3kg", "--json", "--out", target]);
+    assert_eq!(answer.code, 0, "{}", answer.told);
+    assert!(answer.told.contains("warning: nothing holds the body up"), "{}", answer.told);
+    let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
+    assert_eq!(answer.out, read("assess.json"));
+    let report: Value = serde_json::from_str(&answer.out).unwrap();
+    assert_eq!(report["files"], serde_json::json!(["assess.json", "torques.sto", "fatigue.sto"]));
+    assert_eq!(report["warnings"].as_array().unwrap().len(), 1);
+    let plain = folder.path().join("plain.sto");
+    let arguments = ["torques", "adult", &motion, "--load", "hand_r 3kg", "--out", plain.to_str().unwrap()];
+    assert_eq!(run(&arguments).code, 0);
+    assert_eq!(read("torques.sto"), std::fs::read_to_string(plain).unwrap());
+    let fatigue = table(&out.join("fatigue.sto"));
+    assert_eq!(fatigue.times, [0.0, 5.0]);
+    let at = |label: &str| fatigue.columns.iter().position(|column| column == label).unwrap();
+    let elbow = group(&report, "elbow_flex_r", "positive");
+    assert_eq!(fatigue.rows[1][at("elbow_flex_r.fatigue_positive")], elbow["fatigue_at_end"]);
+    assert_eq!(fatigue.rows[0][at("elbow_flex_r.load_positive")], elbow["peak_load"]["value"]);
+    assert_eq!(fatigue.rows[1][at("elbow_flex_r.load_negative")], 0.0);
+}
+
+#[test]
+fn a_swing_is_no_posture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = "time,hip_flexion_r_deg\n".to_owned();
+    for i in 0..100 {
+        let time = 0.01 * f64::from(i);
+        writeln!(text, "{time},{}", 40.0 * (10.0 * time).sin()).unwrap();
+    }
+    let swing = write(folder.path(), "swing.csv", &text);
+    let told = run(&["assess", "adult", &swing]).told;
+    assert!(told.contains("warning: the centre of mass accelerates by more than 1 m/s2 in "), "{told}");
+    let slow = write(folder.path(), "slow.csv", &text.replace("time,hip_flexion_r", "time,wrist_flex_r"));
+    let told = run(&["assess", "adult", &slow]).told;
+    assert!(!told.contains("accelerates"), "{told}");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n5,60\n");
+    let late = write(
+        folder.path(),
+        "late.csv",
+        "time,ground_force_vx,ground_force_vy,ground_force_vz,ground_force_px,ground_force_py,ground_force_pz\n\
+         0,0,700,0,0,0,0\n1,0,700,0,0,0,0\n",
+    );
+    let days = write(folder.path(), "days.csv", "time,elbow_flex_r_deg\n0,90\n2e5,60\n");
+    let robot = write(folder.path(), "leg.xml", &leg(1, "knee"));
+    let bent = write(folder.path(), "bent.csv", "time,knee_deg\n0,20\n");
+    let out = folder.path().join("out");
+    let target = out.to_str().unwrap();
+    for (arguments, part) in [
+        (
+            &["adult", "nowhere.mot"][..],
+            "No such file or directory (os error 2)\n  MOTION is a .mot, .sto or .csv file",
+        ),
+        (&["adult", &late], "no column is a coordinate of the model `adult, male`"),
+        (&["adult", &days], "the motion lasts 200000 s; 1e5 s at most"),
+        (&["adult", &motion, "--grf", &late], "frame 1 at 5 s has no ground reaction"),
+        (&["adult", &motion, "--grf", &motion], "no column is named like `ground_force_vx`"),
+        (
+            &["adult", &motion, "--support", "calcn_rr"],
+            "--support calcn_rr: the model has no segment `calcn_rr`; did you mean `calcn_r`?",
+        ),
+        (&["adult", &motion, "--support", "calcn_r,calcn_r"], "it is named twice"),
+        (&["adult", &motion, "--support", "head"], "give corners in its frame (m): --patch \"head X,Y,Z X,Y,Z ...\""),
+        (&["adult", &motion, "--support", "calcn_r", "--patch", "calcn_l 0,0,0"], "`calcn_l` is no support"),
+        (&["adult", &motion, "--support", "calcn_r", "--patch", "calcn_r 0,0"], "holds 2 numbers; three are needed"),
+        (&["adult", &motion, "--support", "calcn_r", "--patch", "calcn_r"], "the corners are missing"),
+        (&["adult", &motion, "--patch", "calcn_r 0,0,0"], "--support <SEG,SEG>"),
+        (&["adult", &motion, "--support", "calcn_r", "--grf", &late], "cannot be used with"),
+        (&["adult", &motion, "--load", "hand_r 3"], "`3` is no mass in kg"),
+        (&[&robot, &bent, "--passive", "file"], "no strength of this model is known"),
+    ] {
+        let arguments: Vec<&str> = ["assess"].iter().chain(arguments).copied().chain(["--out", target]).collect();
+        let told = refused(&arguments);
+        assert!(told.contains(part), "`{part}` is not in\n{told}");
+        assert!(!out.exists(), "{arguments:?}");
+    }
+}

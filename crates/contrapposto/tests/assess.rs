@@ -1,0 +1,161 @@
+//! Assessment of a given motion: sampling does not matter, sides do not matter, peaks are where they are, and what is not in order
+//! is refused.
+
+#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto::contact::Support;
+use contrapposto::hybrid::Strategy;
+use contrapposto::model::{Adult, Model, Side, adult};
+use contrapposto::posture::Posture;
+use contrapposto::simulation::{AssessError, AssessSettings, Assessment, GroupAssessment, PeakKind, assess};
+use contrapposto::statics::Load;
+use nalgebra::Vector3;
+
+fn body() -> Model {
+    adult(&Adult::default()).unwrap()
+}
+
+/// The default posture with some angles, deg.
+fn bent(model: &Model, angles: &[(&str, f64)]) -> Posture {
+    let mut posture = model.default_posture();
+    for (name, angle) in angles {
+        posture.values_mut()[model.coordinate(name).unwrap()] = angle.to_radians();
+    }
+    posture
+}
+
+/// Three kilograms in one hand.
+fn holding(model: &Model, hand: &str, motion: &[(f64, Posture)]) -> Assessment {
+    let load = Load::weight(model, model.segment(hand).unwrap(), 3.0);
+    assess(model, motion, |_, _, loads| loads.push(load), &AssessSettings::default(), |_| {}).unwrap()
+}
+
+fn group<'a>(model: &Model, found: &'a Assessment, name: &str, side: Side) -> &'a GroupAssessment {
+    let coordinate = model.coordinate(name).unwrap();
+    found.groups.iter().find(|group| (group.coordinate, group.side) == (coordinate, side)).unwrap()
+}
+
+/// A posture held for ten minutes is the same in two rows as in six hundred, and torques that change in a straight line between
+/// two rows are those of rows between them.
+#[test]
+fn rows_between_change_nothing() {
+    let model = body();
+    let level = bent(&model, &[("elbow_flex_r", 90.0)]);
+    let two = holding(&model, "hand_r", &[(0.0, level.clone()), (600.0, level.clone())]);
+    let many: Vec<_> = (0..=600).map(|second| (f64::from(second), level.clone())).collect();
+    let many = holding(&model, "hand_r", &many);
+    for (a, b) in two.groups.iter().zip(&many.groups) {
+        assert_eq!((a.coordinate, a.side), (b.coordinate, b.side));
+        assert!((a.fatigue - b.fatigue).abs() < 1e-5, "{a:?} {b:?}");
+        match (a.exhausted_at, b.exhausted_at) {
+            (Some(a), Some(b)) => assert!((a - b).abs() < 1e-3 * a, "{a} {b}"),
+            (a, b) => assert_eq!(a, b),
+        }
+    }
+}
+
+#[test]
+fn left_mirrors_right() {
+    let model = body();
+    let of = |side: &str| {
+        let elbow = format!("elbow_flex_{side}");
+        let motion = [(0.0, bent(&model, &[(&elbow, 90.0)])), (300.0, bent(&model, &[(&elbow, 60.0)]))];
+        let found = holding(&model, &format!("hand_{side}"), &motion);
+        group(&model, &found, &elbow, Side::Positive).clone()
+    };
+    let (right, left) = (of("r"), of("l"));
+    assert!((right.peak_load.value - left.peak_load.value).abs() < 1e-12 && right.peak_load.value > 0.1);
+    assert!((right.fatigue - left.fatigue).abs() < 1e-9 && right.fatigue > 0.1);
+    assert_eq!(right.proposals.len(), left.proposals.len());
+    assert!(right.proposals.iter().zip(&left.proposals).all(|(r, l)| r.sentence == l.sentence));
+}
+
+/// The load is greatest in the middle, where the forearm is level; fatigue at the end.
+#[test]
+fn peaks_and_proposals() {
+    let model = body();
+    let angles = [20.0, 50.0, 90.0, 50.0, 20.0];
+    let motion: Vec<_> = angles
+        .iter()
+        .zip(0..)
+        .map(|(&angle, i)| (60.0 * f64::from(i), bent(&model, &[("elbow_flex_r", angle)])))
+        .collect();
+    let found = holding(&model, "hand_r", &motion);
+    let elbow = group(&model, &found, "elbow_flex_r", Side::Positive);
+    assert_eq!((elbow.peak_load.index, elbow.peak_load.time), (2, 120.0));
+    let asked: Vec<_> = elbow.proposals.iter().map(|p| (p.at, p.strategy)).collect();
+    assert_eq!(asked[..2], [(PeakKind::Load, Strategy::Active), (PeakKind::Load, Strategy::Passive)]);
+    for proposal in &elbow.proposals {
+        let decision = &proposal.decision;
+        assert!(decision.active_torque_at_goal.unwrap().abs() <= decision.active_torque.abs(), "{proposal:?}");
+    }
+    assert!((elbow.proposals[0].angle.to_degrees() - 90.0).abs() < 1e-9);
+    // The group that never works neither tires nor asks.
+    let rests = group(&model, &found, "knee_angle_r", Side::Positive);
+    assert!(rests.peak_load.value > 0.0 || (rests.fatigue == 0.0 && rests.proposals.is_empty()));
+}
+
+/// Without supports the root lacks the whole weight; on both feet nothing.
+#[test]
+fn supports_hold_the_root() {
+    let model = body();
+    let motion = [(0.0, model.default_posture()), (1.0, bent(&model, &[("arm_flex_r", 40.0)]))];
+    let weight = model.mass() * model.gravity().norm();
+    let nothing = |_: f64, _: &contrapposto::kinematics::Kinematics, _: &mut Vec<Load>| {};
+    let alone = assess(&model, &motion, nothing, &AssessSettings::default(), |_| {}).unwrap();
+    assert!((alone.residual_force.value - weight).abs() < 1e-9 * weight && alone.unheld == 0);
+    let support = |name: &str| {
+        let segment = model.segment(name).unwrap();
+        let corners = model.segments()[segment].patch.clone();
+        Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+    };
+    let settings =
+        AssessSettings { supports: vec![support("calcn_r"), support("calcn_l")], ..AssessSettings::default() };
+    let mut largest = 0.0_f64;
+    let held = assess(&model, &motion, nothing, &settings, |instant| {
+        for name in ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"] {
+            let rate = model.coordinates()[model.coordinate(name).unwrap()].rate.unwrap();
+            largest = largest.max((instant.external[rate] + instant.passive[rate]).abs());
+        }
+    });
+    let held = held.unwrap();
+    assert!(largest < 1e-8 * weight && held.residual_force.value < 1e-8 * weight && held.unheld == 0, "{largest}");
+    // A hand in the air holds nobody: the answer says so.
+    let settings = AssessSettings {
+        supports: vec![Support { normal: -Vector3::y(), ..support("calcn_r") }],
+        ..AssessSettings::default()
+    };
+    let falls = assess(&model, &motion, nothing, &settings, |_| {}).unwrap();
+    assert!(falls.unheld == 2 && falls.residual_force.value > 0.9 * weight);
+}
+
+/// A pelvis that goes up as a parabola accelerates by twice its coefficient, whatever the rate of frames.
+#[test]
+fn the_centre_of_mass_accelerates() {
+    let model = body();
+    let height = model.coordinate("pelvis_ty").unwrap();
+    for rate in [20.0, 100.0, 1000.0] {
+        let motion: Vec<_> = (0..=(rate as usize))
+            .map(|i| {
+                let time = i as f64 / rate;
+                let mut posture = model.default_posture();
+                posture.values_mut()[height] += 0.75 * time * time;
+                (time, posture)
+            })
+            .collect();
+        let found = assess(&model, &motion, |_, _, _| {}, &AssessSettings::default(), |_| {}).unwrap();
+        assert!((found.acceleration.value - 1.5).abs() < 1e-6, "{rate}: {:?}", found.acceleration);
+        assert!(found.fast_share > 0.85, "{rate}: {}", found.fast_share);
+    }
+}
+
+#[test]
+fn what_is_not_in_order_is_refused() {
+    let model = body();
+    let at = |time: f64| (time, model.default_posture());
+    let try_it = |motion: &[(f64, Posture)]| assess(&model, motion, |_, _, _| {}, &AssessSettings::default(), |_| {});
+    assert!(matches!(try_it(&[at(0.0), at(2e5)]), Err(AssessError::TooLong(_))));
+    assert!(matches!(try_it(&[at(1.0), at(2.0), at(1.5)]), Err(AssessError::Order { index: 2, .. })));
+    assert!(matches!(try_it(&[at(0.0), (1.0, Posture::new(vec![0.0]))]), Err(AssessError::Posture { index: 1, .. })));
+    assert_eq!(try_it(&[]).unwrap().groups.iter().filter(|group| group.peak_load.value > 0.0).count(), 0);
+}
