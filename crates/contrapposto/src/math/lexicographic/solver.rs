@@ -187,18 +187,23 @@ impl Solver {
     }
 
     fn run(&mut self, problem: &Problem) -> Status {
+        self.came_to_an_end = self.descend(problem);
+        if !self.came_to_an_end {
+            // What was active the last time may be far from what is now: once more with nothing active.
+            self.forget();
+            self.came_to_an_end = self.descend(problem);
+        }
+        self.report(problem)
+    }
+
+    /// All levels in turn; `false` if one did not come to an end.
+    fn descend(&mut self, problem: &Problem) -> bool {
         self.prepare(problem);
         let last = problem.levels.len().wrapping_sub(1);
-        let mut done = true;
-        for k in 0..problem.levels.len() {
+        (0..problem.levels.len()).all(|k| {
             let single = if k == last { self.diagonal_level(problem, k) } else { None };
-            done = single.unwrap_or_else(|| self.level(problem, k));
-            if !done {
-                break;
-            }
-        }
-        self.came_to_an_end = done;
-        self.report(problem)
+            single.unwrap_or_else(|| self.level(problem, k))
+        })
     }
 
     /// Residuals, recomputed from the problem, and what they say.
