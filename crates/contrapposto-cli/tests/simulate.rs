@@ -68,7 +68,9 @@ fn simulate(scenario: &Path, out: &Path, arguments: &[&str]) -> Run {
 /// The text of a scenario, bodies on their supports for ten seconds only.
 fn shortened(path: &Path) -> String {
     let text = std::fs::read_to_string(path).unwrap();
-    let Some((head, tail)) = text.split_once("duration_s").filter(|_| text.contains("[[support]]")) else { return text };
+    let Some((head, tail)) = text.split_once("duration_s").filter(|_| text.contains("[[support]]")) else {
+        return text;
+    };
     let rest = tail.split_once('\n').map_or("", |(_, rest)| rest);
     format!("{head}duration_s = 10\n{rest}")
 }
