@@ -481,7 +481,8 @@ fn damping_is_the_same_as_rows_that_pull_to_zero() {
 
 /// Damped levels between others, with inequalities, bounds and often a rest posture at the end: every level is the best that
 /// those above leave it (conditions in 32 digits, of the problem that ends with it), those above feel nothing of it, and it
-/// does not matter where the solver starts.
+/// does not matter where the solver starts. Half have so little damping that signs and kept residuals are rounding: those must
+/// come to an end, with multipliers that add up (to 1e-10).
 #[test]
 fn damped_levels_are_the_best_from_everywhere() {
     let seed = seed() ^ 8;
@@ -498,11 +499,13 @@ fn damped_levels_are_the_best_from_everywhere() {
         if index & 12 != 0 {
             draw.levels.push(rest(rng, draw.n));
         }
+        let little = index & 16 != 0;
         let mut problem = draw.problem();
         for (k, rows) in draw.levels.iter().enumerate() {
             let damped = rng.random_bool(0.5) && (k + 1 < draw.levels.len() || index & 12 == 0);
+            let (from, to) = if little { (1e-9, 1e-2) } else { (1e-2, 1.0) };
             problem.levels[k].damping =
-                if damped { rows[0].scale * generator::log_uniform(rng, 1e-2, 1.0) } else { 0.0 };
+                if damped { rows[0].scale * generator::log_uniform(rng, from, to) } else { 0.0 };
         }
         let mut moved = problem.clone();
         for level in &mut moved.levels {
@@ -531,8 +534,12 @@ fn damped_levels_are_the_best_from_everywhere() {
                 }
                 let answer = Answer::of(&warm, count);
                 let seen = misses(&part, &draw.scales()[..count], &answer);
-                if !seen.are_rounding() {
+                let fine = if little { seen.bounds == 0.0 && seen.stationarity < 1e-10 } else { seen.are_rounding() };
+                if !fine {
                     return about(format!("{count} levels, start {start}: {seen:?}"));
+                }
+                if little {
+                    continue;
                 }
                 tally.misses.largest(&seen);
                 let residuals = unscaled(&draw, &answer.residuals);

@@ -5,7 +5,7 @@ use super::factor::Entry;
 use super::problem::Problem;
 use super::solver::{INDEPENDENT, MULTIPLIER, NEEDED, ROUNDING, Role, Side, Solver};
 
-/// The last digits of a value, as a share of its rounding: what a damped level keeps may be as small as that.
+/// The last digits of a value, as a share of its rounding.
 const DIGITS: f64 = 1e-3;
 
 impl Solver {
@@ -47,7 +47,7 @@ impl Solver {
                 _ => self.leave(problem, entry),
             }
         }
-        self.fix(k, if damped { DIGITS } else { 0.0 });
+        self.fix(k);
         true
     }
 
@@ -284,14 +284,21 @@ impl Solver {
         let level = &problem.levels[k];
         self.work.fill(0.0);
         self.gradient.fill(0.0);
-        let pull = level.damping * level.damping * norm(&self.x);
-        self.size = 0.0;
+        let damped = level.damping > 0.0;
+        let square = level.damping * level.damping;
+        let parts = self.kept.iter().zip(&self.soft);
+        self.size = parts.clone().map(|(kept, &row)| kept.abs() * self.norms[row]).sum();
         // A row of zeros keeps what nothing can change.
-        let real =
-            |(s, kept): (usize, &f64)| kept.abs() > self.rounding(self.soft[s]) && self.is_something(self.soft[s]);
-        if self.kept.iter().enumerate().any(real) {
-            self.size =
-                pull + self.kept.iter().zip(&self.soft).map(|(kept, &row)| kept.abs() * self.norms[row]).sum::<f64>();
+        let mut real =
+            parts.clone().filter(|(kept, row)| kept.abs() > self.rounding(**row) && self.is_something(**row));
+        if damped {
+            // Rows keep as little as the damping asks for: all counts that is above the last digits of their values.
+            let digits: f64 = self.soft.iter().map(|&row| DIGITS * self.rounding(row) * self.norms[row]).sum();
+            self.size += square * norm(&self.x) + digits / MULTIPLIER;
+        } else if real.next().is_none() {
+            self.size = 0.0;
+        }
+        if self.size > 0.0 {
             if let Some(row) = self.wrong_soft_row(MULTIPLIER * self.size) {
                 return Some(Entry::Row(row));
             }
@@ -302,13 +309,11 @@ impl Solver {
             self.factor.gather(&self.gradient, &mut self.work);
             self.factor.turn(&mut self.work, 0, base);
         }
-        if level.damping > 0.0 {
-            let square = level.damping * level.damping;
+        if damped {
             add_scaled(&mut self.work[..base], square, &self.turned_x[..base]);
             add_scaled(&mut self.gradient, square, &self.x);
         }
-        let size = self.size.max(pull);
-        self.multiply(problem, k, base, size, level.damping == 0.0)
+        self.multiply(problem, k, base, self.size, !damped)
     }
 
     /// Multipliers of the first `base` entries and of the bounds, into the table, for the gradient in `work` (turned) and
@@ -395,14 +400,13 @@ impl Solver {
         None
     }
 
-    /// What the level reached holds from now on. A row must keep at least a share `least` of its rounding to be needed.
-    fn fix(&mut self, k: usize, least: f64) {
+    /// What the level reached holds from now on.
+    fn fix(&mut self, k: usize) {
         let rank =
             self.factor.entries.iter().filter(|e| matches!(e, Entry::Row(row) if *row >= self.offsets[k])).count();
         for s in 0..self.soft.len() {
             let row = self.soft[s];
-            let needed =
-                self.kept[s].abs() * self.norms[row] > self.zero(row).max(least * self.rounding(row) * self.norms[row]);
+            let needed = self.kept[s].abs() * self.norms[row] > self.zero(row);
             self.roles[row] =
                 if self.sides[row] == Side::Both || (self.size > 0.0 && needed) { Role::Fixed } else { Role::Active };
             if s >= rank {

@@ -102,7 +102,7 @@ pub struct Solver {
     entries: Vec<Entry>,
     pub(super) least: LeastSquares,
     pub(super) diagonal: Diagonal,
-    pub(super) changes: usize,
+    changes: usize,
     limit: usize,
 }
 
@@ -189,7 +189,6 @@ impl Solver {
     fn run(&mut self, problem: &Problem) -> Status {
         self.came_to_an_end = self.descend(problem);
         if !self.came_to_an_end {
-            eprintln!("NET");
             // What was active the last time may be far from what is now: once more with nothing active.
             self.forget();
             self.came_to_an_end = self.descend(problem);
