@@ -17,12 +17,20 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::output::{Folder, print};
 use crate::pose::model_of;
+use crate::report::{Recording, report_of_run};
 
 /// The scenario of `contrapposto demo`.
 const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../scenarios/figure-08.toml"));
 
-const FILES: [&str; 6] =
-    ["summary.json", "trajectory.csv", "torque-balance.svg", "torque-balance.png", "time-line.svg", "time-line.png"];
+const FILES: [&str; 7] = [
+    "summary.json",
+    "report.html",
+    "trajectory.csv",
+    "torque-balance.svg",
+    "torque-balance.png",
+    "time-line.svg",
+    "time-line.png",
+];
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
@@ -44,6 +52,7 @@ fn carry_out(scenario: &Scenario, out: &Path, json: bool) -> Result<(), Fail> {
     table.append(b"\n")?;
     let progress = progress_bar(scenario.run.duration);
     let mut courses: Vec<Course> = scenario.free.iter().map(|_| Course::default()).collect();
+    let mut recording = Recording::default();
     let mut row = String::new();
     let mut written = Ok(());
     let mut samples = 0u64;
@@ -56,6 +65,7 @@ fn carry_out(scenario: &Scenario, out: &Path, json: bool) -> Result<(), Fail> {
         for (i, course) in courses.iter_mut().enumerate().filter(|(i, _)| scenario.free[*i]) {
             course.take(i, sample);
         }
+        recording.take(scenario, sample);
         samples += 1;
         if samples.is_multiple_of(1024) {
             progress.set_position(sample.time as u64);
@@ -96,6 +106,7 @@ fn carry_out(scenario: &Scenario, out: &Path, json: bool) -> Result<(), Fail> {
         ("torque-balance.png", balance.png().map_err(png_failed)?),
         ("time-line.svg", line.svg().into_bytes()),
         ("time-line.png", line.png().map_err(png_failed)?),
+        ("report.html", report_of_run(scenario, &recording, &summary)?.into_bytes()),
         ("summary.json", json_text.clone().into_bytes()),
     ] {
         let mut file = folder.begin(name)?;
@@ -170,10 +181,11 @@ fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) -> String {
         contrapposto::simulation::StopReason::Duration => "ran its whole duration",
     };
     format!(
-        "{}\n{table}\n{reason} after {:.2} s ({} samples)\npictures: {}, {}\n",
+        "{}\n{table}\n{reason} after {:.2} s ({} samples)\nreport: {}\npictures: {}, {}\n",
         scenario.title,
         summary.end_time,
         summary.samples,
+        folder.path("report.html").display(),
         folder.path("torque-balance.svg").display(),
         folder.path("time-line.svg").display(),
     )
