@@ -106,9 +106,9 @@ fn segments(model: &Model, frames: &[&Frame], shown: &[usize], turn: &Turn) -> R
         }
         let coordinates = model.segments()[carrier].coordinates.clone();
         let joints = shown.iter().enumerate().filter(|(_, i)| coordinates.contains(i)).map(|(place, _)| place);
-        let balls = solid::balls(model, s);
-        if !balls.is_empty() {
-            parts.push((s, Segment { name: segment.name.clone(), balls, joints: joints.collect(), places: vec![] }));
+        let joints: Vec<usize> = joints.collect();
+        for balls in solid::parts(model, s) {
+            parts.push((s, Segment { name: segment.name.clone(), balls, joints: joints.clone(), places: vec![] }));
         }
     }
     for frame in frames {

@@ -14,8 +14,15 @@ use serde_json::Value;
 use support::{Run, contents, contrapposto, scenarios};
 
 /// What a run writes, in order of names.
-const FILES: [&str; 6] =
-    ["summary.json", "time-line.png", "time-line.svg", "torque-balance.png", "torque-balance.svg", "trajectory.csv"];
+const FILES: [&str; 7] = [
+    "report.html",
+    "summary.json",
+    "time-line.png",
+    "time-line.svg",
+    "torque-balance.png",
+    "torque-balance.svg",
+    "trajectory.csv",
+];
 
 /// Columns of a coordinate after its name: a rotation, or a slide.
 const ROTATION: [&str; 8] =
@@ -159,7 +166,7 @@ fn every_scenario_runs() {
         let files = contents(folder.path());
         let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, FILES, "{}", path.display());
-        assert_eq!(files[0].1, run.stdout.as_bytes(), "--json prints summary.json");
+        assert_eq!(files[1].1, run.stdout.as_bytes(), "--json prints summary.json");
         let summary: Value = serde_json::from_str(&run.stdout).unwrap();
         assert_numbers(&summary, "");
         let mut named: Vec<&str> =

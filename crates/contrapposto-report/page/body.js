@@ -1,8 +1,8 @@
 // The body in three dimensions: every part is the hull of a few balls, drawn with WebGL. Ground axes: y up.
 function Body(canvas, onTurn) {
-  const gl = canvas.getContext("webgl", { antialias: true, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: true });
   if (!gl) return null;
-  const RINGS = 20, SLICES = 28;
+  const RINGS = 16, SLICES = 24;
 
   // --- Meshes: one triangle list a part; a normal a point.
   const directions = [];
@@ -127,7 +127,7 @@ function Body(canvas, onTurn) {
   const grid = buffer(gl.ARRAY_BUFFER, new Float32Array(ground));
 
   // --- From where it is seen: yaw 0 is from the front, from the body's right at a quarter turn.
-  const camera = { yaw: 0.55, pitch: 0.16, near: 1 };
+  const camera = { yaw: 0.45, pitch: 0.14, near: 1 };
   const look = (width, height) => {
     const fov = 0.45, spread = Math.tan(fov / 2), aspect = width / height;
     const distance = Math.max(tall / 1.75, wide / (1.85 * aspect)) / spread / camera.near + wide / 3;
@@ -256,7 +256,7 @@ function Body(canvas, onTurn) {
     nearer(Math.exp(-event.deltaY * 0.0012));
   }, { passive: false });
 
-  const VIEWS = { front: [0, 0.06], side: [Math.PI / 2, 0.06], between: [0.55, 0.16] };
+  const VIEWS = { front: [0, 0.06], side: [Math.PI / 2, 0.06], between: [0.45, 0.14] };
   return {
     draw,
     camera,

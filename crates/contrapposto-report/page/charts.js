@@ -18,7 +18,13 @@ function Charts(balance, course, onTime) {
   }, more);
   let joint = null, points = 0, levels = 0;
 
-  function drawBalance() {
+  // The present point: where each torque is, and what muscles hold between two of them.
+  const point = (frame) => {
+    const a = joint.angle[frame];
+    return { x: [a, a, null, a], y: [joint.external[frame], -joint.passive[frame], null, joint.active[frame]] };
+  };
+
+  function drawBalance(frame) {
     const { angle, minus_passive, external } = joint.balance;
     const swept = external.length > 0;
     const active = external.map((e, i) => minus_passive[i] - e);
@@ -30,19 +36,18 @@ function Charts(balance, course, onTime) {
       { name: "minus passive", x: angle, y: minus_passive, line: line("--passive", 2.2), hovertemplate: "minus passive" + torque },
     ];
     if (swept) traces.push({ name: "active", x: angle, y: active, line: line("--active", 1.8, "dash"), hovertemplate: "active" + torque });
-    traces.push({ name: "what muscles hold now", x: [], y: [], mode: "lines+markers", line: line("--active", 3),
-      marker: { size: [10, 10, 12], color: [css("--external"), css("--passive"), css("--active")], line: { color: css("--paper"), width: 1.5 } },
-      hoverinfo: "skip" });
+    traces.push({ name: "now", ...point(frame), mode: "lines+markers", line: line("--active", 3), hoverinfo: "skip",
+      marker: { size: [10, 10, 0, 12], color: ["--external", "--passive", "--active", "--active"].map(css), line: { color: css("--paper"), width: 1.5 } } });
     for (const trace of traces) Object.assign(trace, { type: "scatter", mode: trace.mode || "lines" });
     points = traces.length - 1;
-    const positive = joint.positive ? ` (${joint.positive} positive)` : "";
+    const positive = joint.positive ? ` (positive: ${joint.positive})` : "";
     Plotly.react(balance, traces, layout({
-      xaxis: axis(plain(`${joint.label}, ${joint.unit}${positive}`), { zeroline: false }),
+      xaxis: axis(plain(`${joint.slides ? "place, m" : "angle, °"}${positive}`), { zeroline: false }),
       yaxis: axis(`torque, ${joint.torque}`),
     }), config);
   }
 
-  function drawCourse() {
+  function drawCourse(frame) {
     const traces = [
       { name: "external", y: list(joint.external), yaxis: "y2", line: line("--external", 2) },
       { name: "passive", y: list(joint.passive), yaxis: "y2", line: line("--passive", 2) },
@@ -57,15 +62,15 @@ function Charts(balance, course, onTime) {
       Object.assign(trace, { type: "scatter", mode: "lines", x: times, hovertemplate: "%{y:.2f}" });
     }
     const level = (y, dash) => ({ type: "line", xref: "paper", x0: 0, x1: 1, yref: "y3", y0: y, y1: y, line: { color: css("--quiet"), width: 1, dash } });
-    const word = (y, text, yanchor) => ({ xref: "paper", x: 1, xanchor: "right", yref: "y3", y, yanchor, text, showarrow: false, font: { size: 11, color: css("--quiet") } });
+    const word = (y, text, yanchor) => ({ xref: "paper", x: 1, xanchor: "right", yref: "y3", y, yanchor, text, showarrow: false, font: { size: 11, color: css("--quiet") }, bgcolor: css("--paper"), opacity: 0.8, borderpad: 0 });
     const [critical, recovery] = report.levels.map((share) => 100 * share);
     const tires = joint.groups !== null;
     const shapes = tires ? [level(critical, "dash"), level(recovery, "dot")] : [];
     levels = shapes.length;
-    shapes.push({ type: "line", xref: "x", yref: "paper", y0: 0, y1: 1, x0: 0, x1: 0, line: { color: css("--mark"), width: 2 } });
+    shapes.push({ type: "line", xref: "x", yref: "paper", y0: 0, y1: 1, x0: times[frame], x1: times[frame], line: { color: css("--mark"), width: 2 } });
     Plotly.react(course, traces, layout({
       hovermode: "x unified", shapes,
-      annotations: tires ? [word(critical, "relief begins", "bottom"), word(recovery, "relief ends", "bottom")] : [],
+      annotations: tires ? [word(critical, "relief begins", "top"), word(recovery, "relief ends", "top")] : [],
       xaxis: axis("time, s", { anchor: "y3", zeroline: false }),
       yaxis: axis(joint.slides ? "place, m" : "angle, °", { domain: [0.71, 1], zeroline: false }),
       yaxis2: axis(`torque, ${joint.torque}`, { domain: [0.355, 0.645] }),
@@ -73,19 +78,18 @@ function Charts(balance, course, onTime) {
     }), config);
   }
 
-  function drawJoint(place) {
-    joint = report.joints[place];
+  function drawJoint(place, frame) {
+    joint = window.Plotly && report.joints[place];
     if (!joint) return;
-    drawBalance();
-    drawCourse();
+    drawBalance(frame);
+    drawCourse(frame);
   }
 
   // The present point and the cursor.
   function drawFrame(frame) {
     if (!joint) return;
-    const a = joint.angle[frame], t = report.times[frame];
-    Plotly.restyle(balance, { x: [[a, a, null, a]], y: [[joint.external[frame], -joint.passive[frame], null, joint.active[frame]]],
-      "marker.size": [[10, 10, 0, 12]], "marker.color": [[css("--external"), css("--passive"), css("--active"), css("--active")]] }, [points]);
+    const { x, y } = point(frame), t = times[frame];
+    Plotly.restyle(balance, { x: [x], y: [y] }, [points]);
     Plotly.relayout(course, { [`shapes[${levels}].x0`]: t, [`shapes[${levels}].x1`]: t });
   }
 

@@ -12,10 +12,10 @@
   const slider = find("slider"), rows = find("groups").tBodies[0];
 
   // --- In words.
-  const clock = (t) => (end < 120 ? `${t.toFixed(end < 20 ? 2 : 1)} s` : `${Math.floor(t / 60)} min ${String(Math.floor(t % 60)).padStart(2, "0")} s`);
-  const percent = (share) => `${(100 * share).toFixed(share < 0.0995 ? 1 : 0)} %`;
+  const clock = (t) => (end < 300 ? `${t.toFixed(end < 20 ? 2 : 1)} s` : `${Math.floor(t / 60)} min ${String(Math.floor(t % 60)).padStart(2, "0")} s`);
+  const percent = (share) => `${(100 * share).toFixed(share < 0.0995 ? 1 : 0)}\u00a0%`;
   const signed = (value) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(Math.abs(value) < 9.95 ? 2 : 1)}`;
-  const span = (s) => (s < 0 ? "as long as you like" : s < 100 ? `${s.toFixed(0)} s` : s < 5400 ? `${(s / 60).toFixed(0)} min` : `${(s / 3600).toFixed(1)} h`);
+  const span = (s) => (s < 0 ? "no limit" : s < 100 ? `${s.toFixed(0)} s` : s < 5400 ? `${(s / 60).toFixed(0)} min` : `${(s / 3600).toFixed(1)} h`);
 
   // --- What never changes.
   document.title = report.title || "contrapposto";
@@ -65,6 +65,7 @@
     return low > 0 && time - report.times[low - 1] < report.times[low] - time ? low - 1 : low;
   }
 
+
   // --- A moment.
   function show(frame) {
     state.frame = Math.min(last, Math.max(0, frame));
@@ -84,7 +85,8 @@
     const joint = report.joints[state.joint], i = state.frame;
     if (!joint) return;
     const share = joint.groups ? ` (${percent(joint.load[i])} of strength)` : "";
-    find("now").textContent = `${joint.angle[i].toFixed(joint.slides ? 3 : 1)} ${joint.unit}: weight and contact pull with ${signed(joint.external[i])} ` +
+    const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1), value = joint.angle[i].toFixed(joint.slides ? 3 : 1);
+    find("now").textContent = `${name}, ${value}${joint.slides ? " m" : "°"}: weight and contact pull with ${signed(joint.external[i])} ` +
       `${joint.torque}, ligaments answer with ${signed(joint.passive[i])}, muscles with ${signed(joint.active[i])}${share}.`;
   }
 
@@ -97,7 +99,7 @@
     }));
     found.sort((a, b) => b.load - a.load || b.fatigue - a.fatigue);
     find("when").textContent = `at ${clock(time)}`;
-    found.slice(0, 10).forEach((row, k) => {
+    found.slice(0, 8).forEach((row, k) => {
       const line = rows.rows[k] || newRow();
       line.dataset.joint = row.place;
       const cells = [row.group.label, percent(row.load), percent(row.fatigue), row.load < 0.005 ? "rests" : span(row.group.left[i])];
@@ -122,8 +124,7 @@
     find("balance-hint").textContent = !joint ? "" : joint.balance.external.length
       ? "Where external torque meets minus passive torque the joint hangs on its ligaments: the gap between them is what muscles hold."
       : "External torque where the body went in this run. Where it meets minus passive torque the joint hangs on its ligaments: the gap is what muscles hold.";
-    charts.drawJoint(place);
-    charts.drawFrame(state.frame);
+    charts.drawJoint(place, state.frame);
     tellJoint();
   }
 
@@ -184,13 +185,25 @@
 
   // --- Light, dark, paper, another width: all is drawn anew.
   const redraw = () => { choose(state.joint); paintBody(); };
-  for (const query of ["(prefers-color-scheme: dark)", "print"]) {
-    matchMedia(query).addEventListener("change", () => { redraw(); charts.resize(); });
-  }
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
   new ResizeObserver(paintBody).observe(find("stage"));
+  // What WebGL has drawn does not reach paper; a picture of it does.
+  const print = (begins) => {
+    document.documentElement.toggleAttribute("data-paper", begins);
+    redraw();
+    if (begins && body) find("printed").src = find("body").toDataURL();
+  };
+  addEventListener("beforeprint", () => print(true));
+  addEventListener("afterprint", () => print(false));
+  matchMedia("print").addEventListener("change", (change) => { print(change.matches); charts.resize(); });
 
   measure("load");
   choose(state.joint);
   show(last);
-  document.documentElement.dataset.ready = String(Math.round(performance.now()));
+  document.documentElement.dataset.drawn = String(Math.round(performance.now()));
+  // The charts' library stands below and takes a moment to read; the body and the words are there already.
+  addEventListener("DOMContentLoaded", () => {
+    redraw();
+    document.documentElement.dataset.ready = String(Math.round(performance.now()));
+  });
 })();

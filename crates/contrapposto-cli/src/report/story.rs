@@ -167,10 +167,13 @@ impl Story<'_> {
             ));
         }
         let [before, after] = [first, last].map(Frame::effort);
+        let change =
+            if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { format!("{after:.3}") };
+        let change = change.replace('-', "\u{2212}");
         figures.push(figure(
-            "Effort",
-            format!("{after:.3}"),
-            format!("{before:.3} at the start (sum of squared loads)"),
+            "Effort of all muscles",
+            change,
+            format!("sum of squared loads, {before:.3} to {after:.3}"),
         ));
         let hardest = (0..last.load.len()).max_by(|&a, &b| last.load[a].total_cmp(&last.load[b]));
         if let Some(i) = hardest {

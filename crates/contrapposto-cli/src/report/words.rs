@@ -13,9 +13,25 @@ pub(crate) fn plain(name: &str) -> String {
         Some((stem, "l")) => (stem, "left "),
         _ => (name, ""),
     };
-    let stem = if stem == "calcn" { "foot" } else { stem };
-    format!("{side}{}", stem.trim_end_matches("_angle").replace('_', " "))
+    let words: Vec<&str> = stem.trim_end_matches("_angle").split('_').map(long).collect();
+    format!("{side}{}", words.join(" "))
 }
+
+fn long(word: &str) -> &str {
+    WORDS.iter().find(|(short, _)| *short == word).map_or(word, |(_, long)| long)
+}
+
+/// Short words in OpenSim's names.
+const WORDS: [(&str, &str); 8] = [
+    ("add", "adduction"),
+    ("calcn", "foot"),
+    ("dev", "deviation"),
+    ("flex", "flexion"),
+    ("mtp", "toes"),
+    ("pro", "pronation"),
+    ("rot", "rotation"),
+    ("sup", "supination"),
+];
 
 /// The name of a muscle group, with the side of its coordinate.
 pub(crate) fn group(name: &str, coordinate: &str) -> String {
@@ -37,9 +53,9 @@ pub(crate) fn value(scenario: &Scenario, i: usize, value: f64) -> String {
     if slides { format!("{value:.3} m") } else { format!("{value:.1}°") }
 }
 
-/// `70 %`.
+/// `70 %`, in one piece.
 pub(crate) fn percent(share: f64) -> String {
-    format!("{:.0} %", 100.0 * share)
+    format!("{:.0}\u{a0}%", 100.0 * share)
 }
 
 /// The name of the more tired group of a coordinate, and how tired it is.
@@ -95,6 +111,7 @@ mod tests {
         assert_eq!(plain("hip_adduction_r"), "right hip adduction");
         assert_eq!(plain("knee_angle_l"), "left knee");
         assert_eq!(plain("calcn_r"), "right foot");
+        assert_eq!(plain("elbow_flex_l"), "left elbow flexion");
         assert_eq!(plain("lumbar_extension"), "lumbar extension");
         assert_eq!(plain("<b>"), "<b>");
         assert_eq!(group("hip_abduction", "hip_adduction_r"), "right hip abduction");
