@@ -53,11 +53,12 @@ fn look(page: &Path, pictures: &Path) {
     let took: Vec<f64> = serde_json::from_value(browser.evaluate(SLIDE)).unwrap();
     println!(
         "{name}: {:.2} MB, of which data {:.2} MB; body after {drawn:.2} s, all open after {opened:.2} s; slider answers in {:.0} ms \
-         (middle of 30), {:.0} ms at most; {} complaints; load of the machine {}",
+         (middle of 30), {:.0} ms at most; {} requests, {} complaints; load of the machine {}",
         text.len() as f64 / 1e6,
         data as f64 / 1e6,
         took[took.len() / 2],
         took[took.len() - 1],
+        browser.requests().len(),
         browser.complaints().len(),
         std::fs::read_to_string("/proc/loadavg").unwrap_or_default().split(' ').next().unwrap_or_default(),
     );

@@ -95,10 +95,12 @@
     const i = state.frame, found = [];
     report.joints.forEach((joint, place) => (joint.groups || []).forEach((group, side) => {
       const works = side === (joint.active[i] < 0 ? 1 : 0);
-      found.push({ place, group, load: works ? joint.load[i] : 0, fatigue: group.fatigue[i] });
+      const row = { place, group, load: works ? joint.load[i] : 0, fatigue: group.fatigue[i] };
+      if (row.load >= 0.001 || row.fatigue >= 0.005) found.push(row);
     }));
     found.sort((a, b) => b.load - a.load || b.fatigue - a.fatigue);
     find("when").textContent = `at ${clock(time)}`;
+    while (rows.rows.length > Math.min(8, found.length)) rows.deleteRow(-1);
     found.slice(0, 8).forEach((row, k) => {
       const line = rows.rows[k] || newRow();
       line.dataset.joint = row.place;

@@ -7,7 +7,7 @@ use contrapposto::simulation::{Scenario, StopReason, Summary};
 use contrapposto_report::{Figure, Report};
 
 use super::recording::{Frame, Recording};
-use super::words::{percent, plain, sentence, tired, value};
+use super::words::{percent, plain, sentence, tired, value, working};
 use crate::pose::directions;
 
 /// A pelvis that hangs more than this, degrees, is no level one.
@@ -105,8 +105,12 @@ impl Story<'_> {
             let whole = last.external[main].abs();
             let before =
                 first.carried(main).map(|before| format!(", at the start {}", percent(before))).unwrap_or_default();
-            let who = if share > 0.5 { "Ligaments carry" } else { "Ligaments carry only" };
-            reasons.push(format!("{who} {} of the {whole:.1} N m that pull on it{before}.", percent(share)));
+            let part = match share {
+                0.0..0.005 => "none".to_owned(),
+                0.005..0.5 => format!("only {}", percent(share)),
+                _ => percent(share),
+            };
+            reasons.push(format!("Ligaments carry {part} of the {whole:.1} N m that pull on it{before}."));
         }
         reasons
     }
@@ -177,7 +181,8 @@ impl Story<'_> {
         ));
         let hardest = (0..last.load.len()).max_by(|&a, &b| last.load[a].total_cmp(&last.load[b]));
         if let Some(i) = hardest {
-            figures.push(figure("Hardest worked", percent(last.load[i]), plain(&scenario.model.coordinates()[i].name)));
+            let name = working(scenario, i, last).unwrap_or_else(|| plain(&scenario.model.coordinates()[i].name));
+            figures.push(figure("Hardest worked", percent(last.load[i]), name));
         }
         figures
     }

@@ -1,6 +1,7 @@
 //! Names and decisions in plain words.
 
 use contrapposto::hybrid::{Carrier, Decision, Equilibrium, Outcome};
+use contrapposto::model::Side;
 use contrapposto::simulation::Scenario;
 
 use super::recording::{Event, Frame, What};
@@ -56,6 +57,13 @@ pub(crate) fn value(scenario: &Scenario, i: usize, value: f64) -> String {
 /// `70 %`, in one piece.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
+}
+
+/// The name of the group of a coordinate that works.
+pub(crate) fn working(scenario: &Scenario, i: usize, frame: &Frame) -> Option<String> {
+    let coordinate = &scenario.model.coordinates()[i];
+    let groups = coordinate.groups.as_ref()?;
+    Some(group(&groups[Side::of(frame.active(i)).index()].name, &coordinate.name))
 }
 
 /// The name of the more tired group of a coordinate, and how tired it is.
