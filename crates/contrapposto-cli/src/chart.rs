@@ -43,7 +43,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// External and passive torque at `angle` (rad), N m.
-    fn torques(&mut self, angle: f64) -> Result<(f64, f64), Fail> {
+    pub(crate) fn torques(&mut self, angle: f64) -> Result<(f64, f64), Fail> {
         self.posture.values_mut()[self.coordinate] = angle;
         let model = self.model();
         self.kinematics.update(model, &self.posture).map_err(|error| Fail::job("posture", error))?;

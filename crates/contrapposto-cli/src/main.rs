@@ -16,6 +16,7 @@ mod model_file;
 mod output;
 mod passive;
 mod pose;
+mod report;
 mod simulate;
 mod torques;
 

@@ -20,6 +20,8 @@ use crate::model_file::{open, tell};
 use crate::output::{Folder, print};
 use crate::torques::plain_table;
 
+pub(crate) use drawing::directions;
+
 const FILES: [&str; 5] = ["pose.json", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {

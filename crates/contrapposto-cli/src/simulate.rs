@@ -18,7 +18,7 @@ use contrapposto_formats::{MOST_BYTES, SummaryText, decisions_csv, read_scenario
 use contrapposto_plot::{Figure, SketchRole, pose_views, time_line, torque_balance};
 use indicatif::{ProgressBar, ProgressStyle};
 
-pub(crate) use self::recording::Recording;
+pub(crate) use self::recording::{Recording, Row};
 use self::snapshot::{SNAPSHOT, go_on, save};
 use crate::args::{DemoArgs, SimulateArgs};
 use crate::chart::{Sweep, course};
@@ -26,6 +26,7 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::output::{Folder, Pending, print};
 use crate::pose::{model_of, views};
+use crate::report::report_of_run;
 
 /// The scenario of `contrapposto demo`.
 const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../scenarios/figure-08.toml"));
@@ -101,6 +102,7 @@ fn write(scenario: &Scenario, summary: &Summary, recording: &Recording, folder: 
         ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
         ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
         ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
+        ("report.html", report_of_run(scenario, recording, summary)?.into_bytes()),
         ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
     ];
     if !scenario.supports.is_empty() {

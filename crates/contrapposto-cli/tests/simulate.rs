@@ -14,10 +14,11 @@ use serde_json::Value;
 use support::{Run, contents, contrapposto, scenarios};
 
 /// What a run of one joint writes, in order of names.
-const FILES: [&str; 10] = [
+const FILES: [&str; 11] = [
     "decisions.csv",
     "fatigue.sto",
     "motion.mot",
+    "report.html",
     "summary.json",
     "time-line.png",
     "time-line.svg",
@@ -28,13 +29,14 @@ const FILES: [&str; 10] = [
 ];
 
 /// What a run of a body on its supports writes.
-const FILES_OF_A_BODY: [&str; 11] = [
+const FILES_OF_A_BODY: [&str; 12] = [
     "decisions.csv",
     "fatigue.sto",
     "ground_reaction.mot",
     "motion.mot",
     "postures.png",
     "postures.svg",
+    "report.html",
     "summary.json",
     "time-line.png",
     "time-line.svg",

@@ -100,7 +100,7 @@ fn unasked(axes: [bool; 3], mut target: Vector3<f64>, present: impl Fn() -> Vect
 }
 
 /// Right, ahead and up in ground: up is against gravity (y without any), ahead the ground's x axis, or z where x is upright.
-fn directions(model: &Model) -> [Vector3<f64>; 3] {
+pub(crate) fn directions(model: &Model) -> [Vector3<f64>; 3] {
     let up = (-model.gravity()).try_normalize(0.0).unwrap_or_else(Vector3::y);
     let x = if up.x.abs() > 0.9 { Vector3::z() } else { Vector3::x() };
     let ahead = (x - up * up.dot(&x)).normalize();

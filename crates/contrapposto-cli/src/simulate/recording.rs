@@ -20,12 +20,12 @@ pub(crate) struct Recording {
     posture: Vec<f64>,
     external: Vec<f64>,
     passive: Vec<f64>,
+    load: Vec<f64>,
     fatigue: Vec<[f64; 2]>,
     asked: Vec<Option<(Case, Option<f64>)>>,
-    /// By support: force, where it acts, couple about that point.
-    contacts: Vec<[f64; 9]>,
+    /// By support: share of weight, force, where it acts, couple about that point.
+    contacts: Vec<[f64; 10]>,
     centers: Vec<[f64; 3]>,
-    effort: Vec<f64>,
 }
 
 /// One row.
@@ -35,9 +35,12 @@ pub(crate) struct Row<'a> {
     pub(crate) posture: &'a [f64],
     pub(crate) external: &'a [f64],
     pub(crate) passive: &'a [f64],
+    pub(crate) load: &'a [f64],
     pub(crate) fatigue: &'a [[f64; 2]],
     pub(crate) asked: &'a [Option<(Case, Option<f64>)>],
-    pub(crate) contacts: &'a [[f64; 9]],
+    pub(crate) contacts: &'a [[f64; 10]],
+    /// Of a body with supports or tasks.
+    pub(crate) center_of_mass: Option<[f64; 3]>,
 }
 
 impl Recording {
@@ -53,11 +56,11 @@ impl Recording {
             posture: vec![],
             external: vec![],
             passive: vec![],
+            load: vec![],
             fatigue: vec![],
             asked: vec![],
             contacts: vec![],
             centers: vec![],
-            effort: vec![],
         }
     }
 
@@ -70,12 +73,12 @@ impl Recording {
         self.posture.extend_from_slice(sample.posture);
         self.external.extend_from_slice(sample.external);
         self.passive.extend_from_slice(sample.passive);
+        self.load.extend_from_slice(sample.load);
         self.fatigue.extend_from_slice(sample.fatigue);
         self.asked.extend(sample.decisions.iter().map(|d| d.as_ref().map(|decision| (decision.case, decision.goal))));
         if let Some(standing) = sample.standing {
             self.contacts.extend(standing.contacts.iter().map(numbers));
             self.centers.push(standing.center_of_mass.into());
-            self.effort.push(standing.effort);
         }
     }
 
@@ -84,14 +87,13 @@ impl Recording {
         let rows = samples.div_ceil(self.every) as usize;
         let n = self.coordinates;
         self.times.truncate(rows);
-        for column in [&mut self.posture, &mut self.external, &mut self.passive] {
+        for column in [&mut self.posture, &mut self.external, &mut self.passive, &mut self.load] {
             column.truncate(rows * n);
         }
         self.fatigue.truncate(rows * n);
         self.asked.truncate(rows * n);
         self.contacts.truncate(rows * self.supports);
         self.centers.truncate(rows);
-        self.effort.truncate(rows);
     }
 
     /// Is it what `scenario` gives, up to sample number `samples`?
@@ -99,16 +101,23 @@ impl Recording {
         let new = Self::new(scenario);
         let (rows, n) = (samples.div_ceil(new.every) as usize, new.coordinates);
         let standing = if scenario.is_whole() { rows } else { 0 };
-        let by_coordinate = [self.posture.len(), self.external.len(), self.passive.len(), self.fatigue.len()];
+        let by_coordinate = [&self.posture, &self.external, &self.passive, &self.load];
         (self.every, self.coordinates, self.supports) == (new.every, n, new.supports)
             && self.times.len() == rows
-            && by_coordinate.iter().all(|&len| len == rows * n)
+            && by_coordinate.iter().all(|column| column.len() == rows * n)
+            && self.fatigue.len() == rows * n
             && self.asked.len() == rows * n
             && self.contacts.len() == standing * new.supports
-            && (self.centers.len(), self.effort.len()) == (standing, standing)
+            && self.centers.len() == standing
             && self.times.windows(2).all(|pair| pair[0] <= pair[1])
-            && self.posture.iter().chain(&self.external).chain(&self.passive).all(|v| v.is_finite())
-            && self.fatigue.iter().flatten().chain(self.contacts.iter().flatten()).all(|v| v.is_finite())
+            && by_coordinate.into_iter().flatten().all(|v| v.is_finite())
+            && self
+                .fatigue
+                .iter()
+                .flatten()
+                .chain(self.contacts.iter().flatten())
+                .chain(self.centers.iter().flatten())
+                .all(|v| v.is_finite())
     }
 
     pub(crate) fn times(&self) -> &[f64] {
@@ -127,9 +136,11 @@ impl Recording {
             posture: &self.posture[columns.clone()],
             external: &self.external[columns.clone()],
             passive: &self.passive[columns.clone()],
+            load: &self.load[columns.clone()],
             fatigue: &self.fatigue[columns.clone()],
             asked: &self.asked[columns],
             contacts: &self.contacts[supports],
+            center_of_mass: self.centers.get(row).copied(),
         }
     }
 }
@@ -141,8 +152,8 @@ impl Row<'_> {
     }
 }
 
-fn numbers(contact: &Contact) -> [f64; 9] {
+fn numbers(contact: &Contact) -> [f64; 10] {
     let at = contact.center_of_pressure.unwrap_or_default();
     let [f, p, c] = [contact.force, at, contact.couple];
-    [f.x, f.y, f.z, p.x, p.y, p.z, c.x, c.y, c.z]
+    [contact.share, f.x, f.y, f.z, p.x, p.y, p.z, c.x, c.y, c.z]
 }

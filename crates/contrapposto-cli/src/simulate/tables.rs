@@ -54,7 +54,8 @@ pub(super) fn ground_reaction(scenario: &Scenario, recording: &Recording) -> Res
             labels.extend(["x", "y", "z"].map(|axis| format!("{plate}_ground_{part}{axis}")));
         }
     }
-    let rows: Vec<Vec<f64>> = recording.rows().map(|row| row.contacts.iter().flatten().copied().collect()).collect();
+    let rows: Vec<Vec<f64>> =
+        recording.rows().map(|row| row.contacts.iter().flat_map(|contact| contact[1..].to_vec()).collect()).collect();
     write("ground_reaction.mot", scenario, recording, &labels, &rows)
 }
 

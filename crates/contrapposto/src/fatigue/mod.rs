@@ -64,6 +64,15 @@ impl FatigueLaw {
             Self::Endurance(law) => law.curve.time(load),
         }
     }
+
+    /// Time a group with fatigue `level` (0..=1) can still hold a constant relative load, s; infinite if for ever.
+    pub fn time_left(&self, level: f64, load: f64) -> f64 {
+        match self {
+            Self::ThreeCompartment(law) => law.time_left(level, load),
+            Self::Endurance(law) if level < 1.0 => (1.0 - level.max(0.0)) * law.curve.time(load),
+            Self::Endurance(_) => 0.0,
+        }
+    }
 }
 
 impl FatigueState {

@@ -93,10 +93,18 @@ impl ThreeCompartment {
     /// Time a rested group holds a constant load, s, the controller's ramp ignored:
     /// `T = -ln(1 - R (1 - TL) / (F TL)) / R`, infinite if `TL <= R / (F + R)` (data sheet B3, our algebra).
     pub fn endurance_time(&self, load: f64) -> f64 {
-        if load >= 1.0 {
+        self.time_left(0.0, load)
+    }
+
+    /// The same for a group with fatigue `level`, which `MF' = F TL - R MF` carries from `level (1 - TL)` to `1 - TL`.
+    pub fn time_left(&self, level: f64, load: f64) -> f64 {
+        if load >= 1.0 || level >= 1.0 {
             return 0.0;
         }
         let share = self.recovery_rate * (1.0 - load) / (self.fatigue_rate * load);
-        if load <= 0.0 || share >= 1.0 { f64::INFINITY } else { -(-share).ln_1p() / self.recovery_rate }
+        if load <= 0.0 || share >= 1.0 {
+            return f64::INFINITY;
+        }
+        ((-share * level.max(0.0)).ln_1p() - (-share).ln_1p()) / self.recovery_rate
     }
 }

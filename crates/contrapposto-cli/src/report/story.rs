@@ -1,0 +1,194 @@
+//! What did the run find? A headline, why, and the few numbers that say most.
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto::simulation::{Scenario, StopReason, Summary};
+use contrapposto_report::{Figure, Report};
+
+use super::film::{Film, Frame};
+use super::words::{percent, plain, sentence, tired, value, working};
+use crate::pose::directions;
+
+/// A pelvis that hangs more than this, degrees, is no level one.
+const LEVEL: f64 = 4.0;
+/// A joint that moved less, degrees, stayed.
+const STAYED: f64 = 0.5;
+
+/// Fills in headline, reasons and figures.
+pub(crate) fn tell(scenario: &Scenario, film: &Film, summary: &Summary, shown: &[usize], report: &mut Report) {
+    let (Some(first), Some(last), Some(&main)) = (film.frames.first(), film.frames.last(), shown.get(report.main))
+    else {
+        return;
+    };
+    let story = Story { scenario, first, last, main };
+    let lists = pelvis_list(&scenario.model, first).zip(pelvis_list(&scenario.model, last));
+    let standing = lists.filter(|_| !scenario.supports.is_empty());
+    report.headline = match standing {
+        Some((_, list)) => story.of_standing(list),
+        None => story.of_joint(),
+    };
+    report.reasons = story.reasons(standing.is_some());
+    report.reasons.push(story.end(film, summary));
+    report.figures = story.figures(standing);
+}
+
+struct Story<'a> {
+    scenario: &'a Scenario,
+    first: &'a Frame,
+    last: &'a Frame,
+    main: usize,
+}
+
+impl Story<'_> {
+    fn of_standing(&self, list: f64) -> String {
+        let weight = match self.heaviest() {
+            Some((name, share)) => format!("{} of the weight is on the {name}", percent(share)),
+            None => "nothing carries it".to_owned(),
+        };
+        let lean = format!("{:.0}° down to the {}", list.abs(), if list > 0.0 { "right" } else { "left" });
+        if list.abs() < LEVEL {
+            return format!("No slouch: the pelvis ends level (within {:.0}°), and {weight}.", list.abs().ceil());
+        }
+        format!("Slouched: the pelvis hangs {lean}, and {weight}.")
+    }
+
+    fn of_joint(&self) -> String {
+        let name = sentence(&plain(&self.scenario.model.coordinates()[self.main].name));
+        let [from, to] = [self.first, self.last].map(|frame| value(self.scenario, self.main, frame.posture[self.main]));
+        let [before, after] = [self.first, self.last].map(|frame| frame.active(self.main).abs());
+        if self.moved().abs() < STAYED {
+            return format!("{name} stayed at {to}: its muscles hold {after:.1} N m.");
+        }
+        let verb = if after > before { "more" } else { "less" };
+        format!("{name} moved from {from} to {to}: its muscles hold {verb}, {after:.1} N m instead of {before:.1}.")
+    }
+
+    fn moved(&self) -> f64 {
+        (self.last.posture[self.main] - self.first.posture[self.main]).to_degrees()
+    }
+
+    /// The support that carries most at the end, and its share.
+    fn heaviest(&self) -> Option<(String, f64)> {
+        let contacts = &self.last.standing.as_ref()?.contacts;
+        let name = |i: usize| plain(&self.scenario.model.segments()[self.scenario.supports[i].segment].name);
+        let (i, contact) = contacts.iter().enumerate().max_by(|a, b| a.1.share.total_cmp(&b.1.share))?;
+        Some((name(i), contact.share))
+    }
+
+    fn reasons(&self, standing: bool) -> Vec<String> {
+        let Self { scenario, first, last, main } = *self;
+        let name = plain(&scenario.model.coordinates()[main].name);
+        let mut reasons = vec![];
+        let critical = scenario.hysteresis.critical_level;
+        if let Some((group, fatigue)) = tired(scenario, main, first).filter(|(_, fatigue)| *fatigue >= critical) {
+            reasons.push(format!(
+                "Why: the muscles of {group} were tired from the start ({}) and asked for rest.",
+                percent(fatigue)
+            ));
+        }
+        if standing && self.moved().abs() >= STAYED {
+            let [from, to] = [first, last].map(|frame| value(scenario, main, frame.posture[main]));
+            let [before, after] = [first, last].map(|frame| frame.active(main).abs());
+            reasons.push(format!(
+                "{} moved from {from} to {to}; its muscles hold {after:.1} N m, at the start {before:.1}.",
+                sentence(&name)
+            ));
+        }
+        if let Some(share) = last.carried(main) {
+            let whole = last.external[main].abs();
+            let before =
+                first.carried(main).map(|before| format!(", at the start {}", percent(before))).unwrap_or_default();
+            let part = match share {
+                0.0..0.005 => "none".to_owned(),
+                0.005..0.5 => format!("only {}", percent(share)),
+                _ => percent(share),
+            };
+            reasons.push(format!("Ligaments carry {part} of the {whole:.1} N m that pull on it{before}."));
+        }
+        reasons
+    }
+
+    fn end(&self, film: &Film, summary: &Summary) -> String {
+        let how = match summary.reason {
+            StopReason::Settled => "nothing moved any more",
+            StopReason::Duration => "its whole duration",
+            StopReason::Interrupted => "it was interrupted",
+        };
+        let told = film.events.len() as u64;
+        let more = match film.happened - told {
+            0 => String::new(),
+            more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", film.happened),
+        };
+        format!("The run ended after {:.0} s: {how}.{more}", summary.end_time)
+    }
+
+    fn figures(&self, standing: Option<(f64, f64)>) -> Vec<Figure> {
+        let Self { scenario, first, last, main } = *self;
+        let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
+        let mut figures = vec![];
+        if let Some((before, after)) = standing {
+            let side = |list: f64| if list > 0.0 { "right" } else { "left" };
+            let note = format!("down to the {}; {:.1}° at the start", side(after), before.abs());
+            figures.push(figure("Pelvis hangs", format!("{:.1}°", after.abs()), note));
+        }
+        let shares =
+            |frame: &Frame| frame.standing.as_ref().map(|s| s.contacts.iter().map(|c| c.share).collect::<Vec<_>>());
+        for (i, (before, after)) in
+            shares(first).into_iter().flatten().zip(shares(last).into_iter().flatten()).enumerate().take(4)
+        {
+            let name = plain(&scenario.model.segments()[scenario.supports[i].segment].name);
+            figures.push(figure(
+                &format!("Weight on {name}"),
+                percent(after),
+                format!("{} at the start", percent(before)),
+            ));
+        }
+        if standing.is_none() {
+            let [from, to] = [first, last].map(|frame| value(scenario, main, frame.posture[main]));
+            figures.push(figure(
+                &sentence(&plain(&scenario.model.coordinates()[main].name)),
+                to,
+                format!("{from} at the start"),
+            ));
+            let [before, after] = [first, last].map(|frame| frame.active(main).abs());
+            figures.push(figure(
+                "Its muscles hold",
+                format!("{after:.1} N m"),
+                format!("{before:.1} N m at the start"),
+            ));
+        }
+        if let Some(share) = last.carried(main) {
+            figures.push(figure(
+                "Ligaments carry",
+                percent(share),
+                format!("of what pulls on {}", plain(&scenario.model.coordinates()[main].name)),
+            ));
+        }
+        let [before, after] = [first, last].map(Frame::effort);
+        let change =
+            if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { format!("{after:.3}") };
+        let change = change.replace('-', "\u{2212}");
+        figures.push(figure(
+            "Effort of all muscles",
+            change,
+            format!("sum of squared loads, {before:.3} to {after:.3}"),
+        ));
+        let hardest = (0..last.load.len()).max_by(|&a, &b| last.load[a].total_cmp(&last.load[b]));
+        if let Some(i) = hardest {
+            let name = working(scenario, i, last).unwrap_or_else(|| plain(&scenario.model.coordinates()[i].name));
+            figures.push(figure("Hardest worked", percent(last.load[i]), name));
+        }
+        figures
+    }
+}
+
+/// How far the pelvis hangs to its right, degrees.
+fn pelvis_list(model: &Model, frame: &Frame) -> Option<f64> {
+    let pelvis = model.segment("pelvis")?;
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(frame.posture.clone())).ok()?;
+    let [right, _, up] = directions(model);
+    let across = kinematics.placement(model, pelvis).rotation * right;
+    Some(-across.dot(&up).clamp(-1.0, 1.0).asin().to_degrees())
+}

@@ -1,0 +1,137 @@
+//! What does the page's script read? One JSON text, safe inside a `<script>` of data.
+
+use serde_json::{Value, json};
+
+use crate::column::{column, columns};
+use crate::{Balance, Decision, Group, Joint, Report, Segment, Support};
+
+/// What can be seen on a page.
+const SECONDS: f64 = 1e-3;
+const METRES: f64 = 1e-4;
+const TURN: f64 = 2e-4;
+const DEGREES: f64 = 0.02;
+const TORQUE: f64 = 0.01;
+const SHARE: f64 = 1e-3;
+const NEWTONS: f64 = 0.5;
+/// Endurance is told in whole seconds, and beyond this many counts as for ever.
+const FOR_EVER: f64 = 1e5;
+
+/// The JSON text of a report. No `<`, `>` or `&` is left in it, so nothing in it can end or begin an element.
+pub(crate) fn data(report: &Report) -> String {
+    let n = report.times.len();
+    let value = json!({
+        "title": report.title,
+        "body": report.body,
+        "headline": report.headline,
+        "reasons": report.reasons,
+        "figures": report.figures.iter().map(|f| json!([f.label, f.value, f.note])).collect::<Value>(),
+        "frames": n,
+        "times": column(report.times.iter().copied(), n, SECONDS),
+        "segments": report.segments.iter().map(|s| segment(s, n)).collect::<Value>(),
+        "joints": report.joints.iter().map(|j| joint(j, n)).collect::<Value>(),
+        "main": report.main,
+        "levels": report.levels,
+        "supports": report.supports.iter().map(|s| support(s, n)).collect::<Value>(),
+        "center": columns(&report.center_of_mass, n, [METRES; 3]),
+        "effort": column(report.effort.iter().copied(), n, SHARE),
+        "decisions": report.decisions.iter().map(decision).collect::<Value>(),
+    });
+    escape(&value.to_string())
+}
+
+/// Characters that mean something to a browser outside of JSON strings, written as JSON escapes. They occur in strings only.
+fn escape(json: &str) -> String {
+    let mut safe = String::with_capacity(json.len());
+    for c in json.chars() {
+        match c {
+            '<' | '>' | '&' | '\u{2028}' | '\u{2029}' => safe.push_str(&format!("\\u{:04x}", c as u32)),
+            _ => safe.push(c),
+        }
+    }
+    safe
+}
+
+fn segment(segment: &Segment, n: usize) -> Value {
+    let [m, t] = [METRES, TURN];
+    json!({
+        "name": segment.name,
+        "balls": segment.balls.iter().map(|ball| short(ball, METRES)).collect::<Value>(),
+        "joints": segment.joints,
+        "places": columns(&segment.places, n, [m, m, m, t, t, t, t]),
+    })
+}
+
+fn joint(joint: &Joint, n: usize) -> Value {
+    let list = |values: &[f64], step: f64| column(values.iter().copied(), n, step);
+    let angle = if joint.slides { METRES } else { DEGREES };
+    json!({
+        "name": joint.name,
+        "label": joint.label,
+        "positive": joint.positive,
+        "slides": joint.slides,
+        "groups": joint.groups.as_ref().map(|groups| groups.iter().map(|g| group(g, n)).collect::<Value>()),
+        "angle": list(&joint.angle, angle),
+        "external": list(&joint.external, TORQUE),
+        "passive": list(&joint.passive, TORQUE),
+        "load": list(&joint.load, SHARE),
+        "balance": balance(&joint.balance, angle),
+    })
+}
+
+fn group(group: &Group, n: usize) -> Value {
+    let left = |&seconds: &f64| if seconds < FOR_EVER { seconds.max(0.0) } else { -1.0 };
+    json!({
+        "label": group.label,
+        "fatigue": column(group.fatigue.iter().copied(), n, SHARE),
+        "left": column(group.left.iter().map(left), n, 1.0),
+    })
+}
+
+fn balance(balance: &Balance, angle: f64) -> Value {
+    json!({
+        "angle": short(&balance.angle, angle),
+        "minus_passive": short(&balance.minus_passive, TORQUE),
+        "external": short(&balance.external, TORQUE),
+    })
+}
+
+fn support(support: &Support, n: usize) -> Value {
+    json!({
+        "label": support.label,
+        "force": columns(&support.force, n, [NEWTONS; 3]),
+        "at": columns(&support.at, n, [METRES; 3]),
+        "share": column(support.share.iter().copied(), n, SHARE),
+    })
+}
+
+fn decision(decision: &Decision) -> Value {
+    json!({ "frame": decision.frame, "joint": decision.joint, "text": decision.text })
+}
+
+/// Numbers rounded to what can be seen.
+fn short(values: &[f64], step: f64) -> Value {
+    let per = 1.0 / step;
+    values.iter().map(|v| (v * per).round() / per).map(|v| if v.is_finite() { v } else { 0.0 }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hostile_names_stay_data() {
+        let name = "</script><script>alert(1)</script><!-- & \u{2028}\u{2029} \"\\ \u{0} </SCRIPT >";
+        let report = Report {
+            title: name.to_owned(),
+            segments: vec![Segment { name: name.to_owned(), ..Segment::default() }],
+            decisions: vec![Decision { text: name.to_owned(), ..Decision::default() }],
+            ..Report::default()
+        };
+        let text = data(&report);
+        assert!(!text.contains(['<', '>', '&', '\u{2028}', '\u{2029}', '\u{0}']));
+        let back: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(back["title"], name);
+        assert_eq!(back["segments"][0]["name"], name);
+        assert_eq!(back["decisions"][0]["text"], name);
+    }
+}

@@ -1,0 +1,177 @@
+//! Does the page work in a real browser? It loads without a complaint, everything can be moved by hand and by keyboard, names
+//! stay text, and nothing is asked of a network. Without a browser on the machine these tests say so and pass.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+mod support;
+
+use std::path::PathBuf;
+
+use contrapposto_report::{Balance, Decision, Figure, Group, Joint, Report, Segment, Support, balls_of, write};
+use serde_json::json;
+use support::chromium::Chromium;
+
+/// A name that would like to be more than a name.
+const HOSTILE: &str = "</script><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">\
+                       <a href=\"https://example.invalid/\">x</a>&amp;\u{2028}{{script}}";
+
+/// A bar that swings about its upper end, carried at its foot.
+fn report() -> Report {
+    let times: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.2).collect();
+    let swing = |t: &f64| 0.08 * t;
+    let place = |t: &f64| [0.0, 1.0, 0.0, (0.5 * swing(t)).cos(), 0.0, 0.0, (0.5 * swing(t)).sin()];
+    let over = |f: &dyn Fn(&f64) -> f64| times.iter().map(f).collect::<Vec<f64>>();
+    let group =
+        |label: &str| Group { label: label.to_owned(), fatigue: over(&|t| 0.05 * t), left: over(&|t| 100.0 - t) };
+    let joint = |name: &str, size: f64| Joint {
+        name: name.to_owned(),
+        label: name.to_owned(),
+        positive: HOSTILE.to_owned(),
+        groups: Some([group(HOSTILE), group("other")]),
+        angle: over(&|t| swing(t).to_degrees()),
+        external: over(&|t| size * (t - 5.0)),
+        passive: over(&|t| -0.5 * size * t),
+        load: over(&|t| 0.02 * t * size),
+        balance: Balance { angle: vec![-10.0, 90.0], minus_passive: vec![-1.0, 9.0], external: vec![2.0, 3.0] },
+        ..Joint::default()
+    };
+    let decision = |frame, joint, text: &str| Decision { frame, joint, text: text.to_owned() };
+    Report {
+        title: HOSTILE.to_owned(),
+        body: HOSTILE.to_owned(),
+        headline: HOSTILE.to_owned(),
+        reasons: vec![HOSTILE.to_owned()],
+        figures: vec![Figure { label: HOSTILE.to_owned(), value: HOSTILE.to_owned(), note: HOSTILE.to_owned() }],
+        segments: vec![Segment {
+            name: HOSTILE.to_owned(),
+            balls: balls_of(&[[0.0, 0.0, 0.0, 1.0], [0.0, -0.8, 0.0, 0.7]], 0.008),
+            joints: vec![0, 1],
+            places: times.iter().map(place).collect(),
+        }],
+        joints: vec![joint(HOSTILE, 1.0), joint("second", 2.0)],
+        main: 0,
+        levels: [0.6, 0.3],
+        supports: vec![Support {
+            label: HOSTILE.to_owned(),
+            force: vec![[0.0, 80.0, 0.0]; 50],
+            at: vec![[0.0; 3]; 50],
+            share: vec![1.0; 50],
+        }],
+        center_of_mass: vec![[0.0, 0.6, 0.0]; 50],
+        effort: over(&|t| t * t),
+        decisions: vec![decision(0, 0, HOSTILE), decision(30, 1, "the second joint is relieved")],
+        times,
+    }
+}
+
+fn file(name: &str, page: &str) -> PathBuf {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, page).unwrap();
+    path
+}
+
+/// The page, open; `None` where there is no browser.
+fn open(name: &str) -> Option<Chromium> {
+    let Some(mut browser) = Chromium::start() else {
+        println!("skipped: no Chromium on this machine (CONTRAPPOSTO_CHROMIUM may name one)");
+        return None;
+    };
+    browser.open(&file(name, &write(&report())));
+    Some(browser)
+}
+
+const FRAME: &str = "Number(document.getElementById('slider').value)";
+const PICTURE: &str = "document.getElementById('body').toDataURL()";
+const POINT: &str = "document.getElementById('balance').data.at(-1).x[0]";
+const CURSOR: &str = "document.getElementById('course').layout.shapes.at(-1).x0";
+
+#[test]
+fn slider_keys_and_decisions_move_everything() {
+    let Some(mut page) = open("moves.html") else { return };
+    let start = [PICTURE, POINT, CURSOR].map(|what| page.evaluate(what));
+    page.evaluate("{ const s = document.getElementById('slider'); s.value = 2; s.dispatchEvent(new Event('input')); }");
+    page.wait_for(&format!("{CURSOR} === 2"));
+    for (what, before) in [PICTURE, POINT, CURSOR].into_iter().zip(&start) {
+        assert_ne!(page.evaluate(what), *before, "{what} has not moved");
+    }
+
+    for (key, time) in [("Home", 0.0), ("ArrowRight", 0.2), ("ArrowRight", 0.4), ("ArrowLeft", 0.2), ("End", 9.8)] {
+        page.press(key);
+        assert_eq!(page.evaluate(FRAME).as_f64(), Some(time), "after {key}");
+    }
+    page.press("Home");
+    page.press(" ");
+    page.wait_for(&format!("{FRAME} > 0"));
+    page.press(" ");
+    let paused = page.evaluate(FRAME);
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    assert_eq!(page.evaluate(FRAME), paused, "space did not pause");
+
+    page.evaluate("document.querySelectorAll('#decisions button')[1].click()");
+    assert_eq!(page.evaluate(FRAME).as_f64(), Some(6.0));
+    assert_eq!(page.evaluate("document.getElementById('chooser').selectedOptions[0].textContent"), "second");
+    assert!((page.evaluate(POINT).as_f64().unwrap() - 0.48f64.to_degrees()).abs() < 0.02);
+
+    let before = page.evaluate(PICTURE);
+    page.evaluate("document.getElementById('by-passive').click()");
+    assert_ne!(page.evaluate(PICTURE), before, "the colours have not changed");
+    let before = page.evaluate(PICTURE);
+    let mouse =
+        |kind: &str, x: i32| json!({ "type": kind, "x": x, "y": 400, "button": "left", "buttons": 1, "clickCount": 1 });
+    let place = page.evaluate("document.getElementById('body').getBoundingClientRect().top").as_f64().unwrap();
+    page.evaluate(&format!("scrollTo(0, {place} - 200)"));
+    for event in [mouse("mousePressed", 200), mouse("mouseMoved", 260), mouse("mouseReleased", 260)] {
+        page.call("Input.dispatchMouseEvent", event);
+    }
+    assert_ne!(page.evaluate(PICTURE), before, "the body has not turned");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn hostile_names_stay_text_and_nothing_is_fetched() {
+    let Some(mut page) = open("hostile.html") else { return };
+    assert_eq!(page.evaluate("document.getElementById('headline').textContent"), HOSTILE);
+    assert_eq!(page.evaluate("document.querySelector('#decisions span').textContent"), HOSTILE);
+    page.evaluate("document.getElementById('chooser').dispatchEvent(new Event('change'))");
+    assert_eq!(page.evaluate("document.title.includes('</script>')"), true, "the title is the name itself");
+    assert_eq!(page.evaluate("document.querySelectorAll('img, a, iframe, object').length"), 0);
+    assert_eq!(page.evaluate("document.scripts.length"), 3, "the data and two scripts");
+    // The policy holds against a script that got in all the same, and against every request.
+    page.evaluate(
+        "{ const s = document.createElement('script'); s.textContent = 'window.owned = 1'; document.body.append(s); }",
+    );
+    assert_eq!(page.evaluate("window.owned === undefined"), true);
+    let refused = "fetch('https://example.invalid/').then(() => 'fetched', () => 'refused')";
+    assert_eq!(page.evaluate(refused), "refused");
+    let asked: Vec<String> = page.requests().into_iter().filter(|url| !url.starts_with("file://")).collect();
+    let asked: Vec<String> = asked.into_iter().filter(|url| url != "https://example.invalid/").collect();
+    assert_eq!(asked, Vec::<String>::new());
+}
+
+#[test]
+fn a_phone_in_the_dark_and_paper_have_no_overflow() {
+    let Some(mut page) = open("phone.html") else { return };
+    let dark = json!([{ "name": "prefers-color-scheme", "value": "dark" }]);
+    page.call("Emulation.setEmulatedMedia", json!({ "features": dark }));
+    let phone = json!({ "width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": true });
+    page.call("Emulation.setDeviceMetricsOverride", phone);
+    page.wait_for("document.documentElement.scrollWidth <= 360");
+    assert_eq!(page.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(20, 23, 28)");
+    page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
+    assert_eq!(page.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(255, 255, 255)");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn the_same_report_is_the_same_page() {
+    assert!(write(&report()) == write(&report()));
+}
+
+#[test]
+fn an_empty_report_is_a_page_too() {
+    let page = write(&Report::default());
+    assert!(page.len() < 6_000_000);
+    let Some(mut browser) = Chromium::start() else { return };
+    browser.open(&file("empty.html", &page));
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
