@@ -160,3 +160,32 @@ impl Frame {
         (external.abs() > 0.5).then(|| (-self.passive[i] / external).clamp(0.0, 1.0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contrapposto::simulation::run;
+    use contrapposto_formats::read_scenario;
+
+    #[test]
+    fn a_long_run_keeps_its_ends_its_decisions_and_little_else() {
+        let text = include_str!("../../../../scenarios/chatter.toml").replace("duration_s = 20", "duration_s = 200");
+        let scenario = read_scenario("chatter.toml", text.as_bytes(), None).unwrap();
+        let mut recording = Recording::default();
+        let summary = run(&scenario, |sample| recording.take(&scenario, sample)).unwrap();
+        assert!(summary.samples > 5000 && recording.happened() > 5000, "{} decisions", recording.happened());
+        let frames = recording.frames();
+        assert!(frames.len() <= MOST_FRAMES + MOST_EVENTS + 2, "{} frames", frames.len());
+        assert!(frames.len() > MOST_FRAMES / 2);
+        assert_eq!((frames[0].time, frames[frames.len() - 1].time), (0.0, summary.end_time));
+        assert!(frames.windows(2).all(|pair| pair[0].time < pair[1].time));
+        assert_eq!(recording.events().len(), MOST_EVENTS);
+        for event in recording.events() {
+            assert!(
+                frames.iter().any(|frame| frame.time == event.time),
+                "no frame of the decision at {} s",
+                event.time
+            );
+        }
+    }
+}
