@@ -1,7 +1,7 @@
 // The charts of one joint, by plotly.js: torques over the angle, and everything over time.
 function Charts(balance, course, onTime) {
-  // plotly.js reads a little markup in texts; names are no markup.
-  const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
+  // plotly.js reads a little markup in texts; names are no markup, and long ones do not fit.
+  const plain = (text) => (text.length > 48 ? `${text.slice(0, 47)}…` : text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const config = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"], displayModeBar: false };
   const line = (color, width, dash) => ({ color: css(color), width, dash: dash || "solid" });

@@ -92,6 +92,23 @@ fn time_to_failure(law: &ThreeCompartment, load: f64, step: f64) -> f64 {
     unreachable!()
 }
 
+/// Time left is what advancing says: the level is 1 just after it and below 1 just before, for both laws.
+#[test]
+fn time_left_is_when_the_load_fails() {
+    let name = library().endurance_names().next().unwrap();
+    for law in [FatigueLaw::ThreeCompartment(three_compartment("knee")), endurance(name)] {
+        for level in [0.0, 0.3, 0.7, 0.95] {
+            for load in [0.2, 0.4, 0.8] {
+                let left = law.time_left(level, load);
+                let after = |seconds: f64| law.advance(law.start(level, load), load, seconds).level(load);
+                assert!(after(0.97 * left) < 1.0 && after(1.03 * left + 1.0) > 0.999, "{level} at {load}: {left} s");
+            }
+        }
+        assert_eq!((law.time_left(0.2, 0.0), law.time_left(1.0, 0.5)), (f64::INFINITY, 0.0));
+        assert_eq!(law.time_left(0.0, 0.5), law.endurance_time(0.5));
+    }
+}
+
 #[test]
 fn endurance_time_of_three_compartments() {
     for (class, f, r, rest, times) in CLASSES {
