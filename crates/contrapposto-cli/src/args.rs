@@ -43,13 +43,18 @@ pub(crate) enum Verb {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto simulate scenarios/figure-07.toml --out out\n\n\
-    Writes summary.json, trajectory.csv, torque-balance.svg/.png and time-line.svg/.png into DIR.")]
+    Writes into DIR: summary.json, trajectory.csv, motion.mot, torques.sto, fatigue.sto, decisions.csv, time-line.svg/.png, and for \
+    one joint torque-balance.svg/.png, for a body on its supports ground_reaction.mot and postures.svg/.png.\n\
+    Ctrl-C ends a run with what is done, and a snapshot.json from which --resume goes on to the same bytes.")]
 pub(crate) struct SimulateArgs {
     /// Scenario file (TOML); `-` reads standard input.
     pub(crate) scenario: PathBuf,
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
+    /// Go on from the snapshot that an interrupted run left in DIR.
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,

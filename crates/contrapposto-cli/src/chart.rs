@@ -4,14 +4,15 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::math::dichotomy;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{Sample, Scenario};
+use contrapposto::simulation::{ReliefLog, ReliefRecord, Scenario};
 use contrapposto::statics::ExternalTorque;
 use contrapposto_plot::{PostureSketch, SketchRole, TimeLine, TorqueBalance};
 use nalgebra::Vector3;
 
 use crate::fail::Fail;
+use crate::simulate::Recording;
 
-/// Most points of a curve that are kept; a longer run keeps every second one, fourth one, and so on.
+/// Most points of a curve.
 const MOST_POINTS: usize = 4096;
 
 /// Number of intervals of a torque curve over the range.
@@ -169,75 +170,34 @@ fn sticks(model: &Model, kinematics: &Kinematics, coordinate: usize) -> Vec<Vec<
     lines
 }
 
-/// One coordinate over time, thinned as the run grows.
-#[derive(Default)]
-pub(crate) struct Course {
-    stride: u64,
-    seen: u64,
-    pub(crate) line: TimeLine,
-    last_case: &'static str,
-    /// The latest instant, so that the end is always drawn.
-    latest: Option<[f64; 7]>,
-}
-
-impl Course {
-    pub(crate) fn take(&mut self, i: usize, sample: &Sample) {
-        let [positive, negative] = sample.fatigue[i];
-        let angle = sample.posture[i].to_degrees();
-        let row = [sample.time, angle, sample.external[i], sample.passive[i], sample.active[i], positive, negative];
-        let case = sample.decisions[i].as_ref().map_or("", |decision| decision.case.number());
-        if case != self.last_case {
-            self.last_case = case;
-            if self.line.events.len() < MOST_POINTS {
-                let label = if case.is_empty() { "rested" } else { case };
-                self.line.events.push((sample.time, label.to_owned()));
-            }
-        }
-        self.stride = self.stride.max(1);
-        if self.seen.is_multiple_of(self.stride) {
-            if self.line.time_s.len() == MOST_POINTS {
-                self.stride *= 2;
-                self.for_each(|column| {
-                    let mut keep = false;
-                    column.retain(|_| {
-                        keep = !keep;
-                        keep
-                    });
-                });
-            }
-            self.push(row);
-            self.latest = None;
-        } else {
-            self.latest = Some(row);
-        }
-        self.seen += 1;
+/// One coordinate over time, thinned to what a picture can show, with the reliefs it asked for.
+pub(crate) fn course(recording: &Recording, log: &ReliefLog, coordinate: usize) -> TimeLine {
+    let mut line = TimeLine::default();
+    let rows = recording.times().len();
+    let stride = rows.div_ceil(MOST_POINTS).max(1);
+    // The end is always drawn.
+    for row in (0..rows).filter(|row| row % stride == 0 || row + 1 == rows).map(|row| recording.row(row)) {
+        line.time_s.push(row.time);
+        line.angle_deg.push(row.posture[coordinate].to_degrees());
+        line.external_nm.push(row.external[coordinate]);
+        line.passive_nm.push(row.passive[coordinate]);
+        line.active_nm.push(row.active(coordinate));
+        line.fatigue_positive.push(row.fatigue[coordinate][0]);
+        line.fatigue_negative.push(row.fatigue[coordinate][1]);
     }
-
-    /// The columns with the very last instant.
-    pub(crate) fn finish(mut self) -> TimeLine {
-        if let Some(row) = self.latest.take() {
-            self.push(row);
+    let records: Vec<&ReliefRecord> = log.records.iter().filter(|record| record.coordinate == coordinate).collect();
+    let mut case = "";
+    for (i, record) in records.iter().take(MOST_POINTS).enumerate() {
+        let now = record.decision.map_or("waits", |decision| decision.case.number());
+        if now != case {
+            line.events.push((record.time.0, now.to_owned()));
+            case = now;
         }
-        self.line
-    }
-
-    fn push(&mut self, row: [f64; 7]) {
-        let mut values = row.into_iter();
-        self.for_each(|column| column.extend(values.next()));
-    }
-
-    fn for_each(&mut self, mut f: impl FnMut(&mut Vec<f64>)) {
-        let line = &mut self.line;
-        for column in [
-            &mut line.time_s,
-            &mut line.angle_deg,
-            &mut line.external_nm,
-            &mut line.passive_nm,
-            &mut line.active_nm,
-            &mut line.fatigue_positive,
-            &mut line.fatigue_negative,
-        ] {
-            f(column);
+        let last = line.time_s.last().copied().unwrap_or_default();
+        if record.time.1 < records.get(i + 1).map_or(last, |next| next.time.0) {
+            line.events.push((record.time.1, "rested".to_owned()));
+            case = "rested";
         }
     }
+    line
 }

@@ -76,6 +76,15 @@ impl Folder {
         Ok(())
     }
 
+    /// Removes a file of that name, if there is one.
+    pub(crate) fn remove(&self, name: &str) -> Result<(), Fail> {
+        let path = self.path.join(name);
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(Fail::job(path.display(), error)),
+            _ => Ok(()),
+        }
+    }
+
     /// Where a file of that name stands.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.path.join(name)

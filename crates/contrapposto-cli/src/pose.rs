@@ -2,6 +2,8 @@
 
 mod drawing;
 
+pub(crate) use self::drawing::views;
+
 use std::path::{Path, PathBuf};
 
 use contrapposto::ik::{Engine, Pose, Reason};
@@ -74,7 +76,7 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
-    let picture = pose_views(&drawing::views(scenario, pose, &subtitle(text))?);
+    let picture = pose_views(&drawing::pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
     let mut files = vec![];

@@ -1,6 +1,6 @@
 //! `report.html`: from a scenario, a recording of its run and its summary to the plain numbers that the page shows.
 
-mod recording;
+mod film;
 mod solid;
 mod story;
 mod words;
@@ -15,16 +15,17 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use crate::chart::Sweep;
 use crate::fail::Fail;
 use crate::pose::directions;
+use crate::simulate::Recording;
 
-use recording::Frame;
-pub(crate) use recording::Recording;
+use film::{Event, Film, Frame};
 
 /// Angles at which the torques of a joint are drawn.
 const ANGLES: usize = 121;
 
 /// The page of a run.
 pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary: &Summary) -> Result<String, Fail> {
-    let frames = recording.frames();
+    let film = Film::new(scenario, recording, summary);
+    let frames: Vec<&Frame> = film.frames.iter().collect();
     let model = &scenario.model;
     let shown = shown(model);
     let turn = turn(model);
@@ -46,8 +47,8 @@ pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary:
         report.joints.push(joint(scenario, i, &frames)?);
     }
     report.main = shown.iter().position(|&i| i == main_coordinate(summary, &shown)).unwrap_or(0);
-    report.decisions = decisions(scenario, recording, &frames, &shown);
-    story::tell(scenario, recording, summary, &shown, &mut report);
+    report.decisions = decisions(scenario, &film, &shown);
+    story::tell(scenario, &film, summary, &shown, &mut report);
     Ok(contrapposto_report::write(&report))
 }
 
@@ -191,11 +192,11 @@ fn balance(scenario: &Scenario, i: usize, frames: &[&Frame]) -> Result<Balance, 
     Ok(balance)
 }
 
-fn decisions(scenario: &Scenario, recording: &Recording, frames: &[&Frame], shown: &[usize]) -> Vec<Decision> {
-    let decision = |event: &recording::Event| {
+fn decisions(scenario: &Scenario, film: &Film, shown: &[usize]) -> Vec<Decision> {
+    let decision = |event: &Event| {
         let joint = shown.iter().position(|&i| i == event.coordinate)?;
-        let frame = frames.iter().position(|frame| frame.time >= event.time)?;
-        Some(Decision { frame, joint, text: words::decision(scenario, event, frames[frame]) })
+        let frame = film.frames.iter().position(|frame| frame.time >= event.time)?;
+        Some(Decision { frame, joint, text: words::decision(scenario, event, &film.frames[frame]) })
     };
-    recording.events().iter().filter_map(decision).collect()
+    film.events.iter().filter_map(decision).collect()
 }

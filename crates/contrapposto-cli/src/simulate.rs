@@ -1,91 +1,153 @@
 //! `contrapposto simulate` and `contrapposto demo`: a scenario over time.
 
+mod recording;
+mod snapshot;
+mod tables;
+
 use std::path::Path;
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use comfy_table::Table;
+use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
-use contrapposto::simulation::{CoordinateSummary, Scenario, Summary, run};
-use contrapposto_formats::{MOST_BYTES, SummaryText, csv_header, csv_row, read_scenario};
-use contrapposto_plot::{SketchRole, time_line, torque_balance};
+use contrapposto::posture::Posture;
+use contrapposto::simulation::{Contact, CoordinateSummary, Run, Scenario, Standing, StopReason, Summary};
+use contrapposto_formats::{MOST_BYTES, SummaryText, decisions_csv, read_scenario};
+use contrapposto_plot::{Figure, SketchRole, pose_views, time_line, torque_balance};
 use indicatif::{ProgressBar, ProgressStyle};
 
+pub(crate) use self::recording::{Recording, Row};
+use self::snapshot::{SNAPSHOT, go_on, save};
 use crate::args::{DemoArgs, SimulateArgs};
-use crate::chart::{Course, Sweep};
+use crate::chart::{Sweep, course};
 use crate::fail::Fail;
 use crate::input::read;
-use crate::output::{Folder, print};
-use crate::pose::model_of;
-use crate::report::{Recording, report_of_run};
+use crate::output::{Folder, Pending, print};
+use crate::pose::{model_of, views};
+use crate::report::report_of_run;
 
 /// The scenario of `contrapposto demo`.
 const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../scenarios/figure-08.toml"));
 
-const FILES: [&str; 7] = [
-    "summary.json",
-    "report.html",
-    "trajectory.csv",
-    "torque-balance.svg",
-    "torque-balance.png",
-    "time-line.svg",
-    "time-line.png",
-];
+/// A run that takes longer is saved so often, so that a crash of the machine loses little.
+const BETWEEN_SAVES: Duration = Duration::from_secs(20);
+
+/// Someone pressed Ctrl-C.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
     let name = args.scenario.display().to_string();
     let model = model_of(&args.scenario, &name, &bytes)?;
     let scenario = read_scenario(&name, &bytes, model)?;
-    carry_out(&scenario, &args.out, args.json)
+    carry_out(&scenario, &args.out, args.resume, args.json)
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     let scenario = read_scenario(DEMO.0, DEMO.1.as_bytes(), None)?;
-    carry_out(&scenario, &args.out, args.json)
+    carry_out(&scenario, &args.out, false, args.json)
 }
 
-fn carry_out(scenario: &Scenario, out: &Path, json: bool) -> Result<(), Fail> {
+fn carry_out(scenario: &Scenario, out: &Path, resume: bool, json: bool) -> Result<(), Fail> {
     let folder = Folder::open(out)?;
-    let mut table = folder.begin("trajectory.csv")?;
-    table.append(csv_header(&scenario.model).as_bytes())?;
-    table.append(b"\n")?;
+    // A second handler is refused, which only happens if there is one already.
+    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    let failed = |error| Fail::job("simulation", error);
+    let (mut run, mut recording) = match resume {
+        true => go_on(scenario, &folder.path(SNAPSHOT))?,
+        false => (Run::new(scenario).map_err(failed)?, Recording::new(scenario)),
+    };
     let progress = progress_bar(scenario.run.duration);
-    let mut courses: Vec<Course> = scenario.free.iter().map(|_| Course::default()).collect();
-    let mut recording = Recording::default();
-    let mut row = String::new();
-    let mut written = Ok(());
-    let mut samples = 0u64;
-    let summary = run(scenario, |sample| {
-        row.clear();
-        csv_row(&scenario.model, sample, &mut row);
-        if written.is_ok() {
-            written = table.append(row.as_bytes());
-        }
-        for (i, course) in courses.iter_mut().enumerate().filter(|(i, _)| scenario.free[*i]) {
-            course.take(i, sample);
-        }
-        recording.take(scenario, sample);
-        samples += 1;
-        if samples.is_multiple_of(1024) {
+    let mut number = run.snapshot().samples;
+    let mut saved = (Instant::now(), number);
+    while !INTERRUPTED.load(Ordering::Relaxed) {
+        let Some(sample) = run.next_sample().map_err(failed)? else { break };
+        recording.take(number, &sample);
+        number += 1;
+        if number.is_multiple_of(256) {
             progress.set_position(sample.time as u64);
+            if saved.0.elapsed() > BETWEEN_SAVES && run.snapshot().samples > saved.1 {
+                save(scenario, &run, &recording, &folder)?;
+                saved = (Instant::now(), run.snapshot().samples);
+            }
         }
-    })
-    .map_err(|error| Fail::job("simulation", error))?;
+    }
     progress.finish_and_clear();
-    written?;
+    let summary = run.summary();
+    let json_text = write(scenario, &summary, &recording, &folder)?;
+    let partial = summary.reason == StopReason::Interrupted;
+    if partial {
+        save(scenario, &run, &recording, &folder)?;
+    } else {
+        folder.remove(SNAPSHOT)?;
+    }
+    print(&if json { json_text } else { report(scenario, &summary, &folder) })?;
+    match partial {
+        true => Err(Fail::Job(format!(
+            "interrupted at {:.2} of {} s: what is done is in {}; the same command with --resume goes on",
+            summary.end_time,
+            scenario.run.duration,
+            out.display()
+        ))),
+        false => Ok(()),
+    }
+}
 
-    let main = main_coordinate(scenario, &summary);
+/// All files but the snapshot; gives the text of `summary.json`.
+fn write(scenario: &Scenario, summary: &Summary, recording: &Recording, folder: &Folder) -> Result<String, Fail> {
+    let mut contents = vec![
+        ("trajectory.csv", tables::trajectory(scenario, recording).into_bytes()),
+        ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
+        ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
+        ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
+        ("report.html", report_of_run(scenario, recording, summary)?.into_bytes()),
+        ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
+    ];
+    if !scenario.supports.is_empty() {
+        contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
+    }
+    let names = if scenario.is_whole() {
+        ["postures.svg", "postures.png"]
+    } else {
+        ["torque-balance.svg", "torque-balance.png"]
+    };
+    let [first, second] = pictures(scenario, summary, recording)?;
+    for (names, figure) in [(names, first), (["time-line.svg", "time-line.png"], second)] {
+        contents.push((names[0], figure.svg().into_bytes()));
+        contents.push((names[1], figure.png().map_err(|error| Fail::job("PNG", error))?));
+    }
+    let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
+    let text = SummaryText::new(scenario, summary, files);
+    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("summary.json", error))? + "\n";
+    contents.push(("summary.json", json.clone().into_bytes()));
+    let pending = |(name, bytes): (&str, Vec<u8>)| -> Result<Pending, Fail> {
+        let mut file = folder.begin(name)?;
+        file.append(&bytes)?;
+        Ok(file)
+    };
+    folder.commit(contents.into_iter().map(pending).collect::<Result<_, _>>()?)?;
+    Ok(json)
+}
+
+/// The body before and after (one joint: its torques over angle), and the main coordinate over time.
+fn pictures(scenario: &Scenario, summary: &Summary, recording: &Recording) -> Result<[Figure; 2], Fail> {
+    let main = main_coordinate(scenario, summary);
     let coordinate = &scenario.model.coordinates()[main];
     let subtitle = story(scenario, &summary.coordinates[main]);
-    let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
-    let mut line = courses.swap_remove(main).finish();
+    let mut line = course(recording, &summary.reliefs, main);
     line.title = scenario.title.clone();
     line.subtitle.clone_from(&subtitle);
     line.coordinate.clone_from(&coordinate.name);
     line.critical_level = scenario.hysteresis.critical_level;
     line.recovery_level = scenario.hysteresis.recovery_level;
-
+    let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
+    if scenario.is_whole() {
+        let start = Posture::new(recording.row(0).posture.to_vec());
+        let views = views(&scenario.model, &start, &Posture::new(posture), &scenario.title, &subtitle)?;
+        return Ok([pose_views(&views), time_line(&line)]);
+    }
     let mut sweep = Sweep::new(scenario, main, &posture);
     let mut balance = sweep.balance(&scenario.title, &subtitle)?;
     balance.path = line.angle_deg.iter().copied().zip(line.active_nm.iter().copied()).collect();
@@ -95,26 +157,7 @@ fn carry_out(scenario: &Scenario, out: &Path, json: bool) -> Result<(), Fail> {
         balance.postures.push(sweep.sketch("start", start.0, SketchRole::Start)?);
         balance.postures.push(sweep.sketch("end", goal.0, SketchRole::Goal)?);
     }
-
-    let text = SummaryText::new(scenario, &summary, FILES.map(str::to_owned).to_vec());
-    let json_text = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("summary.json", error))? + "\n";
-    let png_failed = |error| Fail::job("PNG", error);
-    let (balance, line) = (torque_balance(&[balance]), time_line(&line));
-    let mut files = vec![table];
-    for (name, bytes) in [
-        ("torque-balance.svg", balance.svg().into_bytes()),
-        ("torque-balance.png", balance.png().map_err(png_failed)?),
-        ("time-line.svg", line.svg().into_bytes()),
-        ("time-line.png", line.png().map_err(png_failed)?),
-        ("report.html", report_of_run(scenario, &recording, &summary)?.into_bytes()),
-        ("summary.json", json_text.clone().into_bytes()),
-    ] {
-        let mut file = folder.begin(name)?;
-        file.append(&bytes)?;
-        files.push(file);
-    }
-    folder.commit(files)?;
-    print(&if json { json_text } else { report(scenario, &summary, &folder) })
+    Ok([torque_balance(&[balance]), time_line(&line)])
 }
 
 /// The coordinate worth a picture: the one most often relieved, else the first free one, else the first.
@@ -177,18 +220,33 @@ fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) -> String {
         ]);
     }
     let reason = match summary.reason {
-        contrapposto::simulation::StopReason::Settled => "settled",
-        contrapposto::simulation::StopReason::Duration => "ran its whole duration",
+        StopReason::Settled => "settled",
+        StopReason::Duration => "ran its whole duration",
+        StopReason::Interrupted => "interrupted",
     };
+    let picture = if scenario.is_whole() { "postures.svg" } else { "torque-balance.svg" };
+    let standing =
+        summary.standing.as_ref().map_or(String::new(), |standing| standing_text(scenario, summary, standing));
     format!(
-        "{}\n{table}\n{reason} after {:.2} s ({} samples)\nreport: {}\npictures: {}, {}\n",
+        "{}\n{table}\n{standing}{reason} after {:.2} s ({} samples)\npictures: {}, {}\n",
         scenario.title,
         summary.end_time,
         summary.samples,
-        folder.path("report.html").display(),
-        folder.path("torque-balance.svg").display(),
+        folder.path(picture).display(),
         folder.path("time-line.svg").display(),
     )
+}
+
+/// `calcn_r carries 85.0 %, calcn_l 15.0 %; effort 0.097 at the start, 0.059 at the end`.
+fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) -> String {
+    let segments = scenario.model.segments();
+    let share = |(support, contact): (&Support, &Contact)| {
+        format!("{} carries {:.1} %", segments[support.segment].name, 100.0 * contact.share)
+    };
+    let mut parts: Vec<String> = scenario.supports.iter().zip(&standing.contacts).map(share).collect();
+    let start = summary.effort_at_start.unwrap_or(standing.effort);
+    parts.push(format!("effort {start:.4} at the start, {:.4} at the end", standing.effort));
+    parts.join(", ") + "\n"
 }
 
 /// Simulated time on standard error; invisible when that is no terminal.

@@ -13,14 +13,34 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use support::{Run, contents, contrapposto, scenarios};
 
-/// What a run writes, in order of names.
-const FILES: [&str; 7] = [
+/// What a run of one joint writes, in order of names.
+const FILES: [&str; 11] = [
+    "decisions.csv",
+    "fatigue.sto",
+    "motion.mot",
     "report.html",
     "summary.json",
     "time-line.png",
     "time-line.svg",
     "torque-balance.png",
     "torque-balance.svg",
+    "torques.sto",
+    "trajectory.csv",
+];
+
+/// What a run of a body on its supports writes.
+const FILES_OF_A_BODY: [&str; 12] = [
+    "decisions.csv",
+    "fatigue.sto",
+    "ground_reaction.mot",
+    "motion.mot",
+    "postures.png",
+    "postures.svg",
+    "report.html",
+    "summary.json",
+    "time-line.png",
+    "time-line.svg",
+    "torques.sto",
     "trajectory.csv",
 ];
 
@@ -45,6 +65,22 @@ fn paths() -> Vec<PathBuf> {
 
 fn simulate(scenario: &Path, out: &Path, arguments: &[&str]) -> Run {
     contrapposto(["simulate"]).arg(scenario).arg("--out").arg(out).args(arguments).run()
+}
+
+/// The text of a scenario, bodies on their supports for ten seconds only.
+fn shortened(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).unwrap();
+    let Some((head, tail)) = text.split_once("duration_s").filter(|_| text.contains("[[support]]")) else {
+        return text;
+    };
+    let rest = tail.split_once('\n').map_or("", |(_, rest)| rest);
+    format!("{head}duration_s = 10\n{rest}")
+}
+
+/// As [`simulate`], of what is [`shortened`], on standard input.
+fn simulate_shortened(path: &Path, out: &Path) -> Run {
+    let call = contrapposto(["simulate", "-", "--json", "--out"]).arg(out).stdin(shortened(path));
+    call.folder(path.parent().unwrap()).run()
 }
 
 /// Runs a scenario text; gives the summary and the table.
@@ -161,18 +197,20 @@ fn assert_numbers(value: &Value, key: &str) {
 fn every_scenario_runs() {
     for path in paths() {
         let folder = tempfile::tempdir().unwrap();
-        let run = simulate(&path, folder.path(), &["--json"]);
+        let run = simulate_shortened(&path, folder.path());
         assert_eq!((run.code, run.stderr.as_str()), (0, ""), "{}", path.display());
         let files = contents(folder.path());
         let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, FILES, "{}", path.display());
-        assert_eq!(files[1].1, run.stdout.as_bytes(), "--json prints summary.json");
+        let expected = if names.contains(&"postures.svg") { &FILES_OF_A_BODY[..] } else { &FILES };
+        assert_eq!(names, expected, "{}", path.display());
+        let at = names.iter().position(|name| *name == "summary.json").unwrap();
+        assert_eq!(files[at].1, run.stdout.as_bytes(), "--json prints summary.json");
         let summary: Value = serde_json::from_str(&run.stdout).unwrap();
         assert_numbers(&summary, "");
         let mut named: Vec<&str> =
             summary["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
         named.sort_unstable();
-        assert_eq!(named, FILES);
+        assert_eq!(named, expected);
         assert_table(&Table::read(&folder.path().join("trajectory.csv")), &summary);
         for (name, bytes) in &files {
             match name.rsplit_once('.').unwrap().1 {
@@ -188,14 +226,14 @@ fn every_scenario_runs() {
 fn the_same_scenario_gives_the_same_bytes() {
     for path in paths() {
         let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
-        let runs = folders.each_ref().map(|folder| simulate(&path, folder.path(), &["--json"]).stdout);
-        assert_eq!(runs[0], runs[1]);
-        assert!(contents(folders[0].path()) == contents(folders[1].path()), "{}", path.display());
-        // Standard input is as good as a file, and old results are replaced.
-        let text = std::fs::read(&path).unwrap();
-        let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folders[1].path()).stdin(text).run();
-        assert_eq!((run.code, &run.stdout), (0, &runs[0]));
-        assert!(contents(folders[0].path()) == contents(folders[1].path()), "{}", path.display());
+        let first = simulate_shortened(&path, folders[0].path());
+        // A file is as good as standard input, and old results are replaced.
+        let file = folders[1].path().join("scenario.toml");
+        let out = tempfile::tempdir().unwrap();
+        std::fs::write(&file, shortened(&path)).unwrap();
+        let seconds = ["first", "again"].map(|_| simulate(&file, out.path(), &["--json"]));
+        assert!(seconds.iter().all(|run| (run.code, &run.stdout) == (0, &first.stdout)), "{}", path.display());
+        assert!(contents(folders[0].path()) == contents(out.path()), "{}", path.display());
     }
 }
 
@@ -521,6 +559,78 @@ fn no_colour_and_no_progress_where_none_is_wanted() {
     let plain = on_terminal("env TERM=xterm-256color NO_COLOR=1").unwrap();
     assert!(coloured.contains("\u{1b}[") && coloured.contains("stratgy"), "{coloured:?}");
     assert!(!plain.contains("\u{1b}[3") && plain.contains("stratgy"), "{plain:?}");
+}
+
+/// Ctrl-C ends a run with whole files marked as partial; going on gives the bytes of an unbroken run.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = folder.path().join("stand.toml");
+    let text = std::fs::read_to_string(scenarios().join("stand-relaxed.toml")).unwrap();
+    std::fs::write(&scenario, text.replace("duration_s = 120", "duration_s = 45")).unwrap();
+    let (unbroken, out) = (folder.path().join("unbroken"), folder.path().join("out"));
+    let full = simulate(&scenario, &unbroken, &[]);
+    assert_eq!(full.code, 0, "{}", full.stderr);
+    let mut interrupted = 0;
+    for share in [0.2, 0.9] {
+        let resume = if interrupted == 0 { vec![] } else { vec!["--resume"] };
+        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).args(resume).spawn();
+        std::thread::sleep(Duration::from_secs_f64(share * full.seconds));
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let output = child.wait_with_output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        if output.status.success() {
+            continue; // a quick machine was done before
+        }
+        interrupted += 1;
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(error.contains("interrupted at") && error.contains("--resume"), "{error}");
+        let summary: Value = serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
+        assert_eq!((&summary["partial"], &summary["stopped"]), (&Value::from(true), &Value::from("interrupted")));
+        assert_numbers(&summary, "");
+        assert!(out.join("snapshot.json").is_file());
+    }
+    println!("interrupted {interrupted} times");
+    assert!(interrupted > 0);
+    // Not with another scenario, and not with a torn snapshot.
+    let other = folder.path().join("other.toml");
+    std::fs::write(&other, text.replace("duration_s = 120", "duration_s = 46")).unwrap();
+    let snapshot = std::fs::read(out.join("snapshot.json")).unwrap();
+    let refused = simulate(&other, &out, &["--resume"]);
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("another scenario"), "{}", refused.stderr);
+    std::fs::write(out.join("snapshot.json"), &snapshot[..snapshot.len() / 2]).unwrap();
+    assert_eq!(simulate(&scenario, &out, &["--resume"]).code, 2);
+    std::fs::write(out.join("snapshot.json"), &snapshot).unwrap();
+    assert_eq!(simulate(&scenario, &out, &["--resume"]).code, 0);
+    assert!(contents(&out) == contents(&unbroken), "a resumed run differs from an unbroken one");
+}
+
+/// Ground reaction and motion of a run, given to `torques`, give back its torques and leave nothing at the root.
+#[test]
+fn ground_reaction_and_motion_give_back_the_torques() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = simulate_shortened(&scenarios().join("stand-relaxed.toml"), folder.path());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let (motion, reaction) = (folder.path().join("motion.mot"), folder.path().join("ground_reaction.mot"));
+    let call = contrapposto(["torques", "adult:female,1.65m,60kg"]).arg(&motion).arg("--grf").arg(&reaction);
+    let run = call.args(["--grf-on", "calcn_r,calcn_l", "--json"]).run();
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let frames: Value = serde_json::from_str(&run.stdout).unwrap();
+    let table = Table::read(&folder.path().join("trajectory.csv"));
+    let frames = frames.as_array().unwrap();
+    assert_eq!(frames.len(), table.rows.len());
+    let mut worst = 0.0_f64;
+    for (row, frame) in frames.iter().enumerate().step_by(20) {
+        for (name, found) in frame["coordinates"].as_object().unwrap() {
+            let unit = if columns(name)[1] == "external_n" { "n" } else { "nm" };
+            let expected = table.numbers(&format!("{name}.external_{unit}"))[row];
+            worst = worst.max((found["external"].as_f64().unwrap() - expected).abs());
+        }
+    }
+    println!("{} frames, worst difference {worst:e} N m", frames.len());
+    assert!(worst < 1e-9, "{worst}");
 }
 
 /// Killed at any moment, a named file is whole: the old one or the new one.

@@ -13,6 +13,7 @@ pub mod urdf;
 pub mod write;
 pub mod xml;
 
+mod decisions_csv;
 mod input_error;
 mod minimize;
 mod overlay;
@@ -21,6 +22,7 @@ mod scenario;
 mod summary;
 mod trajectory_csv;
 
+pub use decisions_csv::{decisions_csv, relief_sentence};
 pub use input_error::{InputError, nearest, utf8};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
 pub use overlay::{Overlaid, OverlayChange, overlay};
@@ -29,4 +31,4 @@ pub use scenario::{
     MOST_BYTES, ModelFile, PoseScenario, ScenarioText, read_pose, read_scenario, scenario_model, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
-pub use trajectory_csv::{csv_header, csv_row};
+pub use trajectory_csv::{TableRow, csv_header, csv_row};

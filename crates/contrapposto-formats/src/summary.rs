@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::{CoordinateKind, Side};
-use contrapposto::simulation::{Scenario, Summary};
+use contrapposto::simulation::{Contact, Scenario, Standing, StopReason, Summary};
 use serde::Serialize;
 
 /// The whole file.
@@ -14,18 +15,55 @@ pub struct SummaryText {
     pub title: String,
     /// Name of the body.
     pub model: String,
-    /// `duration` or `settled`.
+    /// `duration`, `settled` or `interrupted`.
     pub stopped: &'static str,
+    /// It was interrupted: what is here goes up to `end_s` only.
+    pub partial: bool,
     /// Time of the last sample, s.
     pub end_s: f64,
     /// Number of samples.
     pub samples: u64,
+    /// How a body with supports or tasks stood at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standing: Option<StandingText>,
+    /// How many reliefs there were; `decisions.csv` lists the first ten thousand.
+    pub reliefs: u64,
     /// The order of coordinates in tables.
     pub coordinate_order: Vec<String>,
     /// What happened to each.
     pub coordinates: BTreeMap<String, CoordinateText>,
     /// Files beside this one.
     pub files: Vec<String>,
+}
+
+/// How a body stood.
+#[derive(Clone, Debug, Serialize)]
+pub struct StandingText {
+    /// `sum (active torque / strength)^2` in the first sample.
+    pub effort_at_start: f64,
+    /// In the last one.
+    pub effort: f64,
+    /// Centre of mass, ground, m.
+    pub center_of_mass_m: [f64; 3],
+    /// What carried it, in the order of the scenario.
+    pub supports: Vec<SupportText>,
+    /// Length of the error of each task, in the order of the scenario, in its units.
+    pub task_errors: Vec<f64>,
+    /// How far supports are off their places, m and rad together.
+    pub slip: f64,
+}
+
+/// What a support carried.
+#[derive(Clone, Debug, Serialize)]
+pub struct SupportText {
+    /// Segment.
+    pub segment: String,
+    /// Force on the body, ground, N.
+    pub force_n: [f64; 3],
+    /// Its normal part as a share of body weight.
+    pub share: f64,
+    /// Where it acts, ground, m.
+    pub center_of_pressure_m: Option<[f64; 3]>,
 }
 
 /// One coordinate.
@@ -100,11 +138,34 @@ impl SummaryText {
             title: scenario.title.clone(),
             model: model.name().to_owned(),
             stopped: summary.reason.word(),
+            partial: summary.reason == StopReason::Interrupted,
             end_s: summary.end_time,
             samples: summary.samples,
+            standing: summary.standing.as_ref().map(|standing| StandingText::new(scenario, summary, standing)),
+            reliefs: summary.reliefs.count,
             coordinate_order: names.collect(),
             coordinates: coordinates.collect(),
             files,
+        }
+    }
+}
+
+impl StandingText {
+    fn new(scenario: &Scenario, summary: &Summary, standing: &Standing) -> Self {
+        let segments = scenario.model.segments();
+        let support = |(support, contact): (&Support, &Contact)| SupportText {
+            segment: segments[support.segment].name.clone(),
+            force_n: contact.force.into(),
+            share: contact.share,
+            center_of_pressure_m: contact.center_of_pressure.map(Into::into),
+        };
+        Self {
+            effort_at_start: summary.effort_at_start.unwrap_or(standing.effort),
+            effort: standing.effort,
+            center_of_mass_m: standing.center_of_mass.into(),
+            supports: scenario.supports.iter().zip(&standing.contacts).map(support).collect(),
+            task_errors: standing.errors.clone(),
+            slip: standing.slip,
         }
     }
 }

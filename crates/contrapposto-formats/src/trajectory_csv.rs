@@ -2,8 +2,25 @@
 
 use std::fmt::Write;
 
+use contrapposto::hybrid::Case;
 use contrapposto::model::{CoordinateKind, Model};
-use contrapposto::simulation::Sample;
+
+/// What stands in a row, one entry a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct TableRow<'a> {
+    /// Time, s.
+    pub time: f64,
+    /// Value of every coordinate, rad or m.
+    pub posture: &'a [f64],
+    /// External torque, N m.
+    pub external: &'a [f64],
+    /// Passive torque, N m.
+    pub passive: &'a [f64],
+    /// Fatigue of the positive and negative group, 0 to 1.
+    pub fatigue: &'a [[f64; 2]],
+    /// Case and goal of those that asked for relief.
+    pub asked: &'a [Option<(Case, Option<f64>)>],
+}
 
 /// Header line, without line end: `time`, then `COORDINATE.angle_deg` and so on.
 pub fn csv_header(model: &Model) -> String {
@@ -26,25 +43,24 @@ pub fn csv_header(model: &Model) -> String {
 }
 
 /// Appends one row, with its line end, to `line`. Numbers are written in their shortest form that reads back the same.
-pub fn csv_row(model: &Model, sample: &Sample, line: &mut String) {
-    let _ = write!(line, "{}", sample.time);
+pub fn csv_row(model: &Model, row: &TableRow, line: &mut String) {
+    let _ = write!(line, "{}", row.time);
     for (i, coordinate) in model.coordinates().iter().enumerate() {
         let shown = |x: f64| if coordinate.kind == CoordinateKind::Rotation { x.to_degrees() } else { x };
-        let [positive, negative] = sample.fatigue[i];
+        let [positive, negative] = row.fatigue[i];
         let _ = write!(
             line,
             ",{},{},{},{},{positive},{negative},",
-            shown(sample.posture[i]),
-            sample.external[i],
-            sample.passive[i],
-            sample.active[i],
+            shown(row.posture[i]),
+            row.external[i],
+            row.passive[i],
+            -(row.passive[i] + row.external[i]),
         );
-        let decision = sample.decisions[i].as_ref();
-        if let Some(decision) = decision {
-            line.push_str(decision.case.number());
+        if let Some((case, _)) = row.asked[i] {
+            line.push_str(case.number());
         }
         line.push(',');
-        if let Some(goal) = decision.and_then(|decision| decision.goal) {
+        if let Some(goal) = row.asked[i].and_then(|(_, goal)| goal) {
             let _ = write!(line, "{}", shown(goal));
         }
     }

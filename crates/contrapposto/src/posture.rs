@@ -1,11 +1,12 @@
 //! Where does every coordinate stand?
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::model::{LARGEST, Model};
 
 /// The values of all coordinates of a model, in its order: rad, m, or quaternion components.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Posture {
     values: Vec<f64>,
 }

@@ -479,6 +479,98 @@ fn damping_is_the_same_as_rows_that_pull_to_zero() {
     tally.close();
 }
 
+/// Damped levels between others, with inequalities, bounds and often a rest posture at the end: every level is the best that
+/// those above leave it (conditions in 32 digits, of the problem that ends with it), those above feel nothing of it, and it
+/// does not matter where the solver starts. Half have so little damping that signs and kept residuals are rounding: those must
+/// come to an end, with multipliers that add up (to 1e-10).
+#[test]
+fn damped_levels_are_the_best_from_everywhere() {
+    let seed = seed() ^ 8;
+    let tally = all_problems(5000, |index, tally| {
+        let rng = &mut random(seed, index);
+        let wish = Wish {
+            conflicting: index & 1 == 0,
+            scaling: Scaling::ByLevel,
+            bounds: index & 2 == 0,
+            inequalities: true,
+            largest: 40,
+        };
+        let (mut draw, _) = draw(rng, wish);
+        if index & 12 != 0 {
+            draw.levels.push(rest(rng, draw.n));
+        }
+        let little = index & 16 != 0;
+        let mut problem = draw.problem();
+        for (k, rows) in draw.levels.iter().enumerate() {
+            let damped = rng.random_bool(0.5) && (k + 1 < draw.levels.len() || index & 12 == 0);
+            let (from, to) = if little { (1e-9, 1e-2) } else { (1e-2, 1.0) };
+            problem.levels[k].damping =
+                if damped { rows[0].scale * generator::log_uniform(rng, from, to) } else { 0.0 };
+        }
+        let mut moved = problem.clone();
+        for level in &mut moved.levels {
+            let shift = 0.1 * normal(rng) * largest(level.matrix.iter().copied());
+            level.lower.iter_mut().chain(&mut level.upper).for_each(|side| *side += shift);
+        }
+        let about = |what: String| Err(format!("{}: {what}", draw.describe()));
+        let mut warm = Solver::new();
+        let mut known: Vec<Vec<f64>> = vec![];
+        for count in 1..=problem.levels.len() {
+            let mut part = problem.clone();
+            part.levels.truncate(count);
+            let mut other = moved.clone();
+            other.levels.truncate(count);
+            for start in 0..4 {
+                if start != 3 {
+                    warm.solve(&other).map_err(|e| e.to_string())?;
+                }
+                let status = match start {
+                    0 => warm.solve(&part),
+                    1 => warm.solve_next(&part),
+                    _ => warm.solve_again(&part),
+                };
+                if status != Ok(Status::Solved) {
+                    return about(format!("{count} levels, start {start}: {status:?}"));
+                }
+                let answer = Answer::of(&warm, count);
+                let seen = misses(&part, &draw.scales()[..count], &answer);
+                let fine = if little { seen.bounds == 0.0 && seen.stationarity < 1e-10 } else { seen.are_rounding() };
+                if !fine {
+                    return about(format!("{count} levels, start {start}: {seen:?}"));
+                }
+                if little {
+                    continue;
+                }
+                tally.misses.largest(&seen);
+                let residuals = unscaled(&draw, &answer.residuals);
+                if start == 0 && known.len() < count {
+                    known.push(residuals[count - 1].clone());
+                }
+                for (k, (residuals, known)) in residuals.iter().zip(&known).enumerate() {
+                    let worst = difference(residuals, known);
+                    if worst > SAME {
+                        return about(format!("level {k} of {count}, start {start}: differs by {worst:.1e}"));
+                    }
+                    tally.worst = tally.worst.max(worst);
+                }
+            }
+        }
+        Ok(())
+    });
+    tally.close();
+}
+
+/// Most unknowns are asked for values, all with the same weight.
+fn rest(rng: &mut rand_pcg::Pcg64, n: usize) -> Vec<generator::Row> {
+    let unknowns = (0..n).filter(|_| rng.random_range(0..8) > 0).collect::<Vec<_>>();
+    let asked = unknowns.into_iter().map(|i| {
+        let side = normal(rng);
+        let a = (0..n).map(|j| f64::from(u8::from(i == j))).collect();
+        generator::Row { a, lower: side, upper: side, scale: 1.0 }
+    });
+    asked.collect()
+}
+
 /// A planar arm of three links, its wrist to keep its direction, its end to reach a point it cannot: straight, the arm has
 /// no direction towards it. Undamped steps grow without limit there, damped ones do not; the wrist keeps its direction.
 #[test]

@@ -16,36 +16,60 @@ const SHORT: f64 = 1e-9;
 
 type Lines = Vec<Vec<Vector3<f64>>>;
 
+/// What is drawn beside the body.
+#[derive(Default)]
+struct Marks {
+    targets: Vec<Vector3<f64>>,
+    gazes: Vec<[Vector3<f64>; 2]>,
+}
+
 /// The picture of a solved pose.
-pub(crate) fn views(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<PoseViews, Fail> {
+pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<PoseViews, Fail> {
     let model = &scenario.model;
     let mut kinematics = Kinematics::new(model);
-    let mut sticks_at = |posture: &Posture| -> Result<Lines, Fail> {
-        kinematics.update(model, posture).map_err(|error| Fail::job("picture", error))?;
-        Ok(sticks(model, &kinematics))
-    };
-    let (start, end) = (sticks_at(&scenario.start)?, sticks_at(&pose.posture)?);
+    kinematics.update(model, &pose.posture).map_err(|error| Fail::job("picture", error))?;
     let center = kinematics.center_of_mass(model);
-    let mut targets = vec![];
-    let mut gazes = vec![];
+    let mut marks = Marks::default();
     for task in scenario.goals.iter().filter(|goal| !goal.hard).flat_map(|goal| &goal.tasks) {
         match task {
-            Task::Point(task) => {
-                targets.push(unasked(task.axes, task.target, || kinematics.station(model, task.segment, task.point)))
-            }
-            Task::Placement(task) => targets.push(task.target.translation.vector),
+            Task::Point(task) => marks
+                .targets
+                .push(unasked(task.axes, task.target, || kinematics.station(model, task.segment, task.point))),
+            Task::Placement(task) => marks.targets.push(task.target.translation.vector),
             Task::LookAt(task) => {
-                targets.push(task.target);
-                gazes.push([kinematics.station(model, task.segment, task.eye), task.target]);
+                marks.targets.push(task.target);
+                marks.gazes.push([kinematics.station(model, task.segment, task.eye), task.target]);
             }
             Task::CenterOfMass(task) => {
                 if let Goal::At { target, axes } = &task.goal {
-                    targets.push(unasked(*axes, *target, || center.unwrap_or(*target)));
+                    marks.targets.push(unasked(*axes, *target, || center.unwrap_or(*target)));
                 }
             }
             _ => {}
         }
     }
+    picture(model, [&scenario.start, &pose.posture], &marks, [&scenario.title, subtitle])
+}
+
+/// A body before and after, from the front and from the side.
+pub(crate) fn views(
+    model: &Model,
+    start: &Posture,
+    end: &Posture,
+    title: &str,
+    subtitle: &str,
+) -> Result<PoseViews, Fail> {
+    picture(model, [start, end], &Marks::default(), [title, subtitle])
+}
+
+fn picture(model: &Model, postures: [&Posture; 2], marks: &Marks, texts: [&str; 2]) -> Result<PoseViews, Fail> {
+    let mut kinematics = Kinematics::new(model);
+    let mut sticks_at = |posture: &Posture| -> Result<Lines, Fail> {
+        kinematics.update(model, posture).map_err(|error| Fail::job("picture", error))?;
+        Ok(sticks(model, &kinematics))
+    };
+    let (start, end) = (sticks_at(postures[0])?, sticks_at(postures[1])?);
+    let center = kinematics.center_of_mass(model);
     let [right, ahead, up] = directions(model);
     let side = |label: &str, across: Vector3<f64>| {
         let view = |p: &Vector3<f64>| [across.dot(p), up.dot(p)];
@@ -54,14 +78,14 @@ pub(crate) fn views(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Res
             label: label.to_owned(),
             start: lines(&start),
             end: lines(&end),
-            targets: targets.iter().map(view).collect(),
-            gazes: gazes.iter().map(|gaze| [view(&gaze[0]), view(&gaze[1])]).collect(),
+            targets: marks.targets.iter().map(view).collect(),
+            gazes: marks.gazes.iter().map(|gaze| [view(&gaze[0]), view(&gaze[1])]).collect(),
             center_of_mass: center.as_ref().map(view),
         }
     };
     Ok(PoseViews {
-        title: scenario.title.clone(),
-        subtitle: subtitle.to_owned(),
+        title: texts[0].to_owned(),
+        subtitle: texts[1].to_owned(),
         // Face to face with the body its right hand is on the left.
         views: vec![side("from the front", -right), side("from the right", ahead)],
     })
@@ -114,17 +138,18 @@ fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
     lines
 }
 
-/// A line from the first point to the farthest one, and from that line the shortest ones to all others: a spine and shoulders.
+/// A line from the first point to the one for which the others lie nearest to that line, and the shortest ones from it to them:
+/// a spine and shoulders.
 fn joined(points: &[Vector3<f64>]) -> Lines {
     let (first, rest) = (points[0], &points[1..]);
-    let far = |p: &&Vector3<f64>| (*p - first).norm();
-    let Some(end) = rest.iter().max_by(|p, q| far(p).total_cmp(&far(q))) else { return vec![] };
-    let spine = end - first;
-    let from = |point: &Vector3<f64>| {
+    let from = |end: &Vector3<f64>, point: &Vector3<f64>| {
+        let spine = end - first;
         let share = if spine.norm() > SHORT { (point - first).dot(&spine) / spine.norm_squared() } else { 0.0 };
         first + share.clamp(0.0, 1.0) * spine
     };
-    let others = rest.iter().map(|point| vec![from(point), *point]);
+    let apart = |end: &Vector3<f64>| -> f64 { rest.iter().map(|point| (point - from(end, point)).norm()).sum() };
+    let Some(end) = rest.iter().min_by(|p, q| apart(p).total_cmp(&apart(q))) else { return vec![] };
+    let others = rest.iter().map(|point| vec![from(end, point), *point]);
     std::iter::once(vec![first, *end]).chain(others).collect()
 }
 

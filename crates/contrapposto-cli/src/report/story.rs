@@ -6,7 +6,7 @@ use contrapposto::posture::Posture;
 use contrapposto::simulation::{Scenario, StopReason, Summary};
 use contrapposto_report::{Figure, Report};
 
-use super::recording::{Frame, Recording};
+use super::film::{Film, Frame};
 use super::words::{percent, plain, sentence, tired, value, working};
 use crate::pose::directions;
 
@@ -16,15 +16,9 @@ const LEVEL: f64 = 4.0;
 const STAYED: f64 = 0.5;
 
 /// Fills in headline, reasons and figures.
-pub(crate) fn tell(
-    scenario: &Scenario,
-    recording: &Recording,
-    summary: &Summary,
-    shown: &[usize],
-    report: &mut Report,
-) {
-    let frames = recording.frames();
-    let (Some(first), Some(last), Some(&main)) = (frames.first(), frames.last(), shown.get(report.main)) else {
+pub(crate) fn tell(scenario: &Scenario, film: &Film, summary: &Summary, shown: &[usize], report: &mut Report) {
+    let (Some(first), Some(last), Some(&main)) = (film.frames.first(), film.frames.last(), shown.get(report.main))
+    else {
         return;
     };
     let story = Story { scenario, first, last, main };
@@ -35,7 +29,7 @@ pub(crate) fn tell(
         None => story.of_joint(),
     };
     report.reasons = story.reasons(standing.is_some());
-    report.reasons.push(story.end(recording, summary));
+    report.reasons.push(story.end(film, summary));
     report.figures = story.figures(standing);
 }
 
@@ -115,15 +109,16 @@ impl Story<'_> {
         reasons
     }
 
-    fn end(&self, recording: &Recording, summary: &Summary) -> String {
+    fn end(&self, film: &Film, summary: &Summary) -> String {
         let how = match summary.reason {
             StopReason::Settled => "nothing moved any more",
             StopReason::Duration => "its whole duration",
+            StopReason::Interrupted => "it was interrupted",
         };
-        let told = recording.events().len() as u64;
-        let more = match recording.happened() - told {
+        let told = film.events.len() as u64;
+        let more = match film.happened - told {
             0 => String::new(),
-            more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", recording.happened()),
+            more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", film.happened),
         };
         format!("The run ended after {:.0} s: {how}.{more}", summary.end_time)
     }

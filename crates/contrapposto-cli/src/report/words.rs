@@ -4,7 +4,7 @@ use contrapposto::hybrid::{Carrier, Decision, Equilibrium, Outcome};
 use contrapposto::model::Side;
 use contrapposto::simulation::Scenario;
 
-use super::recording::{Event, Frame, What};
+use super::film::{Event, Frame, What};
 use super::visible;
 
 /// `hip_adduction_r` is `right hip adduction`, `calcn_l` is `left foot`.
@@ -89,8 +89,11 @@ pub(crate) fn decision(scenario: &Scenario, event: &Event, frame: &Frame) -> Str
             let goal = decision.goal.map(|goal| value(scenario, i, goal)).unwrap_or_default();
             format!("{name}: {tired}. {} (case {})", answer(decision, &from, &goal), decision.case)
         }
-        What::Blocked => format!("{name}: {tired}, but something more important holds it where it is."),
-        What::GivenUp => format!("{name}: {tired}, but relief made it no better so often that it waits."),
+        What::Waits => {
+            format!(
+                "{name}: {tired}, but something more important holds it, or relief cost more than it gave: it waits."
+            )
+        }
         What::Recovered => format!("{name}: its muscles are rested; it needs no relief any more."),
     }
 }

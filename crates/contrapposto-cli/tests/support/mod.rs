@@ -48,6 +48,12 @@ impl Call {
         self
     }
 
+    /// Runs in this folder.
+    pub fn folder(mut self, folder: &Path) -> Self {
+        self.command.current_dir(folder);
+        self
+    }
+
     pub fn stdin(mut self, input: impl AsRef<[u8]>) -> Self {
         self.input = Some(input.as_ref().to_owned());
         self

@@ -59,6 +59,9 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText, model: Option<Model>) 
         }
         start_fatigue[index] = [start.positive, start.negative];
     }
+    // A joint on its own as in the paper; a whole body must be able to follow.
+    let (max_step_deg, torque_tolerance) =
+        if supports.is_empty() && tasks.is_empty() { (2.0, 0.05) } else { (0.5, 0.5) };
     let scenario = Scenario {
         title: text.title.clone(),
         model,
@@ -75,8 +78,8 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText, model: Option<Model>) 
         },
         relief: ReliefSettings {
             step_gain: text.relief.step_gain,
-            max_step: text.relief.max_step_deg.to_radians(),
-            torque_tolerance: text.relief.torque_tolerance_nm,
+            max_step: text.relief.max_step_deg.unwrap_or(max_step_deg).to_radians(),
+            torque_tolerance: text.relief.torque_tolerance_nm.unwrap_or(torque_tolerance),
             tables: match text.relief.tables {
                 TablesText::Total => Tables::Total,
                 TablesText::Literal => Tables::Literal,
@@ -254,7 +257,7 @@ fn told(error: &ScenarioError, text: &ScenarioText, run: &RunText) -> String {
             format!("{duration} s in steps of {step} s are {} steps; ten million at most", shown(*value))
         }
         ("greatest step (rad)", Some(key)) => {
-            format!("{key} is {}; it must be {accepted}", shown(text.relief.max_step_deg))
+            format!("{key} is {}; it must be {accepted}", shown(text.relief.max_step_deg.unwrap_or(value.to_degrees())))
         }
         (_, Some(key)) => format!("{key} is {}; it must be {accepted}", shown(*value)),
         _ => error.to_string(),

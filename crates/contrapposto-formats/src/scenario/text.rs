@@ -304,17 +304,17 @@ pub enum StrategyKindText {
 pub struct ReliefText {
     /// Share of the way to the goal in one step (beta), above 0, below 1.
     pub step_gain: f64,
-    /// Greatest step, deg.
-    pub max_step_deg: f64,
-    /// Active torque that counts as none (eps), N m.
-    pub torque_tolerance_nm: f64,
+    /// Greatest step, deg; 2 when left out, half a degree for a body with supports or tasks.
+    pub max_step_deg: Option<f64>,
+    /// Active torque that counts as none (eps), N m; 0.05 when left out, 0.5 for a body with supports or tasks.
+    pub torque_tolerance_nm: Option<f64>,
     /// `total`, or `literal` for the paper's tables as printed.
     pub tables: TablesText,
 }
 
 impl Default for ReliefText {
     fn default() -> Self {
-        Self { step_gain: 0.3, max_step_deg: 2.0, torque_tolerance_nm: 0.05, tables: TablesText::Total }
+        Self { step_gain: 0.3, max_step_deg: None, torque_tolerance_nm: None, tables: TablesText::Total }
     }
 }
 

@@ -1,7 +1,9 @@
 //! Which side of a plane must the posture stay on? `a^T theta <= b` (Eq. 4).
 
+use serde::{Deserialize, Serialize};
+
 /// A hard linear inequality `normal . posture <= offset` on the coordinates, normal of unit length.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HalfSpace {
     /// `a`, one entry a coordinate (Eq. 5).
     pub normal: Vec<f64>,

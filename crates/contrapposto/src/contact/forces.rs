@@ -118,6 +118,13 @@ impl ContactForces {
         Ok(forces)
     }
 
+    /// Forgets the forces it found last, with which it begins the next time.
+    pub fn forget(&mut self) {
+        self.solver.forget();
+        self.sides.fill(Side::Positive);
+        self.forces.fill(0.0);
+    }
+
     /// Finds the forces in the posture that `kinematics` holds. `external` and `passive` are torques of every rate without
     /// contact forces, followers folded into their leaders, N m. Does not allocate once it has solved.
     pub fn update(&mut self, model: &Model, kinematics: &Kinematics, external: &[f64], passive: &[f64]) -> Balance {

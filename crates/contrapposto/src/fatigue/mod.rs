@@ -3,6 +3,8 @@
 //! Two laws, one scale: fatigue is 0 rested and 1 when the present load can no longer be held, so thresholds mean the same
 //! for both. Load is relative: |active torque| over strength at the present angle. This module knows nothing of posture.
 
+use serde::{Deserialize, Serialize};
+
 mod endurance;
 mod hysteresis;
 mod three_compartment;
@@ -24,7 +26,7 @@ pub enum FatigueLaw {
 }
 
 /// How tired a group is now. Depends on the history of its load; filled by [`FatigueLaw::advance`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FatigueState {
     /// State of 3CC-r.
     Compartments(Compartments),

@@ -7,6 +7,7 @@
 //! Older codes use `r R` whenever `MA >= TL`, which speeds recovery up during a constant hold; we do not.
 
 use super::REST_LOAD;
+use serde::{Deserialize, Serialize};
 
 /// Rate of development and relaxation `LD = LR`, 1/s (the published value for both).
 const DRIVE: f64 = 10.0;
@@ -29,7 +30,7 @@ pub struct ThreeCompartment {
 }
 
 /// Shares of the group; they add up to one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compartments {
     /// `MA`, carrying load.
     pub active: f64,

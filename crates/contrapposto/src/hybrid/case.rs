@@ -1,9 +1,10 @@
 //! What does a decision say? Cases, outcomes and the kind of balance at the goal.
 
 use crate::passive::SlopeAngles;
+use serde::{Deserialize, Serialize};
 
 /// Which solution is sought (Rodriguez & Boulic 2007, section 2.1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Strategy {
     /// Mid-range, where muscles work well: a reactive posture.
     Active,
@@ -12,7 +13,7 @@ pub enum Strategy {
 }
 
 /// The ten cases of Table 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Case {
     /// None or one slope, torque within tolerance: stay.
     C11,
@@ -65,7 +66,7 @@ impl std::fmt::Display for Case {
 }
 
 /// What becomes of the request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Outcome {
     /// The present angle is the goal.
     Stay,
@@ -93,7 +94,7 @@ impl Outcome {
 }
 
 /// Who brings a stable balance back when it is disturbed: the larger of `-d tau_p` and `-d tau_e`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Carrier {
     /// Passive tissue.
     Ligaments,
@@ -103,7 +104,7 @@ pub enum Carrier {
 
 /// What kind of balance the goal is, if it is one. With muscles off the net torque is `-tau_a`, so a balance is stable
 /// when `d tau_a / d theta > 0`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Equilibrium {
     /// It returns by itself.
     Stable(Carrier),
@@ -112,7 +113,7 @@ pub enum Equilibrium {
 }
 
 /// What Tables 1 and 2 answer.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     /// The case of Table 1 that applied. Depends on the problem only.
     pub case: Case,

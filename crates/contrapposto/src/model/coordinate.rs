@@ -3,6 +3,7 @@
 use crate::fatigue::FatigueLaw;
 use crate::passive::{PassiveCurve, PassiveLaw};
 use crate::strength::Strength;
+use serde::{Deserialize, Serialize};
 
 /// What the number means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +17,7 @@ pub enum CoordinateKind {
 }
 
 /// The two senses of a coordinate: the sign of the active torque that the group gives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Side {
     /// Pulls toward larger values.
     Positive,

@@ -4,6 +4,8 @@
 //! at which the slope has a given value, inside a closed range. One file per form, named after its author. Sign: torque
 //! acts in the direction of increasing angle, so a physical curve falls (Rodriguez & Boulic 2007, section 2.2).
 
+use serde::{Deserialize, Serialize};
+
 mod coordinate_limit_force;
 mod exponentials;
 mod law;
@@ -72,7 +74,7 @@ pub enum PassiveError {
 
 /// The angles on both sides of the flattest zone at which the slope has a given value (`theta_smin`, `theta_smax` of the
 /// paper). `None`: not inside the closed range.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct SlopeAngles {
     /// At or below the flattest zone, rad.
     pub lower: Option<f64>,

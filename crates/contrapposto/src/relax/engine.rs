@@ -306,7 +306,11 @@ impl<'a> Engine<'a> {
         self.multipliers.clear();
         self.unreached.clear();
         self.reach = self.options.max_step;
+        *self.curvature.shift() = 0.0;
+        self.seen = false;
         self.solver.forget();
+        self.contact.forget();
+        self.probe.forget();
     }
 
     /// Steps until nothing moves or nothing is gained.

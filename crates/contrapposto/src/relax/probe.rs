@@ -52,6 +52,12 @@ impl Probe {
         }
     }
 
+    /// Forgets what was active.
+    pub(super) fn forget(&mut self) {
+        self.solver.forget();
+        self.contact.forget();
+    }
+
     /// `d_l = P e_l / (e_l^T P e_l)`, with `P` the projection on what level 0 leaves free, is the least motion with
     /// `e_l . d = 1`: one lexicographic problem. The slope is a central difference along it, of external torque and of what the
     /// joint's neighbours do to its passive torque.

@@ -139,6 +139,9 @@ pub enum ScenarioError {
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
     Relax(#[from] RelaxError),
+    /// A snapshot is of another body or run.
+    #[error("the snapshot does not fit this scenario")]
+    Snapshot,
     /// A coordinate starts outside its range.
     #[error("`{coordinate}` starts at {value}, outside its range {}..{} (rad or m)", range.0, range.1)]
     OutsideRange {

@@ -1,155 +1,42 @@
 //! What happens in one time step?
 
-use nalgebra::Vector3;
-
+use super::sample::{Contact, Relief, Sample, Standing};
+use super::state::State;
 use super::whole::Whole;
-use super::{Scenario, ScenarioError, Tables};
+use super::{Event, Scenario, ScenarioError, Tables};
 use crate::constraint::{HalfSpace, relief_step};
 use crate::contact::Balance;
-use crate::fatigue::FatigueState;
-use crate::hybrid::{Decision, Outcome, Problem, Strategy, minimise, minimise_literal};
+use crate::hybrid::{Problem, Strategy, minimise, minimise_literal};
 use crate::kinematics::Kinematics;
 use crate::model::Side;
-use crate::posture::Posture;
-use crate::statics::{ExternalTorque, Load};
+use crate::statics::{ExternalTorque, Load, PassiveTorque};
 
 /// Motion below this size, rad or m, counts as none.
 const SETTLED: f64 = 1e-6;
-
-/// One instant. Torques and decisions belong to the posture shown, which is the one before the step's motion.
-#[derive(Debug)]
-pub struct Sample<'a> {
-    /// Time, s.
-    pub time: f64,
-    /// Value of every coordinate, rad or m.
-    pub posture: &'a [f64],
-    /// External torque of every coordinate, N m (N for slides). Depends on posture and loads.
-    pub external: &'a [f64],
-    /// Passive torque of every coordinate. Depends on posture.
-    pub passive: &'a [f64],
-    /// Active torque, `-(passive + external)` (Eq. 1).
-    pub active: &'a [f64],
-    /// |Active torque| over the strength of the group that works, of every coordinate; 0 where strength is not known.
-    pub load: &'a [f64],
-    /// Fatigue of the positive and negative group of every coordinate, 0..=1. Depends on the load so far.
-    pub fatigue: &'a [[f64; 2]],
-    /// The decision of every coordinate that asked for relief.
-    pub decisions: &'a [Option<Decision>],
-    /// What became of the relief of every coordinate that asked for it, in the step that led here.
-    pub reliefs: &'a [Option<Relief>],
-    /// How it stands, for a body with supports or tasks.
-    pub standing: Option<&'a Standing>,
-    /// Strategy of every coordinate.
-    pub strategies: &'a [Strategy],
-    /// Relief was asked for, and moves nothing any more.
-    pub settled: bool,
-}
-
-/// What became of a relief.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Relief {
-    /// It was carried out: the change of active torque that the decision foretold, and the real one, N m.
-    Done {
-        /// From the slope along the motion.
-        predicted: f64,
-        /// Computed in the posture that was reached.
-        real: f64,
-    },
-    /// Something more important stood against it: supports, tasks above relief, or a more tired group.
-    Deferred,
-    /// It made its own torque larger than foretold, and the whole effort with it, and was taken back.
-    TakenBack,
-    /// The joint cannot move without what stands above relief.
-    Blocked,
-    /// It was taken back so often that it waits for the next recovery.
-    GivenUp,
-}
-
-/// How a body stands.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Standing {
-    /// One a support, in the order of the scenario.
-    pub contacts: Vec<Contact>,
-    /// Length of the error of each task, in its units.
-    pub errors: Vec<f64>,
-    /// How far supports are off their places, m and rad together.
-    pub slip: f64,
-    /// Centre of mass, ground, m.
-    pub center_of_mass: Vector3<f64>,
-    /// `sum (active torque / strength)^2` over all coordinates with known strength.
-    pub effort: f64,
-}
-
-/// What a support carries.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// Force on the body, ground axes, N.
-    pub force: Vector3<f64>,
-    /// Its normal part as a share of body weight.
-    pub share: f64,
-    /// Where it acts, ground, m; `None` where nothing is carried.
-    pub center_of_pressure: Option<Vector3<f64>>,
-}
 
 /// A scenario under way.
 #[derive(Debug)]
 pub struct Simulation<'a> {
     scenario: &'a Scenario,
-    steps: u64,
-    posture: Posture,
-    kinematics: Kinematics,
-    external_torque: ExternalTorque,
-    groups: Vec<[GroupState; 2]>,
-    // What the last sample showed.
-    external: Vec<f64>,
-    passive: Vec<f64>,
-    active: Vec<f64>,
-    load: Vec<f64>,
-    fatigue: Vec<[f64; 2]>,
-    decisions: Vec<Option<Decision>>,
-    settled: bool,
-    reliefs: Vec<Option<Relief>>,
-    standing: Standing,
+    state: State,
     /// The body with supports or tasks.
     whole: Option<Whole<'a>>,
     loads: Vec<Load>,
-    strategies: Vec<Strategy>,
-    next_event: usize,
-    /// Active torque before the last motion, and its change that each decision foretold.
+    kinematics: Kinematics,
+    external_torque: ExternalTorque,
+    passive_torque: PassiveTorque,
+    // What the last sample showed, beside what is in `state`.
+    external: Vec<f64>,
+    passive: Vec<f64>,
+    load: Vec<f64>,
+    asking: Vec<Option<Side>>,
+    reliefs: Vec<Option<Relief>>,
+    standing: Standing,
+    settled: bool,
+    /// Active torque before the last motion.
     active_before: Vec<f64>,
-    predicted: Vec<f64>,
-    /// The relief of this recovery has led somewhere, and holds.
-    held: Vec<bool>,
-    /// Some relief asks for motion.
-    pressing: bool,
-    last_decisions: Vec<Option<Decision>>,
-    /// Effort when the present recovery of each coordinate first asked for relief.
-    effort_at_trip: Vec<f64>,
-    /// Largest active torque that each decision foretold on the way to its goal, N m.
-    foretold: Vec<f64>,
-    // What the relief of each coordinate asks for; the whole space where there is none.
-    constraints: Vec<HalfSpace>,
     shift: Vec<f64>,
 }
-
-/// One muscle group over time.
-#[derive(Clone, Copy, Debug)]
-struct GroupState {
-    fatigue: Option<FatigueState>,
-    recovering: bool,
-    /// Relative load when its present recovery began.
-    load_at_trip: f64,
-    /// The strategy its present recovery ended up with (docs/deviations.md, D4).
-    accepted: Option<Strategy>,
-    /// How often its relief was taken back.
-    taken_back: u32,
-    /// Which kind of relief leads it now, and how many decisions in a row asked for the other.
-    led: Option<Strategy>,
-    contrary: u32,
-}
-
-/// So many decisions in a row turn a relief round.
-const REPEATED: u32 = 30;
 
 /// Relief may cost the whole body so many times the effort there was before it.
 const DEAR: f64 = 2.0;
@@ -167,66 +54,82 @@ impl<'a> Simulation<'a> {
     /// [`ScenarioError`] when the scenario is not in order.
     pub fn new(scenario: &'a Scenario) -> Result<Self, ScenarioError> {
         scenario.check()?;
-        let model = &scenario.model;
-        let n = model.coordinates().len();
-        let rested = GroupState {
-            fatigue: None,
-            recovering: false,
-            load_at_trip: 0.0,
-            accepted: None,
-            taken_back: 0,
-            led: None,
-            contrary: 0,
-        };
         let (whole, start) = match scenario.is_whole() {
             true => Whole::new(scenario).map(|(whole, start)| (Some(whole), start))?,
             false => (None, scenario.start.clone()),
         };
         let strategies = match scenario.strategies.is_empty() {
-            true => vec![scenario.strategy.kind; n],
+            true => vec![scenario.strategy.kind; scenario.model.coordinates().len()],
             false => scenario.strategies.clone(),
         };
-        let mut simulation = Self {
-            scenario,
-            steps: 0,
-            posture: start,
-            kinematics: Kinematics::new(model),
-            external_torque: ExternalTorque::new(model),
-            groups: vec![[rested; 2]; n],
-            external: vec![0.0; n],
-            passive: vec![0.0; n],
-            active: vec![0.0; n],
-            load: vec![0.0; n],
-            fatigue: vec![[0.0; 2]; n],
-            decisions: vec![None; n],
-            settled: false,
-            reliefs: vec![None; n],
-            standing: Standing::default(),
-            whole,
-            loads: scenario.loads.clone(),
-            strategies,
-            next_event: 0,
-            active_before: vec![0.0; n],
-            predicted: vec![0.0; n],
-            foretold: vec![0.0; n],
-            held: vec![false; n],
-            pressing: false,
-            last_decisions: vec![None; n],
-            effort_at_trip: vec![f64::INFINITY; n],
-            constraints: vec![HalfSpace::new(n); n],
-            shift: vec![0.0; n],
-        };
+        let mut simulation = Self::with(scenario, whole, State::new(start, strategies));
         simulation.torques()?;
-        for (i, coordinate) in model.coordinates().iter().enumerate() {
+        for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
             let Some(groups) = &coordinate.groups else { continue };
             for side in Side::BOTH {
                 let load = simulation.load_of(i, side);
                 let level = scenario.start_fatigue[i][side.index()];
                 let start = groups[side.index()].fatigue.start(level, load);
-                simulation.groups[i][side.index()].fatigue = Some(start);
+                simulation.state.groups[i][side.index()].fatigue = Some(start);
             }
         }
         Ok(simulation)
+    }
+
+    /// Where another simulation of the same scenario was when it was asked for its state.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Snapshot`] if the state is that of another body or run.
+    pub(super) fn resume(scenario: &'a Scenario, state: State) -> Result<Self, ScenarioError> {
+        scenario.check()?;
+        let whole = match scenario.is_whole() {
+            true => Some(Whole::new(scenario)?.0),
+            false => None,
+        };
+        let n = scenario.model.coordinates().len();
+        if !state.fits(n, scenario.events.len()) || state.posture.check(&scenario.model).is_err() {
+            return Err(ScenarioError::Snapshot);
+        }
+        let events = state.next_event;
+        let strategies = state.strategies.clone();
+        let groups = state.groups.clone();
+        let mut simulation = Self::with(scenario, whole, state);
+        for event in &scenario.events[..events] {
+            simulation.happen(event)?;
+        }
+        (simulation.state.strategies, simulation.state.groups) = (strategies, groups);
+        Ok(simulation)
+    }
+
+    fn with(scenario: &'a Scenario, whole: Option<Whole<'a>>, state: State) -> Self {
+        let model = &scenario.model;
+        let n = model.coordinates().len();
+        Self {
+            scenario,
+            state,
+            whole,
+            loads: scenario.loads.clone(),
+            kinematics: Kinematics::new(model),
+            external_torque: ExternalTorque::new(model),
+            passive_torque: PassiveTorque::new(model),
+            external: vec![0.0; n],
+            passive: vec![0.0; n],
+            load: vec![0.0; n],
+            asking: vec![None; n],
+            reliefs: vec![None; n],
+            standing: Standing::default(),
+            settled: false,
+            active_before: vec![0.0; n],
+            shift: vec![0.0; n],
+        }
+    }
+
+    /// What a simulation needs to go on from here. It goes on in the same way itself: all that only made it faster is forgotten.
+    pub(super) fn state(&mut self) -> State {
+        if let Some(whole) = &mut self.whole {
+            whole.forget();
+        }
+        self.state.clone()
     }
 
     /// Torques, fatigue, hysteresis, minimisation, constraint, record, motion: once.
@@ -234,26 +137,27 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// None for a scenario that was checked; the posture never leaves its ranges.
     pub fn step(&mut self) -> Result<Sample<'_>, ScenarioError> {
-        let time = self.steps as f64 * self.scenario.run.step;
+        let time = self.state.steps as f64 * self.scenario.run.step;
         self.events(time)?;
         self.torques()?;
         self.levels();
         self.decide()?;
         self.tire();
-        self.steps += 1;
+        self.state.steps += 1;
         // The motion is carried out at the start of the next step, so that the sample can be lent out as it is.
         Ok(Sample {
             time,
-            posture: self.posture.values(),
+            posture: self.state.posture.values(),
             external: &self.external,
             passive: &self.passive,
-            active: &self.active,
+            active: &self.state.active,
             load: &self.load,
-            fatigue: &self.fatigue,
-            decisions: &self.decisions,
+            fatigue: &self.state.fatigue,
+            decisions: &self.state.decisions,
+            asking: &self.asking,
             reliefs: &self.reliefs,
             standing: self.whole.is_some().then_some(&self.standing),
-            strategies: &self.strategies,
+            strategies: &self.state.strategies,
             settled: self.settled,
         })
     }
@@ -261,28 +165,28 @@ impl<'a> Simulation<'a> {
     /// What changes now.
     fn events(&mut self, time: f64) -> Result<(), ScenarioError> {
         let scenario = self.scenario;
-        while let Some(event) = scenario.events.get(self.next_event).filter(|event| event.time <= time + 1e-9) {
-            self.next_event += 1;
-            if let Some(strategies) = &event.strategies {
-                self.strategies.clone_from(strategies);
-                // A new wish is a new recovery.
-                self.groups.iter_mut().flatten().for_each(|group| (group.accepted, group.led) = (None, None));
-            }
-            if let Some(loads) = &event.loads {
-                self.loads.clone_from(loads);
-                if let Some(whole) = &mut self.whole {
-                    whole.set_loads(loads)?;
-                }
-            }
-            for (task, goal) in &event.tasks {
-                if let Some(whole) = &mut self.whole {
-                    whole.set_task(*task, goal);
-                }
-            }
-            if let Some(whole) = &mut self.whole {
-                whole.wake();
-            }
+        while let Some(event) = scenario.events.get(self.state.next_event).filter(|event| event.time <= time + 1e-9) {
+            self.state.next_event += 1;
+            self.happen(event)?;
         }
+        Ok(())
+    }
+
+    fn happen(&mut self, event: &Event) -> Result<(), ScenarioError> {
+        if let Some(strategies) = &event.strategies {
+            self.state.strategies.clone_from(strategies);
+            // A new wish is a new recovery.
+            self.state.groups.iter_mut().flatten().for_each(|group| (group.accepted, group.led) = (None, None));
+        }
+        if let Some(loads) = &event.loads {
+            self.loads.clone_from(loads);
+        }
+        let Some(whole) = &mut self.whole else { return Ok(()) };
+        if let Some(loads) = &event.loads {
+            whole.set_loads(loads)?;
+        }
+        event.tasks.iter().for_each(|(task, goal)| whole.set_task(*task, goal));
+        whole.wake();
         Ok(())
     }
 
@@ -293,26 +197,38 @@ impl<'a> Simulation<'a> {
             return self.torques_of_the_whole();
         }
         let model = &self.scenario.model;
+        self.active_before.copy_from_slice(&self.state.active);
         self.carry_out();
-        self.kinematics.update(model, &self.posture)?;
+        self.kinematics.update(model, &self.state.posture)?;
         self.external_torque.update(model, &self.kinematics, &self.loads)?;
+        self.passive_torque.update(model, &self.kinematics);
         for (i, coordinate) in model.coordinates().iter().enumerate() {
-            self.external[i] = coordinate.rate.map_or(0.0, |rate| self.external_torque.torques()[rate]);
-            self.passive[i] = coordinate.passive.as_ref().map_or(0.0, |law| law.torque(i, self.kinematics.values()));
+            let torques = |rate: usize| (self.external_torque.torques()[rate], self.passive_torque.torques()[rate]);
+            (self.external[i], self.passive[i]) = coordinate.rate.map_or((0.0, 0.0), torques);
         }
         self.weigh();
+        for i in 0..self.reliefs.len() {
+            let done = || self.done(i);
+            self.reliefs[i] = self.state.decisions[i].is_some().then(done);
+        }
         Ok(())
+    }
+
+    /// The relief of a coordinate, carried out.
+    fn done(&self, i: usize) -> Relief {
+        let real = self.state.active[i] - self.active_before[i];
+        Relief::Done { predicted: self.state.requests[i].predicted, real }
     }
 
     /// Active torque and relative load of every coordinate; gives the effort.
     fn weigh(&mut self) -> f64 {
         let mut effort = 0.0;
         for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
-            self.active[i] = -(self.passive[i] + self.external[i]);
-            let side = Side::of(self.active[i]).index();
-            let angle = self.posture.values()[i];
+            self.state.active[i] = -(self.passive[i] + self.external[i]);
+            let side = Side::of(self.state.active[i]).index();
+            let angle = self.state.posture.values()[i];
             let strength = coordinate.groups.as_ref().map(|groups| groups[side].strength.torque(angle));
-            self.load[i] = strength.map_or(0.0, |strength| self.active[i].abs() / strength);
+            self.load[i] = strength.map_or(0.0, |strength| self.state.active[i].abs() / strength);
             effort += self.load[i] * self.load[i];
         }
         effort
@@ -322,40 +238,41 @@ impl<'a> Simulation<'a> {
     /// of a group that asked for relief larger than was foretold and effort with it, is taken back.
     fn torques_of_the_whole(&mut self) -> Result<(), ScenarioError> {
         let Some(mut whole) = self.whole.take() else { return Ok(()) };
-        let asks = |i: &usize| self.decisions[*i].is_some() || self.held[*i];
-        let mut asked: Vec<usize> = (0..self.decisions.len()).filter(asks).collect();
-        let tired = |i: &usize| self.fatigue[*i][0].max(self.fatigue[*i][1]);
+        let asks = |i: &usize| self.state.decisions[*i].is_some() || self.state.requests[*i].held;
+        let mut asked: Vec<usize> = (0..self.state.decisions.len()).filter(asks).collect();
+        let tired = |i: &usize| self.state.fatigue[*i][0].max(self.state.fatigue[*i][1]);
         asked.sort_by(|a, b| tired(b).total_cmp(&tired(a)));
-        let reliefs: Vec<(usize, &HalfSpace)> = asked.iter().map(|&i| (i, &self.constraints[i])).collect();
+        let reliefs: Vec<(usize, &HalfSpace)> =
+            asked.iter().map(|&i| (i, &self.state.requests[i].constraint)).collect();
         let mut deferred = vec![];
-        whole.carry_out(&mut self.posture, &reliefs, self.pressing, &mut deferred)?;
-        self.active_before.copy_from_slice(&self.active);
-        let before = self.standing.effort;
+        whole.carry_out(&mut self.state.posture, &reliefs, self.state.pressing, &mut deferred)?;
+        self.active_before.copy_from_slice(&self.state.active);
+        let before = self.state.effort;
         let mut effort = self.look(&mut whole)?;
         let tolerance = self.scenario.relief.torque_tolerance;
         let fell = whole.contact().balance() != Balance::Held;
         // A passive goal may lie beyond a rise that the decision foretold.
-        let rose = |i: usize| self.active[i].abs() > 1.5 * self.foretold[i] + tolerance;
+        let rose = |i: usize| self.state.active[i].abs() > 1.5 * self.state.requests[i].foretold + tolerance;
         // Relief that costs the rest of the body more than it is worth is given back.
-        let dear = |i: usize| effort > DEAR * self.effort_at_trip[i];
+        let dear = |i: usize| effort > DEAR * self.state.requests[i].effort_at_trip;
         let worse = asked
             .iter()
             .copied()
-            .filter(|&i| self.decisions[i].is_some() && (fell || ((rose(i) || dear(i)) && effort > before)));
+            .filter(|&i| self.state.decisions[i].is_some() && (fell || ((rose(i) || dear(i)) && effort > before)));
         let worse: Vec<usize> = worse.collect();
         if fell || !worse.is_empty() {
-            whole.take_back(&mut self.posture)?;
+            whole.take_back(&mut self.state.posture)?;
             effort = self.look(&mut whole)?;
         }
-        for &i in asked.iter().filter(|&&i| self.decisions[i].is_some()) {
+        for &i in asked.iter().filter(|&&i| self.state.decisions[i].is_some()) {
             self.reliefs[i] = Some(if worse.contains(&i) {
                 let side = self.asking_side(i);
-                self.groups[i][side.index()].taken_back += 1;
+                self.state.groups[i][side.index()].taken_back += 1;
                 Relief::TakenBack
             } else if deferred.contains(&i) || !worse.is_empty() {
                 Relief::Deferred
             } else {
-                Relief::Done { predicted: self.predicted[i], real: self.active[i] - self.active_before[i] }
+                self.done(i)
             });
         }
         self.stand(&whole, effort);
@@ -365,7 +282,7 @@ impl<'a> Simulation<'a> {
 
     /// All torques where the body is; gives the effort.
     fn look(&mut self, whole: &mut Whole<'a>) -> Result<f64, ScenarioError> {
-        whole.see(&self.posture)?;
+        whole.see(&self.state.posture)?;
         for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
             (self.external[i], self.passive[i]) = coordinate.rate.map_or((0.0, 0.0), |rate| whole.torques(rate));
         }
@@ -380,47 +297,48 @@ impl<'a> Simulation<'a> {
             force: contact.force(support),
             share: contact.share(support),
             center_of_pressure: whole.center_of_pressure(model, support),
+            couple: whole.couple(model, support),
         }));
         self.standing.slip = whole.errors(&mut self.standing.errors);
         self.standing.center_of_mass = whole.center_of_mass(model).unwrap_or_default();
-        self.standing.effort = effort;
+        (self.standing.effort, self.state.effort) = (effort, effort);
     }
 
     /// The group of a coordinate that asks for relief: the one that works if it is tired, else the other one.
     fn asking_side(&self, coordinate: usize) -> Side {
         let works = Side::of(self.active_before[coordinate]);
-        if self.groups[coordinate][works.index()].recovering { works } else { Side::BOTH[1 - works.index()] }
+        if self.state.groups[coordinate][works.index()].recovering { works } else { Side::BOTH[1 - works.index()] }
     }
 
     /// Projects the posture into every half-space, free coordinates only, and into the ranges.
     fn carry_out(&mut self) {
-        for (constraint, decision) in self.constraints.iter().zip(&self.decisions) {
+        for (request, decision) in self.state.requests.iter().zip(&self.state.decisions) {
             if decision.is_some() {
-                constraint.project(self.posture.values_mut(), &self.scenario.free);
+                request.constraint.project(self.state.posture.values_mut(), &self.scenario.free);
             }
         }
-        for (value, coordinate) in self.posture.values_mut().iter_mut().zip(self.scenario.model.coordinates()) {
+        for (value, coordinate) in self.state.posture.values_mut().iter_mut().zip(self.scenario.model.coordinates()) {
             *value = value.clamp(coordinate.range.0, coordinate.range.1);
         }
     }
 
     /// Relative load of one group: the one that does not work rests.
     fn load_of(&self, coordinate: usize, side: Side) -> f64 {
-        if side == Side::of(self.active[coordinate]) { self.load[coordinate] } else { 0.0 }
+        if side == Side::of(self.state.active[coordinate]) { self.load[coordinate] } else { 0.0 }
     }
 
     /// Fatigue now, and who must rest.
     fn levels(&mut self) {
-        for i in 0..self.groups.len() {
+        for i in 0..self.state.groups.len() {
             for side in Side::BOTH {
                 let load = self.load_of(i, side);
-                let group = &mut self.groups[i][side.index()];
+                let group = &mut self.state.groups[i][side.index()];
                 let Some(state) = group.fatigue else { continue };
                 // Three-compartment fatigue is relative to the load. A recovering group is judged at the load that tired it:
                 // taking the load off must not count as having rested (docs/deviations.md, D15).
                 let judged = if group.recovering { load.max(group.load_at_trip) } else { load };
                 let level = state.level(judged);
-                self.fatigue[i][side.index()] = level;
+                self.state.fatigue[i][side.index()] = level;
                 let recovering = self.scenario.hysteresis.recovering(group.recovering, level);
                 if recovering && !group.recovering {
                     group.load_at_trip = load;
@@ -439,28 +357,30 @@ impl<'a> Simulation<'a> {
         let mut asked = false;
         let mut moved = false;
         for (i, coordinate) in model.coordinates().iter().enumerate() {
-            self.decisions[i] = None;
-            if !self.groups[i].iter().any(|group| group.recovering) {
-                (self.held[i], self.last_decisions[i]) = (false, None);
+            self.state.decisions[i] = None;
+            self.asking[i] = None;
+            if !self.state.groups[i].iter().any(|group| group.recovering) {
+                (self.state.requests[i].held, self.state.requests[i].followed) = (false, None);
             }
             let (Some(law), Some(rate), true) = (&coordinate.passive, coordinate.rate, free[i]) else { continue };
             // The group that works asks; within the tolerance neither does, and either may.
-            let within = self.active[i].abs() <= relief.torque_tolerance;
-            let works = Side::of(self.active[i]);
-            let asks = |side: Side| self.groups[i][side.index()].recovering && (within || side == works);
+            let within = self.state.active[i].abs() <= relief.torque_tolerance;
+            let works = Side::of(self.state.active[i]);
+            let asks = |side: Side| self.state.groups[i][side.index()].recovering && (within || side == works);
             let Some(side) = [works, Side::BOTH[1 - works.index()]].into_iter().find(|&side| asks(side)) else {
                 continue;
             };
-            let group = self.groups[i][side.index()];
+            self.asking[i] = Some(side);
+            let group = self.state.groups[i][side.index()];
             if group.taken_back >= 2 * PATIENCE {
                 self.reliefs[i] = Some(Relief::GivenUp);
-                self.held[i] = false;
+                self.state.requests[i].held = false;
                 continue;
             }
-            let angle = self.posture.values()[i];
+            let angle = self.state.posture.values()[i];
             let (values, slope) = match &mut self.whole {
                 Some(whole) => {
-                    let Some(slope) = whole.slope(&self.posture, i, rate)? else {
+                    let Some(slope) = whole.slope(&self.state.posture, i, rate)? else {
                         self.reliefs[i] = Some(Relief::Blocked);
                         continue;
                     };
@@ -474,7 +394,7 @@ impl<'a> Simulation<'a> {
                 angle,
                 external_torque: self.external[i],
                 external_slope: slope,
-                strategy: if group.taken_back >= PATIENCE { Strategy::Passive } else { self.strategies[i] },
+                strategy: if group.taken_back >= PATIENCE { Strategy::Passive } else { self.state.strategies[i] },
                 minimum_decrease_ratio: strategy.minimum_decrease_ratio,
                 torque_tolerance: relief.torque_tolerance,
                 accepted: group.accepted,
@@ -486,36 +406,37 @@ impl<'a> Simulation<'a> {
             // Every number was checked with the scenario, and the posture is clamped to its ranges.
             let Ok(decision) = decision else { continue };
             asked = true;
-            let decision = match (&self.whole, self.last_decisions[i]) {
-                (Some(_), Some(last)) if !self.groups[i][side.index()].believes(decision.outcome) => last,
+            let decision = match (&self.whole, self.state.requests[i].followed) {
+                (Some(_), Some(last)) if !self.state.groups[i][side.index()].believes(decision.outcome) => last,
                 _ => decision,
             };
-            if self.last_decisions[i].is_none() {
-                self.effort_at_trip[i] = self.standing.effort;
+            if self.state.requests[i].followed.is_none() {
+                self.state.requests[i].effort_at_trip = self.state.effort;
             }
-            self.last_decisions[i] = Some(decision);
-            self.groups[i][side.index()].accept(decision.outcome);
+            self.state.requests[i].followed = Some(decision);
+            self.state.groups[i][side.index()].accept(decision.outcome);
             self.shift.fill(0.0);
-            self.predicted[i] = 0.0;
-            self.foretold[i] = self.active[i].abs();
+            self.state.requests[i].predicted = 0.0;
+            self.state.requests[i].foretold = self.state.active[i].abs();
             if let Some(goal) = decision.goal {
                 for share in 1..=ON_THE_WAY {
                     let way = (goal - angle) * f64::from(share) / f64::from(ON_THE_WAY);
                     let active = curve.torque(angle + way) + self.external[i] + slope * way;
-                    self.foretold[i] = self.foretold[i].max(active.abs());
+                    self.state.requests[i].foretold = self.state.requests[i].foretold.max(active.abs());
                 }
                 let gain = relief.step_gain * 0.5f64.powi(group.taken_back.min(30) as i32);
                 self.shift[i] = relief_step(goal, angle, gain, relief.max_step);
-                self.predicted[i] = -(curve.slope(angle) + slope) * self.shift[i];
+                self.state.requests[i].predicted = -(curve.slope(angle) + slope) * self.shift[i];
                 moved |= self.shift[i].abs() > SETTLED;
             }
             // Where it is relieved it stays for as long as it recovers, whatever less important tasks would like.
-            if self.whole.is_none() || !self.held[i] || self.shift[i].abs() > SETTLED {
-                self.held[i] = self.constraints[i].ask_for(self.posture.values(), &self.shift);
+            if self.whole.is_none() || !self.state.requests[i].held || self.shift[i].abs() > SETTLED {
+                self.state.requests[i].held =
+                    self.state.requests[i].constraint.ask_for(self.state.posture.values(), &self.shift);
             }
-            self.decisions[i] = Some(decision);
+            self.state.decisions[i] = Some(decision);
         }
-        self.pressing = moved;
+        self.state.pressing = moved;
         self.settled = asked && !moved && self.whole.as_ref().is_none_or(Whole::still);
         Ok(())
     }
@@ -527,37 +448,9 @@ impl<'a> Simulation<'a> {
             let Some(groups) = &coordinate.groups else { continue };
             for side in Side::BOTH {
                 let load = self.load_of(i, side);
-                let group = &mut self.groups[i][side.index()];
+                let group = &mut self.state.groups[i][side.index()];
                 group.fatigue = group.fatigue.map(|state| groups[side.index()].fatigue.advance(state, load, step));
             }
-        }
-    }
-}
-
-impl GroupState {
-    /// Is a decision to be followed that asks for another kind of relief than this recovery began with? The slope that it
-    /// extrapolates jumps where a foot's edge begins or ends to carry, so only if it is repeated.
-    fn believes(&mut self, outcome: Outcome) -> bool {
-        let kind = match outcome {
-            Outcome::Active => Some(Strategy::Active),
-            Outcome::Passive | Outcome::AtLimit => Some(Strategy::Passive),
-            Outcome::Stay | Outcome::None => None,
-        };
-        let contrary = kind.is_some() && self.led.is_some() && kind != self.led;
-        self.contrary = if contrary { self.contrary + 1 } else { 0 };
-        let follow = self.contrary == 0 || self.contrary > REPEATED;
-        if follow {
-            (self.contrary, self.led) = (0, kind.or(self.led));
-        }
-        follow
-    }
-
-    /// Keeps the first strategy that led somewhere; from active it may fall back to passive once, never the other way.
-    fn accept(&mut self, outcome: Outcome) {
-        match outcome {
-            Outcome::Active if self.accepted.is_none() => self.accepted = Some(Strategy::Active),
-            Outcome::Passive | Outcome::AtLimit => self.accepted = Some(Strategy::Passive),
-            _ => {}
         }
     }
 }

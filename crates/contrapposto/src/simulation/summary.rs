@@ -1,6 +1,8 @@
 //! How did a run end, and what happened on the way?
 
-use super::{Sample, Scenario, ScenarioError, Simulation};
+use serde::{Deserialize, Serialize};
+
+use super::{ReliefLog, Sample, Standing};
 use crate::hybrid::{Case, Decision};
 use crate::model::Side;
 
@@ -14,17 +16,23 @@ pub enum StopReason {
     Duration,
     /// Relief no longer moved anything.
     Settled,
+    /// It was left before its end.
+    Interrupted,
 }
 
 impl StopReason {
-    /// `duration` or `settled`.
+    /// `duration`, `settled` or `interrupted`.
     pub fn word(self) -> &'static str {
-        if self == Self::Duration { "duration" } else { "settled" }
+        match self {
+            Self::Duration => "duration",
+            Self::Settled => "settled",
+            Self::Interrupted => "interrupted",
+        }
     }
 }
 
 /// What happened to one coordinate.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateSummary {
     /// Cases in the order they came, repetitions left out; the first two hundred changes.
     pub cases: Vec<Case>,
@@ -57,45 +65,16 @@ pub struct Summary {
     pub samples: u64,
     /// One entry a coordinate.
     pub coordinates: Vec<CoordinateSummary>,
-}
-
-/// Runs a scenario, showing every sample to `record`. Memory does not grow with the length of the run.
-///
-/// # Errors
-/// [`ScenarioError`] when the scenario is not in order.
-pub fn run(scenario: &Scenario, mut record: impl FnMut(&Sample)) -> Result<Summary, ScenarioError> {
-    let mut simulation = Simulation::new(scenario)?;
-    let blank = CoordinateSummary {
-        cases: vec![],
-        case_changes: 0,
-        iterations: [0; 10],
-        final_value: 0.0,
-        final_torques: [0.0; 3],
-        peak_load: 0.0,
-        peak_fatigue: [0.0; 2],
-        exhausted_at: [None; 2],
-        last_decision: None,
-    };
-    let mut coordinates = vec![blank; scenario.model.coordinates().len()];
-    // A whole number of steps that rounding must not lose.
-    let steps = (scenario.run.duration / scenario.run.step + 1e-9).floor() as u64;
-    let mut end_time = 0.0;
-    for samples in 1..=steps + 1 {
-        let sample = simulation.step()?;
-        record(&sample);
-        end_time = sample.time;
-        for (i, summary) in coordinates.iter_mut().enumerate() {
-            summary.take(i, &sample);
-        }
-        if sample.settled && scenario.run.stop_when_settled {
-            return Ok(Summary { reason: StopReason::Settled, end_time, samples, coordinates });
-        }
-    }
-    Ok(Summary { reason: StopReason::Duration, end_time, samples: steps + 1, coordinates })
+    /// Every relief.
+    pub reliefs: ReliefLog,
+    /// Effort of a body with supports or tasks in the first sample.
+    pub effort_at_start: Option<f64>,
+    /// How it stood in the last sample.
+    pub standing: Option<Standing>,
 }
 
 impl CoordinateSummary {
-    fn take(&mut self, i: usize, sample: &Sample) {
+    pub(super) fn take(&mut self, i: usize, sample: &Sample) {
         self.final_value = sample.posture[i];
         self.final_torques = [sample.external[i], sample.passive[i], sample.active[i]];
         self.peak_load = self.peak_load.max(sample.load[i]);

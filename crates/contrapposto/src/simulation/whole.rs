@@ -10,6 +10,7 @@ use crate::ik::Goal;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::relax::{Engine, Options};
+use crate::statics::LoadKind;
 
 use super::{Scenario, ScenarioError};
 
@@ -17,8 +18,9 @@ use super::{Scenario, ScenarioError};
 const MOST: usize = 16;
 /// Largest change of a joint in one time step, in largest steps of relief: the rest of the body must be able to follow.
 const FOLLOW: f64 = 2.0;
-/// The body is still when nothing changes by more in a time step, rad or m.
-const STILL: f64 = 1e-9;
+/// The body is still when nothing has changed by more in a time step, rad or m, for so many time steps.
+const STILL: f64 = 1e-6;
+const CALM: u32 = 30;
 /// A slope is computed anew when some coordinate has moved so far, rad or m.
 const MOVED: f64 = 0.005;
 /// A half-space that is missed by more was not kept, rad or m.
@@ -35,7 +37,10 @@ pub(super) struct Whole<'a> {
     /// By coordinate: where the slope was computed, and what it is.
     slopes: Vec<Option<Slope>>,
     before: Posture,
-    largest: f64,
+    /// Steps in a row in which nothing moved, with which reliefs, and those that were not kept.
+    calm: u32,
+    asked: Vec<usize>,
+    deferred: Vec<usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -81,7 +86,9 @@ impl<'a> Whole<'a> {
             places,
             slopes: vec![None; model.coordinates().len()],
             before: start.posture.clone(),
-            largest: f64::INFINITY,
+            calm: 0,
+            asked: vec![],
+            deferred: vec![],
         };
         Ok((whole, start.posture))
     }
@@ -97,9 +104,12 @@ impl<'a> Whole<'a> {
     ) -> Result<(), ScenarioError> {
         deferred.clear();
         self.before.values_mut().copy_from_slice(posture.values());
-        if reliefs.is_empty() && self.largest <= STILL {
+        if !pressing && self.still() && self.asked.iter().eq(reliefs.iter().map(|(i, _)| i)) {
+            deferred.extend_from_slice(&self.deferred);
             return Ok(());
         }
+        self.asked.clear();
+        self.asked.extend(reliefs.iter().map(|(i, _)| *i));
         for (slot, goal) in self.engine.goals_mut()[self.above..self.above + MOST].iter_mut().enumerate() {
             goal.half_spaces.truncate(usize::from(slot < reliefs.len()));
             match (reliefs.get(slot), goal.half_spaces.first_mut()) {
@@ -111,11 +121,13 @@ impl<'a> Whole<'a> {
         if pressing {
             self.engine.hurry();
         }
-        self.largest = self.engine.step(posture)?.largest;
+        let largest = self.engine.step(posture)?.largest;
+        self.calm = if largest <= STILL { self.calm + 1 } else { 0 };
         let kept = |(slot, (_, space)): &(usize, &(usize, &HalfSpace))| {
             *slot < MOST && space.violation(posture.values()) <= MISSED
         };
         deferred.extend(reliefs.iter().enumerate().filter(|relief| !kept(relief)).map(|(_, (i, _))| *i));
+        self.deferred.clone_from(deferred);
         Ok(())
     }
 
@@ -147,10 +159,17 @@ impl<'a> Whole<'a> {
         Ok(value)
     }
 
+    /// Forgets all that earlier steps have shown.
+    pub(super) fn forget(&mut self) {
+        self.engine.restart();
+        self.calm = 0;
+        self.slopes.fill(None);
+    }
+
     /// Something changed: the body moves again.
     pub(super) fn wake(&mut self) {
         self.engine.hurry();
-        self.largest = f64::INFINITY;
+        self.calm = 0;
         self.slopes.fill(None);
     }
 
@@ -165,7 +184,7 @@ impl<'a> Whole<'a> {
     }
 
     pub(super) fn still(&self) -> bool {
-        self.largest <= STILL
+        self.calm >= CALM
     }
 
     pub(super) fn contact(&self) -> &ContactForces {
@@ -191,6 +210,20 @@ impl<'a> Whole<'a> {
     /// Where the centre of mass stands, ground, m.
     pub(super) fn center_of_mass(&self, model: &Model) -> Option<nalgebra::Vector3<f64>> {
         self.engine.body().kinematics().center_of_mass(model)
+    }
+
+    /// The couple of a support's forces about that point, ground, N m.
+    pub(super) fn couple(&self, model: &Model, support: usize) -> nalgebra::Vector3<f64> {
+        let contact = self.contact();
+        let about = self.center_of_pressure(model, support).unwrap_or_default();
+        let mut couple = nalgebra::Vector3::zeros();
+        for load in &contact.loads()[contact.corners(support)] {
+            if let LoadKind::Force(force, _) = load.kind {
+                let at = self.engine.body().kinematics().station(model, load.segment, load.point);
+                couple += (at - about).cross(&force);
+            }
+        }
+        couple
     }
 
     /// Where the normal force of a support acts, ground, m.

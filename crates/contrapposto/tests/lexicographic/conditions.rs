@@ -18,6 +18,9 @@ pub fn residual_of(scales: impl Iterator<Item = f64> + Clone) -> f64 {
 /// No residual below this, in rows of scale one, can be told from rounding.
 const UNSEEN: f64 = 1e-13;
 
+/// As [`residual_of`], for problems with damped levels.
+const DAMPED: f64 = 1e-12;
+
 /// A multiplier below this, in rows of scale one, does not press.
 const PRESSING: f64 = 1e-13;
 /// A multiplier above this, relative to the square of the level's least scale, locks its side for all levels below: to
@@ -95,8 +98,8 @@ impl Misses {
     }
 }
 
-/// How well an answer satisfies the conditions of all levels; undamped. Gradients are relative to the square of the
-/// level's largest scale.
+/// How well an answer satisfies the conditions of all levels; of damped levels only those of the last, as those above are
+/// done somewhere else. Gradients are relative to the square of the level's largest scale.
 pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses {
     let (n, x) = (problem.unknowns(), &answer.x);
     let mut misses = Misses::default();
@@ -105,7 +108,10 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
         misses.bounds = misses.bounds.max(outside);
     }
     let mut values: Vec<Vec<Double>> = vec![];
-    let smallest: Vec<f64> = scales.iter().map(|level| residual_of(level.iter().copied())).collect();
+    // Damped levels keep residuals as small as their damping is, and make others keep what follows from those.
+    let damped = problem.levels.iter().any(|level| level.damping > 0.0);
+    let smallest = |level: &Vec<f64>| if damped { DAMPED } else { residual_of(level.iter().copied()) };
+    let smallest: Vec<f64> = scales.iter().map(smallest).collect();
     // Levels of such scales that a heavy row at its side may keep a residual nobody can see: either sign is right there.
     let mut unseen = vec![];
     let mut locked: Vec<Vec<bool>> = scales.iter().map(|level| vec![false; level.len()]).collect();
@@ -131,8 +137,11 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
             misses.residual = misses.residual.max(miss);
         }
         let keeps = answer.residuals[k].iter().zip(&scales[k]).any(|(r, scale)| r.abs() > smallest[k] * scale);
-        unseen.push(keeps && smallest[k] == UNSEEN);
+        unseen.push(keeps && residual_of(scales[k].iter().copied()) == UNSEEN);
         values.push(products);
+        if level.damping > 0.0 && k + 1 < problem.levels.len() {
+            continue;
+        }
         let (bounds, rows) = &answer.multipliers[k];
         let above = problem.levels[..k].iter().enumerate();
         let above = above.flat_map(|(j, level)| (0..level.rows()).map(move |i| (j, i, level)));
@@ -166,8 +175,9 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
             }
         }
         for (j, factor) in bounds.iter().enumerate() {
-            sum[j] += Double::from(*factor);
-            size[j] += factor.abs();
+            let pull = Double::product(level.damping, level.damping) * Double::from(x[j]);
+            sum[j] += Double::from(*factor) + pull;
+            size[j] += factor.abs() + pull.value().abs();
         }
         // Relative to all that is summed, but to no less than a residual of one.
         let size = scale * scale + size.iter().copied().fold(0.0, f64::max);

@@ -167,10 +167,10 @@ impl Solver {
         let base = self.factor.len();
         let Diagonal { asked, unasked, half, square, columns, wanted } = &mut self.diagonal;
         // What is wanted of each unknown, by unknown (`gradient`) and by column (`work`).
-        for (i, asked) in asked.iter().enumerate() {
-            let active = self.bounds[i] != Side::None;
-            self.gradient[i] =
-                asked.filter(|_| !active).map_or(0.0, |row| Diagonal::value(problem, k, row, i) - self.x[i]);
+        // Bounds in the factor count: the step cannot move them, but their multipliers are what is wanted there.
+        self.gradient.fill(0.0);
+        for &i in &self.factor.free {
+            self.gradient[i] = asked[i].map_or(0.0, |row| Diagonal::value(problem, k, row, i) - self.x[i]);
         }
         self.factor.gather(&self.gradient, &mut self.work);
         let m = unasked.len();

@@ -3,21 +3,25 @@
 use super::dense::{add_scaled, dot, norm};
 use super::factor::Entry;
 use super::problem::Problem;
-use super::solver::{INDEPENDENT, MULTIPLIER, NEEDED, Role, Side, Solver};
+use super::solver::{INDEPENDENT, MULTIPLIER, NEEDED, ROUNDING, Role, Side, Solver};
+
+/// The last digits of a value, as a share of its rounding.
+const DIGITS: f64 = 1e-3;
 
 impl Solver {
     /// Minimises level `k` and fixes what it reached. `false` if it did not come to an end.
     pub(super) fn level(&mut self, problem: &Problem, k: usize) -> bool {
+        let damped = problem.levels[k].damping > 0.0;
         self.choose_soft_rows(problem, k);
         'active_set: loop {
             let base = self.factor.len();
             self.factorise_level(problem, k);
             for attempt in 0..4 {
                 self.solve_level(problem, k, base);
-                if attempt == 3 || !self.level_moves(base) {
+                if attempt == 3 || !self.level_moves(base, damped) {
                     break;
                 }
-                self.level_step(base);
+                self.level_step(base, damped);
                 let (share, block) = self.first_block(problem, k);
                 self.advance(problem, share);
                 let Some((entry, side)) = block else {
@@ -200,11 +204,16 @@ impl Solver {
         }
     }
 
-    /// The level's step by unknown.
-    fn level_step(&mut self, base: usize) {
-        let rank = self.factor.len() - base;
+    /// The level's step by unknown. What its rows do not reach is only damped, all the way.
+    fn level_step(&mut self, base: usize, damped: bool) {
+        let (rank, w) = (self.factor.len() - base, self.factor.width());
         self.work.fill(0.0);
         self.work[base..base + rank].copy_from_slice(&self.y[..rank]);
+        if damped {
+            for (work, x) in self.work[base + rank..w].iter_mut().zip(&self.turned_x[base + rank..w]) {
+                *work = -x;
+            }
+        }
         self.factor.turn_back(&mut self.work);
         self.scatter_step();
     }
@@ -219,10 +228,13 @@ impl Solver {
         }
     }
 
-    /// Would the step change any row by more than rounding?
-    fn level_moves(&self, base: usize) -> bool {
+    /// Would the step change any row by more than rounding, or what is only damped?
+    fn level_moves(&self, base: usize, damped: bool) -> bool {
         let c = self.factor.padded();
         let rank = self.factor.len() - base;
+        if damped && norm(&self.turned_x[base + rank..self.factor.width()]) > ROUNDING * self.length {
+            return true;
+        }
         self.soft.iter().enumerate().any(|(s, &row)| {
             let change = if s < rank {
                 dot(&self.factor.lower_row(base + s)[base..], &self.y[..s]) + self.factor.diagonal(base + s) * self.y[s]
@@ -252,13 +264,18 @@ impl Solver {
                     Side::Lower => *kept,
                     Side::Both | Side::None => continue,
                 };
-            // Beside heavy rows a light one still counts when it is wrong by more than its own rounding.
-            let zero = if self.is_weary() { nothing } else { nothing.min(10.0 * self.rounding(row) * self.norms[row]) };
+            let zero = if self.is_weary() { nothing } else { self.zero(row) };
             if wrong > zero && found.is_none_or(|(most, _)| wrong > most) {
                 found = Some((wrong, row));
             }
         }
         found.map(|(_, row)| row)
+    }
+
+    /// What counts as zero in the pull of a soft row: beside heavy rows a light one still counts when it keeps more than its
+    /// own rounding.
+    fn zero(&self, row: usize) -> f64 {
+        (MULTIPLIER * self.size).min(10.0 * self.rounding(row) * self.norms[row])
     }
 
     /// Multipliers of everything above. Answers an active bound or row that the level would rather leave.
@@ -267,13 +284,22 @@ impl Solver {
         let level = &problem.levels[k];
         self.work.fill(0.0);
         self.gradient.fill(0.0);
-        let mut size = 0.0;
+        let damped = level.damping > 0.0;
+        let square = level.damping * level.damping;
+        let parts = self.kept.iter().zip(&self.soft);
+        self.size = parts.clone().map(|(kept, &row)| kept.abs() * self.norms[row]).sum();
         // A row of zeros keeps what nothing can change.
-        let real =
-            |(s, kept): (usize, &f64)| kept.abs() > self.rounding(self.soft[s]) && self.is_something(self.soft[s]);
-        if self.kept.iter().enumerate().any(real) {
-            size = self.kept.iter().zip(&self.soft).map(|(kept, &row)| kept.abs() * self.norms[row]).sum();
-            if let Some(row) = self.wrong_soft_row(MULTIPLIER * size) {
+        let mut real =
+            parts.clone().filter(|(kept, row)| kept.abs() > self.rounding(**row) && self.is_something(**row));
+        if damped {
+            // Rows keep as little as the damping asks for: all counts that is above the last digits of their values.
+            let digits: f64 = self.soft.iter().map(|&row| DIGITS * self.rounding(row) * self.norms[row]).sum();
+            self.size += square * norm(&self.x) + digits / MULTIPLIER;
+        } else if real.next().is_none() {
+            self.size = 0.0;
+        }
+        if self.size > 0.0 {
+            if let Some(row) = self.wrong_soft_row(MULTIPLIER * self.size) {
                 return Some(Entry::Row(row));
             }
             for (kept, &row) in self.kept.iter().zip(&self.soft) {
@@ -283,14 +309,11 @@ impl Solver {
             self.factor.gather(&self.gradient, &mut self.work);
             self.factor.turn(&mut self.work, 0, base);
         }
-        self.size = size;
-        if level.damping > 0.0 {
-            let square = level.damping * level.damping;
+        if damped {
             add_scaled(&mut self.work[..base], square, &self.turned_x[..base]);
             add_scaled(&mut self.gradient, square, &self.x);
-            size += square * norm(&self.x);
         }
-        self.multiply(problem, k, base, size, level.damping == 0.0)
+        self.multiply(problem, k, base, self.size, !damped)
     }
 
     /// Multipliers of the first `base` entries and of the bounds, into the table, for the gradient in `work` (turned) and
@@ -383,8 +406,7 @@ impl Solver {
             self.factor.entries.iter().filter(|e| matches!(e, Entry::Row(row) if *row >= self.offsets[k])).count();
         for s in 0..self.soft.len() {
             let row = self.soft[s];
-            let zero = (MULTIPLIER * self.size).min(10.0 * self.rounding(row) * self.norms[row]);
-            let needed = self.kept[s].abs() * self.norms[row] > zero;
+            let needed = self.kept[s].abs() * self.norms[row] > self.zero(row);
             self.roles[row] =
                 if self.sides[row] == Side::Both || (self.size > 0.0 && needed) { Role::Fixed } else { Role::Active };
             if s >= rank {

@@ -1,7 +1,7 @@
 //! What do the levels and bounds above a level cost it?
 
 /// Lagrange multipliers of one level `k`: `A_k^T residual_k + mu^2 x + sum_{j<k} A_j^T rows_j + bounds = 0` (the damping
-/// term only for a damped level, and only as far as its rows and what is fixed above reach).
+/// term only for a damped level, with the `x` it ended at, before the levels below moved on).
 ///
 /// At an upper side a multiplier is positive or zero, at a lower side negative or zero: the level would gain by passing it.
 /// Rows that are equations, or that keep a residual of their own, may have either sign; so may a side that a level between

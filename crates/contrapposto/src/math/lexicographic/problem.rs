@@ -13,8 +13,8 @@ pub struct Level {
     pub lower: Vec<f64>,
     /// Upper limit of each row, not below the lower one; may be infinite.
     pub upper: Vec<f64>,
-    /// `mu >= 0`: the level minimises `|residual|^2 + mu^2 |x|^2`, as far as its own rows reach; 0 for none. What the rows
-    /// do not touch is left to the levels below, and the levels above feel nothing of it.
+    /// `mu >= 0`: the level minimises `|residual|^2 + mu^2 |x|^2`; 0 for none. Only the values of its rows are kept for the
+    /// levels below: what the rows do not touch is left to those, and the levels above feel nothing of the damping.
     pub damping: f64,
     /// The level is meant to hold: a residual makes the answer [`super::Status::Infeasible`].
     pub hard: bool,

@@ -48,7 +48,7 @@ pub(super) enum Role {
 /// Relative size below which a row adds no new direction.
 pub(super) const INDEPENDENT: f64 = 1e-10;
 /// Relative size of what counts as rounding in the value of a row.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 /// Relative size of a multiplier that counts as zero.
 pub(super) const MULTIPLIER: f64 = 1e-11;
 /// A multiplier so many times above what counts as zero belongs to what is needed for good.
@@ -75,7 +75,7 @@ pub struct Solver {
     /// The larger of the row's finite limits, in size.
     limits: Vec<f64>,
     /// Length of `x`.
-    length: f64,
+    pub(super) length: f64,
     /// What is left of each row.
     pub(super) residuals: Vec<f64>,
     /// Is the last answer an answer?

@@ -1,0 +1,159 @@
+//! What is kept of a run for its tables and pictures, in bounded memory.
+
+use contrapposto::hybrid::Case;
+use contrapposto::simulation::{Contact, Sample, Scenario};
+use serde::{Deserialize, Serialize};
+
+/// Most numbers of one coordinate in all rows of all coordinates together: a longer run is written with every second sample,
+/// every third, and so on.
+const MOST_VALUES: f64 = 200_000.0;
+
+/// Rows of samples, one after the other.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Recording {
+    /// Samples from one row to the next.
+    every: u64,
+    /// Coordinates, supports.
+    coordinates: usize,
+    supports: usize,
+    times: Vec<f64>,
+    posture: Vec<f64>,
+    external: Vec<f64>,
+    passive: Vec<f64>,
+    load: Vec<f64>,
+    fatigue: Vec<[f64; 2]>,
+    asked: Vec<Option<(Case, Option<f64>)>>,
+    /// By support: share of weight, force, where it acts, couple about that point.
+    contacts: Vec<[f64; 10]>,
+    centers: Vec<[f64; 3]>,
+}
+
+/// One row.
+#[derive(Clone, Copy)]
+pub(crate) struct Row<'a> {
+    pub(crate) time: f64,
+    pub(crate) posture: &'a [f64],
+    pub(crate) external: &'a [f64],
+    pub(crate) passive: &'a [f64],
+    pub(crate) load: &'a [f64],
+    pub(crate) fatigue: &'a [[f64; 2]],
+    pub(crate) asked: &'a [Option<(Case, Option<f64>)>],
+    pub(crate) contacts: &'a [[f64; 10]],
+    /// Of a body with supports or tasks.
+    pub(crate) center_of_mass: Option<[f64; 3]>,
+}
+
+impl Recording {
+    pub(crate) fn new(scenario: &Scenario) -> Self {
+        let coordinates = scenario.model.coordinates().len();
+        let samples = (scenario.run.duration / scenario.run.step).floor() + 1.0;
+        let rows = (MOST_VALUES / coordinates.max(1) as f64).max(1.0);
+        Self {
+            every: (samples / rows).ceil().max(1.0) as u64,
+            coordinates,
+            supports: scenario.supports.len(),
+            times: vec![],
+            posture: vec![],
+            external: vec![],
+            passive: vec![],
+            load: vec![],
+            fatigue: vec![],
+            asked: vec![],
+            contacts: vec![],
+            centers: vec![],
+        }
+    }
+
+    /// Takes in sample number `number`, counted from 0, if it is one of those that are kept.
+    pub(crate) fn take(&mut self, number: u64, sample: &Sample) {
+        if !number.is_multiple_of(self.every) {
+            return;
+        }
+        self.times.push(sample.time);
+        self.posture.extend_from_slice(sample.posture);
+        self.external.extend_from_slice(sample.external);
+        self.passive.extend_from_slice(sample.passive);
+        self.load.extend_from_slice(sample.load);
+        self.fatigue.extend_from_slice(sample.fatigue);
+        self.asked.extend(sample.decisions.iter().map(|d| d.as_ref().map(|decision| (decision.case, decision.goal))));
+        if let Some(standing) = sample.standing {
+            self.contacts.extend(standing.contacts.iter().map(numbers));
+            self.centers.push(standing.center_of_mass.into());
+        }
+    }
+
+    /// Forgets the rows from sample number `samples` on.
+    pub(crate) fn truncate(&mut self, samples: u64) {
+        let rows = samples.div_ceil(self.every) as usize;
+        let n = self.coordinates;
+        self.times.truncate(rows);
+        for column in [&mut self.posture, &mut self.external, &mut self.passive, &mut self.load] {
+            column.truncate(rows * n);
+        }
+        self.fatigue.truncate(rows * n);
+        self.asked.truncate(rows * n);
+        self.contacts.truncate(rows * self.supports);
+        self.centers.truncate(rows);
+    }
+
+    /// Is it what `scenario` gives, up to sample number `samples`?
+    pub(crate) fn fits(&self, scenario: &Scenario, samples: u64) -> bool {
+        let new = Self::new(scenario);
+        let (rows, n) = (samples.div_ceil(new.every) as usize, new.coordinates);
+        let standing = if scenario.is_whole() { rows } else { 0 };
+        let by_coordinate = [&self.posture, &self.external, &self.passive, &self.load];
+        (self.every, self.coordinates, self.supports) == (new.every, n, new.supports)
+            && self.times.len() == rows
+            && by_coordinate.iter().all(|column| column.len() == rows * n)
+            && self.fatigue.len() == rows * n
+            && self.asked.len() == rows * n
+            && self.contacts.len() == standing * new.supports
+            && self.centers.len() == standing
+            && self.times.windows(2).all(|pair| pair[0] <= pair[1])
+            && by_coordinate.into_iter().flatten().all(|v| v.is_finite())
+            && self
+                .fatigue
+                .iter()
+                .flatten()
+                .chain(self.contacts.iter().flatten())
+                .chain(self.centers.iter().flatten())
+                .all(|v| v.is_finite())
+    }
+
+    pub(crate) fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        (0..self.times.len()).map(|row| self.row(row))
+    }
+
+    pub(crate) fn row(&self, row: usize) -> Row<'_> {
+        let columns = row * self.coordinates..(row + 1) * self.coordinates;
+        let supports = if self.contacts.is_empty() { 0..0 } else { row * self.supports..(row + 1) * self.supports };
+        Row {
+            time: self.times[row],
+            posture: &self.posture[columns.clone()],
+            external: &self.external[columns.clone()],
+            passive: &self.passive[columns.clone()],
+            load: &self.load[columns.clone()],
+            fatigue: &self.fatigue[columns.clone()],
+            asked: &self.asked[columns],
+            contacts: &self.contacts[supports],
+            center_of_mass: self.centers.get(row).copied(),
+        }
+    }
+}
+
+impl Row<'_> {
+    /// Active torque of a coordinate (Eq. 1), N m.
+    pub(crate) fn active(&self, coordinate: usize) -> f64 {
+        -(self.passive[coordinate] + self.external[coordinate])
+    }
+}
+
+fn numbers(contact: &Contact) -> [f64; 10] {
+    let at = contact.center_of_pressure.unwrap_or_default();
+    let [f, p, c] = [contact.force, at, contact.couple];
+    [contact.share, f.x, f.y, f.z, p.x, p.y, p.z, c.x, c.y, c.z]
+}

@@ -1,0 +1,143 @@
+//! The published peer problem: `ik_targets_human48.json` beside the project, a 48-joint human on a free root, both feet placed,
+//! the centre of mass over them, the right hand on a target, the head upright, the rest posture: five strict levels.
+#![allow(dead_code, unreachable_pub, reason = "each user uses a part")]
+
+use std::path::PathBuf;
+
+use contrapposto::ik::Goal;
+use contrapposto::ik::task::{self, CenterOfMass, Orientation, Point, Task};
+use contrapposto::kinematics::{self, Kinematics};
+use contrapposto::math::lexicographic::{Level, Problem, Solver};
+use contrapposto::model::{Model, Placement};
+use contrapposto::posture::Posture;
+use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::urdf;
+use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
+use serde_json::Value;
+
+pub struct Peer {
+    pub model: Model,
+    pub file: Value,
+    pub rest: Posture,
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+fn rotation(value: &Value) -> UnitQuaternion<f64> {
+    let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(numbers).collect();
+    UnitQuaternion::from_matrix(&Matrix3::from_fn(|i, j| rows[i][j]))
+}
+
+impl Peer {
+    /// The problem, if it is beside the project.
+    pub fn read() -> Option<Self> {
+        let shared = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
+        let path = shared.join("models/human-gazebo/humanSubject01_48dof.urdf");
+        let (Ok(bytes), Ok(text)) =
+            (std::fs::read(&path), std::fs::read(shared.join("vectors/ik_targets_human48.json")))
+        else {
+            println!("skipped: the peer problem is not on this machine");
+            return None;
+        };
+        let options = urdf::Options { root: BodyRoot::Free, ..urdf::Options::default() };
+        let model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
+        let file: Value = serde_json::from_slice(&text).unwrap();
+        // x y z, quaternion x y z w, then the joints by name.
+        let names: Vec<&str> =
+            file["joint_names"].as_array().unwrap()[2..].iter().map(|n| n.as_str().unwrap()).collect();
+        let q = numbers(&file["rest_q"]);
+        let place = |name: &str| match name {
+            "root_tx" => 0,
+            "root_ty" => 1,
+            "root_tz" => 2,
+            "root_qx" => 3,
+            "root_qy" => 4,
+            "root_qz" => 5,
+            "root_qw" => 6,
+            joint => 7 + names.iter().position(|n| *n == joint).unwrap(),
+        };
+        let rest = Posture::new(model.coordinates().iter().map(|c| q[place(&c.name)]).collect());
+        Some(Self { model, file, rest })
+    }
+
+    fn segment(&self, name: &str) -> usize {
+        self.model.segment(name).unwrap()
+    }
+
+    fn foot(&self, segment: &str, side: &str) -> Task {
+        let feet = &self.file["feet"];
+        let place = Vector3::from_vec(numbers(&feet[format!("{side}_pos")]));
+        let target = Placement::from_parts(Translation3::from(place), rotation(&feet[format!("{side}_rot")]));
+        Task::Placement(task::Placement { segment: self.segment(segment), point: Vector3::zeros(), target })
+    }
+
+    pub fn goals(&self, target: Vector3<f64>) -> Vec<Goal> {
+        let com = numbers(&self.file["com_xy_target"]);
+        let com = task::Goal::At { target: Vector3::new(com[0], com[1], 0.0), axes: [true, true, false] };
+        let joint = |rate: &contrapposto::model::Rate| rate.coordinate.is_some() && !rate.name.starts_with("root_");
+        let weights = self.model.rates().iter().map(|rate| f64::from(joint(rate))).collect();
+        let feet = vec![self.foot("LeftFoot", "left"), self.foot("RightFoot", "right")];
+        let hand = Point { segment: self.segment("RightHandCOM"), point: Vector3::zeros(), target, axes: [true; 3] };
+        let head = Orientation { segment: self.segment("Head"), target: rotation(&self.file["head_rot_target"]) };
+        vec![
+            Goal { tasks: feet, hard: true, ..Goal::default() },
+            Task::CenterOfMass(CenterOfMass { goal: com }).into(),
+            Task::Point(hand).into(),
+            Task::Orientation(head).into(),
+            Task::Posture(task::Posture { target: self.rest.clone(), weights }).into(),
+        ]
+    }
+
+    /// How far any joint is out of its range, rad.
+    pub fn excess(&self, posture: &Posture) -> f64 {
+        let out = |(c, v): (&contrapposto::model::Coordinate, &f64)| (c.range.0 - v).max(v - c.range.1);
+        self.model.coordinates().iter().zip(posture.values()).map(out).fold(0.0, f64::max)
+    }
+
+    /// How much nearer the hand comes to first order, m, by the best step of at most `room` that keeps feet, centre of mass
+    /// and ranges.
+    pub fn gain(&self, posture: &Posture, target: Vector3<f64>, room: f64) -> f64 {
+        let model = &self.model;
+        let n = model.rates().len();
+        let mut body = Kinematics::new(model);
+        body.update(model, posture).unwrap();
+        let mut problem = Problem::new(n);
+        let mut rows = vec![0.0; 3 * n];
+        let mut level = Level::default();
+        for foot in ["LeftFoot", "RightFoot"] {
+            body.point_jacobian(model, self.segment(foot), Vector3::zeros(), &mut rows);
+            rows.chunks_exact(n).for_each(|row| level.push(row, 0.0, 0.0));
+            body.rotation_jacobian(model, self.segment(foot), &mut rows);
+            rows.chunks_exact(n).for_each(|row| level.push(row, 0.0, 0.0));
+        }
+        let mut center = kinematics::CenterOfMass::new(model);
+        center.update(model, &body);
+        center.jacobian(model, &body, &mut rows);
+        rows.chunks_exact(n).take(2).for_each(|row| level.push(row, 0.0, 0.0));
+        problem.levels.push(level);
+        let hand = self.segment("RightHandCOM");
+        let error = target - body.station(model, hand, Vector3::zeros());
+        body.point_jacobian(model, hand, Vector3::zeros(), &mut rows);
+        let mut level = Level::default();
+        rows.chunks_exact(n).zip(error.iter()).for_each(|(row, e)| level.push(row, *e, *e));
+        problem.levels.push(level);
+        for (i, rate) in model.rates().iter().enumerate() {
+            let (mut lower, mut upper) = (-room, room);
+            if let Some(c) = rate.coordinate {
+                let (range, value) = (model.coordinates()[c].range, posture.values()[c]);
+                (lower, upper) = ((range.0 - value).clamp(-room, 0.0), (range.1 - value).clamp(0.0, room));
+            }
+            (problem.lower[i], problem.upper[i]) = (lower, upper);
+        }
+        let mut solver = Solver::new();
+        solver.solve(&problem).unwrap();
+        assert!(solver.residual_norm(0) < 1e-12);
+        error.norm() - solver.residual_norm(1)
+    }
+}
+
+pub fn target(case: &Value) -> Vector3<f64> {
+    Vector3::from_vec(numbers(&case["target"]))
+}

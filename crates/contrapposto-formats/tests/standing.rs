@@ -1,0 +1,208 @@
+//! Whole bodies over time, from the scenarios of the repository: who is relieved how, and is every sample in equilibrium?
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::path::{Path, PathBuf};
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto::simulation::{Scenario, Summary, run};
+use contrapposto_formats::read_scenario;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
+}
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(folder().join(name)).unwrap()
+}
+
+fn scenario(text: &str) -> Scenario {
+    read_scenario("scenario.toml", text.as_bytes(), None)
+        .unwrap_or_else(|error| panic!("{:?}", miette::Report::new(error)))
+}
+
+/// A finished run, and where it ended.
+struct Ended {
+    scenario: Scenario,
+    summary: Summary,
+}
+
+impl Ended {
+    fn of(text: &str) -> Self {
+        let scenario = scenario(text);
+        let summary = run(&scenario, |_| {}).unwrap();
+        Self { scenario, summary }
+    }
+
+    fn at(&self, name: &str) -> usize {
+        self.scenario.model.coordinates().iter().position(|c| c.name == name).unwrap()
+    }
+
+    fn degrees(&self, name: &str) -> f64 {
+        self.summary.coordinates[self.at(name)].final_value.to_degrees()
+    }
+
+    /// External, passive, active.
+    fn torques(&self, name: &str) -> [f64; 3] {
+        self.summary.coordinates[self.at(name)].final_torques
+    }
+
+    fn share(&self, support: usize) -> f64 {
+        self.summary.standing.as_ref().unwrap().contacts[support].share
+    }
+
+    fn effort(&self) -> f64 {
+        self.summary.standing.as_ref().unwrap().effort
+    }
+
+    /// How much higher the right hip stands than the left one, m.
+    fn right_hip_above_left(&self) -> f64 {
+        let model: &Model = &self.scenario.model;
+        let mut kinematics = Kinematics::new(model);
+        let values = self.summary.coordinates.iter().map(|c| c.final_value).collect();
+        kinematics.update(model, &Posture::new(values)).unwrap();
+        let height = |segment: &str| kinematics.placement(model, model.segment(segment).unwrap()).translation.y;
+        height("femur_r") - height("femur_l")
+    }
+}
+
+/// The same with left and right exchanged.
+fn mirrored(text: &str) -> String {
+    let exchanged = text.replace("_r", "_<").replace("_l", "_r").replace("_<", "_l");
+    // Words that only look like sides.
+    let restored =
+        exchanged.replace("above_lelief", "above_relief").replace("target_l", "target_r").replace("mass_rg", "mass_lg");
+    assert_eq!(restored.matches("above_relief").count(), text.matches("above_relief").count());
+    restored.replace("target_m = [0.03, 0, 0.055]", "target_m = [0.03, 0, -0.055]")
+}
+
+/// The paper's announced next step: who rests one leg ends in contrapposto when relief is passive, and only then.
+#[test]
+fn the_slouch_comes_out_of_the_passive_strategy_alone() {
+    let passive = text("stand-relaxed.toml");
+    let active = passive.replace("kind = \"passive\"", "kind = \"active\"");
+    assert_ne!(passive, active);
+    let [passive, active] = [&passive, &active].map(|text| Ended::of(text));
+    for (name, ended) in [("passive", &passive), ("active", &active)] {
+        println!(
+            "{name}: pelvis list {:.1} deg, right hip {:+.1} mm above left, hip adduction {:.1} deg, passive {:.1}, active {:.1} \
+             N m, knee {:.1} deg, share {:.3}, effort {:.4} -> {:.4}",
+            ended.degrees("pelvis_list"),
+            1e3 * ended.right_hip_above_left(),
+            ended.degrees("hip_adduction_r"),
+            ended.torques("hip_adduction_r")[1],
+            ended.torques("hip_adduction_r")[2],
+            ended.degrees("knee_angle_r"),
+            ended.share(0),
+            ended.summary.effort_at_start.unwrap(),
+            ended.effort()
+        );
+    }
+    // Passive: the pelvis hangs in the ligaments of the hip that carries, over a straight knee, for less effort.
+    assert!(passive.right_hip_above_left() > 0.02);
+    assert!(passive.degrees("hip_adduction_r") > 15.0 && passive.degrees("knee_angle_r") < 5.0);
+    let [external, by_ligaments, by_muscles] = passive.torques("hip_adduction_r");
+    assert!(by_ligaments.abs() > 0.9 * external.abs() && by_muscles.abs() < 0.1 * external.abs());
+    assert!(passive.share(0) > 0.8);
+    assert!(passive.effort() < 0.7 * passive.summary.effort_at_start.unwrap());
+    assert!(passive.effort() < 0.7 * active.effort());
+    // Active: no slouch.
+    assert!(active.right_hip_above_left().abs() < 0.01);
+    assert!(active.degrees("hip_adduction_r") < 10.0);
+    let [_, by_ligaments, by_muscles] = active.torques("hip_adduction_r");
+    assert!(by_ligaments.abs() < 0.5 * by_muscles.abs());
+}
+
+#[test]
+fn who_stands_ready_is_symmetric() {
+    let ended = Ended::of(&text("stand-ready.toml").replace("duration_s = 300", "duration_s = 30"));
+    let shares = [ended.share(0), ended.share(1)];
+    println!("shares {shares:?}");
+    assert!((shares[0] - shares[1]).abs() < 0.1);
+    for coordinate in ended.scenario.model.coordinates() {
+        if let Some(base) = coordinate.name.strip_suffix("_r") {
+            let (right, left) = (ended.degrees(&coordinate.name), ended.degrees(&format!("{base}_l")));
+            assert!((right - left).abs() < 2.0, "{base}: {right} and {left} deg");
+        }
+    }
+}
+
+#[test]
+fn left_and_right_are_mirror_images() {
+    let short = text("stand-relaxed.toml").replace("duration_s = 120", "duration_s = 20");
+    let [right, left] = [short.clone(), mirrored(&short)].map(|text| Ended::of(&text));
+    let mut worst = (0.0_f64, String::new());
+    for coordinate in right.scenario.model.coordinates() {
+        let name = coordinate.name.as_str();
+        let other = match (name.strip_suffix("_r"), name.strip_suffix("_l")) {
+            (Some(base), _) => format!("{base}_l"),
+            (_, Some(base)) => format!("{base}_r"),
+            _ => name.to_owned(),
+        };
+        // Across the middle, bending, rotation and sideways motion change their sign.
+        let turns = ["pelvis_tz", "pelvis_list", "pelvis_rotation"].contains(&name)
+            || name.ends_with("_bending")
+            || (name.ends_with("_rotation") && !name.contains("hip"));
+        let sign = if turns { -1.0 } else { 1.0 };
+        let difference = (right.degrees(name) - sign * left.degrees(&other)).abs();
+        if difference > worst.0 {
+            worst = (difference, name.to_owned());
+        }
+    }
+    println!("worst difference {:.3e} deg, {}", worst.0, worst.1);
+    assert!(worst.0 < 0.5, "{worst:?}"); // a forearm's rotation costs next to nothing
+    assert!((right.share(0) - left.share(0)).abs() < 1e-3);
+}
+
+/// In every sample of every scenario: forces on the root are zero, torques add up, feet stay, ground only pushes, within its
+/// friction and inside the patch.
+#[test]
+fn every_sample_is_in_equilibrium() {
+    for entry in std::fs::read_dir(folder()).unwrap() {
+        let path = entry.unwrap().path();
+        let Ok(text) = std::fs::read_to_string(&path) else { continue };
+        if !text.contains("[[support]]") || text.contains("file =") {
+            continue;
+        }
+        let mut scenario = scenario(&text);
+        scenario.run.duration = scenario.run.duration.min(15.0);
+        let model = &scenario.model;
+        let weight = model.mass() * model.gravity().norm();
+        // Every adult is taller than this.
+        let stature = 1.5;
+        let roots = ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"];
+        let root = roots.map(|name| model.coordinates().iter().position(|c| c.name == name).unwrap());
+        let (mut force, mut moment, mut slip, mut beyond) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let mut samples = 0;
+        run(&scenario, |sample| {
+            samples += 1;
+            let standing = sample.standing.unwrap();
+            for (i, &coordinate) in root.iter().enumerate() {
+                let left = sample.external[coordinate].abs();
+                if i < 3 { force = force.max(left / weight) } else { moment = moment.max(left / (weight * stature)) }
+            }
+            slip = slip.max(standing.slip);
+            for i in 0..sample.posture.len() {
+                assert_eq!(sample.external[i] + sample.passive[i] + sample.active[i], 0.0);
+                let range = model.coordinates()[i].range;
+                assert!((range.0..=range.1).contains(&sample.posture[i]), "{}", model.coordinates()[i].name);
+                assert!(sample.fatigue[i].iter().all(|level| (0.0..=1.0).contains(level)));
+            }
+            for (support, contact) in scenario.supports.iter().zip(&standing.contacts) {
+                let normal = contact.force.dot(&support.normal);
+                let along = (contact.force - normal * support.normal).norm();
+                beyond = beyond.max(-normal / weight).max((along - support.friction * normal) / weight);
+            }
+        })
+        .unwrap();
+        let name = path.file_name().unwrap().to_string_lossy();
+        println!(
+            "{name}: {samples} samples, root {force:.1e} of weight, {moment:.1e} of weight x stature, slip {slip:.1e}"
+        );
+        assert!(force < 1e-8 && moment < 1e-8, "{name}");
+        assert!(slip < 1e-3, "{name}"); // m, while it moves
+        assert!(beyond < 1e-9, "{name}: {beyond}");
+    }
+}

@@ -1,0 +1,144 @@
+//! What became of each relief, from when a group asked until something about it changed?
+
+use serde::{Deserialize, Serialize};
+
+use super::sample::{Relief, Sample};
+use crate::hybrid::{Case, Decision, Outcome, Strategy};
+use crate::model::Side;
+
+/// Most reliefs that are kept; a chattering run has more.
+const MOST: usize = 10_000;
+
+/// One relief of one coordinate: a run of decisions of the same case and outcome.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReliefRecord {
+    /// Coordinate.
+    pub coordinate: usize,
+    /// The muscle group that asked.
+    pub side: Side,
+    /// Its fatigue when it began to ask, 0..=1.
+    pub fatigue: f64,
+    /// Strategy it followed.
+    pub strategy: Strategy,
+    /// The first decision; `None` where the joint could not move or had given up.
+    pub decision: Option<Decision>,
+    /// When it began and ended, s.
+    pub time: (f64, f64),
+    /// The coordinate then, rad or m.
+    pub value: (f64, f64),
+    /// Active torque then, N m.
+    pub active: (f64, f64),
+    /// Sum over its steps of the change of active torque that was foretold, N m.
+    pub predicted: f64,
+    /// Sum of the changes that came, N m.
+    pub real: f64,
+    /// Steps that were carried out.
+    pub done: u64,
+    /// Steps against which something more important stood.
+    pub deferred: u64,
+    /// Steps that made things worse and were taken back.
+    pub taken_back: u64,
+    /// Steps in which it could not move or had given up.
+    pub idle: u64,
+}
+
+/// All reliefs of a run, in the order in which they began.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReliefLog {
+    /// The first ten thousand.
+    pub records: Vec<ReliefRecord>,
+    /// How many there were in all.
+    pub count: u64,
+    /// By coordinate: the one that goes on.
+    open: Vec<Option<usize>>,
+}
+
+impl ReliefLog {
+    pub(super) fn new(coordinates: usize) -> Self {
+        Self { open: vec![None; coordinates], ..Self::default() }
+    }
+
+    /// Is every place it names there?
+    pub(super) fn fits(&self, coordinates: usize) -> bool {
+        self.open.len() == coordinates
+            && self.open.iter().flatten().all(|&place| place < self.records.len())
+            && self.records.iter().all(|record| record.coordinate < coordinates)
+    }
+
+    /// Takes in the next sample.
+    pub(super) fn take(&mut self, sample: &Sample) {
+        for i in 0..self.open.len() {
+            if let Some(record) = self.open[i].and_then(|place| self.records.get_mut(place)) {
+                record.add(sample);
+            }
+            let Some(side) = sample.asking[i] else {
+                self.open[i] = None;
+                continue;
+            };
+            let goes_on = self.open[i].is_some_and(|place| {
+                let record = &self.records[place];
+                record.side == side && record.kind() == sample.decisions[i].map(kind)
+            });
+            if goes_on {
+                continue;
+            }
+            self.count += 1;
+            self.open[i] = None;
+            if self.records.len() < MOST {
+                self.open[i] = Some(self.records.len());
+                self.records.push(ReliefRecord::new(i, side, sample));
+            }
+        }
+    }
+}
+
+impl ReliefRecord {
+    fn new(coordinate: usize, side: Side, sample: &Sample) -> Self {
+        let (value, active) = (sample.posture[coordinate], sample.active[coordinate]);
+        let mut record = Self {
+            coordinate,
+            side,
+            fatigue: sample.fatigue[coordinate][side.index()],
+            strategy: sample.strategies[coordinate],
+            decision: sample.decisions[coordinate],
+            time: (sample.time, sample.time),
+            value: (value, value),
+            active: (active, active),
+            predicted: 0.0,
+            real: 0.0,
+            done: 0,
+            deferred: 0,
+            taken_back: 0,
+            idle: 0,
+        };
+        record.idle = u64::from(record.decision.is_none());
+        record
+    }
+
+    /// The step that led to the sample.
+    fn add(&mut self, sample: &Sample) {
+        let i = self.coordinate;
+        self.time.1 = sample.time;
+        self.value.1 = sample.posture[i];
+        self.active.1 = sample.active[i];
+        match sample.reliefs[i] {
+            Some(Relief::Done { predicted, real }) => {
+                self.predicted += predicted;
+                self.real += real;
+                self.done += 1;
+            }
+            Some(Relief::Deferred) => self.deferred += 1,
+            Some(Relief::TakenBack) => self.taken_back += 1,
+            Some(Relief::Blocked | Relief::GivenUp) => self.idle += 1,
+            None => {}
+        }
+    }
+
+    fn kind(&self) -> Option<(Case, Outcome)> {
+        self.decision.map(kind)
+    }
+}
+
+fn kind(decision: Decision) -> (Case, Outcome) {
+    (decision.case, decision.outcome)
+}

@@ -1,0 +1,146 @@
+//! A scenario from its start to its end, or from where it was left.
+
+use serde::{Deserialize, Serialize};
+
+use super::relief_log::ReliefLog;
+use super::state::State;
+use super::{CoordinateSummary, Sample, Scenario, ScenarioError, Simulation, Standing, StopReason, Summary};
+
+/// So many steps lie between the moments at which a run can be left and taken up again.
+const BETWEEN_MARKS: u64 = 900;
+
+/// Where a run can be taken up again. Going on from here gives the same bytes as never having stopped.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Samples taken before.
+    pub samples: u64,
+    state: State,
+    end_time: f64,
+    coordinates: Vec<CoordinateSummary>,
+    reliefs: ReliefLog,
+    effort_at_start: Option<f64>,
+}
+
+/// A scenario under way, sample by sample.
+#[derive(Debug)]
+pub struct Run<'a> {
+    simulation: Simulation<'a>,
+    /// What has happened so far; its `state` is that of the last mark.
+    so_far: Snapshot,
+    mark: Snapshot,
+    /// Samples in all.
+    samples: u64,
+    reason: Option<StopReason>,
+    /// In the last sample.
+    standing: Option<Standing>,
+    stop_when_settled: bool,
+}
+
+impl<'a> Run<'a> {
+    /// From the start.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] when the scenario is not in order.
+    pub fn new(scenario: &'a Scenario) -> Result<Self, ScenarioError> {
+        let mut simulation = Simulation::new(scenario)?;
+        let n = scenario.model.coordinates().len();
+        let start = Snapshot {
+            samples: 0,
+            state: simulation.state(),
+            end_time: 0.0,
+            coordinates: vec![CoordinateSummary::default(); n],
+            reliefs: ReliefLog::new(n),
+            effort_at_start: None,
+        };
+        Ok(Self::with(scenario, simulation, start))
+    }
+
+    /// From where another run of the same scenario was left.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Snapshot`] if the snapshot is that of another body or run.
+    pub fn resume(scenario: &'a Scenario, snapshot: Snapshot) -> Result<Self, ScenarioError> {
+        let n = scenario.model.coordinates().len();
+        if snapshot.coordinates.len() != n || !snapshot.reliefs.fits(n) || snapshot.samples != snapshot.state.steps {
+            return Err(ScenarioError::Snapshot);
+        }
+        let simulation = Simulation::resume(scenario, snapshot.state.clone())?;
+        Ok(Self::with(scenario, simulation, snapshot))
+    }
+
+    fn with(scenario: &Scenario, simulation: Simulation<'a>, start: Snapshot) -> Self {
+        // A whole number of steps that rounding must not lose.
+        let steps = (scenario.run.duration / scenario.run.step + 1e-9).floor() as u64;
+        Self {
+            simulation,
+            mark: start.clone(),
+            so_far: start,
+            samples: steps + 1,
+            reason: None,
+            standing: None,
+            stop_when_settled: scenario.run.stop_when_settled,
+        }
+    }
+
+    /// The next sample; `None` at the end.
+    ///
+    /// # Errors
+    /// None for a scenario that was checked.
+    pub fn next_sample(&mut self) -> Result<Option<Sample<'_>>, ScenarioError> {
+        if self.reason.is_none() && self.so_far.samples >= self.samples {
+            self.reason = Some(StopReason::Duration);
+        }
+        if self.reason.is_some() {
+            return Ok(None);
+        }
+        if self.so_far.samples.is_multiple_of(BETWEEN_MARKS) && self.so_far.samples > self.mark.samples {
+            self.so_far.state = self.simulation.state();
+            self.mark.clone_from(&self.so_far);
+        }
+        let sample = self.simulation.step()?;
+        self.so_far.samples += 1;
+        self.so_far.end_time = sample.time;
+        for (i, summary) in self.so_far.coordinates.iter_mut().enumerate() {
+            summary.take(i, &sample);
+        }
+        self.so_far.reliefs.take(&sample);
+        if let Some(standing) = sample.standing {
+            self.so_far.effort_at_start.get_or_insert(standing.effort);
+            self.standing.get_or_insert_default().clone_from(standing);
+        }
+        if sample.settled && self.stop_when_settled {
+            self.reason = Some(StopReason::Settled);
+        }
+        Ok(Some(sample))
+    }
+
+    /// The last moment from which the run can be taken up again.
+    pub fn snapshot(&self) -> &Snapshot {
+        &self.mark
+    }
+
+    /// What has happened.
+    pub fn summary(&self) -> Summary {
+        Summary {
+            reason: self.reason.unwrap_or(StopReason::Interrupted),
+            end_time: self.so_far.end_time,
+            samples: self.so_far.samples,
+            coordinates: self.so_far.coordinates.clone(),
+            reliefs: self.so_far.reliefs.clone(),
+            effort_at_start: self.so_far.effort_at_start,
+            standing: self.standing.clone(),
+        }
+    }
+}
+
+/// Runs a scenario, showing every sample to `record`. Memory does not grow with the length of the run.
+///
+/// # Errors
+/// [`ScenarioError`] when the scenario is not in order.
+pub fn run(scenario: &Scenario, mut record: impl FnMut(&Sample)) -> Result<Summary, ScenarioError> {
+    let mut run = Run::new(scenario)?;
+    while let Some(sample) = run.next_sample()? {
+        record(&sample);
+    }
+    Ok(run.summary())
+}
