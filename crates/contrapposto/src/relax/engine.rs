@@ -305,6 +305,7 @@ impl<'a> Engine<'a> {
         self.price = 0.0;
         self.multipliers.clear();
         self.unreached.clear();
+        *self.curvature.shift() = 0.0;
         self.reach = self.options.max_step;
         self.solver.forget();
     }
