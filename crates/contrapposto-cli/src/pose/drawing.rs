@@ -14,7 +14,7 @@ use crate::fail::Fail;
 /// Shorter lines, m, are not drawn.
 const SHORT: f64 = 1e-9;
 
-type Lines = Vec<Vec<Vector3<f64>>>;
+pub(crate) type Lines = Vec<Vec<Vector3<f64>>>;
 
 /// The picture of a solved pose.
 pub(crate) fn views(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<PoseViews, Fail> {
@@ -76,7 +76,7 @@ fn unasked(axes: [bool; 3], mut target: Vector3<f64>, present: impl Fn() -> Vect
 }
 
 /// Right, ahead and up in ground: up is against gravity (y without any), ahead the ground's x axis, or z where x is upright.
-fn directions(model: &Model) -> [Vector3<f64>; 3] {
+pub(crate) fn directions(model: &Model) -> [Vector3<f64>; 3] {
     let up = (-model.gravity()).try_normalize(0.0).unwrap_or_else(Vector3::y);
     let x = if up.x.abs() > 0.9 { Vector3::z() } else { Vector3::x() };
     let ahead = (x - up * up.dot(&x)).normalize();
@@ -85,7 +85,7 @@ fn directions(model: &Model) -> [Vector3<f64>; 3] {
 
 /// Lines of the body: those that join the joints of every segment; a last segment through its centre of mass to as far beyond;
 /// a circle for the head.
-fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
+pub(crate) fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
     let segments = model.segments();
     let origin = |segment: usize| kinematics.placement(model, segment).translation.vector;
     let mut joints: Vec<Vec<Vector3<f64>>> = (0..segments.len()).map(|s| vec![origin(s)]).collect();
@@ -114,18 +114,20 @@ fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
     lines
 }
 
-/// A line from the first point to the farthest one, and from that line the shortest ones to all others: a spine and shoulders.
+/// A line from the first point to one of the others, and from that line the shortest ones to all the rest, whichever is the least
+/// to draw: a spine and shoulders.
 fn joined(points: &[Vector3<f64>]) -> Lines {
     let (first, rest) = (points[0], &points[1..]);
-    let far = |p: &&Vector3<f64>| (*p - first).norm();
-    let Some(end) = rest.iter().max_by(|p, q| far(p).total_cmp(&far(q))) else { return vec![] };
-    let spine = end - first;
-    let from = |point: &Vector3<f64>| {
-        let share = if spine.norm() > SHORT { (point - first).dot(&spine) / spine.norm_squared() } else { 0.0 };
-        first + share.clamp(0.0, 1.0) * spine
+    let drawn = |end: &Vector3<f64>| -> Lines {
+        let spine = end - first;
+        let from = |point: &Vector3<f64>| {
+            let share = if spine.norm() > SHORT { (point - first).dot(&spine) / spine.norm_squared() } else { 0.0 };
+            first + share.clamp(0.0, 1.0) * spine
+        };
+        std::iter::once(vec![first, *end]).chain(rest.iter().map(|point| vec![from(point), *point])).collect()
     };
-    let others = rest.iter().map(|point| vec![from(point), *point]);
-    std::iter::once(vec![first, *end]).chain(others).collect()
+    let ink = |lines: &Lines| -> f64 { lines.iter().map(|line| (line[1] - line[0]).norm()).sum() };
+    rest.iter().map(drawn).min_by(|a, b| ink(a).total_cmp(&ink(b))).unwrap_or_default()
 }
 
 /// A ring seen from the front and one seen from the side: a ball in both views.
