@@ -141,6 +141,12 @@ impl ContactForces {
         self.balance
     }
 
+    /// Forgets what earlier postures have shown: the next answer is that of new forces, to the bit.
+    pub fn forget(&mut self) {
+        self.sides.fill(Side::Positive);
+        self.solver.forget();
+    }
+
     /// Torque of every unknown force.
     fn gather(&mut self, model: &Model, kinematics: &Kinematics) {
         let n = model.rates().len();

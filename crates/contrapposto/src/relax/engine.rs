@@ -306,6 +306,8 @@ impl<'a> Engine<'a> {
         self.multipliers.clear();
         self.unreached.clear();
         *self.curvature.shift() = 0.0;
+        self.contact.forget();
+        self.seen = false;
         self.reach = self.options.max_step;
         self.solver.forget();
     }

@@ -3,14 +3,14 @@
 //! A posture of least effort is a valley; which one [`Engine`](super::Engine) finds depends on where it begins. So it begins in
 //! several places, all of them given by the body and the tables of the paper, none by chance (`finder.rs`):
 //!
-//! 1. where the scenario starts;
+//! 1. where the scenario starts, moved to its tasks first as [`crate::ik`] would;
 //! 2. from the posture found there, every coordinate is asked ([`crate::hybrid::minimise`]) where its active and where its passive
 //!    solution lies, with the slope along the motion that supports and tasks leave it. All active goals together, all passive goals
 //!    together, and those of the [`SINGLE`] hardest-worked coordinates one by one, are half-spaces below the tasks and above
 //!    effort; the body moves under them for [`SCOUT`] steps at most, then as many without them. Active goals lie where curves are
 //!    flat, passive ones near the ends of ranges, where ligaments carry;
 //! 3. the same again from the posture of least effort so far, as long as that is a new one, [`ROUNDS`] times at most;
-//! 4. the mirror image of every posture found, where the body has one ([`super::Mirror`]).
+//! 4. the mirror image of every posture found, where the body has one ([`super::Mirror`]), moved to the tasks likewise.
 //!
 //! What is new then settles with all the steps it may have. Valleys are flat: a forearm may turn without a muscle noticing. So two
 //! postures are one if at no joint what weight asks or what ligaments give differs by more than [`SAME`] of the strength there, and

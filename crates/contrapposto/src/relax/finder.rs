@@ -19,6 +19,8 @@ use crate::posture::Posture;
 const YIELDED: [f64; 2] = [1e-5, 0.02];
 /// A goal nearer than this is none, rad or m.
 const NEAR: f64 = 0.01;
+/// The approach to tasks ends when nothing moves by more, rad or m.
+const NEARLY: f64 = 1e-6;
 /// `R_min`: every active goal that lessens torque is worth a try.
 const RATIO: f64 = 0.0;
 /// `eps` of the tables, N m.
@@ -45,6 +47,8 @@ pub(super) struct Finder<'a> {
     search: &'a Search<'a>,
     /// For the first steps, and for all of them.
     engines: [Engine<'a>; 2],
+    /// Knows no effort.
+    approach: Engine<'a>,
     /// Place of the pushes among the engines' goals.
     slot: usize,
     found: Vec<Found>,
@@ -63,20 +67,21 @@ impl<'a> Finder<'a> {
             goals.push(Task::Effort(Effort::whole(search.model)).into());
         }
         goals.insert(slot, Goal::default());
-        let engine = |max_steps: usize| {
-            let (supports, goals) = (search.supports.to_vec(), goals.clone());
+        let engine = |max_steps: usize, goals: &[Goal]| {
+            let (supports, goals) = (search.supports.to_vec(), goals.to_vec());
             let options = Options { max_steps, ..options };
             let mut engine = Engine::new(search.model, search.start, supports, goals, search.loads, options)?;
             search.locked.iter().for_each(|&rate| engine.lock(rate));
             Ok::<_, SearchError>(engine)
         };
-        let engines = [engine(SCOUT.min(options.max_steps))?, engine(options.max_steps)?];
-        Ok(Self { search, engines, slot, found: vec![], fell: vec![], starts: 0, steps: 0 })
+        let engines = [engine(SCOUT.min(options.max_steps), &goals)?, engine(options.max_steps, &goals)?];
+        let approach = engine(SCOUT, &goals[..slot])?;
+        Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], starts: 0, steps: 0 })
     }
 
     /// All starts, a few steps each.
     pub(super) fn scout(&mut self) -> Result<(), SearchError> {
-        self.run(0, self.search.start, vec!["the start".to_owned()]);
+        self.run_to_tasks(self.search.start, "the start".to_owned());
         let mut pushed_from: Vec<Found> = vec![];
         for _ in 0..ROUNDS {
             let Some(best) = self.best() else { break };
@@ -95,7 +100,7 @@ impl<'a> Finder<'a> {
                 }
                 if !self.found.iter().any(|known| same(known, &twin)) {
                     let label = format!("mirror image of: {}", twin.starts[0]);
-                    self.run(0, &mirror.posture(&twin.relaxed.posture), vec![label]);
+                    self.run_to_tasks(&mirror.posture(&twin.relaxed.posture), label);
                 }
             }
         }
@@ -150,6 +155,20 @@ impl<'a> Finder<'a> {
         {
             (known.relaxed, known.excess, known.pulls) = (new.relaxed, new.excess, new.pulls);
         }
+    }
+
+    /// First does the tasks, whatever effort it takes: from afar the two would stand in each other's way.
+    fn run_to_tasks(&mut self, from: &Posture, start: String) {
+        let mut posture = from.clone();
+        self.approach.restart();
+        for _ in 0..SCOUT {
+            self.steps += 1;
+            match self.approach.step(&mut posture) {
+                Ok(step) if step.largest > NEARLY => {}
+                _ => break,
+            }
+        }
+        self.run(0, &posture, vec![start]);
     }
 
     /// Moves under half-spaces and then without them.

@@ -33,15 +33,13 @@ impl Mirror {
         let segments: Option<Vec<usize>> =
             model.segments().iter().map(|segment| model.segment(&other_side(&segment.name))).collect();
         let mut mirror = Self { partners: vec![], segments: segments?, across: across(model) };
-        for (i, coordinate) in coordinates.iter().enumerate() {
-            let partner = model.coordinate(&other_side(&coordinate.name))?;
-            mirror.partners.push((partner, 1.0));
-            debug_assert_eq!(mirror.partners.len(), i + 1);
+        for coordinate in coordinates {
+            mirror.partners.push((model.coordinate(&other_side(&coordinate.name))?, 1.0));
         }
         let mut kinematics = [Kinematics::new(model), Kinematics::new(model)];
-        for i in 0..coordinates.len() {
+        for (i, coordinate) in coordinates.iter().enumerate() {
             let mut moved = model.default_posture();
-            let (low, high) = coordinates[i].range;
+            let (low, high) = coordinate.range;
             let far = MOVE * (high - low).min(1.0);
             moved.values_mut()[i] += if moved.values()[i] + far <= high { far } else { -far };
             let fits = |mirror: &mut Self, sign: f64, kinematics: &mut _| {
