@@ -182,7 +182,6 @@ struct Oracle {
     /// Rows `a x = b` and `a x <= b`, sparse.
     equal: Vec<(Vec<(usize, f64)>, f64)>,
     below: Vec<(Vec<(usize, f64)>, f64)>,
-    strengths: Vec<[f64; 2]>,
 }
 
 impl Oracle {
@@ -195,19 +194,19 @@ impl Oracle {
             (0..forces).map(|j| (j, columns[j * n + rate] / size)).collect()
         };
         let rest = |rate: usize| stand.external.torques()[rate] + stand.passive.torques()[rate];
-        let mut oracle = Self { forces, joints: 0, equal: vec![], below: vec![], strengths: vec![] };
+        let mut oracle = Self { forces, joints: 0, equal: vec![], below: vec![] };
         for rate in root_rates(&stand.model) {
             oracle.equal.push((row(rate, weight), -rest(rate) / weight));
         }
         for (i, coordinate) in stand.model.coordinates().iter().enumerate() {
             let (Some(rate), Some(groups)) = (coordinate.rate, &coordinate.groups) else { continue };
             let q = stand.kinematics.values()[i];
-            oracle.strengths.push([0, 1].map(|side| groups[side].strength.torque(q)));
+            let strengths = [0, 1].map(|side| groups[side].strength.torque(q));
             let [positive, negative] = [0, 1].map(|side| forces + 2 * oracle.joints + side);
-            // positive - negative = active, all over 1 N m
-            let mut entries = row(rate, 1.0);
-            entries.extend([(positive, 1.0), (negative, -1.0)]);
-            oracle.equal.push((entries, -rest(rate)));
+            // Loads of both groups, shares of their strength: S+ positive - S- negative = active, all over S+.
+            let mut entries = row(rate, strengths[0]);
+            entries.extend([(positive, 1.0), (negative, -strengths[1] / strengths[0])]);
+            oracle.equal.push((entries, -rest(rate) / strengths[0]));
             oracle.below.push((vec![(positive, -1.0)], 0.0));
             oracle.below.push((vec![(negative, -1.0)], 0.0));
             oracle.joints += 1;
@@ -268,7 +267,7 @@ impl Oracle {
 
     fn least_effort(&self) -> Option<f64> {
         let mut weights = vec![0.0; self.forces];
-        weights.extend(self.strengths.iter().flatten().map(|strength| 1.0 / (strength * strength)));
+        weights.extend(vec![1.0; 2 * self.joints]);
         self.solve(&weights, &vec![0.0; weights.len()])
     }
 
