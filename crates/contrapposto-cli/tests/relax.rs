@@ -29,7 +29,7 @@ const ARM: &str = r#"
 format = 1
 title = "A hand held up"
 [model]
-adult = { part = "right_arm" }
+adult = { sex = "male", stature_m = 1.74, mass_kg = 73, part = "right_arm" }
 [[task]]
 kind = "point"
 segment = "hand_r"

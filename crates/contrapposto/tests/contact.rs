@@ -286,7 +286,7 @@ fn no_forces_spare_the_muscles_more() {
     let (mut compared, mut worst, mut better) = (0, 0f64, 0f64);
     for friction in [0.6, 0.2, f64::INFINITY] {
         let mut stand = Stand::adult(friction, 1.0);
-        for _ in 0..60 {
+        for _ in 0..150 {
             let posture = near_standing(&mut rng, &stand.model);
             if stand.update(&posture) != Balance::Held {
                 continue;

@@ -174,9 +174,8 @@ fn stiffness_is_the_central_difference_of_torque() {
                         kinematics.update(&model, &moved).unwrap();
                         external.update(&model, kinematics, &loads).unwrap();
                         passive.update(&model, kinematics);
-                        for i in 0..n {
-                            numeric[0][i] -= sign * passive.torques()[i] / (2.0 * h);
-                            numeric[1][i] -= sign * external.torques()[i] / (2.0 * h);
+                        for (part, torques) in numeric.iter_mut().zip([passive.torques(), external.torques()]) {
+                            part.iter_mut().zip(torques).for_each(|(sum, torque)| *sum -= sign * torque / (2.0 * h));
                         }
                     }
                     numeric
@@ -184,8 +183,8 @@ fn stiffness_is_the_central_difference_of_torque() {
             let numeric = error(1e-5, &mut kinematics, &mut external, &mut passive);
             for part in 0..2 {
                 let size = exact[part].iter().fold(1.0, |size: f64, e| size.max(e.abs()));
-                for i in 0..n {
-                    worst[part] = worst[part].max((exact[part][i * n + j] - numeric[part][i]).abs() / size);
+                for (i, numeric) in numeric[part].iter().enumerate() {
+                    worst[part] = worst[part].max((exact[part][i * n + j] - numeric).abs() / size);
                 }
             }
         }
