@@ -33,7 +33,7 @@ adult = { sex = "male", stature_m = 1.74, mass_kg = 73, part = "right_arm" }
 [[task]]
 kind = "point"
 segment = "hand_r"
-target_m = [0.3, 0.05, 0.2]
+target_m = [0.3, 1.2, 0.2]
 "#;
 
 fn written(folder: &Path, text: &str) -> PathBuf {
