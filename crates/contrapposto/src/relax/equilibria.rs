@@ -13,9 +13,9 @@
 //! 4. the mirror image of every posture found, where the body has one ([`super::Mirror`]), moved to the tasks likewise.
 //!
 //! What is new then settles with all the steps it may have. Valleys are flat: a forearm may turn without a muscle noticing. So two
-//! postures are one if at no joint what weight asks or what ligaments give differs by more than [`SAME`] of the strength there, and
-//! effort by no more than [`SAME_EFFORT`] of it; the one of less effort is kept. Those whose tasks were left
-//! farther away than in the best posture, that slipped or fell, are counted and left out. Every start begins with a solver that
+//! postures are one if at no joint what weight asks or what ligaments give differs by more than [`SAME`] of the strength there; the
+//! one of less effort is kept. Those whose tasks were left farther away than in the best posture, that slipped or fell, are counted
+//! and left out. Every start begins with a solver that
 //! remembers nothing, so the list does not depend on the order of starts except through what is listed above.
 
 use super::finder::Finder;
@@ -33,10 +33,9 @@ pub const SINGLE: usize = 6;
 pub const ROUNDS: usize = 2;
 /// Steps under pushes, and steps without them before it is asked whether a posture is new.
 pub const SCOUT: usize = 40;
-/// Postures are one if at no joint the torque of weight and loads, or of ligaments, differs by more than this share of strength,
+/// Postures are one if at no joint the torque of weight and loads, or of ligaments, differs by more than this share of
+/// strength.
 pub const SAME: f64 = 0.05;
-/// and effort by no more than this share of itself.
-pub const SAME_EFFORT: f64 = 0.05;
 
 /// What is asked.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! How are the starts of [`super::equilibria`] made, and which of the postures they lead to count?
 
 use super::equilibria::{
-    Carried, Equilibria, Hanging, ROUNDS, RelaxedPosture, SAME, SAME_EFFORT, SCOUT, SINGLE, Search, SearchError, Work,
+    Carried, Equilibria, Hanging, ROUNDS, RelaxedPosture, SAME, SCOUT, SINGLE, Search, SearchError, Work,
 };
 use super::mirror::Mirror;
 use super::stability::stability;
@@ -352,7 +352,5 @@ impl<'a> Finder<'a> {
 
 /// Are two postures one: does the same pull at every joint?
 fn same(a: &Found, b: &Found) -> bool {
-    let most = SAME_EFFORT * a.relaxed.effort.max(b.relaxed.effort);
-    let pulls = a.pulls.iter().flatten().zip(b.pulls.iter().flatten());
-    (a.relaxed.effort - b.relaxed.effort).abs() <= most && pulls.into_iter().all(|(a, b)| (a - b).abs() <= SAME)
+    a.pulls.iter().flatten().zip(b.pulls.iter().flatten()).all(|(a, b)| (a - b).abs() <= SAME)
 }

@@ -15,8 +15,7 @@ mod stability;
 
 pub use engine::{Engine, Options, Reason, RelaxError, Relaxed, Step};
 pub use equilibria::{
-    Carried, Equilibria, Hanging, ROUNDS, RelaxedPosture, SAME, SAME_EFFORT, SCOUT, SINGLE, Search, SearchError, Work,
-    equilibria,
+    Carried, Equilibria, Hanging, ROUNDS, RelaxedPosture, SAME, SCOUT, SINGLE, Search, SearchError, Work, equilibria,
 };
 pub use mirror::Mirror;
 pub use stability::{Direction, LEAST_MASS, Stability, stability, stiffness};
