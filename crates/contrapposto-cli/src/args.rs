@@ -22,6 +22,8 @@ pub(crate) enum Verb {
     Demo(DemoArgs),
     /// Solve one posture: supports and tasks in order of priority in, posture out.
     Pose(PoseArgs),
+    /// Find the different postures of least effort under the tasks, and say what holds each.
+    Relax(RelaxArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.
     Figures(FiguresArgs),
     /// Decide single joints: one JSON problem a line in, one JSON decision a line out.
@@ -82,6 +84,23 @@ pub(crate) struct PoseArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Print pose.json instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  contrapposto relax scenarios/stand-relaxed.toml --out out\n  \
+    contrapposto relax scenarios/stand-relaxed.toml --json\n\n\
+    Searches from starts of both strategies: coordinates at their active goals, at their passive goals, and mirror images. Writes \
+    relax.json, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] have no part in \
+    it. Exit code 1 when the supports cannot hold the body in any posture that was tried.")]
+pub(crate) struct RelaxArgs {
+    /// Scenario file (TOML) with supports and tasks; `-` reads standard input.
+    pub(crate) scenario: PathBuf,
+    /// Folder for the results; made if it is not there. Nothing is written without it.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print relax.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -16,6 +16,7 @@ mod model_file;
 mod output;
 mod passive;
 mod pose;
+mod relax;
 mod report;
 mod simulate;
 mod torques;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Verb::Simulate(args) => simulate::simulate(&args),
         Verb::Demo(args) => simulate::demo(&args),
         Verb::Pose(args) => pose::pose(&args),
+        Verb::Relax(args) => relax::relax(&args),
         Verb::Figures(args) => figures::figures(&args),
         Verb::Minimize(args) => minimize::minimize(&args),
         Verb::Passive(args) => passive::passive(&args),

@@ -1,6 +1,6 @@
 //! `contrapposto pose`: one posture from goals in order of priority.
 
-mod drawing;
+pub(crate) mod drawing;
 
 pub(crate) use self::drawing::views;
 

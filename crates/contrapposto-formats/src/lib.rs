@@ -28,7 +28,8 @@ pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
-    MOST_BYTES, ModelFile, PoseScenario, ScenarioText, read_pose, read_scenario, scenario_model, scenario_schema,
+    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, ScenarioText, read_pose, read_relax, read_scenario,
+    scenario_model, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use trajectory_csv::{TableRow, csv_header, csv_row};

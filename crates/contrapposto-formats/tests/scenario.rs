@@ -11,7 +11,7 @@ use common::toml::{ODD, hammer_toml, numbers};
 use contrapposto::hybrid::Strategy;
 use contrapposto::ik::task::Task;
 use contrapposto::simulation::{Sample, Scenario, ScenarioError, run};
-use contrapposto_formats::{InputError, csv_header, csv_row, read_scenario};
+use contrapposto_formats::{InputError, TableRow, csv_header, csv_row, read_scenario};
 
 /// Every scenario of the repository that moves single joints over time, and one with every table such a scenario may have.
 fn corpus() -> Vec<String> {
@@ -128,7 +128,10 @@ fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
     let mut row = String::new();
     let summary = run(&scenario, |sample: &Sample| {
         row.clear();
-        csv_row(&scenario.model, sample, &mut row);
+        let asked: Vec<_> = sample.decisions.iter().map(|d| d.as_ref().map(|d| (d.case, d.goal))).collect();
+        let &Sample { time, posture, external, passive, fatigue, .. } = sample;
+        let shown = TableRow { time, posture, external, passive, fatigue, asked: &asked };
+        csv_row(&scenario.model, &shown, &mut row);
         assert_eq!(row.trim_end().split(',').count(), columns);
         for (at, cell) in row.trim_end().split(',').enumerate() {
             let number: f64 = if cell.is_empty() { 0.0 } else { cell.parse().unwrap() };

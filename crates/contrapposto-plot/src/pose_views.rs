@@ -16,7 +16,7 @@ const VIEW_HEIGHT: f64 = 440.0;
 /// Space between two views, px: room for the numbers of the second.
 const BETWEEN: f64 = 48.0;
 /// Space between the figures and the edge of their view, px.
-const PADDING: f64 = 22.0;
+pub(crate) const PADDING: f64 = 22.0;
 /// Most lines of a figure that are drawn.
 const MOST_LINES: usize = 5_000;
 /// Most views; more would not be readable.
@@ -69,7 +69,7 @@ pub fn pose_views(picture: &PoseViews) -> Figure {
     let left = FRAME_LEFT;
     let width = (WIDTH - left - MARGIN - BETWEEN * (count - 1.0)) / count;
     let boxes: Vec<Bounds> = views.iter().map(Bounds::of).collect();
-    let scale = boxes.iter().map(|b| b.scale(width)).fold(f64::INFINITY, f64::min);
+    let scale = boxes.iter().map(|b| b.scale(width, VIEW_HEIGHT)).fold(f64::INFINITY, f64::min);
     // All views stand on the same ground.
     let (low, high) = boxes
         .iter()
@@ -85,18 +85,18 @@ pub fn pose_views(picture: &PoseViews) -> Figure {
         outside = outside.max(paper.draw(&mut canvas, view));
     }
     let bottom = top + VIEW_HEIGHT + 34.0;
-    legend(&mut canvas, left, bottom, views, outside);
+    legend(&mut canvas, (left, bottom), views, "target", outside);
     canvas.finish(bottom + MARGIN)
 }
 
 /// The smallest box around the figures, and targets that are not too far off.
-struct Bounds {
-    low: [f64; 2],
-    high: [f64; 2],
+pub(crate) struct Bounds {
+    pub(crate) low: [f64; 2],
+    pub(crate) high: [f64; 2],
 }
 
 impl Bounds {
-    fn of(view: &PoseView) -> Self {
+    pub(crate) fn of(view: &PoseView) -> Self {
         let mut bounds = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
         points(&view.start).chain(points(&view.end)).chain(view.center_of_mass).for_each(|point| bounds.take(point));
         let size = (0..2).map(|k| bounds.high[k] - bounds.low[k]).fold(0.0, f64::max);
@@ -118,17 +118,17 @@ impl Bounds {
         }
     }
 
-    fn middle(&self) -> f64 {
+    pub(crate) fn middle(&self) -> f64 {
         if self.low[0] <= self.high[0] { 0.5 * (self.low[0] + self.high[0]) } else { 0.0 }
     }
 
     /// Pixels a metre that let it fit.
-    fn scale(&self, width: f64) -> f64 {
+    pub(crate) fn scale(&self, width: f64, height: f64) -> f64 {
         if self.low[0] > self.high[0] {
             return f64::INFINITY;
         }
         let fit = |k: usize, room: f64| (room - 2.0 * PADDING) / (self.high[k] - self.low[k]).max(1e-6);
-        fit(0, width).min(fit(1, VIEW_HEIGHT))
+        fit(0, width).min(fit(1, height))
     }
 }
 
@@ -137,10 +137,10 @@ fn points(lines: &[Vec<[f64; 2]>]) -> impl Iterator<Item = [f64; 2]> + '_ {
 }
 
 /// Where metres stand in one view.
-struct Paper {
-    area: Rect,
-    middle: [f64; 2],
-    scale: f64,
+pub(crate) struct Paper {
+    pub(crate) area: Rect,
+    pub(crate) middle: [f64; 2],
+    pub(crate) scale: f64,
 }
 
 impl Paper {
@@ -152,7 +152,7 @@ impl Paper {
     }
 
     /// Draws the view; gives the number of targets outside of it.
-    fn draw(&self, canvas: &mut Canvas, view: &PoseView) -> usize {
+    pub(crate) fn draw(&self, canvas: &mut Canvas, view: &PoseView) -> usize {
         let area = self.area;
         let label = fit(&view.label, LABEL_SIZE, area.width);
         canvas.text((area.left, area.top - 7.0), &label, LABEL_SIZE, Align::Left, TEXT);
@@ -228,7 +228,7 @@ fn cross(canvas: &mut Canvas, (x, y): Point) {
 }
 
 /// One line below the views: what lines, crosses and dots are.
-fn legend(canvas: &mut Canvas, left: f64, y: f64, views: &[PoseView], outside: usize) {
+pub(crate) fn legend(canvas: &mut Canvas, (left, y): Point, views: &[PoseView], target: &str, outside: usize) {
     const SAMPLE: f64 = 22.0;
     let any = |test: &dyn Fn(&PoseView) -> bool| views.iter().any(test);
     let mut x = left;
@@ -249,9 +249,8 @@ fn legend(canvas: &mut Canvas, left: f64, y: f64, views: &[PoseView], outside: u
     }
     if any(&|view| !view.targets.is_empty()) {
         let label = match outside {
-            0 => "target".to_owned(),
-            1 => "target (1 outside the picture)".to_owned(),
-            n => format!("target ({n} outside the picture)"),
+            0 => target.to_owned(),
+            n => format!("{target} ({n} outside the picture)"),
         };
         say(canvas, &label, &|canvas, x| cross(canvas, (x + SAMPLE / 2.0, y)));
     }

@@ -14,7 +14,7 @@ use crate::fail::Fail;
 /// Shorter lines, m, are not drawn.
 const SHORT: f64 = 1e-9;
 
-type Lines = Vec<Vec<Vector3<f64>>>;
+pub(crate) type Lines = Vec<Vec<Vector3<f64>>>;
 
 /// What is drawn beside the body.
 #[derive(Default)]
@@ -109,7 +109,7 @@ pub(crate) fn directions(model: &Model) -> [Vector3<f64>; 3] {
 
 /// Lines of the body: those that join the joints of every segment; a last segment through its centre of mass to as far beyond;
 /// a circle for the head.
-fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
+pub(crate) fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
     let segments = model.segments();
     let origin = |segment: usize| kinematics.placement(model, segment).translation.vector;
     let mut joints: Vec<Vec<Vector3<f64>>> = (0..segments.len()).map(|s| vec![origin(s)]).collect();
@@ -138,19 +138,20 @@ fn sticks(model: &Model, kinematics: &Kinematics) -> Lines {
     lines
 }
 
-/// A line from the first point to the one for which the others lie nearest to that line, and the shortest ones from it to them:
-/// a spine and shoulders.
+/// A line from the first point to one of the others, and from that line the shortest ones to all the rest, whichever is the least
+/// to draw: a spine and shoulders.
 fn joined(points: &[Vector3<f64>]) -> Lines {
     let (first, rest) = (points[0], &points[1..]);
-    let from = |end: &Vector3<f64>, point: &Vector3<f64>| {
+    let drawn = |end: &Vector3<f64>| -> Lines {
         let spine = end - first;
-        let share = if spine.norm() > SHORT { (point - first).dot(&spine) / spine.norm_squared() } else { 0.0 };
-        first + share.clamp(0.0, 1.0) * spine
+        let from = |point: &Vector3<f64>| {
+            let share = if spine.norm() > SHORT { (point - first).dot(&spine) / spine.norm_squared() } else { 0.0 };
+            first + share.clamp(0.0, 1.0) * spine
+        };
+        std::iter::once(vec![first, *end]).chain(rest.iter().map(|point| vec![from(point), *point])).collect()
     };
-    let apart = |end: &Vector3<f64>| -> f64 { rest.iter().map(|point| (point - from(end, point)).norm()).sum() };
-    let Some(end) = rest.iter().min_by(|p, q| apart(p).total_cmp(&apart(q))) else { return vec![] };
-    let others = rest.iter().map(|point| vec![from(end, point), *point]);
-    std::iter::once(vec![first, *end]).chain(others).collect()
+    let ink = |lines: &Lines| -> f64 { lines.iter().map(|line| (line[1] - line[0]).norm()).sum() };
+    rest.iter().map(drawn).min_by(|a, b| ink(a).total_cmp(&ink(b))).unwrap_or_default()
 }
 
 /// A ring seen from the front and one seen from the side: a ball in both views.

@@ -2,6 +2,7 @@
 
 mod convert;
 mod pose;
+mod relax;
 mod support;
 mod task;
 mod task_text;
@@ -9,6 +10,7 @@ mod text;
 
 pub(crate) use convert::{double_exponential, passive_curve};
 pub use pose::{ModelFile, PoseScenario, read_pose, scenario_model};
+pub use relax::{RelaxScenario, read_relax};
 pub use text::ScenarioText;
 pub(crate) use text::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, StrategyKindText};
 

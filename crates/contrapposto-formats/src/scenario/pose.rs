@@ -233,7 +233,12 @@ pub(super) fn rates(model: &Model, coordinate: usize) -> Vec<usize> {
 }
 
 /// Rates of the coordinates that are not free.
-fn locked(at: &Located, model: &Model, text: &ScenarioText, free: &[bool]) -> Result<Vec<usize>, InputError> {
+pub(super) fn locked(
+    at: &Located,
+    model: &Model,
+    text: &ScenarioText,
+    free: &[bool],
+) -> Result<Vec<usize>, InputError> {
     for first in balls(model) {
         if free[first..first + 4].iter().any(|flag| *flag != free[first]) {
             let key = if text.coordinates.free.is_some() { "free" } else { "locked" };

@@ -118,7 +118,7 @@ impl ContactForces {
         Ok(forces)
     }
 
-    /// Forgets the forces it found last, with which it begins the next time.
+    /// Forgets what earlier postures have shown: the next answer is that of new forces, to the bit.
     pub fn forget(&mut self) {
         self.solver.forget();
         self.sides.fill(Side::Positive);

@@ -8,10 +8,19 @@
 mod curvature;
 mod descent;
 mod engine;
+mod equilibria;
+mod finder;
 mod hessian;
+mod mirror;
 mod probe;
 mod quadratic;
 mod site;
+mod stability;
 mod valleys;
 
 pub use engine::{Engine, Options, Reason, RelaxError, Relaxed, Step};
+pub use equilibria::{
+    Carried, Equilibria, Hanging, ROUNDS, RelaxedPosture, SAME, SCOUT, SINGLE, Search, SearchError, Work, equilibria,
+};
+pub use mirror::Mirror;
+pub use stability::{Direction, LEAST_MASS, Stability, stability, stiffness};

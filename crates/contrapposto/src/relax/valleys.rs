@@ -15,6 +15,8 @@ use crate::posture::Posture;
 const NEAR: Manner = Manner { pace: 0.15, plain: 0, reach: 0.3, steps: 100, gain: 1e-4, below: f64::INFINITY };
 /// The way down from aside, where goals are still near.
 const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.3, steps: 20, gain: 1e-3, below: f64::INFINITY };
+/// The way to the bottom of a posture that hardly moves any more: a step that gains a millionth is not worth a move.
+const SINK: Manner = Manner { pace: 0.4, plain: 0, reach: 0.1, steps: 40, gain: 1e-6, below: f64::INFINITY };
 /// The way to the very bottom.
 const LAST: Manner = Manner { pace: 0.4, plain: 0, reach: 0.3, steps: 100, gain: 1e-13, below: f64::INFINITY };
 /// How far aside, as a share of the range of each coordinate.
@@ -100,6 +102,21 @@ impl Valleys {
         }
         posture.values_mut().copy_from_slice(self.descent.at.posture.values());
         Ok(Some(Bottom { steps: steps + last.steps, settled: last.settled && last.violation <= EXACT, ..last }))
+    }
+
+    /// Moves `posture` to the bottom of its own valley, and says whether it did: not if that lies farther away than `most` in any
+    /// coordinate, or something that must hold does not.
+    pub(super) fn sink(&mut self, ask: &Ask<'_>, posture: &mut Posture, most: f64) -> Result<bool, BodyError> {
+        self.forces.clear();
+        self.forces.extend_from_slice(ask.contact.forces());
+        let bottom = self.descent.go(ask, posture, &self.forces, &[], &SINK)?;
+        let end = &self.descent.at.posture;
+        let near = end.values().iter().zip(posture.values()).all(|(a, b)| (a - b).abs() <= most);
+        let there = bottom.settled && bottom.violation <= EXACT && near;
+        if there {
+            posture.values_mut().copy_from_slice(end.values());
+        }
+        Ok(there)
     }
 
     /// Where the descent is now is the lowest place so far.

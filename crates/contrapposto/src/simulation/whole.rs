@@ -18,9 +18,13 @@ use super::{Scenario, ScenarioError};
 const MOST: usize = 16;
 /// Largest change of a joint in one time step, in largest steps of relief: the rest of the body must be able to follow.
 const FOLLOW: f64 = 2.0;
-/// The body is still when nothing has changed by more in a time step, rad or m, for so many time steps.
-const STILL: f64 = 1e-6;
-const CALM: u32 = 30;
+/// Nothing changes by more in a time step, rad or m: the body hardly moves, or is still.
+const SLOW: f64 = 1e-3;
+const STILL: f64 = 1e-9;
+/// After so many slow time steps it sinks to the bottom of its valley, if that is near.
+const SOON: u32 = 30;
+/// What `calm` is when it has come to rest.
+const CALM: u32 = u32::MAX;
 /// A slope is computed anew when some coordinate has moved so far, rad or m.
 const MOVED: f64 = 0.005;
 /// A half-space that is missed by more was not kept, rad or m.
@@ -37,7 +41,7 @@ pub(super) struct Whole<'a> {
     /// By coordinate: where the slope was computed, and what it is.
     slopes: Vec<Option<Slope>>,
     before: Posture,
-    /// Steps in a row in which nothing moved, with which reliefs, and those that were not kept.
+    /// Slow steps in a row, [`CALM`] at rest; with which reliefs, and those that were not kept.
     calm: u32,
     asked: Vec<usize>,
     deferred: Vec<usize>,
@@ -122,7 +126,10 @@ impl<'a> Whole<'a> {
             self.engine.hurry();
         }
         let largest = self.engine.step(posture)?.largest;
-        self.calm = if largest <= STILL { self.calm + 1 } else { 0 };
+        self.calm = if largest <= SLOW && !pressing { self.calm + 1 } else { 0 };
+        if self.calm > 0 && self.calm.is_multiple_of(SOON) && (largest <= STILL || self.engine.sink(posture)?) {
+            self.calm = CALM;
+        }
         let kept = |(slot, (_, space)): &(usize, &(usize, &HalfSpace))| {
             *slot < MOST && space.violation(posture.values()) <= MISSED
         };

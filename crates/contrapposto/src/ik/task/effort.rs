@@ -38,8 +38,7 @@ impl Effort {
         for &coordinate in &self.coordinates {
             let Some(rate) = model.coordinates()[coordinate].rate else { continue };
             let row = append(level, model, 1);
-            let passive = passive(model, body, coordinate, [1.0, 0.0], Some((rate, &mut *row)));
-            body.kinematics().fold_columns(model, row);
+            let passive = passive_row(model, body, coordinate, rate, row);
             let active = -(external(model, body, coordinate) + passive);
             let (strength, slope) = strength(model, body, coordinate, active);
             for (entry, external) in row.iter_mut().zip(body.gradient().row(rate)) {
@@ -85,6 +84,13 @@ fn active(model: &Model, body: &Body, coordinate: usize) -> f64 {
 /// What a torque on a coordinate of 1 N m takes from its effort: one over the strength of the group that works.
 pub(crate) fn share_of_strength(model: &Model, body: &Body, coordinate: usize) -> f64 {
     1.0 / strength(model, body, coordinate, active(model, body, coordinate)).0
+}
+
+/// Adds the derivatives of a leading coordinate's passive torque, followers folded in, to `row`, one entry a rate. Gives the torque.
+pub(crate) fn passive_row(model: &Model, body: &Body, coordinate: usize, rate: usize, row: &mut [f64]) -> f64 {
+    let torque = passive(model, body, coordinate, [1.0, 0.0], Some((rate, &mut *row)));
+    body.kinematics().fold_columns(model, row);
+    torque
 }
 
 fn external(model: &Model, body: &Body, coordinate: usize) -> f64 {

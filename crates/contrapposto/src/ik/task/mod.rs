@@ -18,7 +18,7 @@ mod pull;
 pub use center_of_mass::{CenterOfMass, Goal};
 pub use distance::Distance;
 pub use effort::Effort;
-pub(crate) use effort::share_of_strength;
+pub(crate) use effort::{passive_row, share_of_strength};
 pub use look_at::LookAt;
 pub use orientation::Orientation;
 pub use placement::Placement;

@@ -1,0 +1,174 @@
+//! `contrapposto relax`: the different postures of least effort under the tasks of a scenario.
+
+mod text;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::CoordinateKind;
+use contrapposto::relax::{Equilibria, Options, Search, SearchError, equilibria};
+use contrapposto_formats::motion::write_sto;
+use contrapposto_formats::{MOST_BYTES, RelaxScenario, read_relax};
+use contrapposto_plot::{PoseColumn, PoseGrid, PoseView, pose_grid};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::args::RelaxArgs;
+use crate::fail::Fail;
+use crate::input::read;
+use crate::model_file::tell;
+use crate::output::{Folder, print};
+use crate::pose::drawing::{Lines, directions, sticks};
+use crate::pose::model_of;
+use text::{RelaxText, percent, report, weight};
+
+const FILES: [&str; 5] = ["relax.json", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
+/// Largest change of a joint in one step, rad.
+const STEP: f64 = 0.1;
+/// Most steps of the last stage of each posture.
+const STEPS: usize = 300;
+
+pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
+    let bytes = read(&args.scenario, MOST_BYTES)?;
+    let name = args.scenario.display().to_string();
+    let model = model_of(&args.scenario, &name, &bytes)?;
+    let scenario = read_relax(&name, &bytes, model)?;
+    if !scenario.unused.is_empty() {
+        let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
+        tell(
+            "note",
+            &format!("{} {} no part in `relax`", list.join(", "), if list.len() == 1 { "has" } else { "have" }),
+        );
+    }
+    if scenario.effort_added {
+        tell("note", "no task asks for effort; that of all muscles was added as the last one");
+    }
+    let search = Search {
+        model: &scenario.model,
+        start: &scenario.start,
+        supports: &scenario.supports,
+        goals: &scenario.goals,
+        loads: &scenario.loads,
+        locked: &scenario.locked,
+    };
+    let spinner = spinner();
+    let found = equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::default() });
+    spinner.finish_and_clear();
+    let found = found.map_err(|error| match error {
+        SearchError::Relax(error) => Fail::Refused(format!("{name}: {error}")),
+        error => Fail::Job(format!("{name}: {error}")),
+    })?;
+    let files = if args.out.is_some() { FILES.map(str::to_owned).to_vec() } else { vec![] };
+    let text = RelaxText::new(&scenario, &found, files);
+    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("relax.json", error))? + "\n";
+    let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, out)).transpose()?;
+    let picture = folder.map(|folder| format!("picture: {}\n", folder.path("postures.svg").display()));
+    print(&if args.json { json } else { report(&text) + picture.as_deref().unwrap_or_default() })
+}
+
+/// Writes all files.
+fn write(
+    scenario: &RelaxScenario,
+    found: &Equilibria,
+    text: &RelaxText,
+    json: &str,
+    out: &Path,
+) -> Result<Folder, Fail> {
+    let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
+    let rows: Vec<&[f64]> = found.postures.iter().map(|posture| posture.relaxed.posture.values()).collect();
+    let times: Vec<f64> = (0..rows.len()).map(|i| i as f64).collect();
+    let title = if scenario.title.is_empty() { "postures of least effort" } else { &scenario.title };
+    let mot = write_sto(title, &columns, true, &times, &rows).map_err(|error| Fail::job("postures.mot", error))?;
+    let csv = table(scenario, found);
+    let picture = pose_grid(&drawing(scenario, found, text)?);
+    let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
+    let folder = Folder::open(out)?;
+    let mut files = vec![];
+    let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    for (name, bytes) in FILES.into_iter().zip(contents) {
+        let mut file = folder.begin(name)?;
+        file.append(bytes)?;
+        files.push(file);
+    }
+    folder.commit(files)?;
+    Ok(folder)
+}
+
+/// One row a posture and coordinate.
+fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
+    let mut csv = "posture,coordinate,value,unit,external,passive,active,relative_load\n".to_owned();
+    for (number, posture) in found.postures.iter().enumerate() {
+        for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
+            let value = posture.relaxed.posture.values()[i];
+            let (value, unit) = match coordinate.kind {
+                CoordinateKind::Rotation => (value.to_degrees(), "deg"),
+                CoordinateKind::Translation => (value, "m"),
+                CoordinateKind::Quaternion => (value, "1"),
+            };
+            let _ = write!(csv, "{},{},{value},{unit}", number + 1, coordinate.name);
+            let Some(rate) = coordinate.rate else {
+                csv.push_str(",,,,\n");
+                continue;
+            };
+            let (external, passive) = (posture.torques[0][rate], posture.torques[1][rate]);
+            let load =
+                posture.work.iter().find(|work| work.coordinate == i).map(|work| work.relative_load().to_string());
+            let active = -(external + passive);
+            let _ = writeln!(csv, ",{external},{passive},{active},{}", load.unwrap_or_default());
+        }
+    }
+    csv
+}
+
+/// All postures, from the front and from the right.
+fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<PoseGrid, Fail> {
+    let model = &scenario.model;
+    let mut kinematics = Kinematics::new(model);
+    let [right, ahead, up] = directions(model);
+    let mut columns = vec![];
+    for (i, (posture, text)) in found.postures.iter().zip(&text.postures).enumerate() {
+        kinematics.update(model, &posture.relaxed.posture).map_err(|error| Fail::job("picture", error))?;
+        let lines = sticks(model, &kinematics);
+        let center = kinematics.center_of_mass(model);
+        let view = |label: String, across: nalgebra::Vector3<f64>| {
+            let flat = |p: &nalgebra::Vector3<f64>| [across.dot(p), up.dot(p)];
+            let flatten = |lines: &Lines| lines.iter().map(|line| line.iter().map(flat).collect()).collect();
+            PoseView {
+                label,
+                end: flatten(&lines),
+                center_of_mass: center.as_ref().map(flat),
+                targets: posture.supports.iter().filter_map(|s| s.center_of_pressure.as_ref()).map(flat).collect(),
+                ..PoseView::default()
+            }
+        };
+        // Face to face with the body its right hand is on the left.
+        let front = view(format!("{}: effort {:.4}", i + 1, text.effort), -right);
+        columns.push(PoseColumn { views: vec![front, view(weight(text), ahead)] });
+    }
+    let subtitle = match found.postures.len() {
+        1 => "one posture of least effort, from the front and from the right".to_owned(),
+        n => format!("{n} postures of least effort, from the front and from the right"),
+    };
+    let target = "centre of pressure".to_owned();
+    let least = found.postures.first().map_or(0.0, |posture| posture.relaxed.effort);
+    let more = found
+        .postures
+        .get(1)
+        .map(|posture| format!("; the next takes {} more", percent(posture.relaxed.effort / least - 1.0)));
+    Ok(PoseGrid {
+        title: scenario.title.clone(),
+        subtitle: subtitle + more.as_deref().unwrap_or_default(),
+        target,
+        columns,
+    })
+}
+
+/// Something that turns on standard error; invisible when that is no terminal.
+fn spinner() -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{elapsed} {spinner} trying starts") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(std::time::Duration::from_millis(200));
+    bar
+}

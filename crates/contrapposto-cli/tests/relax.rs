@@ -1,0 +1,156 @@
+//! `contrapposto relax`: a scenario in, the different postures of least effort out.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+struct Run {
+    code: i32,
+    stdout: String,
+    stderr: String,
+}
+
+fn relax(scenario: &Path, more: &[&str]) -> Run {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_contrapposto")).arg("relax").arg(scenario).args(more).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Run { code: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+fn standing() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/stand-relaxed.toml")
+}
+
+/// A small body: an arm that is held up by its tasks alone, so that a run takes no time.
+const ARM: &str = r#"
+format = 1
+title = "A hand held up"
+[model]
+adult = { sex = "male", stature_m = 1.74, mass_kg = 73, part = "right_arm" }
+[[task]]
+kind = "point"
+segment = "hand_r"
+target_m = [0.3, 1.2, 0.2]
+"#;
+
+fn written(folder: &Path, text: &str) -> PathBuf {
+    let path = folder.join("scenario.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn one_leg_rests_by_a_slouch_or_level() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = relax(&standing(), &["--json", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("[strategy], [relief], [fatigue], [run] have no part"), "{}", run.stderr);
+    let text = std::fs::read_to_string(out.join("relax.json")).unwrap();
+    assert_eq!(run.stdout, text);
+    let found: Value = serde_json::from_str(&text).unwrap();
+    let postures = found["postures"].as_array().unwrap();
+    assert_eq!(postures.len(), 2);
+    let hips: Vec<f64> =
+        postures.iter().map(|p| p["coordinates"]["hip_adduction_r"].as_f64().unwrap().to_degrees()).collect();
+    let efforts: Vec<f64> = postures.iter().map(|p| p["effort"].as_f64().unwrap()).collect();
+    println!("hips {hips:?} deg, efforts {efforts:?}");
+    assert!(hips[0] > 18.0 && hips[1] < 8.0 && efforts[0] < 0.7 * efforts[1]);
+    let first = &postures[0]["hanging"][0];
+    assert_eq!(first["coordinate"], "hip_adduction_r");
+    assert!(first["passive_nm"].as_f64().unwrap() < -30.0 && first["share"].as_f64().unwrap() > 0.9);
+    for posture in postures {
+        assert_eq!(posture["held_by"], "attention");
+        let unstable = posture["unstable"].as_array().unwrap();
+        assert!(!unstable.is_empty() && unstable.iter().all(|way| !way["joints"].as_array().unwrap().is_empty()));
+        let shares = posture["supports"].as_array().unwrap().iter().map(|s| s["share"].as_f64().unwrap());
+        assert!((shares.sum::<f64>() - 1.0).abs() < 1e-8);
+        let tasks = posture["tasks"].as_array().unwrap();
+        assert!(tasks.len() == 3 && tasks.iter().all(|task| task["error"].as_f64().unwrap() < 1e-5));
+        for key in found["coordinate_order"].as_array().unwrap() {
+            assert!(posture["coordinates"][key.as_str().unwrap()].is_f64());
+        }
+    }
+    // Files: one row a posture, one row a posture and coordinate, torques that add up to nothing.
+    let mot = std::fs::read_to_string(out.join("postures.mot")).unwrap();
+    assert_eq!(mot.lines().skip_while(|line| !line.starts_with("time")).count(), 1 + 2);
+    let csv = std::fs::read_to_string(out.join("relax.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 2 * found["coordinate_order"].as_array().unwrap().len());
+    for row in csv.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let torques: f64 = cells[4..7].iter().map(|cell| cell.parse::<f64>().unwrap()).sum();
+        assert!(cells.len() == 8 && torques.abs() < 1e-9, "{row}");
+    }
+    for name in found["files"].as_array().unwrap() {
+        assert!(std::fs::metadata(out.join(name.as_str().unwrap())).unwrap().len() > 1000, "{name}");
+    }
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 5);
+}
+
+#[test]
+fn an_arm_without_supports_reaches_and_rests() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = written(folder.path(), ARM);
+    let run = relax(&scenario, &[]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("no task asks for effort"), "{}", run.stderr);
+    assert!(run.stdout.starts_with("A hand held up\n") && run.stdout.contains("posture 1:"), "{}", run.stdout);
+    assert!(run.stdout.contains("held by") && run.stdout.contains("starts"));
+    // Nothing was written beside the scenario.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    // The same twice, to the byte.
+    let again = relax(&scenario, &["--json"]);
+    assert_eq!(again.stdout, relax(&scenario, &["--json"]).stdout);
+    let found: Value = serde_json::from_str(&again.stdout).unwrap();
+    let least = found["postures"][0]["effort"].as_f64().unwrap();
+    assert!(found["postures"].as_array().unwrap().iter().all(|p| p["effort"].as_f64().unwrap() >= least));
+    assert!(found["postures"][0]["tasks"][0]["error"].as_f64().unwrap() < 1e-5);
+    assert_eq!(found["files"].as_array().unwrap().len(), 0);
+}
+
+#[test]
+fn what_is_wrong_is_shown_where_it_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = std::fs::read_to_string(standing()).unwrap();
+    for (from, to, message, place) in [
+        ("segment = \"calcn_r\"", "segment = \"calcn_rr\"", "did you mean `calcn_r`", "scenario.toml:12:11"),
+        ("share_max = 0.15", "share_max = 1.5", "share_max is 1.5; it must lie in 0..1", "scenario.toml:16:"),
+        ("elbow_flex_r_deg = 20", "elbow_flex_r_deg = 200", "`elbow_flex_r` ", "scenario.toml:8:"),
+        ("kind = \"effort\"", "kind = \"effrot\"", "unknown", "scenario.toml:"),
+    ] {
+        let scenario = written(folder.path(), &good.replacen(from, to, 1));
+        let out = folder.path().join("out");
+        let run = relax(&scenario, &["--out", out.to_str().unwrap()]);
+        assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{to}");
+        assert!(run.stderr.contains(message) && run.stderr.contains(place), "{to}: {}", run.stderr);
+        assert!(!out.exists(), "{to}: nothing is written for a file that is refused");
+    }
+    let floating = written(folder.path(), "format = 1\ntitle = \"Floating\"\n[[task]]\nkind = \"effort\"\n");
+    let run = relax(&floating, &[]);
+    assert_eq!(run.code, 2);
+    assert!(
+        run.stderr.contains("a free root and no support") && run.stderr.contains("add a [[support]]"),
+        "{}",
+        run.stderr
+    );
+    assert_eq!(relax(Path::new("no-such-file.toml"), &[]).code, 2);
+}
+
+/// On ice that slopes by 45 degrees nobody stands: the reason is a number, exit code 1, and nothing is written.
+#[test]
+fn a_body_that_cannot_stand_says_by_how_much() {
+    let folder = tempfile::tempdir().unwrap();
+    let ice = "on = { normal = [1, 1, 0] }\nfriction = 0\n";
+    let text = format!(
+        "format = 1\ntitle = \"Ice\"\n[[support]]\nsegment = \"calcn_r\"\n{ice}[[support]]\nsegment = \"calcn_l\"\n{ice}"
+    );
+    let scenario = written(folder.path(), &text);
+    let out = folder.path().join("out");
+    let run = relax(&scenario, &["--out", out.to_str().unwrap()]);
+    assert_eq!((run.code, run.stdout.as_str()), (1, ""), "{}", run.stderr);
+    assert!(run.stderr.contains("cannot hold the body") && run.stderr.contains(" N and "), "{}", run.stderr);
+    assert!(!out.exists());
+}

@@ -1,0 +1,460 @@
+//! Contact forces: do they hold the root, push and never pull, stay inside friction and patches, and spare the muscles as much as
+//! an independent solver can? Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
+use contrapposto::contact::{Balance, ContactForces, FACES, Support, SupportError, root_rates};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{
+    Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Motion, Placement, SegmentSpec, Side, adult,
+};
+use contrapposto::posture::Posture;
+use contrapposto::statics::{ExternalTorque, Load, LoadKind, PassiveTorque};
+use nalgebra::{Matrix3, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+type V = Vector3<f64>;
+
+const G: f64 = 9.81;
+const STATURE: f64 = 1.741;
+
+fn random(test: &str) -> Pcg64 {
+    let seed = std::env::var("CONTRAPPOSTO_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(20_070_711);
+    println!("{test}: seed {seed}");
+    Pcg64::seed_from_u64(seed)
+}
+
+/// A body, its torques without contact, and its contact forces.
+struct Stand {
+    model: Model,
+    kinematics: Kinematics,
+    external: ExternalTorque,
+    passive: PassiveTorque,
+    contact: ContactForces,
+    loads: Vec<Load>,
+}
+
+impl Stand {
+    fn new(model: Model, supports: Vec<Support>, loads: Vec<Load>) -> Self {
+        let contact = ContactForces::new(&model, supports).unwrap();
+        let (kinematics, external) = (Kinematics::new(&model), ExternalTorque::new(&model));
+        let passive = PassiveTorque::new(&model);
+        Self { model, kinematics, external, passive, contact, loads }
+    }
+
+    /// The adult on both soles, 3 kg in a hand.
+    fn adult(friction: f64, share_max: f64) -> Self {
+        let model = adult(&Adult::default()).unwrap();
+        let support = |name: &str, share_max: f64| {
+            let segment = model.segment(name).unwrap();
+            let corners = model.segments()[segment].patch.clone();
+            Support { segment, corners, normal: V::y(), friction, share_max }
+        };
+        let supports = vec![support("calcn_r", 1.0), support("calcn_l", share_max)];
+        let loads = vec![Load::weight(&model, model.segment("hand_r").unwrap(), 3.0)];
+        Self::new(model, supports, loads)
+    }
+
+    fn update(&mut self, posture: &Posture) -> Balance {
+        self.kinematics.update(&self.model, posture).unwrap();
+        self.external.update(&self.model, &self.kinematics, &self.loads).unwrap();
+        self.passive.update(&self.model, &self.kinematics);
+        self.contact.update(&self.model, &self.kinematics, self.external.torques(), self.passive.torques())
+    }
+
+    /// Torque of muscles, and of the root what is missing.
+    fn active(&self, rate: usize) -> f64 {
+        -(self.external.torques()[rate] + self.passive.torques()[rate] + self.contact.torques()[rate])
+    }
+
+    fn effort(&self) -> f64 {
+        let groups =
+            self.model.coordinates().iter().enumerate().filter_map(|(i, c)| Some((i, c.rate?, c.groups.as_ref()?)));
+        let load = |(i, rate, groups): (usize, usize, &[contrapposto::model::MuscleGroup; 2])| {
+            let active = self.active(rate);
+            let strength = groups[Side::of(active).index()].strength.torque(self.kinematics.values()[i]);
+            (active / strength).powi(2)
+        };
+        groups.map(load).sum()
+    }
+}
+
+/// Near standing: legs bent a little either way, arms and trunk anywhere near.
+fn near_standing(rng: &mut Pcg64, model: &Model) -> Posture {
+    let values = model.coordinates().iter().map(|c| {
+        let legs = ["hip", "knee", "ankle", "subtalar", "pelvis", "lumbar", "thoracic"];
+        let most = if legs.iter().any(|part| c.name.starts_with(part)) { 0.07 } else { 0.7 };
+        (c.default + rng.random_range(-most..most)).clamp(c.range.0, c.range.1)
+    });
+    Posture::new(values.collect())
+}
+
+#[test]
+fn forces_hold_the_root_push_and_stay_inside_friction_and_patch() {
+    let mut rng = random("forces");
+    let (mut held, mut worst, mut wished) = (0, 0f64, 0);
+    let mut without = ExternalTorque::new(&Stand::adult(0.6, 1.0).model);
+    for round in 0..4 {
+        let (friction, share_max) = [(0.6, 1.0), (0.3, 0.4), (f64::INFINITY, 1.0), (0.8, 0.15)][round];
+        let mut stand = Stand::adult(friction, share_max);
+        let weight = stand.model.mass() * G;
+        for _ in 0..150 {
+            let posture = near_standing(&mut rng, &stand.model);
+            if stand.update(&posture) != Balance::Held {
+                continue;
+            }
+            held += 1;
+            // With the forces as plain loads the root is in equilibrium.
+            let loads: Vec<Load> = stand.loads.iter().chain(stand.contact.loads()).copied().collect();
+            without.update(&stand.model, &stand.kinematics, &loads).unwrap();
+            for rate in root_rates(&stand.model) {
+                let size = if stand.model.rates()[rate].rotational { weight * STATURE } else { weight };
+                worst = worst.max((without.torques()[rate] + stand.passive.torques()[rate]).abs() / size);
+            }
+            // Two ways to the torque of contact forces.
+            for rate in 0..stand.model.rates().len() {
+                let difference = without.torques()[rate] - stand.external.torques()[rate];
+                assert!((difference - stand.contact.torques()[rate]).abs() < 1e-9 * weight);
+            }
+            for support in 0..2 {
+                let shares = &stand.contact.forces()
+                    [3 * stand.contact.corners(support).start..3 * stand.contact.corners(support).end];
+                for corner in shares.chunks_exact(3) {
+                    assert!(corner[0] >= -1e-12, "a corner pulls with {} of weight", -corner[0]);
+                    if friction.is_finite() {
+                        let pyramid = friction / (FACES as f64 / 2.0).sqrt() * corner[0];
+                        assert!(corner[1].abs() <= pyramid + 1e-9 && corner[2].abs() <= pyramid + 1e-9);
+                        assert!(corner[1].hypot(corner[2]) <= friction * corner[0] + 1e-9, "outside the cone");
+                    }
+                }
+                inside_the_patch(&stand, support);
+            }
+            let share = stand.contact.share(1);
+            let total = stand.contact.share(0) + share;
+            let lifted =
+                stand.loads.iter().map(|l| if let LoadKind::Weight(m) = l.kind { m * G } else { 0.0 }).sum::<f64>();
+            assert!((total - (weight + lifted) / weight).abs() < 1e-8, "all weight is carried: {total}");
+            if share_max < 1.0 {
+                let least = Oracle::of(&stand).least_share(1);
+                let wish = share_max.max(least);
+                wished += usize::from(least <= share_max);
+                assert!(share <= wish + 2e-6, "share {share}, least {least}, wish {share_max}");
+            }
+        }
+    }
+    println!("{held} postures held of 600, root off by {worst:.1e} at most; the wish could be kept in {wished}");
+    assert!(held > 200 && wished > 20);
+    assert!(worst < 1e-8, "{worst}");
+}
+
+/// The centre of pressure, from force and moment of the loads alone, lies within the corners in every direction of the plane.
+fn inside_the_patch(stand: &Stand, support: usize) {
+    let Some(center) = stand.contact.center_of_pressure(&stand.model, &stand.kinematics, support) else { return };
+    let corners = stand.contact.corners(support);
+    let mut force = 0.0;
+    let mut moment = V::zeros();
+    let mut stations = vec![];
+    for load in &stand.contact.loads()[corners] {
+        let LoadKind::Force(f, _) = load.kind else { panic!() };
+        let at = stand.kinematics.station(&stand.model, load.segment, load.point);
+        force += f.y;
+        moment += at.cross(&V::new(0.0, f.y, 0.0));
+        stations.push(at);
+    }
+    // r x (f y) = (-z f, 0, x f)
+    assert!((moment.z / force - center.x).abs() < 1e-9 && (-moment.x / force - center.z).abs() < 1e-9);
+    for k in 0..64 {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 64.0).sin_cos();
+        let along = V::new(cos, 0.0, sin);
+        let most = stations.iter().map(|station| station.dot(&along)).fold(f64::NEG_INFINITY, f64::max);
+        assert!(center.dot(&along) <= most + 1e-9);
+    }
+}
+
+/// The same unknowns as a quadratic program: corner forces, and what the muscles of either side of every joint give.
+struct Oracle {
+    /// Unknown forces, and groups of both sides.
+    forces: usize,
+    joints: usize,
+    /// Rows `a x = b` and `a x <= b`, sparse.
+    equal: Vec<(Vec<(usize, f64)>, f64)>,
+    below: Vec<(Vec<(usize, f64)>, f64)>,
+}
+
+impl Oracle {
+    fn of(stand: &Stand) -> Self {
+        let n = stand.model.rates().len();
+        let columns = stand.contact.columns();
+        let forces = stand.contact.forces().len();
+        let weight = stand.contact.weight();
+        let row = |rate: usize, size: f64| -> Vec<(usize, f64)> {
+            (0..forces).map(|j| (j, columns[j * n + rate] / size)).collect()
+        };
+        let rest = |rate: usize| stand.external.torques()[rate] + stand.passive.torques()[rate];
+        let mut oracle = Self { forces, joints: 0, equal: vec![], below: vec![] };
+        for rate in root_rates(&stand.model) {
+            oracle.equal.push((row(rate, weight), -rest(rate) / weight));
+        }
+        for (i, coordinate) in stand.model.coordinates().iter().enumerate() {
+            let (Some(rate), Some(groups)) = (coordinate.rate, &coordinate.groups) else { continue };
+            let q = stand.kinematics.values()[i];
+            let strengths = [0, 1].map(|side| groups[side].strength.torque(q));
+            let [positive, negative] = [0, 1].map(|side| forces + 2 * oracle.joints + side);
+            // Loads of both groups, shares of their strength: S+ positive - S- negative = active, all over S+.
+            let mut entries = row(rate, strengths[0]);
+            entries.extend([(positive, 1.0), (negative, -strengths[1] / strengths[0])]);
+            oracle.equal.push((entries, -rest(rate) / strengths[0]));
+            oracle.below.push((vec![(positive, -1.0)], 0.0));
+            oracle.below.push((vec![(negative, -1.0)], 0.0));
+            oracle.joints += 1;
+        }
+        let mut corner = 0;
+        for support in stand.contact.supports() {
+            for _ in &support.corners {
+                oracle.below.push((vec![(3 * corner, -1.0)], 0.0));
+                if support.friction.is_finite() {
+                    let most = support.friction / (FACES as f64 / 2.0).sqrt();
+                    for (axis, sign) in [(1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)] {
+                        oracle.below.push((vec![(3 * corner, -most), (3 * corner + axis, sign)], 0.0));
+                    }
+                }
+                // No force beyond two body weights.
+                for axis in 0..3 {
+                    oracle.below.push((vec![(3 * corner + axis, 1.0)], 2.0));
+                    oracle.below.push((vec![(3 * corner + axis, -1.0)], 2.0));
+                }
+                corner += 1;
+            }
+        }
+        oracle
+    }
+
+    /// Least `sum weights x^2 + linear x`.
+    fn solve(&self, weights: &[f64], linear: &[f64]) -> Option<f64> {
+        let n = self.forces + 2 * self.joints;
+        let diagonal = |values: &[f64]| {
+            let entries = (0..n).filter(|&i| values[i] != 0.0);
+            let (rows, values): (Vec<usize>, Vec<f64>) = entries.map(|i| (i, 2.0 * values[i])).unzip();
+            CscMatrix::new_from_triplets(n, n, rows.clone(), rows, values)
+        };
+        let (mut rows, mut columns, mut values, mut right) = (vec![], vec![], vec![], vec![]);
+        for (i, (entries, limit)) in self.equal.iter().chain(&self.below).enumerate() {
+            for &(column, value) in entries.iter().filter(|(_, value)| *value != 0.0) {
+                rows.push(i);
+                columns.push(column);
+                values.push(value);
+            }
+            right.push(*limit);
+        }
+        let matrix = CscMatrix::new_from_triplets(right.len(), n, rows, columns, values);
+        let cones = [ZeroConeT(self.equal.len()), NonnegativeConeT(self.below.len())];
+        let settings = DefaultSettingsBuilder::default()
+            .verbose(false)
+            .tol_gap_abs(1e-11)
+            .tol_gap_rel(1e-11)
+            .tol_feas(1e-11)
+            .max_iter(200)
+            .build()
+            .unwrap();
+        let mut solver = DefaultSolver::new(&diagonal(weights), linear, &matrix, &right, &cones, settings).unwrap();
+        solver.solve();
+        let solved = solver.solution.status == SolverStatus::Solved;
+        solved.then_some(solver.solution.obj_val)
+    }
+
+    fn least_effort(&self) -> Option<f64> {
+        let mut weights = vec![0.0; self.forces];
+        weights.extend(vec![1.0; 2 * self.joints]);
+        self.solve(&weights, &vec![0.0; weights.len()])
+    }
+
+    fn least_share(&self, support: usize) -> f64 {
+        let n = self.forces + 2 * self.joints;
+        let corners = self.forces / 6;
+        let mut linear = vec![0.0; n];
+        (support * corners..(support + 1) * corners).for_each(|corner| linear[3 * corner] = 1.0);
+        self.solve(&vec![0.0; n], &linear).unwrap()
+    }
+}
+
+#[test]
+fn no_forces_spare_the_muscles_more() {
+    let mut rng = random("least effort");
+    let (mut compared, mut worst, mut better) = (0, 0f64, 0f64);
+    for friction in [0.6, 0.2, f64::INFINITY] {
+        let mut stand = Stand::adult(friction, 1.0);
+        for _ in 0..150 {
+            let posture = near_standing(&mut rng, &stand.model);
+            if stand.update(&posture) != Balance::Held {
+                continue;
+            }
+            let Some(least) = Oracle::of(&stand).least_effort() else { continue };
+            compared += 1;
+            let over = (stand.effort() - least) / least;
+            worst = worst.max(over);
+            better = better.max(-over);
+        }
+    }
+    println!("{compared} postures: effort above Clarabel's by {worst:.1e} of it at most, below by {better:.1e}");
+    assert!(compared > 60);
+    assert!(worst < 1e-6 && better < 1e-6, "{worst} {better}");
+}
+
+/// A block that may slide along x and y and turn about z, weight at `center`, on one patch.
+fn block(center: V, corners: Vec<V>, normal: V, friction: f64) -> Stand {
+    let mut builder = ModelBuilder::new("block", V::new(0.0, -G, 0.0));
+    let motions = vec![Motion::Slide(V::x_axis()), Motion::Slide(V::y_axis()), Motion::Hinge(V::z_axis())];
+    let coordinates = ["x", "y", "turn"].map(|name| CoordinateSpec::new(name, (-10.0, 10.0))).to_vec();
+    builder
+        .segment(SegmentSpec {
+            name: "block".to_owned(),
+            parent: None,
+            mass: 20.0,
+            center_of_mass: center,
+            inertia: Matrix3::identity(),
+            joint: "root".to_owned(),
+            kind: JointKind::Chain(motions),
+            in_parent: Placement::identity(),
+            in_segment: Placement::identity(),
+            coordinates,
+        })
+        .unwrap();
+    let support = Support { segment: 0, corners, normal: normal.normalize(), friction, share_max: 1.0 };
+    Stand::new(builder.build(), vec![support], vec![])
+}
+
+/// Weight `reach` beyond the edge `a` of the patch: a force `N` at the edge leaves `(N - 1)` of weight and `(N a - c)` of moment,
+/// least in squares at `N = (1 + a c)/(1 + a^2)`. Both together, times `sqrt(1 + a^2)`, are how far the body leans too far.
+#[test]
+fn a_body_that_leans_beyond_its_feet_is_short_by_that_much() {
+    let weight = 20.0 * G;
+    for (edge, center) in [(0.1, 0.25), (0.1, 0.1 + 1e-4), (0.3, 0.9)] {
+        let mut stand =
+            block(V::new(center, 1.0, 0.0), vec![V::new(-edge, 0.0, 0.0), V::new(edge, 0.0, 0.0)], V::y(), 0.5);
+        let start = stand.model.default_posture();
+        let Balance::Short { force, moment } = stand.update(&start) else { panic!("it would fall") };
+        let n = (1.0 + edge * center) / (1.0 + edge * edge);
+        assert!((force - (n - 1.0).abs() * weight).abs() < 1e-9 * weight, "{force} N");
+        assert!((moment - (n * edge - center).abs() * weight).abs() < 1e-9 * weight, "{moment} N m");
+        let reach = force.hypot(moment) / weight * (1.0 + edge * edge).sqrt();
+        assert!((reach - (center - edge)).abs() < 1e-9, "{reach} m beyond the edge");
+    }
+    // On the edge itself, and inside: it stands.
+    for center in [0.1, 0.05, -0.1] {
+        let mut stand =
+            block(V::new(center, 1.0, 0.0), vec![V::new(-0.1, 0.0, 0.0), V::new(0.1, 0.0, 0.0)], V::y(), 0.5);
+        let start = stand.model.default_posture();
+        assert_eq!(stand.update(&start), Balance::Held, "{center}");
+        let at = stand.contact.center_of_pressure(&stand.model, &stand.kinematics, 0).unwrap();
+        assert!((at.x - center).abs() < 1e-9);
+    }
+}
+
+/// On a slope of angle `a` friction reaches `atan(mu / sqrt 2)` along an axis of the pyramid: what is left of the weight is the
+/// sine of the difference, all of it force, where the weight stands above the one corner.
+#[test]
+fn on_too_steep_a_slope_friction_is_short_by_the_sine() {
+    let weight = 20.0 * G;
+    for (slope, friction) in [(0.5f64, 0.6f64), (0.9, 0.3), (0.3, 0.0), (0.2, 0.6)] {
+        let normal = V::new(slope.sin(), slope.cos(), 0.0);
+        let mut stand = block(V::new(0.0, 0.5, 0.0), vec![V::zeros()], normal, friction);
+        let start = stand.model.default_posture();
+        let balance = stand.update(&start);
+        let reach = (friction / 2f64.sqrt()).atan();
+        if slope <= reach {
+            assert_eq!(balance, Balance::Held);
+            continue;
+        }
+        let Balance::Short { force, moment } = balance else { panic!("it would slip") };
+        assert!((force - weight * (slope - reach).sin()).abs() < 1e-9 * weight, "{force} N at {slope} and {friction}");
+        assert!(moment < 1e-9 * weight);
+    }
+}
+
+/// Power of the forces at their points is torque times rate, and `columns` are the torques of one body weight each.
+#[test]
+fn forces_do_the_work_that_their_torques_say() {
+    let mut rng = random("work");
+    let mut stand = Stand::adult(0.6, 1.0);
+    let n = stand.model.rates().len();
+    let mut jacobian = vec![0.0; 3 * n];
+    for _ in 0..50 {
+        let posture = near_standing(&mut rng, &stand.model);
+        stand.update(&posture);
+        let rates: Vec<f64> = (0..n).map(|_| rng.random_range(-1.0..1.0)).collect();
+        let mut power = 0.0;
+        for load in stand.contact.loads() {
+            let LoadKind::Force(force, _) = load.kind else { panic!() };
+            stand.kinematics.point_jacobian(&stand.model, load.segment, load.point, &mut jacobian);
+            for k in 0..3 {
+                power += force[k] * jacobian[k * n..(k + 1) * n].iter().zip(&rates).map(|(a, b)| a * b).sum::<f64>();
+            }
+        }
+        let by_torque: f64 = stand.contact.torques().iter().zip(&rates).map(|(a, b)| a * b).sum();
+        let by_columns: f64 = (0..n)
+            .map(|rate| {
+                let torque: f64 = stand
+                    .contact
+                    .forces()
+                    .iter()
+                    .enumerate()
+                    .map(|(j, f)| f * stand.contact.columns()[j * n + rate])
+                    .sum();
+                torque * rates[rate]
+            })
+            .sum();
+        let size = stand.contact.weight();
+        assert!((power - by_torque).abs() < 1e-10 * size && (power - by_columns).abs() < 1e-10 * size);
+    }
+}
+
+/// Forces move steadily with the posture where nothing switches: the torque of muscles and contact together answers what weight and
+/// ligaments ask, in every posture, and the same posture gives the same forces, whatever was asked in between.
+#[test]
+fn the_same_posture_gives_the_same_forces() {
+    let mut rng = random("history");
+    let mut stand = Stand::adult(0.6, 0.3);
+    let postures: Vec<Posture> = (0..20).map(|_| near_standing(&mut rng, &stand.model)).collect();
+    let mut worst = 0f64;
+    for posture in &postures {
+        stand.contact.forget();
+        let balance = stand.update(posture);
+        let first = stand.contact.forces().to_vec();
+        for other in postures.iter().take(3) {
+            stand.update(other);
+        }
+        // From what the others left: the same to rounding.
+        assert_eq!(std::mem::discriminant(&stand.update(posture)), std::mem::discriminant(&balance));
+        let off = first.iter().zip(stand.contact.forces()).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
+        worst = worst.max(off);
+        // Forgetting it: the same to the bit.
+        stand.contact.forget();
+        stand.update(posture);
+        assert_eq!(first, stand.contact.forces());
+    }
+    println!("after other postures forces differ by {worst:.1e} of weight at most");
+    assert!(worst < 1e-7, "{worst}");
+}
+
+#[test]
+fn numbers_without_meaning_are_refused() {
+    let model = adult(&Adult::default()).unwrap();
+    let good = Support { segment: 0, corners: vec![V::zeros()], normal: V::y(), friction: 0.5, share_max: 1.0 };
+    assert!(good.check(&model).is_ok());
+    let refused = |change: &dyn Fn(&mut Support)| {
+        let mut support = good.clone();
+        change(&mut support);
+        ContactForces::new(&model, vec![support]).err()
+    };
+    assert!(matches!(refused(&|s| s.segment = 1000), Some(SupportError::Segment { .. })));
+    for bad in [f64::NAN, f64::INFINITY, -1.0] {
+        assert!(bad == f64::INFINITY || refused(&|s| s.friction = bad).is_some(), "friction {bad}");
+        assert!(bad == f64::INFINITY || refused(&|s| s.share_max = bad).is_some(), "share {bad}");
+        assert!(refused(&|s| s.normal = V::new(0.0, bad * 2.0, 0.0)).is_some(), "normal {bad}");
+        assert!(bad == -1.0 || refused(&|s| s.corners[0].x = bad).is_some(), "corner {bad}");
+    }
+    assert!(refused(&|s| s.corners.clear()).is_some());
+}

@@ -1,0 +1,296 @@
+//! Postures of least effort: balance, mirror images, determinism, history, and what happens where a body cannot stand.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto::contact::{Balance, Support, root_rates};
+use contrapposto::ik::Goal;
+use contrapposto::ik::body::{Body, Needs};
+use contrapposto::ik::task::{self, CenterOfMass, Effort, Orientation, Point, Task};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Model, Sex, adult};
+use contrapposto::posture::Posture;
+use std::sync::OnceLock;
+
+use contrapposto::relax::{Engine, Equilibria, Mirror, Options, Search, SearchError, equilibria};
+use contrapposto::statics::{Load, PassiveTorque};
+use nalgebra::Vector3;
+
+type V = Vector3<f64>;
+
+/// Weight and stature are of the order of what forces and moments are measured against.
+const BALANCE: f64 = 1e-8;
+
+fn woman() -> Model {
+    adult(&Adult { sex: Sex::Female, stature: 1.65, mass: 60.0, ..Adult::default() }).unwrap()
+}
+
+const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, still: 1e-9, gain: 1e-9, guarded: true, valleys: 0 };
+
+/// The scenario `stand-relaxed`, or its mirror image.
+struct Standing {
+    model: Model,
+    start: Posture,
+    supports: Vec<Support>,
+    goals: Vec<Goal>,
+    loads: Vec<Load>,
+}
+
+impl Standing {
+    /// `resting`: the leg that rests, `None` for neither. `hand`: where the hand of the other side must be.
+    fn new(resting: Option<&str>, hand: Option<V>) -> Self {
+        let model = woman();
+        let start = model.default_posture();
+        let mut kinematics = Kinematics::new(&model);
+        kinematics.update(&model, &start).unwrap();
+        let support = |side: &str| {
+            let segment = model.segment(&format!("calcn_{side}")).unwrap();
+            let corners = model.segments()[segment].patch.clone();
+            let share_max = if resting == Some(side) { 0.15 } else { 1.0 };
+            Support { segment, corners, normal: V::y(), friction: 0.6, share_max }
+        };
+        // In the order of right and left in either case.
+        let supports = vec![support("r"), support("l")];
+        let upright = |name: &str| {
+            let segment = model.segment(name).unwrap();
+            let target = kinematics.placement(&model, segment).rotation;
+            Goal::from(Task::Orientation(Orientation { segment, target }))
+        };
+        let mut goals = vec![];
+        let side = if resting == Some("r") { -1.0 } else { 1.0 };
+        if resting.is_some() {
+            let goal = task::Goal::At { target: V::new(0.03, 0.0, side * 0.055), axes: [true, false, true] };
+            goals.push(Task::CenterOfMass(CenterOfMass { goal }).into());
+        }
+        goals.push(upright("head"));
+        goals.push(upright("torso"));
+        if let Some(target) = hand {
+            let segment = model.segment(if side > 0.0 { "hand_r" } else { "hand_l" }).unwrap();
+            let task = Point { segment, point: V::new(0.0, -0.05, 0.0), target, axes: [true; 3] };
+            goals.insert(0, Task::Point(task).into());
+        }
+        goals.push(Task::Effort(Effort::whole(&model)).into());
+        Self { start, supports, goals, loads: vec![], model }
+    }
+
+    fn search(&self) -> Search<'_> {
+        Search {
+            model: &self.model,
+            start: &self.start,
+            supports: &self.supports,
+            goals: &self.goals,
+            loads: &self.loads,
+            locked: &[],
+        }
+    }
+
+    fn engine(&self, options: Options) -> Engine<'_> {
+        let (supports, goals) = (self.supports.clone(), self.goals.clone());
+        Engine::new(&self.model, &self.start, supports, goals, &self.loads, options).unwrap()
+    }
+}
+
+/// Largest residual of the root with the given contact forces, over body weight (and weight times stature).
+fn imbalance(standing: &Standing, engine: &Engine<'_>, posture: &Posture) -> f64 {
+    let model = &standing.model;
+    let loads: Vec<Load> = standing.loads.iter().chain(engine.contact().loads()).copied().collect();
+    let mut body = Body::new(model);
+    body.update(model, posture, &loads, Needs { torque: true, center_of_mass: true }).unwrap();
+    let mut passive = PassiveTorque::new(model);
+    passive.update(model, body.kinematics());
+    let weight = model.mass() * 9.81;
+    let residual = |&rate: &usize| {
+        let size = if model.rates()[rate].rotational { weight * 1.65 } else { weight };
+        (body.external_torque().torques()[rate] + passive.torques()[rate]).abs() / size
+    };
+    root_rates(model).iter().map(residual).fold(0.0, f64::max)
+}
+
+/// Found once for all tests.
+fn resting_left() -> &'static Equilibria {
+    static FOUND: OnceLock<Equilibria> = OnceLock::new();
+    FOUND.get_or_init(|| equilibria(&Standing::new(Some("l"), None).search(), OPTIONS).unwrap())
+}
+
+#[test]
+fn one_leg_rests_in_two_ways() {
+    let standing = Standing::new(Some("l"), None);
+    let found = resting_left();
+    for posture in &found.postures {
+        println!("effort {:.6}, from {:?}", posture.relaxed.effort, posture.starts);
+    }
+    assert_eq!(found.postures.len(), 2, "a slouch and a level posture");
+    let [slouch, level] = [&found.postures[0], &found.postures[1]];
+    let at = |name: &str| standing.model.coordinate(name).unwrap();
+    let hip = at("hip_adduction_r");
+    let degrees =
+        |posture: &contrapposto::relax::RelaxedPosture, i: usize| posture.relaxed.posture.values()[i].to_degrees();
+    // The hip that carries hangs on its ligaments, its side of the pelvis is the higher one, the other knee is bent.
+    assert!(slouch.relaxed.effort < 0.7 * level.relaxed.effort);
+    assert!(degrees(slouch, hip) > 15.0 && degrees(level, hip) < 8.0);
+    assert!(degrees(slouch, at("pelvis_list")).abs() > 10.0 && degrees(level, at("pelvis_list")).abs() < 5.0);
+    assert!(degrees(slouch, at("knee_angle_l")) > 25.0 && degrees(slouch, at("knee_angle_r")) < 5.0);
+    let hangs = slouch.hanging.iter().find(|hanging| hanging.coordinate == hip).unwrap();
+    assert!(hangs.share() > 0.9 && hangs.passive < -30.0, "{hangs:?}");
+    assert!(level.hanging.iter().all(|hanging| hanging.coordinate != hip));
+    for posture in &found.postures {
+        assert_eq!(posture.relaxed.balance, Balance::Held);
+        let total: f64 = posture.supports.iter().map(|support| support.share).sum();
+        assert!((total - 1.0).abs() < 1e-8 && posture.supports[1].share <= 0.15 + 1e-8);
+        assert!(posture.relaxed.slip < 1e-5 && posture.relaxed.errors[..3].iter().all(|error| *error < 1e-5));
+        let mut engine = standing.engine(OPTIONS);
+        engine.see(&posture.relaxed.posture).unwrap();
+        let left = imbalance(&standing, &engine, &posture.relaxed.posture);
+        assert!(left < BALANCE, "root out of balance by {left:.1e}");
+        // Somebody on two feet must attend.
+        assert!(posture.stability.unstable > 0);
+        let sum: f64 = posture.work.iter().map(|work| work.relative_load().powi(2)).sum();
+        assert!((sum - posture.relaxed.effort).abs() < 1e-9, "effort is the sum of squared loads");
+    }
+}
+
+/// The same body with the other leg resting: the same list in the mirror.
+#[test]
+fn the_other_leg_gives_the_mirror_image() {
+    let right = Standing::new(Some("r"), None);
+    let mirror = Mirror::of(&right.model).unwrap();
+    let a = resting_left();
+    let b = equilibria(&right.search(), OPTIONS).unwrap();
+    assert_eq!(a.postures.len(), b.postures.len());
+    for (a, b) in a.postures.iter().zip(&b.postures) {
+        let image = mirror.posture(&a.relaxed.posture);
+        // Forearms weigh on no muscle however they are turned: of arms only what muscles feel is compared.
+        let body = |name: &str| {
+            ["hip", "knee", "ankle", "subtalar", "lumbar", "thoracic", "neck", "pelvis"]
+                .iter()
+                .any(|part| name.starts_with(part))
+        };
+        let mut worst = (0.0, "", 0.0);
+        for (i, coordinate) in right.model.coordinates().iter().enumerate() {
+            let off = (image.values()[i] - b.relaxed.posture.values()[i]).abs();
+            if body(&coordinate.name) && off > worst.0 {
+                (worst.0, worst.1) = (off, &coordinate.name);
+            }
+        }
+        for work in &a.work {
+            let (partner, _) = mirror.coordinate(work.coordinate);
+            let other = b.work.iter().find(|other| other.coordinate == partner).unwrap();
+            worst.2 = (work.relative_load() - other.relative_load()).abs().max(worst.2);
+        }
+        let effort = (a.relaxed.effort - b.relaxed.effort).abs();
+        println!(
+            "mirror image: effort {:.9} differs by {effort:.1e}, `{}` by {:.1e} rad, loads by {:.1e}, {:?} {:?}",
+            a.relaxed.effort, worst.1, worst.0, worst.2, a.relaxed.reason, b.relaxed.reason
+        );
+        assert!(effort < 1e-6, "{effort}");
+        assert!(worst.2 < 1e-3);
+        for (a, b) in a.supports.iter().zip(b.supports.iter().rev()) {
+            assert!((a.share - b.share).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn with_free_loading_left_and_right_slouch_alike_and_symmetry_costs_more() {
+    let standing = Standing::new(None, None);
+    let found = equilibria(&standing.search(), OPTIONS).unwrap();
+    let efforts: Vec<f64> = found.postures.iter().map(|posture| posture.relaxed.effort).collect();
+    println!("free loading: {efforts:?}");
+    assert!(efforts.len() >= 3, "{efforts:?}");
+    assert!((efforts[0] - efforts[1]).abs() < 1e-5 * efforts[0]);
+    let mirror = Mirror::of(&standing.model).unwrap();
+    let list = standing.model.coordinate("pelvis_list").unwrap();
+    let lists: Vec<f64> =
+        found.postures.iter().map(|posture| posture.relaxed.posture.values()[list].to_degrees()).collect();
+    assert!(lists[0] * lists[1] < 0.0 && (lists[0] + lists[1]).abs() < 0.1, "{lists:?}");
+    assert!(lists[2].abs() < 2.0 && (found.postures[2].supports[0].share - 0.5).abs() < 0.05, "{lists:?}");
+    assert!(efforts[2] > 1.5 * efforts[0]);
+    let (partner, sign) = mirror.coordinate(list);
+    assert_eq!((partner, sign), (list, -1.0));
+}
+
+#[test]
+fn the_same_search_twice_is_the_same_to_the_bit() {
+    let standing = Standing::new(Some("l"), None);
+    let options = Options { max_steps: 30, ..OPTIONS };
+    let mut engine = standing.engine(options);
+    let first = engine.solve(&standing.start).unwrap();
+    // Something else in between: the engine remembers nothing of it.
+    let mut other = standing.start.clone();
+    for value in other.values_mut() {
+        *value += 0.2;
+    }
+    for (value, coordinate) in other.values_mut().iter_mut().zip(standing.model.coordinates()) {
+        *value = value.clamp(coordinate.range.0, coordinate.range.1);
+    }
+    let _ = engine.solve(&other);
+    let again = engine.solve(&standing.start).unwrap();
+    let difference = |a: &Posture, b: &Posture| {
+        a.values().iter().zip(b.values()).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()))
+    };
+    println!("after another solve: {:.1e}", difference(&first.posture, &again.posture));
+    assert_eq!(first, standing.engine(options).solve(&standing.start).unwrap());
+    assert_eq!(first, again);
+}
+
+#[test]
+fn a_hand_never_leaves_its_target_for_comfort() {
+    let target = V::new(0.35, 1.05, 0.25);
+    let standing = Standing::new(Some("l"), Some(target));
+    let found = equilibria(&standing.search(), Options { max_steps: 60, ..OPTIONS }).unwrap();
+    let hand = standing.model.segment("hand_r").unwrap();
+    let mut kinematics = Kinematics::new(&standing.model);
+    for posture in &found.postures {
+        kinematics.update(&standing.model, &posture.relaxed.posture).unwrap();
+        let off = (kinematics.station(&standing.model, hand, V::new(0.0, -0.05, 0.0)) - target).norm();
+        println!("effort {:.5}, hand off by {off:.1e} m, slip {:.1e}", posture.relaxed.effort, posture.relaxed.slip);
+        assert!(off < 1e-5);
+        let mut engine = standing.engine(OPTIONS);
+        engine.see(&posture.relaxed.posture).unwrap();
+        assert!(imbalance(&standing, &engine, &posture.relaxed.posture) < BALANCE);
+    }
+}
+
+/// A pelvis that is locked too far ahead of the feet: nothing can bring the weight over them.
+#[test]
+fn a_body_that_cannot_stand_says_what_is_missing() {
+    let mut standing = Standing::new(None, None);
+    standing.goals = vec![Task::Effort(Effort::whole(&standing.model)).into()];
+    for support in &mut standing.supports {
+        // Ice on a slope of 45 degrees.
+        support.normal = V::new(1.0, 1.0, 0.0).normalize();
+        support.friction = 0.0;
+    }
+    let Err(SearchError::CannotStand { force, moment }) = equilibria(&standing.search(), OPTIONS) else {
+        panic!("no body stands on ice");
+    };
+    let weight = standing.model.mass() * 9.81;
+    println!("on a slope of ice: {force:.1} N and {moment:.1} N m are missing");
+    // A normal force of w cos 45 leaves w sin 45 along the slope; the solver trades a little of it for moment.
+    assert!(force.hypot(moment) > 0.5 * weight && force < weight);
+}
+
+#[test]
+fn a_body_with_one_leg_longer_has_no_mirror_image() {
+    let model = woman();
+    assert!(Mirror::of(&model).is_some());
+    let mut lame = model.clone();
+    let i = lame.coordinate("knee_angle_l").unwrap();
+    lame = lame.with_passive_law(i, None);
+    assert!(Mirror::of(&lame).is_none());
+    assert!(Mirror::of(&adult(&Adult::right_arm()).unwrap()).is_none());
+    // Twice mirrored is the posture itself; right and left change places.
+    let mirror = Mirror::of(&model).unwrap();
+    let mut posture = model.default_posture();
+    for (i, value) in posture.values_mut().iter_mut().enumerate() {
+        *value += 0.01 * i as f64;
+    }
+    let image = mirror.posture(&posture);
+    assert_eq!(mirror.posture(&image), posture);
+    let [right, left] = ["hand_r", "hand_l"].map(|name| model.segment(name).unwrap());
+    assert_eq!(mirror.segment(right), left);
+    let mut both = [Kinematics::new(&model), Kinematics::new(&model)];
+    both[0].update(&model, &posture).unwrap();
+    both[1].update(&model, &image).unwrap();
+    let hand = both[0].placement(&model, right).translation.vector;
+    assert!((mirror.vector(hand) - both[1].placement(&model, left).translation.vector).norm() < 1e-12);
+}
