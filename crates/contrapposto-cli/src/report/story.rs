@@ -163,7 +163,7 @@ impl Story<'_> {
                 format!("{} at the start", percent(before)),
             ));
         }
-        if standing.is_none() {
+        if scenario.supports.is_empty() {
             let [from, to] = [first, last].map(|frame| value(scenario, main, frame.posture[main]));
             figures.push(figure(
                 &sentence(&plain(&scenario.model.coordinates()[main].name)),
