@@ -62,11 +62,14 @@ impl Film {
             let (time, coordinate) = (record.time.0, record.coordinate);
             events.push(Event { time, coordinate, what: record.decision.map_or(What::Waits, What::Decided) });
             let next = records.iter().find(|r| r.coordinate == coordinate && r.time.0 >= record.time.1);
-            let goes_on = next.is_some_and(|next| next.time.0 == record.time.1) || record.time.1 >= summary.end_time;
-            let rested = |level: &f64| *level <= scenario.hysteresis.recovery_level;
-            // Between two steps a joint may have nothing to ask without having recovered.
-            if !goes_on && recording.row(row_of(record.time.1)).fatigue[coordinate].iter().all(rested) {
-                events.push(Event { time: record.time.1, coordinate, what: What::Recovered });
+            let until = next.map_or(times.len(), |next| times.partition_point(|&t| t < next.time.0));
+            // A joint may have nothing to ask for long before it has recovered.
+            let rested = |row: &usize| {
+                let fatigue = recording.row(*row).fatigue[coordinate];
+                fatigue.iter().all(|level| *level <= scenario.hysteresis.recovery_level)
+            };
+            if let Some(row) = (times.partition_point(|&t| t < record.time.1)..until).find(rested) {
+                events.push(Event { time: times[row], coordinate, what: What::Recovered });
             }
         }
         events.sort_by(|a, b| a.time.total_cmp(&b.time));

@@ -10,14 +10,14 @@
 //! The sum of second derivatives needs nothing new: pull at every point with the force `r_i` (or `lambda_i`), and how the
 //! generalised forces change with the posture is that matrix. It is the gradient of external torque (Eqs. 7, 8).
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::Vector3;
 
 use super::Goal;
 use super::body::Body;
-use super::task::{self, Task};
+use super::symmetric::Axes;
 use crate::math::lexicographic::{Level, Problem, Solver};
 use crate::model::Model;
-use crate::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
+use crate::statics::{ExternalTorque, Gradient, Load};
 
 /// Weight of directions that levels above hold fast, against the largest entry of the second derivative: large enough that
 /// what is bent there does not matter.
@@ -42,6 +42,7 @@ pub(super) struct Curvature {
     order: Vec<usize>,
     /// How many unknowns of `order` are pivots.
     pivots: usize,
+    left: Axes,
     /// Axes of what is left, times the root of how they bend.
     axes: Vec<f64>,
     slope: Vec<f64>,
@@ -52,23 +53,27 @@ pub(super) struct Curvature {
 }
 
 impl Curvature {
-    /// Space for `model`.
-    pub(super) fn new(model: &Model) -> Self {
+    /// Space for `model` and levels of these goals.
+    pub(super) fn new(model: &Model, goals: &[Goal]) -> Self {
         let n = model.rates().len();
+        let rows = goals.iter().map(Goal::rows).max().unwrap_or(0);
+        // A task pulls at two places at most, or at all segments.
+        let tasks: usize = goals.iter().map(|goal| goal.tasks.len()).sum();
         Self {
             weightless: model.clone().with_gravity(Vector3::zeros()),
             pulls: ExternalTorque::new(model),
             gradient: Gradient::new(model),
-            loads: vec![],
+            loads: Vec::with_capacity(tasks * (2 + model.segments().len())),
             matrix: vec![0.0; n * n],
             factor: vec![0.0; n * n],
-            order: vec![],
+            order: Vec::with_capacity(n),
             pivots: 0,
-            axes: vec![],
+            left: Axes::new(n),
+            axes: Vec::with_capacity(n * n),
             slope: vec![0.0; n],
             row: vec![0.0; n],
-            residual: vec![],
-            level: Level::default(),
+            residual: Vec::with_capacity(rows),
+            level: Level::with_capacity(rows.max(n) + 3, n),
         }
     }
 
@@ -120,7 +125,7 @@ impl Curvature {
         for goal in &goals[..k] {
             for task in &goal.tasks {
                 let (own, rest) = multipliers.split_at(task.rows().min(multipliers.len()));
-                pull(task, &self.weightless, own, &mut self.loads);
+                task.pull(&self.weightless, own, &mut self.loads);
                 multipliers = rest;
             }
             multipliers = &multipliers[goal.half_spaces.len().min(multipliers.len())..];
@@ -128,7 +133,7 @@ impl Curvature {
         let mut residual = &self.residual[..];
         for task in &goals[k].tasks {
             let (own, rest) = residual.split_at(task.rows().min(residual.len()));
-            pull(task, &self.weightless, own, &mut self.loads);
+            task.pull(&self.weightless, own, &mut self.loads);
             residual = rest;
         }
         let n = self.slope.len();
@@ -186,9 +191,8 @@ impl Curvature {
         if left.is_empty() {
             return;
         }
-        let block = DMatrix::from_fn(left.len(), left.len(), |i, j| a[left[i] * n + left[j]]);
-        let axes = block.symmetric_eigen();
-        for (bend, axis) in axes.eigenvalues.iter().zip(axes.eigenvectors.column_iter()) {
+        self.left.find(left.len(), |i, j| a[left[i] * n + left[j]]);
+        for (bend, axis) in self.left.iter() {
             if bend.abs() > 10.0 * flat {
                 self.axes.extend(axis.iter().map(|x| x * bend.abs().sqrt()));
             }
@@ -241,41 +245,6 @@ fn add(sum: &mut [f64], row: &[f64], weight: f64) {
     }
 }
 
-/// Loads whose generalised forces are `sum weights_i grad r_i` of a task's rows. Tasks whose errors are angles between lines
-/// or efforts are left out: their second derivatives are not known here.
-fn pull(task: &Task, model: &Model, weights: &[f64], loads: &mut Vec<Load>) {
-    let world = |segment, point, force| Load { segment, point, kind: LoadKind::Force(force, FixedIn::World) };
-    let couple = |segment, v| Load { segment, point: Vector3::zeros(), kind: LoadKind::Couple(v, FixedIn::World) };
-    let vector = |v: &[f64]| Vector3::new(v[0], v[1], v[2]);
-    match task {
-        Task::Point(task) => loads.push(world(task.segment, task.point, spread(task.axes, weights))),
-        Task::Orientation(task) => loads.push(couple(task.segment, vector(weights))),
-        Task::Placement(task) => {
-            loads.push(world(task.segment, task.point, vector(weights)));
-            loads.push(couple(task.segment, vector(&weights[3..])));
-        }
-        Task::CenterOfMass(task) => {
-            let force = match &task.goal {
-                task::Goal::At { axes, .. } => spread(*axes, weights),
-                task::Goal::Inside { polygon, .. } => {
-                    polygon.iter().zip(weights).map(|(edge, w)| edge.normal * *w).sum()
-                }
-            };
-            let mass = model.mass();
-            for (i, segment) in model.segments().iter().enumerate().filter(|(_, segment)| segment.mass > 0.0) {
-                loads.push(world(i, segment.center_of_mass, force * (segment.mass / mass)));
-            }
-        }
-        Task::LookAt(_) | Task::Distance(_) | Task::Posture(_) | Task::Effort(_) => {}
-    }
-}
-
-/// The entries of the asked axes back in their places.
-fn spread(axes: [bool; 3], weights: &[f64]) -> Vector3<f64> {
-    let mut weights = weights.iter();
-    Vector3::from_fn(|k, _| if axes[k] { weights.next().copied().unwrap_or(0.0) } else { 0.0 })
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
@@ -284,6 +253,7 @@ mod tests {
 
     use super::*;
     use crate::ik::body::Needs;
+    use crate::ik::task::{self, Task};
     use crate::model::{Adult, adult};
 
     /// `sum w_i r_i''` along a direction against second differences of `sum w_i r_i`, where the turns' errors are zero.
@@ -323,8 +293,8 @@ mod tests {
                     target: UnitQuaternion::from(body.kinematics().placement(&model, hand).rotation),
                 }),
             ];
-            let mut curvature = Curvature::new(&model);
             let goals: Vec<Goal> = vec![Goal { tasks: tasks.to_vec(), ..Goal::default() }];
+            let mut curvature = Curvature::new(&model, &goals);
             curvature.residual =
                 (0..tasks.iter().map(Task::rows).sum()).map(|_| random.random_range(-1.0..1.0)).collect();
             let direction: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();

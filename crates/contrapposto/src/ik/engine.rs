@@ -179,7 +179,13 @@ impl<'a> Engine<'a> {
             .iter()
             .map(|rate| rate.coordinate.is_some_and(|c| model.coordinates()[c].locked || model.is_dependent(c)));
         let mut problem = Problem::new(model.rates().len());
-        problem.levels.resize(goals.len(), Level::default());
+        // Second derivatives and staying where it is give a level a row for every rate.
+        let n = model.rates().len();
+        let room = |rows: usize| rows.max(n) + 3;
+        problem.levels.extend(goals.iter().map(|goal| Level::with_capacity(room(goal.rows()), n)));
+        let most = goals.iter().map(Goal::rows).max().map_or(n, room);
+        let all = goals.iter().map(|goal| room(goal.rows())).sum();
+        let solver = || Solver::with_capacity(n, goals.len(), most, all);
         Ok(Self {
             model,
             locked: locked.collect(),
@@ -188,14 +194,14 @@ impl<'a> Engine<'a> {
             needs,
             body: Body::new(model),
             problem,
-            solver: Solver::new(),
-            restorer: Solver::new(),
+            solver: solver(),
+            restorer: solver(),
             errors: vec![f64::INFINITY; goals.len()],
             before: vec![f64::INFINITY; goals.len()],
             kept: vec![0.0; goals.len()],
             kept_before: vec![0.0; goals.len()],
             stalls: vec![0; goals.len()],
-            curvature: Curvature::new(model),
+            curvature: Curvature::new(model, &goals),
             bent: None,
             waiting: true,
             reach: options.max_step,

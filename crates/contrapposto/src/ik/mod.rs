@@ -8,6 +8,7 @@
 pub mod body;
 mod curvature;
 mod engine;
+mod symmetric;
 pub mod task;
 
 pub use engine::{Engine, GoalError, Options, Pose, Reached, Reason, Step};
@@ -24,6 +25,13 @@ pub struct Goal {
     pub half_spaces: Vec<HalfSpace>,
     /// It is meant to hold: where it cannot, the answer says so.
     pub hard: bool,
+}
+
+impl Goal {
+    /// Rows of its level: the errors of its tasks, then its half-spaces.
+    pub fn rows(&self) -> usize {
+        self.tasks.iter().map(Task::rows).sum::<usize>() + self.half_spaces.len()
+    }
 }
 
 impl From<Task> for Goal {

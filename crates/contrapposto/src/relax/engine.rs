@@ -8,6 +8,8 @@ use nalgebra::Vector3;
 
 use super::curvature::Curvature;
 use super::probe::Probe;
+use super::site::Ask;
+use super::valleys::Valleys;
 use crate::contact::{Balance, ContactForces, Support, SupportError, Unknowns, bounds, friction_rows, share_row};
 use crate::ik::body::{Body, BodyError, Needs};
 use crate::ik::task::{Effort, Placement, Task, TaskError, share_of_strength};
@@ -31,11 +33,14 @@ pub struct Options {
     pub gain: f64,
     /// Steps that made things worse are taken back; without it every step counts, and the next one is shorter.
     pub guarded: bool,
+    /// Valleys of effort that [`Engine::solve`] looks into before its steps: 1 for the nearest one, more for others beside it; 0
+    /// for steps alone, which stay nearest to the start.
+    pub valleys: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { max_step: 0.3, max_steps: 200, still: 1e-9, gain: 1e-9, guarded: true }
+        Self { max_step: 0.3, max_steps: 200, still: 1e-9, gain: 1e-9, guarded: true, valleys: 12 }
     }
 }
 
@@ -140,6 +145,9 @@ pub struct Engine<'a> {
     /// What the last step left of each level.
     unreached: Vec<f64>,
     curvature: Curvature,
+    valleys: Valleys,
+    /// Rates that move.
+    free: Vec<usize>,
     reach: f64,
     last: Posture,
     largest: f64,
@@ -219,6 +227,8 @@ impl<'a> Engine<'a> {
             starts: vec![],
             unreached: vec![],
             curvature: Curvature::new(model, unknowns),
+            valleys: Valleys::new(model),
+            free: vec![],
             reach: options.max_step,
             last: start.clone(),
             largest: f64::INFINITY,
@@ -320,8 +330,10 @@ impl<'a> Engine<'a> {
     pub fn solve(&mut self, start: &Posture) -> Result<Relaxed, RelaxError> {
         self.restart();
         let mut posture = start.clone();
-        let (mut steps, mut idle) = (0, 0);
-        while steps < self.options.max_steps && idle < 3 {
+        let (settled, mut steps) = self.look_into_valleys(&mut posture)?;
+        let mut idle = if settled { 3 } else { 0 };
+        let most = steps + self.options.max_steps;
+        while steps < most && idle < 3 {
             let step = self.step(&mut posture)?;
             steps += 1;
             let gained = self.merit(1) - self.merit(0);
@@ -341,7 +353,7 @@ impl<'a> Engine<'a> {
             self.see(&posture)?;
             self.build();
         }
-        let reason = if steps < self.options.max_steps { Reason::Settled } else { Reason::Steps };
+        let reason = if steps < most { Reason::Settled } else { Reason::Steps };
         Ok(Relaxed {
             effort: 2.0 * self.effort[0],
             errors: (0..self.goals.len()).map(|goal| self.error(goal)).collect(),
@@ -351,6 +363,33 @@ impl<'a> Engine<'a> {
             steps,
             posture,
         })
+    }
+
+    /// Moves to the lowest bottom of the valleys; is that the answer, and after how many steps?
+    fn look_into_valleys(&mut self, posture: &mut Posture) -> Result<(bool, usize), RelaxError> {
+        let Some(goal) = self.effort_goal.filter(|_| self.options.valleys > 0) else { return Ok((false, 0)) };
+        self.free.clear();
+        self.free.extend((0..self.locked.len()).filter(|rate| !self.locked[*rate]));
+        let effort = &self.goals[goal];
+        let alone = effort.half_spaces.is_empty() && effort.tasks.iter().all(|task| matches!(task, Task::Effort(_)));
+        if self.free.is_empty() || !alone {
+            return Ok((false, 0));
+        }
+        self.see(posture)?;
+        let effort = &self.goals[goal];
+        let ask = Ask {
+            model: self.model,
+            places: &self.places,
+            above: &self.goals[..goal],
+            effort,
+            loads: &self.loads,
+            free: &self.free,
+            contact: &self.contact,
+        };
+        let Some(bottom) = self.valleys.find(&ask, posture, self.options.valleys)? else { return Ok((false, 0)) };
+        self.see(posture)?;
+        let held = self.contact.balance() == Balance::Held;
+        Ok((bottom.settled && held && goal + 1 == self.goals.len(), bottom.steps))
     }
 
     /// Computes everything that depends on the posture, contact forces included.

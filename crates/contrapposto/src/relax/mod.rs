@@ -6,7 +6,12 @@
 //! the posture reached ([`crate::contact`]), so that what is reported is in equilibrium exactly.
 
 mod curvature;
+mod descent;
 mod engine;
+mod hessian;
 mod probe;
+mod quadratic;
+mod site;
+mod valleys;
 
 pub use engine::{Engine, Options, Reason, RelaxError, Relaxed, Step};

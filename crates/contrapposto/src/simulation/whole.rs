@@ -64,7 +64,7 @@ impl<'a> Whole<'a> {
                 }
             }
         };
-        let options = Options { max_step: 0.1, ..Options::default() };
+        let options = Options { max_step: 0.1, valleys: 0, ..Options::default() };
         let mut first = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut first);
         let start = first.solve(&scenario.start)?;

@@ -28,6 +28,30 @@ pub(super) fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
     }
 }
 
+/// `a . t` and `b . t`; lengths are whole eights.
+#[inline]
+pub(super) fn dot_pair(a: &[f64], b: &[f64], t: &[f64]) -> (f64, f64) {
+    let (mut left, mut right) = ([0.0; 8], [0.0; 8]);
+    for ((a, b), t) in a.as_chunks::<8>().0.iter().zip(b.as_chunks::<8>().0).zip(t.as_chunks::<8>().0) {
+        for i in 0..8 {
+            left[i] += a[i] * t[i];
+            right[i] += b[i] * t[i];
+        }
+    }
+    let sum = |s: [f64; 8]| ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
+    (sum(left), sum(right))
+}
+
+/// `t += p a + q b`; lengths are whole eights.
+#[inline]
+pub(super) fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64]) {
+    for ((t, a), b) in t.as_chunks_mut::<8>().0.iter_mut().zip(a.as_chunks::<8>().0).zip(b.as_chunks::<8>().0) {
+        for i in 0..8 {
+            t[i] += p * a[i] + q * b[i];
+        }
+    }
+}
+
 /// Length of a vector.
 #[inline]
 pub(super) fn norm(a: &[f64]) -> f64 {
@@ -38,22 +62,22 @@ pub(super) fn norm(a: &[f64]) -> f64 {
 /// keeps rows of very different size apart (Cox & Higham 1998). Keeps its space between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LeastSquares {
-    rows: usize,
-    columns: usize,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
     /// Row after row, as given.
-    given: Vec<f64>,
-    given_right: Vec<f64>,
+    pub(super) given: Vec<f64>,
+    pub(super) given_right: Vec<f64>,
     /// Column after column, rows in `order`; the last column is the right-hand side.
-    matrix: Vec<f64>,
-    order: Vec<usize>,
-    sizes: Vec<f64>,
+    pub(super) matrix: Vec<f64>,
+    pub(super) order: Vec<usize>,
+    pub(super) sizes: Vec<f64>,
     /// Which column of `matrix` holds which unknown, and what is left of it, squared.
-    places: Vec<usize>,
-    left: Vec<f64>,
-    vector: Vec<f64>,
-    diagonal: Vec<f64>,
-    scale: Vec<f64>,
-    residual: Vec<f64>,
+    pub(super) places: Vec<usize>,
+    pub(super) left: Vec<f64>,
+    pub(super) vector: Vec<f64>,
+    pub(super) diagonal: Vec<f64>,
+    pub(super) scale: Vec<f64>,
+    pub(super) residual: Vec<f64>,
 }
 
 impl LeastSquares {

@@ -17,16 +17,16 @@ const SINGULAR: f64 = 1e-6;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Diagonal {
     /// The row that asks each unknown, by unknown.
-    asked: Vec<Option<usize>>,
+    pub(super) asked: Vec<Option<usize>>,
     /// Columns of the factor whose unknowns are not asked.
-    unasked: Vec<usize>,
+    pub(super) unasked: Vec<usize>,
     /// `G`, one row a column of `unasked`.
-    half: Vec<f64>,
+    pub(super) half: Vec<f64>,
     /// `G G^T`, then its Cholesky factor.
-    square: Vec<f64>,
-    columns: Vec<f64>,
+    pub(super) square: Vec<f64>,
+    pub(super) columns: Vec<f64>,
     /// What is wanted of the unknowns, turned, as far as the rows above reach.
-    wanted: Vec<f64>,
+    pub(super) wanted: Vec<f64>,
 }
 
 impl Solver {

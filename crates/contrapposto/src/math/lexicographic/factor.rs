@@ -3,7 +3,7 @@
 //!
 //! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others).
 
-use super::dense::{add_scaled, dot, norm};
+use super::dense::{add_scaled, add_scaled_pair, dot, dot_pair, norm};
 
 /// What a row of the factor stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,12 +22,14 @@ pub(super) struct Factor {
     /// What each row stands for.
     pub(super) entries: Vec<Entry>,
     /// `L[r][..r]`, one row after the other, as long as `free`.
-    lower: Vec<f64>,
+    pub(super) lower: Vec<f64>,
     /// The reflections' vectors, [`Factor::padded`] long: zero before place `r` and behind `free`, so that sums may run over
     /// whole eights.
-    vectors: Vec<f64>,
-    diagonal: Vec<f64>,
-    scale: Vec<f64>,
+    pub(super) vectors: Vec<f64>,
+    pub(super) diagonal: Vec<f64>,
+    pub(super) scale: Vec<f64>,
+    /// Product of each vector with the one before.
+    pub(super) cross: Vec<f64>,
 }
 
 impl Factor {
@@ -60,6 +62,7 @@ impl Factor {
         self.vectors.truncate(len * self.padded());
         self.diagonal.truncate(len);
         self.scale.truncate(len);
+        self.cross.truncate(len);
     }
 
     /// The entries of `x` at the free unknowns, then zeros.
@@ -80,17 +83,43 @@ impl Factor {
         add_scaled(t, -s, v);
     }
 
-    /// Applies the reflections of rows `from..to` to `t`: `Q^T t`, as far as they go.
+    /// The vectors of rows `r - 1` and `r` and what they are applied to, from the eight where the first begins.
+    #[inline]
+    fn pair<'a>(&'a self, r: usize, t: &'a mut [f64]) -> (&'a [f64], &'a [f64], &'a mut [f64]) {
+        let c = self.padded();
+        let first = (r - 1) / 8 * 8;
+        (&self.vectors[(r - 1) * c + first..r * c], &self.vectors[r * c + first..(r + 1) * c], &mut t[first..c])
+    }
+
+    /// Applies the reflections of rows `from..to` to `t`: `Q^T t`, as far as they go. Two at a time, which reads `t` once.
     pub(super) fn turn(&self, t: &mut [f64], from: usize, to: usize) {
-        for r in from..to {
+        let mut r = from;
+        while r + 1 < to {
+            let (a, b, t) = self.pair(r + 1, t);
+            let (p, q) = dot_pair(a, b, t);
+            let p = self.scale[r] * p;
+            let q = self.scale[r + 1] * (q - p * self.cross[r + 1]);
+            add_scaled_pair(t, -p, a, -q, b);
+            r += 2;
+        }
+        if r < to {
             self.reflect(r, t);
         }
     }
 
     /// Applies all reflections backwards: `Q t`.
     pub(super) fn turn_back(&self, t: &mut [f64]) {
-        for r in (0..self.len()).rev() {
-            self.reflect(r, t);
+        let mut r = self.len();
+        while r >= 2 {
+            let (a, b, t) = self.pair(r - 1, t);
+            let (p, q) = dot_pair(a, b, t);
+            let q = self.scale[r - 1] * q;
+            let p = self.scale[r - 2] * (p - q * self.cross[r - 1]);
+            add_scaled_pair(t, -p, a, -q, b);
+            r -= 2;
+        }
+        if r == 1 {
+            self.reflect(0, t);
         }
     }
 
@@ -105,6 +134,9 @@ impl Factor {
         self.vectors.extend_from_slice(&t[..self.padded()]);
         self.vectors[start..start + r].fill(0.0);
         self.vectors[start + r] = t[r] - beta;
+        let c = self.padded();
+        let (before, own) = self.vectors[start.saturating_sub(c)..].split_at(start.min(c));
+        self.cross.push(if r == 0 { 0.0 } else { dot(before, own) });
         self.diagonal.push(beta);
         self.scale.push(-1.0 / (beta * (t[r] - beta)));
         self.entries.push(entry);

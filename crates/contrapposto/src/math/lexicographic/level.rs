@@ -302,12 +302,16 @@ impl Solver {
             if let Some(row) = self.wrong_soft_row(MULTIPLIER * self.size) {
                 return Some(Entry::Row(row));
             }
-            for (kept, &row) in self.kept.iter().zip(&self.soft) {
-                let i = row - self.offsets[k];
-                add_scaled(&mut self.gradient, *kept, &level.matrix[i * n..(i + 1) * n]);
+            // What is turned is in the factor and beside it; the whole gradient is only asked where unknowns are left out.
+            let (rank, c, left_out) = (self.factor.len() - base, self.factor.padded(), self.factor.width() < n);
+            for (s, (kept, &row)) in self.kept.iter().zip(&self.soft).enumerate() {
+                let turned = if s < rank { self.factor.lower_row(base + s) } else { &self.turned[s * c..s * c + base] };
+                add_scaled(&mut self.work[..base], *kept, &turned[..base]);
+                if left_out {
+                    let i = row - self.offsets[k];
+                    add_scaled(&mut self.gradient, *kept, &level.matrix[i * n..(i + 1) * n]);
+                }
             }
-            self.factor.gather(&self.gradient, &mut self.work);
-            self.factor.turn(&mut self.work, 0, base);
         }
         if damped {
             add_scaled(&mut self.work[..base], square, &self.turned_x[..base]);

@@ -36,6 +36,7 @@ mod level;
 mod multipliers;
 mod problem;
 mod solver;
+mod space;
 
 pub use multipliers::Multipliers;
 pub use problem::{Level, Problem, ProblemError};

@@ -19,11 +19,11 @@ pub struct Multipliers<'a> {
 /// Storage of all levels' multipliers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Table {
-    unknowns: usize,
-    bounds: Vec<f64>,
-    rows: Vec<f64>,
+    pub(super) unknowns: usize,
+    pub(super) bounds: Vec<f64>,
+    pub(super) rows: Vec<f64>,
     /// Where the rows of each level begin.
-    starts: Vec<usize>,
+    pub(super) starts: Vec<usize>,
 }
 
 impl Table {

@@ -21,6 +21,16 @@ pub struct Level {
 }
 
 impl Level {
+    /// No rows; space for `rows` of `unknowns`.
+    pub fn with_capacity(rows: usize, unknowns: usize) -> Self {
+        Self {
+            matrix: Vec::with_capacity(rows * unknowns),
+            lower: Vec::with_capacity(rows),
+            upper: Vec::with_capacity(rows),
+            ..Self::default()
+        }
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.lower.len()

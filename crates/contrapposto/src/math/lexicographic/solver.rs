@@ -73,7 +73,7 @@ pub struct Solver {
     /// The only unknown in a row, where there is but one.
     pub(super) single: Vec<Option<usize>>,
     /// The larger of the row's finite limits, in size.
-    limits: Vec<f64>,
+    pub(super) limits: Vec<f64>,
     /// Length of `x`.
     pub(super) length: f64,
     /// What is left of each row.
@@ -82,7 +82,7 @@ pub struct Solver {
     pub(super) came_to_an_end: bool,
     pub(super) factor: Factor,
     /// Fixed rows that say nothing new beside those in the factor.
-    dependents: Vec<usize>,
+    pub(super) dependents: Vec<usize>,
     pub(super) table: Table,
     /// Rows of the level in question, turned; their indices; their right-hand sides.
     pub(super) turned: Vec<f64>,
@@ -99,11 +99,11 @@ pub struct Solver {
     pub(super) work: Vec<f64>,
     /// `x` turned, for a damped level.
     pub(super) turned_x: Vec<f64>,
-    entries: Vec<Entry>,
+    pub(super) entries: Vec<Entry>,
     pub(super) least: LeastSquares,
     pub(super) diagonal: Diagonal,
-    changes: usize,
-    limit: usize,
+    pub(super) changes: usize,
+    pub(super) limit: usize,
 }
 
 impl Solver {

@@ -1,0 +1,43 @@
+//! Is a least-effort posture no worse than what SLSQP on Pinocchio's derivatives finds from the same start?
+//!
+//! `data/effort_peer.json`: every fifth target of the peer's two lists with its sums of squared active torques (tool and script
+//! are named in the file). Effort has many valleys, so on some targets the peer's is lower: at least so many must be no worse,
+//! and no hand may be off its target, no foot off its place, no root out of balance. Skips where the peer's model is not there.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+#[path = "effort/mod.rs"]
+mod problem;
+
+use std::path::PathBuf;
+
+use contrapposto::relax::{Options, Reason};
+
+/// How many of the stored targets are no worse.
+fn no_worse(name: &str, standing: bool) -> usize {
+    let Some(problem) = problem::Problem::read(standing) else {
+        println!("skipped: the peer's model is not on this machine");
+        return usize::MAX;
+    };
+    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/effort_peer.json");
+    let targets = problem::targets(&file, name);
+    let mut count = 0;
+    for target in &targets {
+        let pose = problem.engine(target.target, Options::default()).solve(&problem.rest).unwrap();
+        println!("{} by {}, {} steps", pose.effort, target.effort, pose.steps);
+        assert!(problem::holds(&pose), "{pose:?}");
+        assert_eq!(pose.reason, Reason::Settled);
+        count += usize::from(pose.effort <= target.effort * (1.0 + 1e-4));
+    }
+    count
+}
+
+#[test]
+fn the_upper_body_needs_no_more_than_the_peer() {
+    assert!(no_worse("A_upper_body_fixed_pelvis_30dof", false) >= 6);
+}
+
+#[test]
+fn standing_needs_no_more_than_the_peer() {
+    assert!(no_worse("B_standing_66_unknowns", true) >= 7);
+}

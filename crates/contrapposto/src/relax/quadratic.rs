@@ -1,0 +1,404 @@
+//! Which step is best where effort is a quadratic function and what must hold is linear?
+//!
+//! `min g.d + d^T H d / 2` with `lower <= A d <= upper` and bounds on `d`. Of inequalities a guess is held as equations, then
+//! solved, then put right: what is violated is added, what pulls is let go (Nocedal & Wright 2006, "Numerical Optimization",
+//! ch. 16.5). Each solution is one Cholesky factorisation of `[M A^T; A 0]`, `M` being `H` with the squares of the held rows
+//! added: directions that they forbid must not look as if effort bent down there. What is still not positive gets a shift.
+
+/// Weight of held rows in `M`, against the largest diagonal entry.
+const FAST: f64 = 10.0;
+/// Share of the largest diagonal entry of each kind that is always added.
+const FLAT: f64 = 1e-10;
+/// How often the guess is put right; in the second half nothing is let go any more.
+const ROUNDS: usize = 14;
+/// Of what is violated, all that is violated by this share of the worst is added at once.
+const WORST: f64 = 0.3;
+/// Relative size of a violation or multiplier that counts as zero.
+const NOTHING: f64 = 1e-12;
+/// The first shift that is tried.
+const LEAST: f64 = 3e-6;
+/// Rows shorter than this count as zero.
+const SHORT: f64 = 1e-12;
+
+/// The problem, its answer, and the factors, which serve for corrections. Keeps its space.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Quadratic {
+    /// Number of unknowns.
+    pub(super) n: usize,
+    /// `H`; the upper triangle is read.
+    pub(super) matrix: Vec<f64>,
+    pub(super) slope: Vec<f64>,
+    /// `A`, row after row.
+    pub(super) rows: Vec<f64>,
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+    /// Bounds of each unknown.
+    pub(super) least: Vec<f64>,
+    pub(super) most: Vec<f64>,
+    /// The first unknowns, which the shift is added to; the others only get a trace.
+    pub(super) shifted: usize,
+    /// What one of shift adds to the diagonal.
+    pub(super) unit: f64,
+    /// The answer, and the multipliers of the rows.
+    pub(super) step: Vec<f64>,
+    pub(super) multipliers: Vec<f64>,
+    /// Is each unknown held at a bound, each row at a limit: -1, 0 or 1?
+    held: Vec<i8>,
+    kept: Vec<i8>,
+    free: Vec<usize>,
+    on: Vec<usize>,
+    /// `[R V z]` over `[. S -]`, see [`Quadratic::factorise`].
+    factor: Vec<f64>,
+    table: Vec<f64>,
+    /// `H d`.
+    bent: Vec<f64>,
+    answer: Vec<f64>,
+}
+
+impl Quadratic {
+    /// Forgets what was held.
+    pub(super) fn forget(&mut self) {
+        self.held.clear();
+        self.kept.clear();
+    }
+
+    /// Solves with at least `shift`; returns the shift that was needed. `false` if no shift helps.
+    pub(super) fn solve(&mut self, mut shift: f64) -> Option<f64> {
+        let (n, m) = (self.n, self.lower.len());
+        self.held.resize(n, 0);
+        self.kept.resize(m, 0);
+        self.step.resize(n, 0.0);
+        self.bent.resize(n, 0.0);
+        self.mirror();
+        for round in 0..ROUNDS {
+            self.choose();
+            loop {
+                self.fill();
+                if self.factorise(shift) {
+                    break;
+                }
+                shift = (8.0 * shift).max(LEAST);
+                if shift > 1e6 {
+                    return None;
+                }
+            }
+            self.answer();
+            if !self.put_right(2 * round < ROUNDS) {
+                break;
+            }
+        }
+        for (d, (least, most)) in self.step.iter_mut().zip(self.least.iter().zip(&self.most)) {
+            *d = d.clamp(*least, *most);
+        }
+        self.multiply();
+        let finite = self.step.iter().chain(&self.multipliers).all(|number| number.is_finite());
+        finite.then_some(shift)
+    }
+
+    /// The least change of the last answer, measured by `M`, that changes the rows that are held by `change`.
+    pub(super) fn correct(&mut self, change: impl Fn(usize) -> f64, correction: &mut [f64]) {
+        let (k, q) = (self.free.len(), self.on.len());
+        let w = k + q + 1;
+        self.answer.clear();
+        self.answer.extend(self.on.iter().map(|row| change(*row)));
+        self.solve_schur();
+        let mut z = std::mem::take(&mut self.table);
+        z.clear();
+        z.extend((0..k).map(|i| dot(&self.factor[i * w + k..i * w + k + q], &self.answer)));
+        back(&self.factor, w, &mut z);
+        correction.fill(0.0);
+        self.free.iter().zip(&z).for_each(|(i, z)| correction[*i] = *z);
+        self.table = z;
+    }
+
+    /// Is the row an equation, or held at a limit?
+    pub(super) fn holds(&self, row: usize) -> bool {
+        self.lower[row] == self.upper[row] || self.kept[row] != 0
+    }
+
+    /// `d^T H d` of the answer.
+    pub(super) fn bend(&self) -> f64 {
+        dot(&self.bent, &self.step)
+    }
+
+    /// The lower triangle from the upper one.
+    fn mirror(&mut self) {
+        let n = self.n;
+        for i in 1..n {
+            for j in 0..i {
+                self.matrix[i * n + j] = self.matrix[j * n + i];
+            }
+        }
+    }
+
+    /// What is free, what is held.
+    fn choose(&mut self) {
+        self.free.clear();
+        self.free.extend((0..self.n).filter(|i| self.held[*i] == 0));
+        if 2 * self.free.len() < self.n {
+            self.held.fill(0);
+            self.free.clear();
+            self.free.extend(0..self.n);
+        }
+        for (i, held) in self.held.iter().enumerate() {
+            self.step[i] = match held {
+                0 => 0.0,
+                -1 => self.least[i],
+                _ => self.most[i],
+            };
+        }
+        self.on.clear();
+        for row in 0..self.lower.len() {
+            if self.lower[row] == self.upper[row] || self.kept[row] != 0 {
+                self.on.push(row);
+            }
+        }
+    }
+
+    /// `[M A^T -g; 0 0 c]` over what is free and held.
+    fn fill(&mut self) {
+        let (n, k, q) = (self.n, self.free.len(), self.on.len());
+        let w = k + q + 1;
+        self.factor.clear();
+        self.factor.resize((k + q) * w, 0.0);
+        self.table.clear();
+        self.table.resize(q * k, 0.0);
+        let all = k == n;
+        for (a, &i) in self.free.iter().enumerate() {
+            let (from, to) = (&self.matrix[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
+            let mut slope = self.slope[i];
+            if all {
+                to[a..k].copy_from_slice(&from[a..]);
+            } else {
+                to[a..k].iter_mut().zip(&self.free[a..]).for_each(|(to, j)| *to = from[*j]);
+                slope += dot(from, &self.step);
+            }
+            to[k + q] = -slope;
+        }
+        let size = (0..k).fold(0.0, |size: f64, a| size.max(self.factor[a * w + a].abs()));
+        for (r, &row) in self.on.iter().enumerate() {
+            let from = &self.rows[row * n..(row + 1) * n];
+            let target = if self.kept[row] > 0 { self.upper[row] } else { self.lower[row] };
+            let target = target - if all { 0.0 } else { dot(from, &self.step) };
+            let short = &mut self.table[r * k..(r + 1) * k];
+            short.iter_mut().zip(&self.free).for_each(|(to, i)| *to = from[*i]);
+            let square = dot(short, short);
+            let weight = if square > SHORT { FAST * size / square } else { 0.0 };
+            for a in 0..k {
+                let entry = short[a];
+                if entry == 0.0 {
+                    continue;
+                }
+                let line = &mut self.factor[a * w..(a + 1) * w];
+                add(&mut line[a..k], &short[a..], weight * entry);
+                line[k + r] = entry;
+                line[k + q] += weight * entry * target;
+            }
+            self.factor[(k + r) * w + k + q] = target;
+        }
+    }
+
+    /// `M = R^T R`, `V = R^-T A^T`, `z = R^-T(-g)`, and `S = V^T V` by a second factorisation.
+    fn factorise(&mut self, shift: f64) -> bool {
+        let (k, q) = (self.free.len(), self.on.len());
+        let w = k + q + 1;
+        let (mut posture, mut forces) = (0f64, 0f64);
+        for (a, &i) in self.free.iter().enumerate() {
+            let size = self.factor[a * w + a].abs();
+            if i < self.shifted { posture = posture.max(size) } else { forces = forces.max(size) }
+        }
+        for (a, &i) in self.free.iter().enumerate() {
+            let more = if i < self.shifted { shift * self.unit + FLAT * posture } else { FLAT * forces };
+            self.factor[a * w + a] += more;
+        }
+        if !eliminate(&mut self.factor, w, 0, k) {
+            return false;
+        }
+        // Rows that say the same twice.
+        let trace = (k..k + q).fold(0.0, |most: f64, r| most.max(-self.factor[r * w + r])) * NOTHING;
+        for r in k..k + q {
+            let line = &mut self.factor[r * w..(r + 1) * w];
+            line[k..].iter_mut().for_each(|entry| *entry = -*entry);
+            line[r] += trace;
+        }
+        eliminate(&mut self.factor, w, k, k + q)
+    }
+
+    /// Step and multipliers from the factors.
+    fn answer(&mut self) {
+        let (k, q) = (self.free.len(), self.on.len());
+        let w = k + q + 1;
+        self.answer.clear();
+        self.answer.extend((k..k + q).map(|r| self.factor[r * w + k + q]));
+        let base = k * w + k;
+        for i in (0..q).rev() {
+            let line = &self.factor[base + i * w..base + i * w + q];
+            let rest = dot(&line[i + 1..], &self.answer[i + 1..]);
+            self.answer[i] = (self.answer[i] - rest) / line[i];
+        }
+        let mut z = std::mem::take(&mut self.table);
+        z.clear();
+        z.extend((0..k).map(|i| {
+            let line = &self.factor[i * w..(i + 1) * w];
+            line[k + q] - dot(&line[k..k + q], &self.answer)
+        }));
+        back(&self.factor, w, &mut z);
+        self.free.iter().zip(&z).for_each(|(i, z)| self.step[*i] = *z);
+        self.table = z;
+        self.multipliers.clear();
+        self.multipliers.resize(self.lower.len(), 0.0);
+        self.on.iter().zip(&self.answer).for_each(|(row, y)| self.multipliers[*row] = *y);
+    }
+
+    /// `S^-1` of what stands in `answer`.
+    fn solve_schur(&mut self) {
+        let (k, q) = (self.free.len(), self.on.len());
+        let w = k + q + 1;
+        let line = |i: usize| (k + i) * w + k;
+        for i in 0..q {
+            self.answer[i] /= self.factor[line(i) + i];
+            let by = self.answer[i];
+            let row = &self.factor[line(i)..line(i) + q];
+            add(&mut self.answer[i + 1..], &row[i + 1..], -by);
+        }
+        for i in (0..q).rev() {
+            let row = &self.factor[line(i)..line(i) + q];
+            self.answer[i] = (self.answer[i] - dot(&row[i + 1..], &self.answer[i + 1..])) / row[i];
+        }
+    }
+
+    fn multiply(&mut self) {
+        for (bent, row) in self.bent.iter_mut().zip(self.matrix.chunks_exact(self.n)) {
+            *bent = dot(row, &self.step);
+        }
+    }
+
+    /// Adds what is violated, lets go what pulls; `true` if anything changed.
+    fn put_right(&mut self, let_go: bool) -> bool {
+        let n = self.n;
+        let mut changed = false;
+        if let_go && self.free.len() < n {
+            self.multiply();
+            for i in 0..n {
+                if self.held[i] == 0 {
+                    continue;
+                }
+                let mut pull = self.slope[i] + self.bent[i];
+                for &row in &self.on {
+                    pull += self.multipliers[row] * self.rows[row * n + i];
+                }
+                if pull * f64::from(self.held[i]) > 1e3 * NOTHING * self.slope[i].abs() {
+                    self.held[i] = 0;
+                    changed = true;
+                }
+            }
+        }
+        let excess = |i: usize| (self.least[i] - self.step[i]).max(self.step[i] - self.most[i]);
+        let worst = self.free.iter().fold(0.0, |worst: f64, i| worst.max(excess(*i)));
+        if worst > NOTHING {
+            for &i in &self.free {
+                if excess(i) >= WORST * worst {
+                    self.held[i] = if self.step[i] < self.least[i] { -1 } else { 1 };
+                    changed = true;
+                }
+            }
+        }
+        for row in 0..self.lower.len() {
+            if self.lower[row] == self.upper[row] {
+                continue;
+            }
+            let pull = self.multipliers[row];
+            if self.kept[row] != 0 {
+                if let_go && pull * f64::from(self.kept[row]) < 0.0 {
+                    self.kept[row] = 0;
+                    changed = true;
+                }
+                continue;
+            }
+            let value = dot(&self.rows[row * n..(row + 1) * n], &self.step);
+            let side = i8::from(value > self.upper[row] + NOTHING) - i8::from(value < self.lower[row] - NOTHING);
+            changed |= side != 0;
+            self.kept[row] = side;
+        }
+        changed
+    }
+}
+
+/// Eliminates rows `from..to` of a matrix of rows of width `w` from all rows below, upper triangle only, four at a time; each
+/// becomes that of a Cholesky factor. `false` where the matrix is not positive.
+fn eliminate(matrix: &mut [f64], w: usize, from: usize, to: usize) -> bool {
+    let mut p = from;
+    while p < to {
+        let size = (to - p).min(4);
+        let (upper, lower) = matrix.split_at_mut((p + size) * w);
+        for c in p..p + size {
+            let (done, rest) = upper.split_at_mut(c * w);
+            let row = &mut rest[..w];
+            for by in p..c {
+                let by = &done[by * w..(by + 1) * w];
+                let factor = by[c];
+                add(&mut row[c..], &by[c..], -factor);
+            }
+            if !(row[c] > 0.0 && row[c].is_finite()) {
+                return false;
+            }
+            let over = 1.0 / row[c].sqrt();
+            row[c..].iter_mut().for_each(|entry| *entry *= over);
+        }
+        let rows = &upper[p * w..];
+        if size == 4 {
+            let (a, rest) = rows.split_at(w);
+            let (b, rest) = rest.split_at(w);
+            let (c, d) = rest.split_at(w);
+            for (i, target) in lower.chunks_exact_mut(w).enumerate() {
+                let i = p + 4 + i;
+                let (fa, fb, fc, fd) = (a[i], b[i], c[i], d[i]);
+                if fa == 0.0 && fb == 0.0 && fc == 0.0 && fd == 0.0 {
+                    continue;
+                }
+                let sources = a[i..].iter().zip(&b[i..]).zip(c[i..].iter().zip(&d[i..]));
+                for (entry, ((a, b), (c, d))) in target[i..].iter_mut().zip(sources) {
+                    *entry -= (fa * a + fb * b) + (fc * c + fd * d);
+                }
+            }
+        } else {
+            for (i, target) in lower.chunks_exact_mut(w).enumerate() {
+                let i = p + size + i;
+                for row in rows.chunks_exact(w) {
+                    add(&mut target[i..], &row[i..], -row[i]);
+                }
+            }
+        }
+        p += size;
+    }
+    true
+}
+
+/// `R^-1 b` with the factor in the first columns of rows of width `w`.
+fn back(factor: &[f64], w: usize, b: &mut [f64]) {
+    let k = b.len();
+    for i in (0..k).rev() {
+        let row = &factor[i * w..i * w + k];
+        b[i] = (b[i] - dot(&row[i + 1..], &b[i + 1..])) / row[i];
+    }
+}
+
+/// `a . b`, four sums at once.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
+    for (a, b) in a.by_ref().zip(b.by_ref()) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// `sum += weight row`.
+pub(super) fn add(sum: &mut [f64], row: &[f64], weight: f64) {
+    for (s, a) in sum.iter_mut().zip(row) {
+        *s += weight * a;
+    }
+}

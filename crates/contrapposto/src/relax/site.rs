@@ -1,0 +1,241 @@
+//! What do effort, contact forces and goals look like in one posture with given forces?
+
+use nalgebra::Vector3;
+
+use super::quadratic::{Quadratic, add};
+use crate::contact::{ContactForces, Unknowns, friction_rows, share_row};
+use crate::ik::Goal;
+use crate::ik::body::{Body, BodyError, Needs};
+use crate::ik::task::{Task, share_of_strength};
+use crate::math::lexicographic::Level;
+use crate::model::Model;
+use crate::posture::Posture;
+use crate::statics::{FixedIn, Load, LoadKind, PassiveTorque};
+
+/// What is asked of posture and contact forces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ask<'b> {
+    pub(super) model: &'b Model,
+    /// Where supports are to stay.
+    pub(super) places: &'b Goal,
+    /// Goals above effort.
+    pub(super) above: &'b [Goal],
+    /// The level of effort.
+    pub(super) effort: &'b Goal,
+    pub(super) loads: &'b [Load],
+    /// Rates that move.
+    pub(super) free: &'b [usize],
+    /// Where the supports push; its forces are where a descent begins.
+    pub(super) contact: &'b ContactForces,
+}
+
+impl Ask<'_> {
+    /// What must hold, besides the root's equilibrium and friction: places of supports, and goals above effort.
+    pub(super) fn goals(&self) -> impl Iterator<Item = &Goal> {
+        std::iter::once(self.places).chain(self.above)
+    }
+
+    /// Number of unknowns: rates that move, then forces.
+    pub(super) fn unknowns(&self) -> usize {
+        self.free.len() + self.contact.forces().len()
+    }
+}
+
+/// Posture, forces, and all that follows from them. Keeps its space.
+#[derive(Clone, Debug)]
+pub(super) struct Site {
+    pub(super) posture: Posture,
+    /// As [`ContactForces::forces`].
+    pub(super) forces: Vec<f64>,
+    pub(super) body: Body,
+    passive: PassiveTorque,
+    /// Loads of the scenario, then one a corner.
+    pub(super) loads: Vec<Load>,
+    /// As [`ContactForces::columns`].
+    pub(super) columns: Vec<f64>,
+    /// Errors of the effort level, and their rows over the unknowns.
+    pub(super) errors: Vec<f64>,
+    pub(super) slopes: Vec<f64>,
+    /// Half the sum of squares of the errors.
+    pub(super) effort: f64,
+    /// Rows of what must hold: the root's equilibrium, goals, half-spaces, friction and shares.
+    pub(super) rows: Vec<f64>,
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+    narrow: Level,
+    row: Vec<f64>,
+    jacobian: Vec<f64>,
+}
+
+impl Site {
+    pub(super) fn new(model: &Model) -> Self {
+        Self {
+            posture: model.default_posture(),
+            forces: vec![],
+            body: Body::new(model),
+            passive: PassiveTorque::new(model),
+            loads: vec![],
+            columns: vec![],
+            errors: vec![],
+            slopes: vec![],
+            effort: 0.0,
+            rows: vec![],
+            lower: vec![],
+            upper: vec![],
+            narrow: Level::default(),
+            row: vec![],
+            jacobian: vec![0.0; 3 * model.rates().len()],
+        }
+    }
+
+    /// Sum of sizes of what does not hold.
+    pub(super) fn violation(&self) -> f64 {
+        self.lower.iter().zip(&self.upper).map(|(lower, upper)| lower.max(0.0) - upper.min(0.0)).sum()
+    }
+
+    /// Computes everything for `posture` and `forces`.
+    pub(super) fn see(&mut self, ask: &Ask<'_>) -> Result<(), BodyError> {
+        let (model, contact) = (ask.model, ask.contact);
+        self.loads.clear();
+        self.loads.extend_from_slice(ask.loads);
+        for ((load, axes), shares) in contact.loads().iter().zip(contact.axes()).zip(self.forces.chunks_exact(3)) {
+            let force: Vector3<f64> = axes.iter().zip(shares).map(|(axis, share)| *share * *axis).sum();
+            let kind = LoadKind::Force(contact.weight() * force, FixedIn::World);
+            self.loads.push(Load { kind, ..*load });
+        }
+        self.body.update(model, &self.posture, &self.loads, Needs { torque: true, center_of_mass: true })?;
+        self.passive.update(model, self.body.kinematics());
+        columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
+        self.effort_rows(ask);
+        self.rows.clear();
+        self.lower.clear();
+        self.upper.clear();
+        self.root_rows(ask);
+        self.goal_rows(ask);
+        self.force_rows(ask);
+        Ok(())
+    }
+
+    fn effort_rows(&mut self, ask: &Ask<'_>) {
+        let n = ask.model.rates().len();
+        self.errors.clear();
+        self.slopes.clear();
+        for task in &ask.effort.tasks {
+            self.narrow.clear();
+            task.evaluate(ask.model, &self.body, &mut self.narrow);
+            for (i, row) in self.narrow.matrix.chunks_exact(n).enumerate() {
+                self.errors.push(-self.narrow.upper[i]);
+                self.slopes.extend(ask.free.iter().map(|rate| row[*rate]));
+                let start = self.slopes.len();
+                self.slopes.resize(start + self.forces.len(), 0.0);
+                if let Task::Effort(effort) = task {
+                    let to = &mut self.slopes[start..];
+                    fill_forces(ask.model, &self.body, &self.columns, effort.coordinates[i], to);
+                }
+            }
+        }
+        self.effort = 0.5 * self.errors.iter().map(|e| e * e).sum::<f64>();
+    }
+
+    fn root_rows(&mut self, ask: &Ask<'_>) {
+        let (n, weight) = (ask.model.rates().len(), ask.contact.weight());
+        for &rate in ask.contact.root() {
+            let slopes = self.body.gradient().row(rate);
+            self.rows.extend(ask.free.iter().map(|by| slopes[*by] / weight));
+            self.rows.extend(self.columns.chunks_exact(n).map(|column| column[rate] / weight));
+            let rest = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]) / weight;
+            self.lower.push(rest);
+            self.upper.push(rest);
+        }
+    }
+
+    fn goal_rows(&mut self, ask: &Ask<'_>) {
+        let n = ask.model.rates().len();
+        let forces = self.forces.len();
+        for goal in ask.goals() {
+            for task in &goal.tasks {
+                self.narrow.clear();
+                task.evaluate(ask.model, &self.body, &mut self.narrow);
+                for row in self.narrow.matrix.chunks_exact(n) {
+                    self.rows.extend(ask.free.iter().map(|rate| row[*rate]));
+                    self.rows.resize(self.rows.len() + forces, 0.0);
+                }
+                self.lower.extend_from_slice(&self.narrow.lower);
+                self.upper.extend_from_slice(&self.narrow.upper);
+            }
+        }
+        for space in ask.goals().flat_map(|goal| &goal.half_spaces) {
+            let rates = ask.model.rates();
+            self.rows.extend(ask.free.iter().map(|rate| rates[*rate].coordinate.map_or(0.0, |c| space.normal[c])));
+            self.rows.resize(self.rows.len() + forces, 0.0);
+            self.lower.push(f64::NEG_INFINITY);
+            self.upper.push(-space.violation(self.posture.values()));
+        }
+    }
+
+    fn force_rows(&mut self, ask: &Ask<'_>) {
+        self.narrow.clear();
+        self.row.resize(ask.unknowns(), 0.0);
+        let unknowns = Unknowns { first: ask.free.len(), now: Some(&self.forces) };
+        for (i, support) in ask.contact.supports().iter().enumerate() {
+            let corners = ask.contact.corners(i);
+            friction_rows(&mut self.narrow, &mut self.row, support, corners.clone(), unknowns);
+            share_row(&mut self.narrow, &mut self.row, support, corners, unknowns);
+        }
+        self.rows.extend_from_slice(&self.narrow.matrix);
+        self.lower.extend_from_slice(&self.narrow.lower);
+        self.upper.extend_from_slice(&self.narrow.upper);
+    }
+
+    /// Gives `problem` the rows, taken on by `share`, and what effort bends by first derivatives; returns the largest diagonal
+    /// entry of the posture.
+    pub(super) fn write(&self, share: f64, problem: &mut Quadratic) -> f64 {
+        let n = problem.n;
+        problem.rows.clone_from(&self.rows);
+        problem.lower.clear();
+        problem.upper.clear();
+        for (lower, upper) in self.lower.iter().zip(&self.upper) {
+            // Only what does not hold is taken on by and by; equations keep being equations.
+            let (below, above) = (lower.max(0.0), upper.min(0.0));
+            let missing = below + above;
+            let rest = (share - 1.0) * missing;
+            problem.lower.push(if missing != 0.0 { lower + rest } else { *lower });
+            problem.upper.push(if missing != 0.0 { upper + rest } else { *upper });
+        }
+        problem.matrix.clear();
+        problem.matrix.resize(n * n, 0.0);
+        problem.slope.clear();
+        problem.slope.resize(n, 0.0);
+        for (row, error) in self.slopes.chunks_exact(n).zip(&self.errors) {
+            for (i, entry) in row.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
+                add(&mut problem.matrix[i * n + i..(i + 1) * n], &row[i..], *entry);
+            }
+            add(&mut problem.slope, row, *error);
+        }
+        (0..problem.shifted).fold(0.0, |size: f64, i| size.max(problem.matrix[i * n + i]))
+    }
+}
+
+/// Torque of every rate at one body weight of each unknown force.
+pub(super) fn columns(ask: &Ask<'_>, body: &Body, jacobian: &mut [f64], columns: &mut Vec<f64>) {
+    let n = ask.model.rates().len();
+    columns.clear();
+    for (load, axes) in ask.contact.loads().iter().zip(ask.contact.axes()) {
+        body.kinematics().point_jacobian(ask.model, load.segment, load.point, jacobian);
+        for axis in axes {
+            let force = ask.contact.weight() * axis;
+            columns.extend(
+                (0..n).map(|k| force.x * jacobian[k] + force.y * jacobian[n + k] + force.z * jacobian[2 * n + k]),
+            );
+        }
+    }
+}
+
+/// What contact forces do to the effort of a coordinate.
+pub(super) fn fill_forces(model: &Model, body: &Body, columns: &[f64], coordinate: usize, row: &mut [f64]) {
+    let Some(rate) = model.coordinates()[coordinate].rate else { return };
+    let share = share_of_strength(model, body, coordinate);
+    for (entry, column) in row.iter_mut().zip(columns.chunks_exact(model.rates().len())) {
+        *entry = -column[rate] * share;
+    }
+}
