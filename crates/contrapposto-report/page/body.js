@@ -118,11 +118,13 @@ function Body(canvas, onTurn) {
   const middle = low.map((v, k) => (v + high[k]) / 2 || 0);
   const tall = Math.max(0.3, high[1] - low[1]) || 1, wide = Math.max(0.2, Math.hypot(high[0] - low[0], high[2] - low[2])) || 1;
   const stands = report.supports.length > 0;
+  // The ground is where the lowest support is at the start.
+  const floor = stands ? Math.min(...report.supports.map((support) => support.at[1][0])) : 0;
   const ground = [];
   for (let i = -6; i <= 6; i++) {
     const [x, z] = [Math.round(4 * middle[0]) / 4, Math.round(4 * middle[2]) / 4];
-    ground.push(x - 1.5, 0, z + i / 4, 0, 1, 0, x + 1.5, 0, z + i / 4, 0, 1, 0);
-    ground.push(x + i / 4, 0, z - 1.5, 0, 1, 0, x + i / 4, 0, z + 1.5, 0, 1, 0);
+    ground.push(x - 1.5, floor, z + i / 4, 0, 1, 0, x + 1.5, floor, z + i / 4, 0, 1, 0);
+    ground.push(x + i / 4, floor, z - 1.5, 0, 1, 0, x + i / 4, floor, z + 1.5, 0, 1, 0);
   }
   const grid = buffer(gl.ARRAY_BUFFER, new Float32Array(ground));
 
@@ -176,8 +178,8 @@ function Body(canvas, onTurn) {
     if (stands && report.center.every((column) => column.length)) {
       const [x, y, z] = report.center.map((column) => column[frame]);
       mesh(ball, [0.03, 0, 0, 0, 0, 0.03, 0, 0, 0, 0, 0.03, 0, x, y, z, 1], center, alpha);
-      mesh(shaft, pointing([x, 0, z], [0, 1, 0], 0.35, y), center, alpha);
-      mesh(ball, [0.025, 0, 0, 0, 0, 0.004, 0, 0, 0, 0, 0.025, 0, x, 0.002, z, 1], center, alpha);
+      mesh(shaft, pointing([x, floor, z], [0, 1, 0], 0.35, y - floor), center, alpha);
+      mesh(ball, [0.025, 0, 0, 0, 0, 0.004, 0, 0, 0, 0, 0.025, 0, x, floor + 0.002, z, 1], center, alpha);
     }
   };
 

@@ -85,7 +85,7 @@
     const joint = report.joints[state.joint], i = state.frame;
     if (!joint) return;
     const share = joint.groups ? ` (${percent(joint.load[i])} of strength)` : "";
-    const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1), value = joint.angle[i].toFixed(joint.slides ? 3 : 1);
+    const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1), value = joint.angle[i].toFixed(joint.slides ? 3 : 1).replace("-", "−");
     find("now").textContent = `${name}, ${value}${joint.slides ? " m" : "°"}: weight and contact pull with ${signed(joint.external[i])} ` +
       `${joint.torque}, ligaments answer with ${signed(joint.passive[i])}, muscles with ${signed(joint.active[i])}${share}.`;
   }

@@ -23,9 +23,13 @@ pub(crate) fn tell(scenario: &Scenario, film: &Film, summary: &Summary, shown: &
     };
     let story = Story { scenario, first, last, main };
     let lists = pelvis_list(&scenario.model, first).zip(pelvis_list(&scenario.model, last));
-    let standing = lists.filter(|_| !scenario.supports.is_empty());
+    // On its feet (or hands), not seated.
+    let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
+    let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
     report.headline = match standing {
-        Some((_, list)) => story.of_standing(list),
+        Some((_, list)) if list.abs() >= LEVEL => story.of_slouch(list),
+        _ if film.happened == 0 => story.of_rest(summary.end_time),
+        Some((_, list)) => story.of_level(list),
         None => story.of_joint(),
     };
     report.reasons = story.reasons(standing.is_some());
@@ -41,16 +45,30 @@ struct Story<'a> {
 }
 
 impl Story<'_> {
-    fn of_standing(&self, list: f64) -> String {
-        let weight = match self.heaviest() {
+    fn of_slouch(&self, list: f64) -> String {
+        let side = if list > 0.0 { "right" } else { "left" };
+        format!("Slouched: the pelvis hangs {:.0}° down to the {side}, and {}.", list.abs(), self.weight())
+    }
+
+    fn of_level(&self, list: f64) -> String {
+        format!("No slouch: the pelvis ends level (within {:.0}°), and {}.", list.abs().ceil().max(1.0), self.weight())
+    }
+
+    /// Nobody asked for relief.
+    fn of_rest(&self, seconds: f64) -> String {
+        let long = if seconds < 100.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
+        let hardest = match hardest(self.scenario, self.last) {
+            Some((name, load)) => format!("; {name} works hardest, at {} of its strength", percent(load)),
+            None => String::new(),
+        };
+        format!("It holds: in {long} no muscle got so tired that it asked for relief{hardest}.")
+    }
+
+    fn weight(&self) -> String {
+        match self.heaviest() {
             Some((name, share)) => format!("{} of the weight is on the {name}", percent(share)),
             None => "nothing carries it".to_owned(),
-        };
-        let lean = format!("{:.0}° down to the {}", list.abs(), if list > 0.0 { "right" } else { "left" });
-        if list.abs() < LEVEL {
-            return format!("No slouch: the pelvis ends level (within {:.0}°), and {weight}.", list.abs().ceil());
         }
-        format!("Slouched: the pelvis hangs {lean}, and {weight}.")
     }
 
     fn of_joint(&self) -> String {
@@ -104,7 +122,7 @@ impl Story<'_> {
                 0.005..0.5 => format!("only {}", percent(share)),
                 _ => percent(share),
             };
-            reasons.push(format!("Ligaments carry {part} of the {whole:.1} N m that pull on it{before}."));
+            reasons.push(format!("Ligaments carry {part} of the {whole:.1} N m that pull on {name}{before}."));
         }
         reasons
     }
@@ -129,7 +147,8 @@ impl Story<'_> {
         let mut figures = vec![];
         if let Some((before, after)) = standing {
             let side = |list: f64| if list > 0.0 { "right" } else { "left" };
-            let note = format!("down to the {}; {:.1}° at the start", side(after), before.abs());
+            let down = if after.abs() < 0.05 { "level".to_owned() } else { format!("down to the {}", side(after)) };
+            let note = format!("{down}; {:.1}° at the start", before.abs());
             figures.push(figure("Pelvis hangs", format!("{:.1}°", after.abs()), note));
         }
         let shares =
@@ -144,7 +163,7 @@ impl Story<'_> {
                 format!("{} at the start", percent(before)),
             ));
         }
-        if standing.is_none() {
+        if scenario.supports.is_empty() {
             let [from, to] = [first, last].map(|frame| value(scenario, main, frame.posture[main]));
             figures.push(figure(
                 &sentence(&plain(&scenario.model.coordinates()[main].name)),
@@ -168,19 +187,25 @@ impl Story<'_> {
         let [before, after] = [first, last].map(Frame::effort);
         let change =
             if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { format!("{after:.3}") };
-        let change = change.replace('-', "\u{2212}");
+        let change =
+            if change == "-0 %" || change == "+0 %" { "unchanged".to_owned() } else { change.replace('-', "\u{2212}") };
         figures.push(figure(
             "Effort of all muscles",
             change,
             format!("sum of squared loads, {before:.3} to {after:.3}"),
         ));
-        let hardest = (0..last.load.len()).max_by(|&a, &b| last.load[a].total_cmp(&last.load[b]));
-        if let Some(i) = hardest {
-            let name = working(scenario, i, last).unwrap_or_else(|| plain(&scenario.model.coordinates()[i].name));
-            figures.push(figure("Hardest worked", percent(last.load[i]), name));
+        if let Some((name, load)) = hardest(scenario, last) {
+            figures.push(figure("Hardest worked", percent(load), name));
         }
         figures
     }
+}
+
+/// The group that works hardest, and its load.
+fn hardest(scenario: &Scenario, frame: &Frame) -> Option<(String, f64)> {
+    let i = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]))?;
+    let name = working(scenario, i, frame).unwrap_or_else(|| plain(&scenario.model.coordinates()[i].name));
+    Some((name, frame.load[i]))
 }
 
 /// How far the pelvis hangs to its right, degrees.

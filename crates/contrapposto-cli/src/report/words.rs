@@ -51,7 +51,8 @@ pub(crate) fn value(scenario: &Scenario, i: usize, value: f64) -> String {
     let coordinate = &scenario.model.coordinates()[i];
     let slides = coordinate.kind == contrapposto::model::CoordinateKind::Translation;
     let value = visible(coordinate, value);
-    if slides { format!("{value:.3} m") } else { format!("{value:.1}°") }
+    let text = if slides { format!("{value:.3} m") } else { format!("{value:.1}°") };
+    text.replace('-', "\u{2212}")
 }
 
 /// `70 %`, in one piece.
