@@ -67,16 +67,16 @@ impl<'a> Finder<'a> {
             goals.push(Task::Effort(Effort::whole(search.model)).into());
         }
         goals.insert(slot, Goal::default());
-        // Every start is to come to its own valley: other ones are other starts.
-        let engine = |max_steps: usize, valleys: usize, goals: &[Goal]| {
+        // Steps of priorities pass over the small dips in which a descent ends; other valleys are other starts.
+        let engine = |max_steps: usize, goals: &[Goal]| {
             let (supports, goals) = (search.supports.to_vec(), goals.to_vec());
-            let options = Options { max_steps, valleys, ..options };
+            let options = Options { max_steps, valleys: 0, ..options };
             let mut engine = Engine::new(search.model, search.start, supports, goals, search.loads, options)?;
             search.locked.iter().for_each(|&rate| engine.lock(rate));
             Ok::<_, SearchError>(engine)
         };
-        let engines = [engine(SCOUT.min(options.max_steps), 0, &goals)?, engine(options.max_steps, 1, &goals)?];
-        let approach = engine(SCOUT, 0, &goals[..slot])?;
+        let engines = [engine(SCOUT.min(options.max_steps), &goals)?, engine(options.max_steps, &goals)?];
+        let approach = engine(SCOUT, &goals[..slot])?;
         Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], starts: 0, steps: 0 })
     }
 

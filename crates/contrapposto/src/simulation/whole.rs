@@ -126,7 +126,8 @@ impl<'a> Whole<'a> {
             self.engine.hurry();
         }
         let largest = self.engine.step(posture)?.largest;
-        self.calm = if largest <= SLOW && !pressing { self.calm + 1 } else { 0 };
+        let before = if self.calm == CALM { 0 } else { self.calm };
+        self.calm = if largest <= SLOW && !pressing { before + 1 } else { 0 };
         if self.calm > 0 && self.calm.is_multiple_of(SOON) && (largest <= STILL || self.engine.sink(posture)?) {
             self.calm = CALM;
         }
@@ -191,7 +192,7 @@ impl<'a> Whole<'a> {
     }
 
     pub(super) fn still(&self) -> bool {
-        self.calm >= CALM
+        self.calm == CALM
     }
 
     pub(super) fn contact(&self) -> &ContactForces {
