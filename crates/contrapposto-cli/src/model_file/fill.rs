@@ -40,7 +40,19 @@ pub(super) fn fill(
     for index in 0..model.coordinates().len() {
         let coordinate = &model.coordinates()[index];
         let name = coordinate.name.clone();
-        if coordinate.kind != CoordinateKind::Rotation || coordinate.passive.is_some() || model.is_dependent(index) {
+        if coordinate.kind != CoordinateKind::Rotation || model.is_dependent(index) {
+            continue;
+        }
+        if coordinate.passive.is_some() {
+            // The file's own tissue stays; of muscles no file says how strong they are.
+            let Some((own, found)) = known(&twin, &name).filter(|_| coordinate.groups.is_none()) else { continue };
+            if let (Some(groups), Ok(sign)) = (found.groups.clone(), signs.sign(index, own)) {
+                notes.push(format!("`{name}`: strength from the built-in data, passive torque from the file"));
+                changed = changed.with_groups(index, turned(groups, sign));
+                let origins = &mut origins[index];
+                (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
+                origins.twin = Some(found.name.clone());
+            }
             continue;
         }
         let Some((own, found)) = known(&twin, &name) else {
