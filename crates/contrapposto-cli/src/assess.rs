@@ -72,15 +72,9 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let text = AssessText::new(model, &args.motion, &times, &found, warnings, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("assess.json", error))? + "\n";
     if let Some(out) = &args.out {
-        let folder = Folder::open(out)?;
         let fatigue = tables.fatigue()?;
-        let mut files = vec![];
-        for (name, text) in FILES.into_iter().zip([&json, &tables.torques, &fatigue]) {
-            let mut file = folder.begin(name)?;
-            file.append(text.as_bytes())?;
-            files.push(file);
-        }
-        folder.commit(files)?;
+        let contents = [&json, &tables.torques, &fatigue];
+        Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     }
     print(&if args.json { json } else { report(&text) })
 }

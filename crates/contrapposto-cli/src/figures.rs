@@ -172,8 +172,8 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
     }
     let picture = torque_balance(&panels);
     let names = [format!("figure-{:02}.svg", figure.number), format!("figure-{:02}.png", figure.number)];
-    folder.write(&names[0], picture.svg().as_bytes())?;
-    folder.write(&names[1], &picture.png().map_err(|error| Fail::job(&names[1], error))?)?;
+    let png = picture.png().map_err(|error| Fail::job(&names[1], error))?;
+    folder.write(&[(&names[0], picture.svg().into_bytes()), (&names[1], png)])?;
     Ok(FigureText { figure: figure.number, runs, zero_torque_deg: zeros, files: names.to_vec() })
 }
 

@@ -51,11 +51,14 @@ impl Folder {
         Ok(Pending { file: BufWriter::new(file), path })
     }
 
-    /// Writes a whole file.
-    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Fail> {
-        let mut pending = self.begin(name)?;
-        pending.append(bytes)?;
-        self.commit(vec![pending])
+    /// Writes whole files, all of them or none.
+    pub(crate) fn write<B: AsRef<[u8]>>(&self, files: &[(&str, B)]) -> Result<(), Fail> {
+        let pending = |(name, bytes): &(&str, B)| {
+            let mut pending = self.begin(name)?;
+            pending.append(bytes.as_ref())?;
+            Ok(pending)
+        };
+        self.commit(files.iter().map(pending).collect::<Result<_, _>>()?)
     }
 
     /// Makes all files visible: everything is on the disk before the first name changes.

@@ -173,8 +173,8 @@ fn draw(folder: &Folder, text: &mut PassiveText) -> Result<(), Fail> {
     };
     let figure = passive_curve(&chart);
     let (svg, png) = (format!("passive-{}.svg", text.coordinate), format!("passive-{}.png", text.coordinate));
-    folder.write(&svg, figure.svg().as_bytes())?;
-    folder.write(&png, &figure.png().map_err(|error| Fail::job("PNG", error))?)?;
+    let drawn = figure.png().map_err(|error| Fail::job("PNG", error))?;
+    folder.write(&[(&svg, figure.svg().into_bytes()), (&png, drawn)])?;
     text.files = vec![folder.path(&svg).display().to_string(), folder.path(&png).display().to_string()];
     Ok(())
 }

@@ -78,15 +78,8 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
     let picture = pose_views(&drawing::pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let folder = Folder::open(out)?;
-    let mut files = vec![];
     let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
-    for (name, bytes) in FILES.into_iter().zip(contents) {
-        let mut file = folder.begin(name)?;
-        file.append(bytes)?;
-        files.push(file);
-    }
-    folder.commit(files)?;
+    Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     Ok(json)
 }
 

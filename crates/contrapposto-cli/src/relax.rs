@@ -83,14 +83,8 @@ fn write(
     let picture = pose_grid(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
-    let mut files = vec![];
     let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
-    for (name, bytes) in FILES.into_iter().zip(contents) {
-        let mut file = folder.begin(name)?;
-        file.append(bytes)?;
-        files.push(file);
-    }
-    folder.commit(files)?;
+    folder.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     Ok(folder)
 }
 

@@ -24,7 +24,7 @@ use crate::args::{DemoArgs, SimulateArgs};
 use crate::chart::{Sweep, course};
 use crate::fail::Fail;
 use crate::input::read;
-use crate::output::{Folder, Pending, print};
+use crate::output::{Folder, print};
 use crate::pose::{model_of, views};
 use crate::report::report_of_run;
 
@@ -122,12 +122,7 @@ fn write(scenario: &Scenario, summary: &Summary, recording: &Recording, folder: 
     let text = SummaryText::new(scenario, summary, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("summary.json", error))? + "\n";
     contents.push(("summary.json", json.clone().into_bytes()));
-    let pending = |(name, bytes): (&str, Vec<u8>)| -> Result<Pending, Fail> {
-        let mut file = folder.begin(name)?;
-        file.append(&bytes)?;
-        Ok(file)
-    };
-    folder.commit(contents.into_iter().map(pending).collect::<Result<_, _>>()?)?;
+    folder.write(&contents)?;
     Ok(json)
 }
 

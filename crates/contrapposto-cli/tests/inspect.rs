@@ -88,6 +88,23 @@ fn a_published_full_body_is_filled_joint_by_joint() {
     assert!(notes.contains("muscle") || notes.contains("Muscle"), "{notes}");
 }
 
+/// Tissue of the file's own stays, with strength from the built-in data beside it: without, a body has no effort.
+#[test]
+fn a_file_with_tissue_of_its_own_gets_strength() {
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/models/adult-female.osim");
+    let report = json(&["inspect", model.to_str().unwrap(), "--json"]);
+    let adult = json(&["inspect", "adult", "--json"]);
+    let (hip, own) = (&report["coordinates"]["hip_adduction_r"], &adult["coordinates"]["hip_adduction_r"]);
+    assert_eq!(hip["passive"]["source"]["status"], "from the file");
+    assert!(hip["strength"]["positive"]["peak_nm"].as_f64().unwrap() > 0.0);
+    assert_eq!((&hip["strength"], &hip["fatigue"]), (&own["strength"], &own["fatigue"]));
+    let notes = report["notes"].to_string();
+    assert!(
+        notes.contains("`hip_adduction_r`: strength from the built-in data, passive torque from the file"),
+        "{notes}"
+    );
+}
+
 #[test]
 fn convert_writes_what_reads_back() {
     let folder = tempfile::tempdir().unwrap();

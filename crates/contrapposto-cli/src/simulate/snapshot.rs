@@ -34,7 +34,7 @@ struct Saved<R, S> {
 pub(super) fn save(scenario: &Scenario, run: &Run, recording: &Recording, folder: &Folder) -> Result<(), Fail> {
     let saved = Saved { program: PROGRAM.to_owned(), scenario: fingerprint(scenario), run: run.snapshot(), recording };
     let bytes = serde_json::to_vec(&saved).map_err(|error| Fail::job(SNAPSHOT, error))?;
-    folder.write(SNAPSHOT, &bytes)
+    folder.write(&[(SNAPSHOT, bytes)])
 }
 
 /// The run that was left in `folder`, and its recording.

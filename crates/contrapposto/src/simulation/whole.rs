@@ -144,7 +144,7 @@ impl<'a> Whole<'a> {
         Ok(self.engine.see(posture)?)
     }
 
-    /// Goes back to where the last step began, and takes shorter ones for a while.
+    /// Goes back to where the last step began.
     pub(super) fn take_back(&mut self, posture: &mut Posture) -> Result<(), ScenarioError> {
         posture.values_mut().copy_from_slice(self.before.values());
         self.see(posture)
