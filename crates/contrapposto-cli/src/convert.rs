@@ -25,7 +25,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Result<(), Fail> {
     let opened = open(&args.model, false)?;
     let written = writer(&opened.model).map_err(|error| Fail::Refused(format!("{shown}: {error}")))?;
     let (folder, name) = folder_and_name(&args.out)?;
-    Folder::open(&folder)?.write(&name, written.text.as_bytes())?;
+    Folder::open(&folder)?.write(&[(&name, written.text.as_bytes())])?;
     opened.notes.iter().for_each(|note| tell("note", note));
     written.lost.iter().for_each(|lost| tell("lost", lost));
     let model = &opened.model;

@@ -53,7 +53,7 @@ impl Folder {
 
     /// Writes whole files, all of them or none.
     pub(crate) fn write<B: AsRef<[u8]>>(&self, files: &[(&str, B)]) -> Result<(), Fail> {
-        let pending = |(name, bytes): &(&str, B)| {
+        let pending = |(name, bytes): &(&str, B)| -> Result<Pending, Fail> {
             let mut pending = self.begin(name)?;
             pending.append(bytes.as_ref())?;
             Ok(pending)
