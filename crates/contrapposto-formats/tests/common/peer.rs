@@ -66,6 +66,11 @@ impl Peer {
         self.model.segment(name).unwrap()
     }
 
+    /// The segment that is to reach the target.
+    pub fn hand(&self) -> usize {
+        self.segment("RightHandCOM")
+    }
+
     fn foot(&self, segment: &str, side: &str) -> Task {
         let feet = &self.file["feet"];
         let place = Vector3::from_vec(numbers(&feet[format!("{side}_pos")]));
@@ -79,7 +84,7 @@ impl Peer {
         let joint = |rate: &contrapposto::model::Rate| rate.coordinate.is_some() && !rate.name.starts_with("root_");
         let weights = self.model.rates().iter().map(|rate| f64::from(joint(rate))).collect();
         let feet = vec![self.foot("LeftFoot", "left"), self.foot("RightFoot", "right")];
-        let hand = Point { segment: self.segment("RightHandCOM"), point: Vector3::zeros(), target, axes: [true; 3] };
+        let hand = Point { segment: self.hand(), point: Vector3::zeros(), target, axes: [true; 3] };
         let head = Orientation { segment: self.segment("Head"), target: rotation(&self.file["head_rot_target"]) };
         vec![
             Goal { tasks: feet, hard: true, ..Goal::default() },
@@ -117,7 +122,7 @@ impl Peer {
         center.jacobian(model, &body, &mut rows);
         rows.chunks_exact(n).take(2).for_each(|row| level.push(row, 0.0, 0.0));
         problem.levels.push(level);
-        let hand = self.segment("RightHandCOM");
+        let hand = self.hand();
         let error = target - body.station(model, hand, Vector3::zeros());
         body.point_jacobian(model, hand, Vector3::zeros(), &mut rows);
         let mut level = Level::default();
