@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 
 use super::Goal;
 use super::body::Body;
+use super::hold::Hold;
 use super::symmetric::Axes;
 use crate::math::lexicographic::{Level, Problem, Solver};
 use crate::model::Model;
@@ -48,6 +49,7 @@ pub(super) struct Curvature {
     slope: Vec<f64>,
     row: Vec<f64>,
     residual: Vec<f64>,
+    hold: Hold,
     /// The level as it was before its rows were replaced.
     level: Level,
 }
@@ -73,28 +75,32 @@ impl Curvature {
             slope: vec![0.0; n],
             row: vec![0.0; n],
             residual: Vec::with_capacity(rows),
+            hold: Hold::new(goals.iter().map(Goal::rows).sum(), n),
             level: Level::with_capacity(rows.max(n) + 3, n),
         }
     }
 
-    /// Replaces the rows of level `k` by those of its second derivative, with the multipliers of the step before.
+    /// Replaces the rows of level `k` by those of its second derivative.
     pub(super) fn bend(&mut self, goals: &[Goal], body: &Body, problem: &mut Problem, solver: &Solver, k: usize) {
         let n = problem.unknowns();
         std::mem::swap(&mut self.level, &mut problem.levels[k]);
         self.residual.clear();
         let missing = |(lower, upper): (&f64, &f64)| -lower.max(0.0) - upper.min(0.0);
         self.residual.extend(self.level.lower.iter().zip(&self.level.upper).map(missing));
-        self.second_derivative(goals, body, solver, k);
-        // J^T J and J^T r.
+        // J^T r and J^T J.
         self.slope.fill(0.0);
         for (row, r) in self.level.matrix.chunks_exact(n).zip(&self.residual) {
-            add_square(&mut self.matrix, row, 1.0);
             add(&mut self.slope, row, *r);
+        }
+        let last = solver.multipliers(k);
+        self.hold.estimate(problem, &problem.levels[..k], last, &self.slope);
+        self.second_derivative(goals, body, k);
+        for row in self.level.matrix.chunks_exact(n) {
+            add_square(&mut self.matrix, row, 1.0);
         }
         let size = (0..n).fold(0.0, |size: f64, i| size.max(self.matrix[i * n + i].abs()));
         // What is held fast: equations above, and ranges that the level presses against.
-        let multipliers = solver.multipliers(k);
-        let mut rows = multipliers.rows.iter();
+        let mut rows = self.hold.multipliers.iter();
         for above in &problem.levels[..k] {
             for (i, row) in above.matrix.chunks_exact(n).enumerate() {
                 let multiplier = rows.next().copied().unwrap_or(0.0);
@@ -107,7 +113,7 @@ impl Curvature {
                 }
             }
         }
-        for (i, bound) in multipliers.bounds.iter().enumerate() {
+        for (i, bound) in last.bounds.iter().enumerate() {
             if *bound != 0.0 {
                 self.matrix[i * n + i] += FAST * size;
             }
@@ -119,9 +125,9 @@ impl Curvature {
     }
 
     /// `sum r_i r_i'' + sum lambda_i r_i''` into `matrix`.
-    fn second_derivative(&mut self, goals: &[Goal], body: &Body, solver: &Solver, k: usize) {
+    fn second_derivative(&mut self, goals: &[Goal], body: &Body, k: usize) {
         self.loads.clear();
-        let mut multipliers: &[f64] = if k == 0 { &[] } else { solver.multipliers(k).rows };
+        let mut multipliers = &self.hold.multipliers[..];
         for goal in &goals[..k] {
             for task in &goal.tasks {
                 let (own, rest) = multipliers.split_at(task.rows().min(multipliers.len()));
@@ -309,7 +315,7 @@ mod tests {
             let h = 1e-3;
             let (a, c, b) = (along(-h), along(h), along(0.0));
             let numeric = (a - 2.0 * b + c) / (h * h);
-            curvature.second_derivative(&goals, &body, &Solver::new(), 0);
+            curvature.second_derivative(&goals, &body, 0);
             let exact: f64 = (0..n)
                 .map(|i| (0..n).map(|j| direction[i] * curvature.matrix[i * n + j] * direction[j]).sum::<f64>())
                 .sum();

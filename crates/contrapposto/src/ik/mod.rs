@@ -8,6 +8,7 @@
 pub mod body;
 mod curvature;
 mod engine;
+mod hold;
 mod symmetric;
 pub mod task;
 
