@@ -74,7 +74,7 @@ fn out_of_reach_the_hand_settles_at_its_nearest_and_nothing_above_gives() {
         assert!(gain < 1e-6, "target {i}: a step of 0.001 rad would bring the hand {gain:.1e} m nearer");
         near += usize::from(excess < 1e-3);
     }
-    assert!(near >= 6 && cases.len() == 8, "{near} of {} within 1 mm of the best known distance", cases.len());
+    assert!(near >= 7 && cases.len() == 8, "{near} of {} within 1 mm of the best known distance", cases.len());
 }
 
 fn seed() -> u64 {
@@ -137,17 +137,11 @@ fn other_targets_within_reach_are_reached_too() {
             }
             engine.step(&mut posture).unwrap();
         }
-        if success.is_none() {
-            let gain = peer.gain(&posture, target, 1e-3);
-            let left = engine.report(&posture).unwrap()[2].length;
-            println!("target {i}: the hand stays {left:.3} m off, still to gain {gain:.1e} m");
-        }
-        steps_to_success.extend(success);
+        let mut left = || engine.report(&posture).unwrap()[2].length;
+        steps_to_success.push(success.unwrap_or_else(|| panic!("target {i}: the hand stays {:.3} m off", left())));
     }
     steps_to_success.sort_unstable();
     println!("{} targets, steps to success: {steps_to_success:?}", steps_to_success.len());
-    // Steps go downhill, and a target may lie behind a hill: one in 1,800 with the seeds 1 to 9.
-    assert!(steps_to_success.len() >= 199, "only {} of 200 reached", steps_to_success.len());
 }
 
 #[test]
@@ -169,7 +163,7 @@ fn other_targets_out_of_reach_are_met_at_their_nearest_too() {
         let levels = &pose.levels;
         assert!(levels[0].length < 1e-6 && levels[1].length < 1e-6 && peer.excess(&pose.posture) < 1e-9, "target {i}");
         let gain = peer.gain(&pose.posture, target, 1e-3);
-        assert!(gain < 1e-4, "target {i}: a step of 0.001 rad would bring the hand {gain:.1e} m nearer");
+        assert!(gain < 1e-6, "target {i}: a step of 0.001 rad would bring the hand {gain:.1e} m nearer");
         // The best of four starts is the best known.
         let mut best = levels[2].length;
         for _ in 0..3 {

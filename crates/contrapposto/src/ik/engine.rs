@@ -417,9 +417,10 @@ impl<'a> Engine<'a> {
             }
             above += error;
         }
-        let swings = above < 1e-3 && self.largest[0] > 0.5 * self.largest[1] && !self.goals.is_empty();
+        // Long swings keep the levels above from being met: those are waited for a little longer.
+        let swings = above < 0.05 && self.largest[0] > 0.5 * self.largest[1] && !self.goals.is_empty();
         self.stalls[last] = if swings { self.stalls[last] + 1 } else { 0 };
-        if self.stalls[last] >= STALLS / 2 {
+        if self.stalls[last] >= if above < 1e-3 { STALLS / 2 } else { STALLS } {
             self.bent = Some(last);
         }
     }
