@@ -387,6 +387,11 @@ fn odd_names_and_what_programs_refuse() {
         "{:?}",
         written.lost
     );
+    // The comment that tells it stays one.
+    let arrow = build(vec![segment("s", None, JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["a --> b"]))]);
+    let written = write::osim(&arrow).unwrap();
+    assert!(written.text.contains("<!-- Lost: The coordinate \"a \u{2010}\u{2010}> b\" is named"), "{}", written.text);
+    assert!(read(&written.text, Osim).coordinate("a_-->_b").is_some());
     odd.name.push('\u{1}');
     for format in [Osim, Urdf, Mjcf] {
         assert!(matches!(write(&build(vec![odd.clone()]), format), Err(WriteError::Name { .. })));

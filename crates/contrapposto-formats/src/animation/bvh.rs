@@ -16,6 +16,10 @@ const CENTIMETRES: f64 = 100.0;
 const UNEVEN: f64 = 1e-3;
 /// Time of one frame where there is only one, s.
 const ONE_FRAME: f64 = 1.0 / 30.0;
+/// Points nearer than this, m, are one.
+const NEAR: f64 = 1e-6;
+/// Length of a last segment without any, m.
+const STUB: f64 = 0.05;
 /// Deeper joints are not indented any further.
 const DEEPEST: usize = 40;
 
@@ -184,10 +188,13 @@ fn hierarchy(model: &Model, joints: &[Joint], rest: &[Placement], drawn: &Rotati
     }
 }
 
-/// From a last segment's joint through its centre of mass as far beyond, at rest, ground axes, m.
+/// From a last segment's joint through its centre of mass as far beyond, at rest, ground axes, m. Where that is no length, which
+/// some programs do not like, a little farther on from the joint before.
 fn reach(model: &Model, rest: &[Placement], s: usize) -> Vector3<f64> {
     let segment = &model.segments()[s];
-    rest[s].rotation * (2.0 * (segment.center_of_mass - segment.in_segment.translation.vector))
+    let reach = rest[s].rotation * (2.0 * (segment.center_of_mass - segment.in_segment.translation.vector));
+    let on = || STUB * offset(model, rest, s).try_normalize(NEAR).unwrap_or_else(Vector3::y);
+    if reach.norm() > NEAR { reach } else { on() }
 }
 
 /// Six decimals, without what says nothing.

@@ -29,11 +29,12 @@ fn everything() -> Model {
         (Motion::Hinge(axis(0.1, 0.2, 1.0)), Drive::Coordinate(0)),
         (Motion::Hinge(axis(1.0, 0.0, 0.0)), Drive::Function(Function::Polynomial(vec![0.1, 0.2, -0.05]), 1)),
     ];
+    let (x, y) = (axis(1.0, 0.0, 0.0), axis(0.0, 1.0, 0.0));
     let parts = [
         segment("root", None, JointKind::Free, named(&["tx", "ty", "tz"])),
         segment("driven", Some("root"), JointKind::Driven(motions), named(&["p", "q"])),
         segment("ball", Some("driven"), JointKind::Ball, vec![]),
-        segment("odd", Some("ball"), JointKind::Hinge(axis(0.0, 1.0, 0.0)), named(&["a/b c"])),
+        segment("odd", Some("ball"), JointKind::Universal([y, x]), named(&["a/b", "a_b"])),
         segment("after", Some("root"), JointKind::Hinge(axis(1.0, 0.0, 1.0)), named(&["r"])),
         segment("fixed", Some("after"), JointKind::Weld, vec![]),
     ];
@@ -154,10 +155,13 @@ fn bvh_is_where_kinematics_is() {
             let mut worst = 0.0_f64;
             for (row, values) in rows.iter().zip(&file.rows) {
                 let found = file.places(values, replaces);
-                for (s, [joint, _, end]) in places(&model, &mut kinematics, row).into_iter().enumerate() {
+                for (s, [joint, center, end]) in places(&model, &mut kinematics, row).into_iter().enumerate() {
                     let name = &model.segments()[s].name;
                     worst = worst.max((found[name] / 100.0 - drawn(&clip, joint)).norm());
-                    if let Some(tip) = found.get(&format!("{name} end")) {
+                    let Some(tip) = found.get(&format!("{name} end")) else { continue };
+                    if center == joint {
+                        assert!(((found[name] - tip).norm() - 5.0).abs() < 1e-3, "{name} has no length");
+                    } else {
                         worst = worst.max((tip / 100.0 - drawn(&clip, end)).norm());
                     }
                 }
@@ -234,7 +238,7 @@ fn a_motion_for_opensim_is_ours_too() {
         let back = postures(&table, name, text.as_bytes(), &model, Units::FromFile).unwrap();
         let expected: &[&str] = if name == "everything" {
             &[
-                "a_b_c",
+                "a_b_2",
                 "root_joint_rx",
                 "root_joint_ry",
                 "root_joint_rz",
@@ -280,7 +284,7 @@ fn points(model: &Model, rows: &[Vec<f64>]) -> Vec<Vec<[f64; 3]>> {
     rows.iter().step_by(ASKED).map(row).collect()
 }
 
-/// For `scripts/compare_motion.py`: model, motion and points into the folder that `CONTRAPPOSTO_EXCHANGE` names.
+/// For `scripts/compare_motion.py` and `compare_blender.py`: model, motion and points into the folder that `CONTRAPPOSTO_EXCHANGE` names.
 #[test]
 fn exchange_motion() {
     let Ok(folder) = std::env::var("CONTRAPPOSTO_EXCHANGE") else { return };
@@ -291,11 +295,15 @@ fn exchange_motion() {
         std::fs::write(folder.join(format!("model_{i}.osim")), osim(model).unwrap().text).unwrap();
         std::fs::write(folder.join(format!("motion_{i}.mot")), osim_motion(model, name, &times, &rows).unwrap())
             .unwrap();
+        let borrowed: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        let clip = clip(name, model, &times, &borrowed);
+        std::fs::write(folder.join(format!("motion_{i}.glb")), glb(&clip, &[]).unwrap()).unwrap();
+        std::fs::write(folder.join(format!("motion_{i}.bvh")), bvh(&clip).unwrap()).unwrap();
         let stations = model.segments().iter().flat_map(|s| {
             let point = |p: Vector3<f64>| json!([s.name, [p.x, p.y, p.z]]);
             [point(s.in_segment.translation.vector), point(s.center_of_mass)]
         });
-        all.push(json!({ "name": name, "every": ASKED, "stations": stations.collect::<Vec<_>>(), "points": points(model, &rows) }));
+        all.push(json!({ "name": name, "every": ASKED, "step": times[1] - times[0], "directions": clip.directions.map(<[f64; 3]>::from), "stations": stations.collect::<Vec<_>>(), "points": points(model, &rows) }));
     }
     std::fs::write(folder.join("answers.json"), json!({ "models": all }).to_string()).unwrap();
 }
