@@ -18,6 +18,7 @@ use crate::pose::directions;
 use crate::simulate::Recording;
 
 use film::{Event, Film, Frame};
+pub(crate) use solid::parts;
 
 /// Angles at which the torques of a joint are drawn.
 const ANGLES: usize = 121;

@@ -1,6 +1,7 @@
 //! The writers: what they write our readers read as the same model, and other programs give the same torques.
 //!
 //! `write/laws.rs`: passive laws. `write/imported.rs`: model files survive their own format. `write/peers.rs`: what other programs say.
+//! `write/motion.rs`: a body in motion, read back by the readers of `write/players.rs`.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -9,8 +10,12 @@ mod common;
 mod imported;
 #[path = "write/laws.rs"]
 mod laws;
+#[path = "write/motion.rs"]
+mod motion;
 #[path = "write/peers.rs"]
 mod peers;
+#[path = "write/players.rs"]
+mod players;
 
 use std::collections::BTreeMap;
 
@@ -382,6 +387,11 @@ fn odd_names_and_what_programs_refuse() {
         "{:?}",
         written.lost
     );
+    // The comment that tells it stays one.
+    let arrow = build(vec![segment("s", None, JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["a --> b"]))]);
+    let written = write::osim(&arrow).unwrap();
+    assert!(written.text.contains("<!-- Lost: The coordinate \"a \u{2010}\u{2010}> b\" is named"), "{}", written.text);
+    assert!(read(&written.text, Osim).coordinate("a_-->_b").is_some());
     odd.name.push('\u{1}');
     for format in [Osim, Urdf, Mjcf] {
         assert!(matches!(write(&build(vec![odd.clone()]), format), Err(WriteError::Name { .. })));
