@@ -154,5 +154,21 @@ fn a_body_that_cannot_stand_says_by_how_much() {
     let run = relax(&scenario, &["--out", out.to_str().unwrap()]);
     assert_eq!((run.code, run.stdout.as_str()), (1, ""), "{}", run.stderr);
     assert!(run.stderr.contains("cannot hold the body") && run.stderr.contains(" N and "), "{}", run.stderr);
+    assert!(run.stderr.contains("with more friction they would hold it"), "{}", run.stderr);
     assert!(!out.exists());
+}
+
+/// Stiff as a board with 40 kg held out in front: the reason is a distance, forward.
+#[test]
+fn a_body_that_leans_too_far_says_how_far_and_where() {
+    let folder = tempfile::tempdir().unwrap();
+    let hands = "[[load]]\nsegment = \"hand_r\"\nmass_kg = 20\n[[load]]\nsegment = \"hand_l\"\nmass_kg = 20\n";
+    let feet = "[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n";
+    let text = format!(
+        "format = 1\ntitle = \"A board\"\n[posture]\narm_flex_r_deg = 90\narm_flex_l_deg = 90\n\
+        [coordinates]\nfree = [\"wrist_flex_r\"]\n{hands}{feet}"
+    );
+    let run = relax(&written(folder.path(), &text), &[]);
+    assert_eq!((run.code, run.stdout.as_str()), (1, ""), "{}", run.stderr);
+    assert!(run.stderr.contains(" m beyond the supports, toward x +0."), "{}", run.stderr);
 }

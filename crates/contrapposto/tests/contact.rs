@@ -5,13 +5,13 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
-use contrapposto::contact::{Balance, ContactForces, FACES, Support, SupportError, root_rates};
+use contrapposto::contact::{Balance, Condition, ContactForces, FACES, Support, SupportError, root_rates};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{
     Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Motion, Placement, SegmentSpec, Side, adult,
 };
 use contrapposto::posture::Posture;
-use contrapposto::statics::{ExternalTorque, Load, LoadKind, PassiveTorque};
+use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind, PassiveTorque};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -68,6 +68,11 @@ impl Stand {
     /// Torque of muscles, and of the root what is missing.
     fn active(&self, rate: usize) -> f64 {
         -(self.external.torques()[rate] + self.passive.torques()[rate] + self.contact.torques()[rate])
+    }
+
+    /// Why the supports do not hold.
+    fn condition(&self) -> Condition {
+        self.contact.missing(&self.model, &self.kinematics).unwrap().condition
     }
 
     fn effort(&self) -> f64 {
@@ -305,9 +310,21 @@ fn no_forces_spare_the_muscles_more() {
 
 /// A block that may slide along x and y and turn about z, weight at `center`, on one patch.
 fn block(center: V, corners: Vec<V>, normal: V, friction: f64) -> Stand {
-    let mut builder = ModelBuilder::new("block", V::new(0.0, -G, 0.0));
     let motions = vec![Motion::Slide(V::x_axis()), Motion::Slide(V::y_axis()), Motion::Hinge(V::z_axis())];
-    let coordinates = ["x", "y", "turn"].map(|name| CoordinateSpec::new(name, (-10.0, 10.0))).to_vec();
+    block_on(motions, Placement::identity(), center, corners, normal, friction)
+}
+
+/// A block at `frame` that may move in all ways and does not slip.
+fn free_block(frame: Placement, center: V, corners: Vec<V>, normal: V) -> Stand {
+    let axes = [V::x_axis(), V::y_axis(), V::z_axis()];
+    let motions = axes.map(Motion::Slide).into_iter().chain(axes.map(Motion::Hinge)).collect();
+    block_on(motions, frame, center, corners, normal, f64::INFINITY)
+}
+
+fn block_on(motions: Vec<Motion>, in_parent: Placement, center: V, corners: Vec<V>, normal: V, friction: f64) -> Stand {
+    let mut builder = ModelBuilder::new("block", V::new(0.0, -G, 0.0));
+    let names = 0..motions.len();
+    let coordinates = names.map(|i| CoordinateSpec::new(&format!("q{i}"), (-10.0, 10.0))).collect();
     builder
         .segment(SegmentSpec {
             name: "block".to_owned(),
@@ -317,7 +334,7 @@ fn block(center: V, corners: Vec<V>, normal: V, friction: f64) -> Stand {
             inertia: Matrix3::identity(),
             joint: "root".to_owned(),
             kind: JointKind::Chain(motions),
-            in_parent: Placement::identity(),
+            in_parent,
             in_segment: Placement::identity(),
             coordinates,
         })
@@ -341,6 +358,8 @@ fn a_body_that_leans_beyond_its_feet_is_short_by_that_much() {
         assert!((moment - (n * edge - center).abs() * weight).abs() < 1e-9 * weight, "{moment} N m");
         let reach = force.hypot(moment) / weight * (1.0 + edge * edge).sqrt();
         assert!((reach - (center - edge)).abs() < 1e-9, "{reach} m beyond the edge");
+        let Condition::Beyond(lean) = stand.condition() else { panic!("it leans") };
+        assert!((lean - V::new(center - edge, 0.0, 0.0)).norm() < 1e-9, "{lean}");
     }
     // On the edge itself, and inside: it stands.
     for center in [0.1, 0.05, -0.1] {
@@ -371,7 +390,89 @@ fn on_too_steep_a_slope_friction_is_short_by_the_sine() {
         let Balance::Short { force, moment } = balance else { panic!("it would slip") };
         assert!((force - weight * (slope - reach).sin()).abs() < 1e-9 * weight, "{force} N at {slope} and {friction}");
         assert!(moment < 1e-9 * weight);
+        assert_eq!(stand.condition(), Condition::Friction);
     }
+}
+
+/// Weight and a push through the centre of mass act where their line meets the plane; the nearest point between the corners is
+/// found by trying: the point itself if it lies in a triangle of corners, else the nearest of all lines between two.
+#[test]
+fn weight_and_loads_act_as_far_beyond_the_supports_as_their_line_says() {
+    let mut rng = random("beyond");
+    let (mut leaning, mut worst) = (0, 0f64);
+    for _ in 0..400 {
+        let mut any = |size: f64| V::from_fn(|_, _| rng.random_range(-size..size));
+        let normal = (V::y() + any(0.3)).normalize();
+        let across = normal.cross(&V::x()).normalize();
+        let plane = [across, normal.cross(&across)];
+        let origin = any(2.0);
+        let (center, push) = (origin + normal + any(0.4), any(60.0));
+        let (place, turn) = (any(1.0), any(3.0));
+        let corners: Vec<V> = (0..rng.random_range(1..8))
+            .map(|_| origin + plane.iter().map(|axis| rng.random_range(-0.3..0.3) * *axis).sum::<V>())
+            .collect();
+        // The block lies elsewhere and turned in its own frame.
+        let frame = Placement::new(place, turn);
+        let own = |point: &V| frame.inverse_transform_point(&(*point).into()).coords;
+        let mut stand = free_block(frame, own(&center), corners.iter().map(own).collect(), normal);
+        let kind = LoadKind::Force(push, FixedIn::World);
+        stand.loads = vec![Load { segment: 0, point: own(&center), kind }];
+        let start = stand.model.default_posture();
+        let balance = stand.update(&start);
+        let line = push - 20.0 * G * V::y();
+        let acts = center + line * (origin - center).dot(&normal) / line.dot(&normal);
+        let flat = |point: &V| plane.map(|axis| (point - origin).dot(&axis));
+        let lean = beyond(flat(&acts), &corners.iter().map(flat).collect::<Vec<_>>());
+        if lean[0].hypot(lean[1]) < 1e-6 {
+            assert_eq!(balance, Balance::Held);
+            continue;
+        }
+        let Condition::Beyond(found) = stand.condition() else { panic!("it leans by {lean:?}") };
+        worst = worst.max((found - lean[0] * plane[0] - lean[1] * plane[1]).norm());
+        leaning += 1;
+    }
+    println!("{leaning} blocks lean, by {worst:.1e} m more or less than the line says");
+    assert!(leaning > 200 && leaning < 390);
+    assert!(worst < 1e-7, "{worst}");
+}
+
+/// From the nearest point of the hull of `corners` to `point`.
+fn beyond(point: [f64; 2], corners: &[[f64; 2]]) -> [f64; 2] {
+    let cross =
+        |a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+    let mut least = [f64::INFINITY; 2];
+    for a in corners {
+        for b in corners {
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let square = along[0].powi(2) + along[1].powi(2);
+            let share = ((point[0] - a[0]) * along[0] + (point[1] - a[1]) * along[1]) / square.max(1e-300);
+            let share = share.clamp(0.0, 1.0);
+            let off = [0, 1].map(|i| point[i] - a[i] - share * along[i]);
+            if off[0].hypot(off[1]) < least[0].hypot(least[1]) {
+                least = off;
+            }
+            for c in corners {
+                let sides = [cross(a, b, &point), cross(b, c, &point), cross(c, a, &point)];
+                let whole = cross(a, b, c);
+                if whole.abs() > 1e-9 && sides.iter().all(|side| side * whole >= 0.0) {
+                    return [0.0; 2];
+                }
+            }
+        }
+    }
+    least
+}
+
+/// Feet at different heights share no plane: no distance is given.
+#[test]
+fn without_a_common_plane_no_distance_is_given() {
+    let corners = vec![V::new(-0.1, 0.0, 0.0), V::new(0.1, 0.2, 0.0)];
+    let mut stand = block(V::new(0.5, 1.0, 0.0), corners, V::y(), 0.5);
+    let start = stand.model.default_posture();
+    assert!(matches!(stand.update(&start), Balance::Short { .. }));
+    assert_eq!(stand.condition(), Condition::Friction);
+    let missing = stand.contact.missing(&stand.model, &stand.kinematics).unwrap();
+    assert!(missing.to_string().ends_with(" N m are missing") && !missing.to_string().contains("beyond"));
 }
 
 /// Power of the forces at their points is torque times rate, and `columns` are the torques of one body weight each.

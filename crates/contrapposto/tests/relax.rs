@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
-use contrapposto::contact::{Balance, Support, root_rates};
+use contrapposto::contact::{Balance, Condition, Missing, Support, root_rates};
 use contrapposto::ik::Goal;
 use contrapposto::ik::body::{Body, Needs};
 use contrapposto::ik::task::{self, CenterOfMass, Effort, Orientation, Point, Task};
@@ -260,11 +260,13 @@ fn a_body_that_cannot_stand_says_what_is_missing() {
         support.normal = V::new(1.0, 1.0, 0.0).normalize();
         support.friction = 0.0;
     }
-    let Err(SearchError::CannotStand { force, moment }) = equilibria(&standing.search(), OPTIONS) else {
+    let Err(SearchError::CannotStand(missing)) = equilibria(&standing.search(), OPTIONS) else {
         panic!("no body stands on ice");
     };
     let weight = standing.model.mass() * 9.81;
-    println!("on a slope of ice: {force:.1} N and {moment:.1} N m are missing");
+    println!("on a slope of ice: {missing}");
+    let Missing { force, moment, condition } = missing;
+    assert_eq!(condition, Condition::Friction);
     // A normal force of w cos 45 leaves w sin 45 along the slope; the solver trades a little of it for moment.
     assert!(force.hypot(moment) > 0.5 * weight && force < weight);
 }

@@ -30,7 +30,7 @@ pub enum Balance {
 }
 
 /// What the solver leaves of the root's equations when they hold, in body weights (times 1 m).
-const HELD: f64 = 1e-9;
+pub(super) const HELD: f64 = 1e-9;
 /// How often signs of active torque are put right.
 const SIGNS: usize = 12;
 
@@ -277,6 +277,11 @@ impl ContactForces {
     /// Torque of every rate by all contact forces, N m.
     pub fn torques(&self) -> &[f64] {
         &self.torques
+    }
+
+    /// Friction, equilibrium of the root and what else was asked in the last update.
+    pub(super) fn problem(&self) -> &Problem {
+        &self.problem
     }
 
     /// By corner: the directions of its three forces, ground axes.

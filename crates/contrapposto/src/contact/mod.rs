@@ -4,8 +4,10 @@
 //! finds the forces at all corners that keep the root in equilibrium and, of these, the ones that spare the muscles most.
 
 mod forces;
+mod missing;
 mod support;
 
 pub use forces::{Balance, ContactForces};
 pub(crate) use forces::{Unknowns, bounds, friction_rows, share_row};
+pub use missing::{Condition, Missing};
 pub use support::{FACES, Support, SupportError, root_rates};

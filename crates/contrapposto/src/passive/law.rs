@@ -103,6 +103,17 @@ impl Coupled {
         }
         (own * torque, gradient)
     }
+
+    /// Second derivatives of that torque by the coordinates of hip, knee and ankle.
+    pub fn curvature(&self, posture: &[f64]) -> [[f64; 3]; 3] {
+        let signs = self.neighbours.map(|n| n.map_or(0.0, |(_, sign)| sign));
+        let own = if signs[self.law.joint] < 0.0 { -1.0 } else { 1.0 };
+        let mut curvature = self.law.curvature(self.angles(posture));
+        for (row, a) in curvature.iter_mut().zip(signs) {
+            row.iter_mut().zip(signs).for_each(|(entry, b)| *entry *= own * a * b);
+        }
+        curvature
+    }
 }
 
 impl Term {

@@ -63,6 +63,18 @@ impl RienerEdrich1999 {
         (torque, gradient)
     }
 
+    /// Second derivatives of the torque by the three angles, N m/rad^2.
+    pub fn curvature(&self, angles: [f64; 3]) -> [[f64; 3]; 3] {
+        let mut curvature = [[0.0; 3]; 3];
+        for term in &self.terms {
+            let value = term.sign * term.exponent(angles).exp();
+            for (row, rate) in curvature.iter_mut().zip(term.rates) {
+                row.iter_mut().zip(term.rates).for_each(|(entry, other)| *entry += rate * other * value);
+            }
+        }
+        curvature
+    }
+
     /// The law in the joint's own angle with the neighbours held at `angles`. With `mirrored` the coordinate runs the
     /// other way (OpenSim's ankle counts dorsiflexion positive): angle and torque change sign.
     ///

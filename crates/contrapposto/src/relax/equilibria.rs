@@ -21,7 +21,7 @@
 use super::finder::Finder;
 use super::stability::Stability;
 use super::{Options, RelaxError, Relaxed};
-use crate::contact::Support;
+use crate::contact::{Missing, Support};
 use crate::ik::Goal;
 use crate::model::{Model, Side};
 use crate::posture::Posture;
@@ -62,15 +62,8 @@ pub enum SearchError {
     #[error(transparent)]
     Relax(#[from] RelaxError),
     /// From no start a posture was found in which the supports hold the body.
-    #[error(
-        "the supports cannot hold the body: in the best posture {force:.3} N and {moment:.3} N m are missing at its root"
-    )]
-    CannotStand {
-        /// What is missing along the root's slides, N.
-        force: f64,
-        /// What is missing about the root's hinges, N m.
-        moment: f64,
-    },
+    #[error("the supports cannot hold the body, in the best posture that was tried: {0}")]
+    CannotStand(Missing),
 }
 
 /// A muscle group at work.

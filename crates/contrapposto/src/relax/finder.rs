@@ -7,7 +7,7 @@ use super::mirror::Mirror;
 use super::stability::stability;
 use super::{Engine, Options, Relaxed};
 use crate::constraint::HalfSpace;
-use crate::contact::Balance;
+use crate::contact::{Condition, Missing};
 use crate::hybrid::{Problem, Strategy, minimise};
 use crate::ik::Goal;
 use crate::ik::task::{Effort, Task};
@@ -29,6 +29,8 @@ const TOLERANCE: f64 = 0.05;
 const WORTH: f64 = 1.0;
 /// From this share on a joint hangs on its ligaments.
 const HANGS: f64 = 0.5;
+/// What is missing in a posture beyond all numbers.
+const ALL: Missing = Missing { force: f64::INFINITY, moment: f64::INFINITY, condition: Condition::Other };
 
 /// A posture that was come to.
 #[derive(Clone, Debug)]
@@ -52,8 +54,8 @@ pub(super) struct Finder<'a> {
     /// Place of the pushes among the engines' goals.
     slot: usize,
     found: Vec<Found>,
-    /// What is missing where the body fell, N and N m.
-    fell: Vec<(f64, f64)>,
+    /// What is missing where the body fell.
+    fell: Vec<Missing>,
     starts: usize,
     steps: usize,
 }
@@ -131,12 +133,12 @@ impl<'a> Finder<'a> {
         self.starts += 1;
         // Everything was checked when the engine was made: only a posture beyond all numbers is refused.
         let Ok(mut relaxed) = engine.solve(from) else {
-            self.fell.push((f64::INFINITY, f64::INFINITY));
+            self.fell.push(ALL);
             return;
         };
         self.steps += relaxed.steps;
-        if let Balance::Short { force, moment } = relaxed.balance {
-            self.fell.push((force, moment));
+        if let Some(missing) = engine.contact().missing(self.search.model, engine.body().kinematics()) {
+            self.fell.push(missing);
             return;
         }
         relaxed.errors.remove(self.slot);
@@ -304,9 +306,9 @@ impl<'a> Finder<'a> {
     /// The list.
     pub(super) fn finish(mut self) -> Result<Equilibria, SearchError> {
         if self.found.is_empty() {
-            let least = self.fell.iter().min_by(|a, b| a.0.hypot(a.1).total_cmp(&b.0.hypot(b.1)));
-            let (force, moment) = least.copied().unwrap_or_default();
-            return Err(SearchError::CannotStand { force, moment });
+            let size = |missing: &Missing| missing.force.hypot(missing.moment);
+            let least = self.fell.into_iter().min_by(|a, b| size(a).total_cmp(&size(b)));
+            return Err(SearchError::CannotStand(least.unwrap_or(ALL)));
         }
         let mut counted = self.counted(YIELDED[0]);
         if counted.is_empty() {

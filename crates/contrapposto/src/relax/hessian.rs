@@ -14,7 +14,7 @@ use super::quadratic::{Quadratic, add, dot};
 use super::site::{Ask, Site, columns};
 use crate::ik::body::{Body, Needs};
 use crate::ik::task::{Task, share_of_strength};
-use crate::model::Model;
+use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
 use crate::statics::{ExternalTorque, Gradient, Load};
@@ -68,6 +68,8 @@ impl Hessian {
         self.weigh(ask, at, multipliers);
         self.bend_of_tasks(ask, at, multipliers, problem);
         self.bend_of_torques(ask, at, problem);
+        self.bend_of_passive(ask, at, problem);
+        self.bend_of_strength(ask, at, problem);
     }
 
     fn weigh(&mut self, ask: &Ask<'_>, at: &Site, multipliers: &[f64]) {
@@ -75,13 +77,8 @@ impl Hessian {
         for (rate, y) in ask.contact.root().iter().zip(multipliers) {
             self.weights[*rate] = y / ask.contact.weight();
         }
-        let mut errors = at.errors.iter();
-        for task in &ask.effort.tasks {
-            let Task::Effort(effort) = task else { return };
-            for (&coordinate, error) in effort.coordinates.iter().zip(&mut errors) {
-                let Some(rate) = ask.model.coordinates()[coordinate].rate else { continue };
-                self.weights[rate] = -error * share_of_strength(ask.model, &at.body, coordinate);
-            }
+        for (coordinate, rate, error, _) in efforts(ask, at) {
+            self.weights[rate] = -error * share_of_strength(ask.model, &at.body, coordinate);
         }
     }
 
@@ -128,14 +125,65 @@ impl Hessian {
                 let other = after.get(b, a) - before.get(b, a);
                 problem.matrix[i * n + j] += share * (to[b] - from[b] + other);
             }
-            let Some(c) = model.rates()[a].coordinate else { continue };
-            if let Some(PassiveLaw::Curve(curve)) = &model.coordinates()[c].passive {
-                let slope = |h: f64| curve.torque_and_slope(at.posture.values()[c] + h).1;
-                let bend = (slope(MOVE_JOINT) - slope(-MOVE_JOINT)) / (2.0 * MOVE_JOINT);
-                problem.matrix[i * n + i] += self.weights[a] * bend;
-            }
         }
         self.bend_of_forces(ask, at, h, problem);
+    }
+
+    /// `sum_i w_i tau_p,i''`.
+    fn bend_of_passive(&mut self, ask: &Ask<'_>, at: &Site, problem: &mut Quadratic) {
+        let (model, values) = (ask.model, at.body.kinematics().values());
+        for (i, &rate) in ask.free.iter().enumerate() {
+            let Some(own) = model.rates()[rate].coordinate else { continue };
+            let slope = |slope: &dyn Fn(f64) -> f64| {
+                (slope(values[own] + MOVE_JOINT) - slope(values[own] - MOVE_JOINT)) / (2.0 * MOVE_JOINT)
+            };
+            let bend = match &model.coordinates()[own].passive {
+                Some(PassiveLaw::Curve(curve)) => slope(&|q| curve.torque_and_slope(q).1),
+                Some(PassiveLaw::Sum(terms)) => slope(&|q| terms.iter().map(|term| term.torque_and_slope(q).1).sum()),
+                _ => 0.0,
+            };
+            problem.matrix[i * problem.n + i] += self.weights[rate] * bend;
+        }
+        for (own, coordinate) in model.coordinates().iter().enumerate() {
+            let (Some(PassiveLaw::Coupled(law)), Some(rate)) = (&coordinate.passive, coordinate.rate) else { continue };
+            if model.is_dependent(own) {
+                continue;
+            }
+            let places = law.neighbours.map(|n| {
+                let rate = model.coordinates()[n?.0].rate?;
+                ask.free.iter().position(|free| *free == rate)
+            });
+            for (a, row) in places.into_iter().zip(law.curvature(values)) {
+                for (b, entry) in places.into_iter().zip(row) {
+                    if let (Some(a), Some(b)) = (a, b)
+                        && a <= b
+                    {
+                        problem.matrix[a * problem.n + b] += self.weights[rate] * entry;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Strength changes with the angle. With `e = tau_a / S` this adds `(J^T k + k^T J) e - e^2 S''/S` at the joint, where `J` is
+    /// the row of `e` and `k = -S'/S`.
+    fn bend_of_strength(&mut self, ask: &Ask<'_>, at: &Site, problem: &mut Quadratic) {
+        let n = problem.n;
+        for (coordinate, rate, error, row) in efforts(ask, at) {
+            let (Some(own), Some(groups)) =
+                (ask.free.iter().position(|free| *free == rate), &ask.model.coordinates()[coordinate].groups)
+            else {
+                continue;
+            };
+            let angle = at.body.kinematics().values()[coordinate];
+            let strength = &groups[Side::of(error).index()].strength;
+            let (torque, slope) = strength.torque_and_slope(angle);
+            let by = -error * slope / torque;
+            for (other, entry) in row.iter().enumerate() {
+                problem.matrix[own.min(other) * n + own.max(other)] += by * entry;
+            }
+            problem.matrix[own * n + own] += by * row[own] - error * error * strength.curvature(angle) / torque;
+        }
     }
 
     fn bend_of_forces(&mut self, ask: &Ask<'_>, at: &Site, h: f64, problem: &mut Quadratic) {
@@ -167,10 +215,80 @@ impl Hessian {
     }
 }
 
+/// Of every coordinate whose effort counts: its rate, its error and the row of that.
+fn efforts<'a>(ask: &'a Ask<'_>, at: &'a Site) -> impl Iterator<Item = (usize, usize, f64, &'a [f64])> {
+    let effort =
+        ask.effort.tasks.iter().map_while(|task| if let Task::Effort(effort) = task { Some(effort) } else { None });
+    let rows = at.errors.iter().zip(at.slopes.chunks_exact(ask.unknowns()));
+    let coordinates = effort.flat_map(|effort| &effort.coordinates).zip(rows);
+    coordinates.filter_map(|(&c, (error, row))| Some((c, ask.model.coordinates()[c].rate?, *error, row)))
+}
+
 /// Takes the part along each row of an orthonormal basis away.
 fn remove(v: &mut [f64], basis: &[f64]) {
     for row in basis.chunks_exact(v.len()) {
         let along = dot(row, v);
         add(v, row, -along);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::super::ground::{Ground, alike, moved};
+    use super::*;
+    use crate::ik::Goal;
+
+    const SEED: u64 = 23;
+    /// Step of the second difference, rad, m or body weights.
+    const STEP: f64 = 2e-4;
+
+    /// The matrix along a motion that leaves the feet where they are, against second differences of the Lagrangian along it,
+    /// relative to what lies beyond first derivatives.
+    #[test]
+    fn the_matrix_is_the_second_derivative_of_the_lagrangian() {
+        let ground = Ground::new();
+        let mut hessian = Hessian::new(&ground.model);
+        let (mut worst, mut compared) = (0f64, 0);
+        ground.each(&mut Pcg64Mcg::new(SEED.into()), 40, |random, ask, site| {
+            let (n, k, root) = (ask.unknowns(), ask.free.len(), ask.contact.root().len());
+            let multipliers: Vec<f64> = site.lower.iter().map(|_| random.random_range(-0.3..0.3)).collect();
+            let mut direction: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
+            let mut basis: Vec<f64> = vec![];
+            for row in site.rows.chunks_exact(n).skip(root).take(ask.places.rows()) {
+                let mut row = row[..k].to_vec();
+                remove(&mut row, &basis);
+                let length = dot(&row, &row).sqrt();
+                basis.extend(row.iter().map(|entry| entry / length));
+            }
+            remove(&mut direction[..k], &basis);
+
+            let mut problem = Quadratic::default();
+            (problem.n, problem.shifted) = (n, k);
+            site.write(1.0, &mut problem);
+            let along = |matrix: &[f64]| -> f64 {
+                let upper = |i: usize, j: usize| matrix[i.min(j) * n + i.max(j)];
+                (0..n * n).map(|e| direction[e / n] * upper(e / n, e % n) * direction[e % n]).sum()
+            };
+            let squares = along(&problem.matrix);
+            hessian.bend(ask, site, &multipliers, &mut problem);
+            let exact = along(&problem.matrix);
+
+            let equations = root + ask.goals().map(Goal::rows).sum::<usize>();
+            let lagrangian = |site: &Site| {
+                let rows = multipliers.iter().zip(&site.lower).take(equations);
+                site.effort - rows.map(|(y, rest)| y * rest).sum::<f64>()
+            };
+            let [before, after] = [-STEP, STEP].map(|h| moved(site, ask, &direction, h));
+            if alike(site, &before) && alike(site, &after) {
+                let numeric = (lagrangian(&before) + lagrangian(&after) - 2.0 * lagrangian(site)) / (STEP * STEP);
+                worst = worst.max((numeric - exact).abs() / (1.0 + (numeric - squares).abs()));
+                compared += 1;
+            }
+        });
+        println!("seed {SEED}: {compared} postures, off by {worst:.1e} at most");
+        assert!(compared > 20 && worst < 1e-4, "{worst} {compared}");
     }
 }

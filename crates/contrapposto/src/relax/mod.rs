@@ -10,6 +10,8 @@ mod descent;
 mod engine;
 mod equilibria;
 mod finder;
+#[cfg(test)]
+mod ground;
 mod hessian;
 mod mirror;
 mod probe;

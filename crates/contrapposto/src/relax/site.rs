@@ -239,3 +239,51 @@ pub(super) fn fill_forces(model: &Model, body: &Body, columns: &[f64], coordinat
         *entry = -column[rate] * share;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::super::ground::{Ground, alike, moved};
+
+    const SEED: u64 = 29;
+    /// Step of the difference, rad, m or body weights.
+    const STEP: f64 = 1e-5;
+
+    /// Rows of effort and of what must hold along a motion of posture and forces, and along forces alone.
+    #[test]
+    fn rows_are_the_derivatives_of_what_they_belong_to() {
+        let ground = Ground::new();
+        let (mut worst, mut compared) = ([0f64; 2], 0);
+        ground.each(&mut Pcg64Mcg::new(SEED.into()), 40, |random, ask, site| {
+            let n = ask.unknowns();
+            for (kind, worst) in worst.iter_mut().enumerate() {
+                let mut step: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
+                if kind == 1 {
+                    step[..ask.free.len()].fill(0.0);
+                }
+                let [before, after] = [-STEP, STEP].map(|by| moved(site, ask, &step, by));
+                if !alike(&before, &after) {
+                    continue;
+                }
+                compared += 1;
+                let mut compare = |rows: &[f64], before: &[f64], after: &[f64], sign: f64| {
+                    for ((row, before), after) in rows.chunks_exact(n).zip(before).zip(after) {
+                        let exact: f64 = row.iter().zip(&step).map(|(a, d)| a * d).sum();
+                        let numeric = sign * (after - before) / (2.0 * STEP);
+                        // A row without a lower limit has none to compare.
+                        if numeric.is_finite() {
+                            *worst = worst.max((numeric - exact).abs() / (1.0 + exact.abs()));
+                        }
+                    }
+                };
+                compare(&site.slopes, &before.errors, &after.errors, 1.0);
+                compare(&site.rows, &before.lower, &after.lower, -1.0);
+                compare(&site.rows, &before.upper, &after.upper, -1.0);
+            }
+        });
+        println!("seed {SEED}: {compared} motions, off by {:.1e} at most, by forces alone {:.1e}", worst[0], worst[1]);
+        assert!(compared > 60 && worst[0] < 1e-6 && worst[1] < 1e-8, "{worst:?} {compared}");
+    }
+}

@@ -1,6 +1,6 @@
 //! What is the experiment? Body, start, loads, strategy and thresholds, all checked before the first step.
 
-use crate::contact::{Support, SupportError};
+use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
 use crate::ik::Goal;
@@ -129,13 +129,8 @@ pub enum ScenarioError {
         error: TaskError,
     },
     /// No posture was found near the start in which the supports hold the body.
-    #[error("the supports cannot hold the body near the start: {force:.3} N and {moment:.3} N m are missing")]
-    CannotStand {
-        /// What is missing along the root's slides, N.
-        force: f64,
-        /// What is missing about the root's hinges, N m.
-        moment: f64,
-    },
+    #[error("the supports cannot hold the body near the start: {0}")]
+    CannotStand(Missing),
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
     Relax(#[from] RelaxError),

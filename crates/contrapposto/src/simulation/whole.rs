@@ -5,7 +5,7 @@
 //! decided by fatigue, and of equals by the order of the model.
 
 use crate::constraint::HalfSpace;
-use crate::contact::{Balance, ContactForces};
+use crate::contact::ContactForces;
 use crate::ik::Goal;
 use crate::model::Model;
 use crate::posture::Posture;
@@ -72,8 +72,8 @@ impl<'a> Whole<'a> {
         let mut first = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut first);
         let start = first.solve(&scenario.start)?;
-        if let Balance::Short { force, moment } = start.balance {
-            return Err(ScenarioError::CannotStand { force, moment });
+        if let Some(missing) = first.contact().missing(model, first.body().kinematics()) {
+            return Err(ScenarioError::CannotStand(missing));
         }
         let reliefs = std::iter::repeat_n(Goal::default(), MOST);
         let goals: Vec<Goal> = above.iter().map(goal).chain(reliefs).chain(below.iter().map(goal)).collect();

@@ -47,4 +47,10 @@ impl Strength {
             (self.peak * self.floor, 0.0)
         }
     }
+
+    /// Second derivative at `angle` (rad), N m/rad^2; 0 on the floor.
+    pub fn curvature(&self, angle: f64) -> f64 {
+        let torque = self.torque(angle);
+        if torque > self.peak * self.floor { -self.narrowness.powi(2) * torque } else { 0.0 }
+    }
 }
