@@ -10,10 +10,11 @@
 
 use nalgebra::Vector3;
 
-use super::quadratic::{Quadratic, add, dot};
+use super::quadratic::{Quadratic, dot};
 use super::site::{Ask, Site, columns};
 use crate::ik::body::{Body, Needs};
 use crate::ik::task::{Task, share_of_strength};
+use crate::math::lexicographic::add_scaled;
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
@@ -228,7 +229,7 @@ fn efforts<'a>(ask: &'a Ask<'_>, at: &'a Site) -> impl Iterator<Item = (usize, u
 fn remove(v: &mut [f64], basis: &[f64]) {
     for row in basis.chunks_exact(v.len()) {
         let along = dot(row, v);
-        add(v, row, -along);
+        add_scaled(v, -along, row);
     }
 }
 
