@@ -2,7 +2,8 @@
 //!
 //! As in [`super::curvature`], with forces as unknowns of their own: `sum_i w_i tau_i''` is how the gradient matrix changes when
 //! the body moves along `w`, and its mixed part how the torques of each force change, since these too are gradients of a
-//! potential (the work of a force fixed in the ground). One difference gives both.
+//! potential (the work of a force fixed in the ground). One difference gives both. Coupled laws, which have no potential, and
+//! strength that changes with the angle have closed forms of their own.
 //!
 //! Forces that cancel each other within one support do no work while it stays; their mixed part lies in the motions that turn
 //! the support. These are taken out of the mixed part, which changes the multipliers of the supports and nothing else: else the
