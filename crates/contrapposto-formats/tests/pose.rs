@@ -7,6 +7,7 @@ mod common;
 
 use std::path::Path;
 
+use common::complaint;
 use common::toml::hammer_toml;
 use contrapposto::ik::task::{Goal, Task};
 use contrapposto::ik::{Engine, Options};
@@ -24,12 +25,6 @@ fn read(lines: &str) -> Result<PoseScenario, InputError> {
 
 fn good(lines: &str) -> PoseScenario {
     read(lines).unwrap_or_else(|error| panic!("{}\n{lines}", complaint(&error)))
-}
-
-fn complaint(error: &InputError) -> String {
-    let mut text = String::new();
-    miette::NarratableReportHandler::new().render_report(&mut text, error).unwrap();
-    text
 }
 
 fn task(lines: &str) -> Task {

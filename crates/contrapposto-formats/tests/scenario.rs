@@ -7,6 +7,7 @@ mod common;
 
 use std::path::Path;
 
+use common::complaint;
 use common::toml::{ODD, hammer_toml, numbers};
 use contrapposto::hybrid::Strategy;
 use contrapposto::ik::task::Task;
@@ -153,13 +154,6 @@ fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
     assert!(summary.end_time.is_finite() && summary.samples > 0);
 }
 
-/// Complaints are printed, too: that must not panic either.
-fn complaint(error: InputError) -> String {
-    let mut text = String::new();
-    miette::NarratableReportHandler::new().render_report(&mut text, &error).unwrap();
-    text
-}
-
 fn read_whole(text: &str) -> Result<Scenario, InputError> {
     read_scenario("whole.toml", text.as_bytes(), None)
 }
@@ -184,7 +178,7 @@ fn hammer(name: &str, usual: usize, texts: &[String]) {
                 true
             }
             Err(error) => {
-                let text = complaint(error);
+                let text = complaint(&error);
                 assert!(text.contains("mutant.toml"), "no place: {text}\n{}", told());
                 assert!(!text.contains('\u{1b}'), "{text:?}");
                 false
@@ -216,7 +210,7 @@ fn odd_numbers(full: &str, expected: usize) {
                     assert_sound(scenario, &told);
                 }
                 Err(error) => {
-                    let text = complaint(error);
+                    let text = complaint(&error);
                     let line = full[..from].matches('\n').count() + 1;
                     let near = text.contains(&format!("line {line}, column"))
                         || !matches!(odd, "nan" | "inf" | "-inf" | "1e999");
@@ -233,7 +227,7 @@ fn odd_numbers(full: &str, expected: usize) {
 fn the_full_scenario_is_read() {
     for text in corpus() {
         let scenario =
-            read_scenario("corpus.toml", text.as_bytes(), None).unwrap_or_else(|error| panic!("{}", complaint(error)));
+            read_scenario("corpus.toml", text.as_bytes(), None).unwrap_or_else(|error| panic!("{}", complaint(&error)));
         assert_sound(scenario, &|| text.clone());
         // Line ends and a byte order mark are the editor's business.
         read_scenario("crlf.toml", text.replace('\n', "\r\n").as_bytes(), None).unwrap();
@@ -247,7 +241,7 @@ fn truncated_scenarios_never_panic() {
     let full = corpus().pop().unwrap();
     for end in 0..full.len() {
         if let Err(error) = read_scenario("cut.toml", &full.as_bytes()[..end], None) {
-            assert!(complaint(error).contains("cut.toml"));
+            assert!(complaint(&error).contains("cut.toml"));
         }
     }
 }
@@ -255,7 +249,7 @@ fn truncated_scenarios_never_panic() {
 /// What the keys of supports, tasks and events mean.
 #[test]
 fn a_whole_body_is_read() {
-    let scenario = read_whole(WHOLE).unwrap_or_else(|error| panic!("{}", complaint(error)));
+    let scenario = read_whole(WHOLE).unwrap_or_else(|error| panic!("{}", complaint(&error)));
     let model = &scenario.model;
     assert!(scenario.is_whole());
     let [right, left] = [&scenario.supports[0], &scenario.supports[1]];
@@ -365,7 +359,7 @@ fn mistakes_are_refused_where_they_stand() {
     for (old, new, column, part) in cases {
         assert!(WHOLE.contains(old), "{old}");
         let changed = WHOLE.replacen(old, new, 1);
-        let text = read_whole(&changed).map_or_else(complaint, |_| "accepted".to_owned());
+        let text = read_whole(&changed).map_or_else(|error| complaint(&error), |_| "accepted".to_owned());
         let text = text.replace(", columns ", ", column ");
         // What is missing, and what two lines say together, is told a line away.
         let line = WHOLE[..WHOLE.find(old).unwrap()].matches('\n').count() + 1;
@@ -383,7 +377,7 @@ fn mistakes_are_refused_where_they_stand() {
 fn a_single_joint_needs_a_curve() {
     let lines =
         "format = 1\n[coordinates]\nfree = [\"pelvis_tx\"]\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 0\n";
-    let text = complaint(read_whole(lines).unwrap_err());
+    let text = complaint(&read_whole(lines).unwrap_err());
     assert!(text.contains("`pelvis_tx` is free") && text.contains("line 3, column"), "{text}");
     read_whole(&format!("{lines}[[task]]\nkind = \"posture\"\n")).unwrap();
 }

@@ -1,13 +1,21 @@
 //! What the readers' tests share: files, and forward kinematics of a [`Body`] written from its description alone.
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
-#![allow(clippy::print_stdout, reason = "tests say what they skip")]
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "tests say what they skip, and may stop")]
 
 pub mod toml;
 
+use contrapposto_formats::InputError;
 use contrapposto_formats::body::{Body, BodyMotion, Drive};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// Everything that a reader says about what it refuses. Printing it must not panic either.
+pub fn complaint(error: &InputError) -> String {
+    let mut text = String::new();
+    miette::NarratableReportHandler::new().render_report(&mut text, error).unwrap();
+    text
+}
 
 pub fn here() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -16,7 +16,7 @@ use super::Goal;
 use super::body::Body;
 use super::hold::Hold;
 use super::symmetric::Axes;
-use crate::math::lexicographic::{Level, Problem, Solver};
+use crate::math::lexicographic::{Level, Problem, Solver, add_scaled, add_square};
 use crate::model::Model;
 use crate::statics::{ExternalTorque, Gradient, Load};
 
@@ -90,7 +90,7 @@ impl Curvature {
         // J^T r and J^T J.
         self.slope.fill(0.0);
         for (row, r) in self.level.matrix.chunks_exact(n).zip(&self.residual) {
-            add(&mut self.slope, row, *r);
+            add_scaled(&mut self.slope, *r, row);
         }
         let last = solver.multipliers(k);
         self.hold.estimate(problem, &problem.levels[..k], last, &self.slope);
@@ -108,7 +108,7 @@ impl Curvature {
                 if square > 0.0 && (multiplier != 0.0 || above.lower[i] == above.upper[i]) {
                     add_square(&mut self.matrix, row, FAST * size / square);
                     if above.lower[i] == above.upper[i] {
-                        add(&mut self.slope, row, multiplier);
+                        add_scaled(&mut self.slope, multiplier, row);
                     }
                 }
             }
@@ -216,7 +216,7 @@ impl Curvature {
                 self.row[j] = self.factor[p * n + j];
             }
             let c = -self.slope[p] / self.row[p];
-            add(&mut self.slope, &self.row, c);
+            add_scaled(&mut self.slope, c, &self.row);
             let c = worth(c, self.row[p] * self.row[p]);
             level.push(&self.row, c, c);
         }
@@ -233,21 +233,6 @@ impl Curvature {
             let c = worth(-along / square, square);
             level.push(&self.row, c, c);
         }
-    }
-}
-
-/// `matrix += weight row row^T`.
-fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
-    for (i, a) in row.iter().enumerate() {
-        if *a != 0.0 {
-            add(&mut matrix[i * row.len()..(i + 1) * row.len()], row, weight * a);
-        }
-    }
-}
-
-fn add(sum: &mut [f64], row: &[f64], weight: f64) {
-    for (s, a) in sum.iter_mut().zip(row) {
-        *s += weight * a;
     }
 }
 

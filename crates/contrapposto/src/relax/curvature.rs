@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 use crate::ik::Goal;
 use crate::ik::body::{Body, Needs};
-use crate::math::lexicographic::{Level, Problem};
+use crate::math::lexicographic::{Level, Problem, add_scaled, add_square};
 use crate::model::Model;
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
@@ -89,7 +89,7 @@ impl Curvature {
         self.slope.fill(0.0);
         for (row, upper) in self.level.matrix.chunks_exact(m).zip(&self.level.upper) {
             add_square(&mut self.matrix, row, 1.0);
-            add(&mut self.slope, row, -upper);
+            add_scaled(&mut self.slope, -upper, row);
         }
         let size = (0..m).fold(0.0, |size: f64, i| size.max(self.matrix[i * m + i].abs()));
         for above in &problem.levels[..k] {
@@ -99,7 +99,7 @@ impl Curvature {
                 if square > 0.0 {
                     let weight = FAST * size / square;
                     add_square(&mut self.matrix, row, weight);
-                    add(&mut self.slope, row, -weight * above.upper[i]);
+                    add_scaled(&mut self.slope, -weight * above.upper[i], row);
                 }
             }
         }
@@ -202,7 +202,7 @@ impl Curvature {
                 continue;
             }
             let c = -self.slope[r] / row[r];
-            add(&mut self.slope[r..], &row[r..], c);
+            add_scaled(&mut self.slope[r..], c, &row[r..]);
             level.push(&self.row, c, c);
         }
     }
@@ -232,21 +232,6 @@ fn cholesky(a: &mut [f64], m: usize) -> bool {
         }
     }
     true
-}
-
-/// `matrix += weight row row^T`.
-fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
-    for (i, a) in row.iter().enumerate() {
-        if *a != 0.0 {
-            add(&mut matrix[i * row.len()..(i + 1) * row.len()], row, weight * a);
-        }
-    }
-}
-
-fn add(sum: &mut [f64], row: &[f64], weight: f64) {
-    for (s, a) in sum.iter_mut().zip(row) {
-        *s += weight * a;
-    }
 }
 
 #[cfg(test)]

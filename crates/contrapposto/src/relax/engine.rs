@@ -2,108 +2,28 @@
 //!
 //! Effort is a sum of squares under constraints that bend, so this is a Gauss-Newton method within a largest step. A step
 //! counts if it lowers `|e|^2/2 + price sum |errors of the levels above|`, the price above every multiplier; else it is taken
-//! back and the largest step shrinks (Nocedal & Wright 2006, "Numerical Optimization", ch. 18).
+//! back and the largest step shrinks (Nocedal & Wright 2006, "Numerical Optimization", ch. 18). `rows.rs` writes the problem of a
+//! step, `merit.rs` judges it, `down.rs` leaves the way down to [`super::valleys`].
+
+mod down;
+mod merit;
+mod rows;
 
 use nalgebra::Vector3;
 
 use super::curvature::Curvature;
 use super::probe::Probe;
-use super::site::Ask;
 use super::valleys::Valleys;
-use crate::contact::{Balance, ContactForces, Support, SupportError, Unknowns, bounds, friction_rows, share_row};
+use super::{Options, Reason, RelaxError, Relaxed, Step};
+use crate::contact::{ContactForces, Support};
 use crate::ik::body::{Body, BodyError, Needs};
-use crate::ik::task::{Effort, Placement, Task, TaskError, share_of_strength};
+use crate::ik::task::{Placement, Task, TaskError};
 use crate::ik::{Goal, GoalError};
 use crate::kinematics::Kinematics;
-use crate::math::lexicographic::{Level, Problem, ProblemError, Solver, Status};
+use crate::math::lexicographic::{Level, Problem, Solver};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{ExternalTorque, Load, PassiveTorque};
-
-/// How far a step may go, and when steps end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// Largest change of any rate in one step, rad or m.
-    pub max_step: f64,
-    /// Largest number of steps of [`Engine::solve`].
-    pub max_steps: usize,
-    /// Steps end when no rate would change by more than this, rad or m.
-    pub still: f64,
-    /// Steps end when several in a row lower the merit by less than this share of it.
-    pub gain: f64,
-    /// Steps that made things worse are taken back; without it every step counts, and the next one is shorter.
-    pub guarded: bool,
-    /// Valleys of effort that [`Engine::solve`] looks into before its steps: 1 for the nearest one, more for others beside it; 0
-    /// for steps alone, which stay nearest to the start.
-    pub valleys: usize,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { max_step: 0.3, max_steps: 200, still: 1e-9, gain: 1e-9, guarded: true, valleys: 12 }
-    }
-}
-
-/// Why a body, its supports or its goals were refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RelaxError {
-    /// A support does not fit the model.
-    #[error(transparent)]
-    Support(#[from] SupportError),
-    /// A goal does not fit the model.
-    #[error(transparent)]
-    Goal(#[from] GoalError),
-    /// The posture or a load does not fit the model.
-    #[error(transparent)]
-    Body(#[from] BodyError),
-    /// Numbers so large that the rows of a task are not finite.
-    #[error("the goals have no finite rows in this posture: {0}")]
-    Rows(#[from] ProblemError),
-}
-
-/// What one step did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// Largest change of any rate, rad or m.
-    pub largest: f64,
-    /// The step before this one made things worse and was taken back.
-    pub taken_back: bool,
-    /// What the solver says of the linearised problem.
-    pub status: Status,
-}
-
-/// Why [`Engine::solve`] ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
-    /// Nothing moves any more, or nothing is gained.
-    Settled,
-    /// The largest number of steps was made.
-    Steps,
-}
-
-/// Where [`Engine::solve`] came to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Relaxed {
-    /// All coordinates.
-    pub posture: Posture,
-    /// Sum of squares of the effort level, 0 without one.
-    pub effort: f64,
-    /// Length of the error of each goal, in its units.
-    pub errors: Vec<f64>,
-    /// How far supports are off their places: lengths of the errors in m and rad together.
-    pub slip: f64,
-    /// Is the root in equilibrium?
-    pub balance: Balance,
-    /// Why it ended there.
-    pub reason: Reason,
-    /// Steps made.
-    pub steps: usize,
-}
-
-/// Largest error of a level above effort that one step takes on, in its units: on the way to a far goal the body stays where
-/// effort is little, and so comes into the valleys that lead on.
-const PACE: f64 = 0.15;
 
 /// Levels before the goals: contact and equilibrium, supports, shares.
 const BEFORE: usize = 3;
@@ -365,61 +285,6 @@ impl<'a> Engine<'a> {
         })
     }
 
-    /// Moves to the lowest bottom of the valleys; is that the answer, and after how many steps?
-    fn look_into_valleys(&mut self, posture: &mut Posture) -> Result<(bool, usize), RelaxError> {
-        if self.options.valleys == 0 || !self.can_descend() {
-            return Ok((false, 0));
-        }
-        self.see(posture)?;
-        let count = self.options.valleys;
-        let (ask, valleys) = self.ask();
-        let Some(bottom) = valleys.find(&ask, posture, count)? else { return Ok((false, 0)) };
-        self.see(posture)?;
-        let held = self.contact.balance() == Balance::Held;
-        Ok((bottom.settled && held && self.effort_goal == Some(self.goals.len() - 1), bottom.steps))
-    }
-
-    /// Moves `posture` to the bottom of the valley of effort in which it lies, while supports and the goals above effort hold, and
-    /// says whether it did: not if that lies farther away than the largest step, or goals below effort would be passed over.
-    ///
-    /// # Errors
-    /// [`RelaxError::Body`] when the posture does not fit the model.
-    pub fn sink(&mut self, posture: &mut Posture) -> Result<bool, RelaxError> {
-        if self.effort_goal != Some(self.goals.len().wrapping_sub(1)) || !self.can_descend() {
-            return Ok(false);
-        }
-        self.see(posture)?;
-        let most = self.options.max_step;
-        let (ask, valleys) = self.ask();
-        let there = valleys.sink(&ask, posture, most)?;
-        self.keep_ranges(posture);
-        Ok(there)
-    }
-
-    /// Is there an effort level that a descent can lower?
-    fn can_descend(&mut self) -> bool {
-        self.free.clear();
-        self.free.extend((0..self.locked.len()).filter(|rate| !self.locked[*rate]));
-        let alone =
-            |goal: &Goal| goal.half_spaces.is_empty() && goal.tasks.iter().all(|task| matches!(task, Task::Effort(_)));
-        !self.free.is_empty() && self.effort_goal.is_some_and(|goal| alone(&self.goals[goal]))
-    }
-
-    /// What a descent is to do.
-    fn ask(&mut self) -> (Ask<'_>, &mut Valleys) {
-        let goal = self.effort_goal.unwrap_or_default();
-        let ask = Ask {
-            model: self.model,
-            places: &self.places,
-            above: &self.goals[..goal],
-            effort: &self.goals[goal],
-            loads: &self.loads,
-            free: &self.free,
-            contact: &self.contact,
-        };
-        (ask, &mut self.valleys)
-    }
-
     /// Computes everything that depends on the posture, contact forces included.
     ///
     /// # Errors
@@ -485,193 +350,6 @@ impl<'a> Engine<'a> {
         self.probe.slope(self.model, posture, rate, &self.loads)
     }
 
-    /// Rows of all levels.
-    fn build(&mut self) {
-        self.errors.swap(0, 1);
-        self.effort[1] = self.effort[0];
-        self.effort[0] = 0.0;
-        self.problem.levels.iter_mut().for_each(Level::clear);
-        self.contact_rows();
-        for k in 0..=self.goals.len() {
-            let level = if k == 0 { 1 } else { BEFORE + k - 1 };
-            let goal = if k == 0 { &self.places } else { &self.goals[k - 1] };
-            for task in &goal.tasks {
-                self.narrow.clear();
-                task.evaluate(self.model, &self.body, &mut self.narrow);
-                let effort = if let Task::Effort(effort) = task { Some(effort) } else { None };
-                widen(&self.narrow, &mut self.problem.levels[level], &mut self.row, |row, i| {
-                    if let Some(effort) = effort {
-                        fill_forces(self.model, &self.body, &self.contact, effort, row, i);
-                    }
-                });
-            }
-            for space in &goal.half_spaces {
-                self.row.fill(0.0);
-                for (rate, entry) in self.model.rates().iter().zip(&mut self.row) {
-                    *entry = rate.coordinate.map_or(0.0, |c| space.normal[c]);
-                }
-                let value = space.violation(self.body.posture().values());
-                self.problem.levels[level].push(&self.row, f64::NEG_INFINITY, -value);
-            }
-            self.problem.levels[level].hard = k == 0 || goal.hard;
-        }
-        for (k, level) in self.problem.levels.iter().enumerate() {
-            let missing = level.lower.iter().zip(&level.upper).map(|(lower, upper)| lower.max(0.0) + upper.min(0.0));
-            if self.effort_goal.is_some_and(|goal| k == BEFORE + goal) {
-                self.effort[0] = 0.5 * missing.map(|m| m * m).sum::<f64>();
-                self.errors[0][k] = 0.0;
-            } else {
-                self.errors[0][k] = missing.map(f64::abs).sum();
-            }
-        }
-        self.damp();
-    }
-
-    /// Friction and equilibrium of the root; shares.
-    fn contact_rows(&mut self) {
-        let rates = self.model.rates().len();
-        let unknowns = Unknowns { first: rates, now: Some(self.contact.forces()) };
-        for (i, support) in self.contact.supports().iter().enumerate() {
-            let corners = self.contact.corners(i);
-            friction_rows(&mut self.problem.levels[0], &mut self.row, support, corners.clone(), unknowns);
-            share_row(&mut self.problem.levels[2], &mut self.row, support, corners, unknowns);
-        }
-        let weight = self.contact.weight();
-        for &rate in self.contact.root() {
-            let (by_rates, by_forces) = self.row.split_at_mut(rates);
-            for (entry, slope) in by_rates.iter_mut().zip(self.body.gradient().row(rate)) {
-                *entry = slope / weight;
-            }
-            for (entry, column) in by_forces.iter_mut().zip(self.contact.columns().chunks_exact(rates)) {
-                *entry = column[rate] / weight;
-            }
-            let rest = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]) / weight;
-            self.problem.levels[0].push(&self.row, rest, rest);
-        }
-        self.problem.levels[0].hard = true;
-    }
-
-    /// Ranges, largest step, and forces that only push.
-    fn bound(&mut self, posture: &Posture) {
-        let most = self.reach;
-        for (i, rate) in self.model.rates().iter().enumerate() {
-            let (lower, upper) = match rate.coordinate {
-                _ if self.locked[i] => (0.0, 0.0),
-                Some(c) => {
-                    let (lower, upper) = self.model.coordinates()[c].range;
-                    let value = posture.values()[c];
-                    ((lower - value).clamp(-most, most), (upper - value).clamp(-most, most))
-                }
-                None => (-most, most),
-            };
-            (self.problem.lower[i], self.problem.upper[i]) = (lower.min(upper), upper);
-        }
-        let rates = self.model.rates().len();
-        for (i, force) in self.contact.forces().iter().enumerate() {
-            let (lower, upper) = bounds(i);
-            self.problem.lower[rates + i] = (lower - force).min(0.0);
-            self.problem.upper[rates + i] = (upper - force).max(0.0);
-        }
-    }
-
-    /// Levels above effort that cannot be reached, as far as the last step showed, are damped.
-    fn damp(&mut self) {
-        let last = self.effort_goal.map_or(self.problem.levels.len(), |goal| BEFORE + goal);
-        for k in BEFORE..last {
-            let unreached = self.unreached.get(k).copied().unwrap_or(0.0);
-            let level = &mut self.problem.levels[k];
-            level.damping = if level.hard { 0.0 } else { 2.0 * unreached.min(1.0) };
-        }
-    }
-
-    /// No level above effort takes on more than [`PACE`].
-    fn pace(&mut self) {
-        let Some(goal) = self.effort_goal else { return };
-        for level in &mut self.problem.levels[BEFORE..BEFORE + goal] {
-            let missing = level.lower.iter().zip(&level.upper).map(|(lower, upper)| lower.max(0.0) + upper.min(0.0));
-            let length = missing.map(|m| m * m).sum::<f64>().sqrt();
-            if length > PACE {
-                level.lower.iter_mut().chain(&mut level.upper).for_each(|limit| *limit *= PACE / length);
-            }
-        }
-    }
-
-    /// Merit of the present posture (0) or of the one before the last step (1).
-    fn merit(&self, when: usize) -> f64 {
-        let last = self.effort_goal.map_or(0, |goal| BEFORE + goal);
-        let errors = &self.errors[when];
-        if errors.is_empty() || !errors[0].is_finite() {
-            return f64::INFINITY;
-        }
-        self.effort[when] + self.price * errors[..last].iter().sum::<f64>()
-    }
-
-    /// Did the last step make things worse?
-    fn went_wrong(&mut self) -> bool {
-        if self.effort_goal.is_none() || !self.merit(1).is_finite() {
-            return false;
-        }
-        let wrong = self.merit(0) > self.merit(1) * (1.0 + 1e-12) && self.largest > 1e-10;
-        let shift = self.curvature.shift();
-        *shift = if wrong { (4.0 * *shift).max(1e-3) } else { 0.25 * *shift };
-        if *shift < 1e-6 {
-            *shift = 0.0;
-        }
-        self.reach = if wrong { 0.3 * self.largest } else { (2.0 * self.reach).min(self.options.max_step) };
-        if wrong && self.options.guarded {
-            // What was before is now again.
-            self.errors.swap(0, 1);
-            self.effort[0] = self.effort[1];
-        }
-        wrong && self.options.guarded
-    }
-
-    /// Gives the effort level its second derivative.
-    fn bend(&mut self) {
-        let Some(goal) = self.effort_goal else { return };
-        let k = BEFORE + goal;
-        let mut start = 0;
-        self.starts.clear();
-        for level in &self.problem.levels[..=k] {
-            self.starts.push(start);
-            start += level.rows();
-        }
-        if self.multipliers.len() != self.starts[k] {
-            self.multipliers.clear();
-            self.multipliers.resize(self.starts[k], 0.0);
-        }
-        let weights = self.curvature.weights();
-        weights.fill(0.0);
-        let root = self.contact.root();
-        for (rate, y) in root.iter().zip(&self.multipliers[self.starts[1] - root.len()..]) {
-            weights[*rate] = y / self.contact.weight();
-        }
-        for task in &self.goals[goal].tasks {
-            let Task::Effort(effort) = task else { continue };
-            for &coordinate in &effort.coordinates {
-                let Some(rate) = self.model.coordinates()[coordinate].rate else { continue };
-                let active = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]);
-                let share = share_of_strength(self.model, &self.body, coordinate);
-                weights[rate] = -active * share * share;
-            }
-        }
-        let (multipliers, starts) = (&self.multipliers, &self.starts);
-        let places = std::iter::once((&self.places, &multipliers[starts[1]..starts[2]]));
-        let goals = self.goals[..goal].iter().enumerate();
-        let goals = goals.map(|(i, goal)| (goal, &multipliers[starts[BEFORE + i]..starts[BEFORE + i + 1]]));
-        let goals = places.chain(goals);
-        self.curvature.bend(self.model, &self.body, &self.all_loads, goals, &mut self.problem, k);
-    }
-
-    fn raise_price(&mut self) {
-        let Some(goal) = self.effort_goal else { return };
-        let rows = self.solver.multipliers(BEFORE + goal).rows;
-        self.multipliers.clear();
-        self.multipliers.extend_from_slice(rows);
-        let most = rows.iter().fold(0.0, |most: f64, m| most.max(m.abs()));
-        self.price = (0.7 * self.price).max(1.5 * most);
-    }
-
     fn keep_ranges(&self, posture: &mut Posture) {
         for (i, rate) in self.model.rates().iter().enumerate() {
             if let (Some(c), false) = (rate.coordinate, self.locked[i]) {
@@ -683,28 +361,6 @@ impl<'a> Engine<'a> {
                 }
             }
         }
-    }
-}
-
-/// Copies rows over the rates into a level over all unknowns; `fill` completes them.
-fn widen(narrow: &Level, wide: &mut Level, row: &mut [f64], fill: impl Fn(&mut [f64], usize)) {
-    let Some(n) = narrow.matrix.len().checked_div(narrow.rows()) else { return };
-    for i in 0..narrow.rows() {
-        row.fill(0.0);
-        row[..n].copy_from_slice(&narrow.matrix[i * n..(i + 1) * n]);
-        fill(row, i);
-        wide.push(row, narrow.lower[i], narrow.upper[i]);
-    }
-}
-
-/// What contact forces do to row `i` of an effort task.
-fn fill_forces(model: &Model, body: &Body, contact: &ContactForces, effort: &Effort, row: &mut [f64], i: usize) {
-    let coordinate = effort.coordinates[i];
-    let Some(rate) = model.coordinates()[coordinate].rate else { return };
-    let share = share_of_strength(model, body, coordinate);
-    let rates = model.rates().len();
-    for (entry, column) in row[rates..].iter_mut().zip(contact.columns().chunks_exact(rates)) {
-        *entry = -column[rate] * share;
     }
 }
 

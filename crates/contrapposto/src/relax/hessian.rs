@@ -2,7 +2,8 @@
 //!
 //! As in [`super::curvature`], with forces as unknowns of their own: `sum_i w_i tau_i''` is how the gradient matrix changes when
 //! the body moves along `w`, and its mixed part how the torques of each force change, since these too are gradients of a
-//! potential (the work of a force fixed in the ground). One difference gives both.
+//! potential (the work of a force fixed in the ground). One difference gives both. Coupled laws, which have no potential, and
+//! strength that changes with the angle have closed forms of their own.
 //!
 //! Forces that cancel each other within one support do no work while it stays; their mixed part lies in the motions that turn
 //! the support. These are taken out of the mixed part, which changes the multipliers of the supports and nothing else: else the
@@ -10,10 +11,11 @@
 
 use nalgebra::Vector3;
 
-use super::quadratic::{Quadratic, add, dot};
+use super::quadratic::{Quadratic, dot};
 use super::site::{Ask, Site, columns};
 use crate::ik::body::{Body, Needs};
 use crate::ik::task::{Task, share_of_strength};
+use crate::math::lexicographic::add_scaled;
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
@@ -228,7 +230,7 @@ fn efforts<'a>(ask: &'a Ask<'_>, at: &'a Site) -> impl Iterator<Item = (usize, u
 fn remove(v: &mut [f64], basis: &[f64]) {
     for row in basis.chunks_exact(v.len()) {
         let along = dot(row, v);
-        add(v, row, -along);
+        add_scaled(v, -along, row);
     }
 }
 

@@ -14,15 +14,17 @@ mod finder;
 mod ground;
 mod hessian;
 mod mirror;
+mod outcome;
 mod probe;
 mod quadratic;
 mod site;
 mod stability;
 mod valleys;
 
-pub use engine::{Engine, Options, Reason, RelaxError, Relaxed, Step};
+pub use engine::Engine;
 pub use equilibria::{
     Carried, Equilibria, Hanging, ROUNDS, RelaxedPosture, SAME, SCOUT, SINGLE, Search, SearchError, Work, equilibria,
 };
 pub use mirror::Mirror;
+pub use outcome::{Options, Reason, RelaxError, Relaxed, Step};
 pub use stability::{Direction, LEAST_MASS, Stability, stability, stiffness};

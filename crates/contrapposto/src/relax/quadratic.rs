@@ -8,6 +8,8 @@
 //! The guess is put right a few times only. Where most unknowns lie at bounds it may still be wrong then (one in ten of small
 //! random problems): bounds hold, rows may be missed, and a descent, which judges every step by what comes of it, goes on.
 
+use crate::math::lexicographic::add_scaled;
+
 /// Weight of held rows in `M`, against the largest diagonal entry.
 const FAST: f64 = 10.0;
 /// Share of the largest diagonal entry of each kind that is always added.
@@ -193,7 +195,7 @@ impl Quadratic {
                     continue;
                 }
                 let line = &mut self.factor[a * w..(a + 1) * w];
-                add(&mut line[a..k], &short[a..], weight * entry);
+                add_scaled(&mut line[a..k], weight * entry, &short[a..]);
                 line[k + r] = entry;
                 line[k + q] += weight * entry * target;
             }
@@ -262,7 +264,7 @@ impl Quadratic {
             self.answer[i] /= self.factor[line(i) + i];
             let by = self.answer[i];
             let row = &self.factor[line(i)..line(i) + q];
-            add(&mut self.answer[i + 1..], &row[i + 1..], -by);
+            add_scaled(&mut self.answer[i + 1..], -by, &row[i + 1..]);
         }
         for i in (0..q).rev() {
             let row = &self.factor[line(i)..line(i) + q];
@@ -340,7 +342,7 @@ fn eliminate(matrix: &mut [f64], w: usize, from: usize, to: usize) -> bool {
             for by in p..c {
                 let by = &done[by * w..(by + 1) * w];
                 let factor = by[c];
-                add(&mut row[c..], &by[c..], -factor);
+                add_scaled(&mut row[c..], -factor, &by[c..]);
             }
             if !(row[c] > 0.0 && row[c].is_finite()) {
                 return false;
@@ -368,7 +370,7 @@ fn eliminate(matrix: &mut [f64], w: usize, from: usize, to: usize) -> bool {
             for (i, target) in lower.chunks_exact_mut(w).enumerate() {
                 let i = p + size + i;
                 for row in rows.chunks_exact(w) {
-                    add(&mut target[i..], &row[i..], -row[i]);
+                    add_scaled(&mut target[i..], -row[i], &row[i..]);
                 }
             }
         }
@@ -399,13 +401,6 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// `sum += weight row`.
-pub(super) fn add(sum: &mut [f64], row: &[f64], weight: f64) {
-    for (s, a) in sum.iter_mut().zip(row) {
-        *s += weight * a;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use clarabel::algebra::CscMatrix;
@@ -433,7 +428,7 @@ mod tests {
             // From stiff to soft, as effort is.
             let weight = 10f64.powf(-3.0 * k as f64 / (2 * n) as f64);
             for i in 0..n {
-                add(&mut problem.matrix[i * n + i..(i + 1) * n], &row[i..], weight * row[i]);
+                add_scaled(&mut problem.matrix[i * n + i..(i + 1) * n], weight * row[i], &row[i..]);
             }
         }
         let (inside, room) = (numbers(n), numbers(rows + 2 * n));
@@ -457,9 +452,9 @@ mod tests {
             // Along what equations hold fast, effort may bend down as it likes.
             for row in problem.rows[..equations * n].chunks_exact(n) {
                 for i in 0..n {
-                    add(&mut problem.matrix[i * n + i..(i + 1) * n], &row[i..], -0.5 * row[i]);
+                    add_scaled(&mut problem.matrix[i * n + i..(i + 1) * n], -0.5 * row[i], &row[i..]);
                 }
-                add(&mut problem.slope, row, 0.5 * dot(row, &inside));
+                add_scaled(&mut problem.slope, 0.5 * dot(row, &inside), row);
             }
         }
         problem
@@ -477,9 +472,9 @@ mod tests {
             limits.push(problem.upper[r]);
             if bent_down {
                 for i in 0..n {
-                    add(&mut matrix[i * n + i..(i + 1) * n], &row(r)[i..], 0.5 * row(r)[i]);
+                    add_scaled(&mut matrix[i * n + i..(i + 1) * n], 0.5 * row(r)[i], &row(r)[i..]);
                 }
-                add(&mut slope, row(r), -0.5 * problem.upper[r]);
+                add_scaled(&mut slope, -0.5 * problem.upper[r], row(r));
             }
         }
         let equations = lines.len();

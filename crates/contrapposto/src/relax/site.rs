@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::quadratic::{Quadratic, add};
+use super::quadratic::Quadratic;
 use crate::contact::{ContactForces, Unknowns, friction_rows, share_row};
 use crate::ik::Goal;
 use crate::ik::body::{Body, BodyError, Needs};
 use crate::ik::task::{Task, share_of_strength};
-use crate::math::lexicographic::Level;
+use crate::math::lexicographic::{Level, add_scaled};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind, PassiveTorque};
@@ -208,9 +208,9 @@ impl Site {
         problem.slope.resize(n, 0.0);
         for (row, error) in self.slopes.chunks_exact(n).zip(&self.errors) {
             for (i, entry) in row.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
-                add(&mut problem.matrix[i * n + i..(i + 1) * n], &row[i..], *entry);
+                add_scaled(&mut problem.matrix[i * n + i..(i + 1) * n], *entry, &row[i..]);
             }
-            add(&mut problem.slope, row, *error);
+            add_scaled(&mut problem.slope, *error, row);
         }
         (0..problem.shifted).fold(0.0, |size: f64, i| size.max(problem.matrix[i * n + i]))
     }

@@ -16,7 +16,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// `y += s x`.
 #[inline]
-pub(super) fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
+pub(crate) fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
     let ((y, y_rest), (x, x_rest)) = (y.as_chunks_mut::<8>(), x.as_chunks::<8>());
     for (y, x) in y.iter_mut().zip(x) {
         for i in 0..8 {
@@ -25,6 +25,15 @@ pub(super) fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
     }
     for (y, x) in y_rest.iter_mut().zip(x_rest) {
         *y += s * x;
+    }
+}
+
+/// `matrix += weight row row^T`.
+pub(crate) fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
+    for (to, a) in matrix.chunks_exact_mut(row.len().max(1)).zip(row) {
+        if *a != 0.0 {
+            add_scaled(to, weight * a, row);
+        }
     }
 }
 
