@@ -24,6 +24,8 @@ pub(crate) enum Verb {
     Pose(PoseArgs),
     /// Find the different postures of least effort under the tasks, and say what holds each.
     Relax(RelaxArgs),
+    /// Carry out two to five scenarios and show their postures side by side: a picture, and what differs.
+    Compare(CompareArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.
     Figures(FiguresArgs),
     /// Decide single joints: one JSON problem a line in, one JSON decision a line out.
@@ -57,6 +59,10 @@ pub(crate) struct SimulateArgs {
     /// Go on from the snapshot that an interrupted run left in DIR.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that matter most
+    /// their torques over angle and their course, each as SVG and PNG.
+    #[arg(long)]
+    pub(crate) figures: bool,
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
@@ -101,6 +107,24 @@ pub(crate) struct RelaxArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print relax.json instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    after_help = "Example:\n  contrapposto compare scenarios/stand-ready.toml scenarios/stand-relaxed.toml --out out\n\n\
+    A scenario with [run] is simulated, and its last posture taken; one without is posed. Writes compare.json and \
+    compare.svg/.png into DIR. Bodies may differ: what has the same name is compared."
+)]
+pub(crate) struct CompareArgs {
+    /// Two to five scenario files (TOML); `-` reads standard input.
+    #[arg(required = true, num_args = 2..=5, value_name = "SCENARIO")]
+    pub(crate) scenarios: Vec<PathBuf>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Print compare.json instead of tables.
     #[arg(long)]
     pub(crate) json: bool,
 }

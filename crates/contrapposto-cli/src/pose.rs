@@ -2,8 +2,6 @@
 
 pub(crate) mod drawing;
 
-pub(crate) use self::drawing::views;
-
 use std::path::{Path, PathBuf};
 
 use contrapposto::ik::{Engine, Pose, Reason};
@@ -11,7 +9,7 @@ use contrapposto::model::Model;
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::{MOST_BYTES, ModelFile, PoseLevelText, PoseScenario, PoseText, read_pose, scenario_model};
-use contrapposto_plot::pose_views;
+use contrapposto_plot::body_figure;
 
 use crate::args::{ModelArgs, PoseArgs, RootChoice};
 use crate::fail::Fail;
@@ -76,7 +74,7 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
-    let picture = pose_views(&drawing::pose_picture(scenario, pose, &subtitle(text))?);
+    let picture = body_figure(&drawing::pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;

@@ -7,20 +7,23 @@ use std::path::Path;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::CoordinateKind;
-use contrapposto::relax::{Equilibria, Options, Search, SearchError, equilibria};
+use contrapposto::relax::{Carried, Equilibria, Options, Search, SearchError, equilibria};
+use contrapposto::simulation::{Contact, Standing};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::{MOST_BYTES, RelaxScenario, read_relax};
-use contrapposto_plot::{PoseColumn, PoseGrid, PoseView, pose_grid};
+use contrapposto_plot::{BodyFigure, body_figure};
 use indicatif::{ProgressBar, ProgressStyle};
+use nalgebra::Vector3;
 
 use crate::args::RelaxArgs;
 use crate::fail::Fail;
+use crate::held::frame;
 use crate::input::read;
 use crate::model_file::tell;
 use crate::output::{Folder, print};
-use crate::pose::drawing::{Lines, directions, sticks};
 use crate::pose::model_of;
-use text::{RelaxText, percent, report, weight};
+use crate::report::body;
+use text::{RelaxText, percent, report};
 
 const FILES: [&str; 5] = ["relax.json", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
 /// Largest change of a joint in one step, rad.
@@ -80,7 +83,7 @@ fn write(
     let title = if scenario.title.is_empty() { "postures of least effort" } else { &scenario.title };
     let mot = write_sto(title, &columns, true, &times, &rows).map_err(|error| Fail::job("postures.mot", error))?;
     let csv = table(scenario, found);
-    let picture = pose_grid(&drawing(scenario, found, text)?);
+    let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
     let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
@@ -114,47 +117,43 @@ fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
     csv
 }
 
-/// All postures, from the front and from the right.
-fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<PoseGrid, Fail> {
+/// All postures side by side.
+fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<BodyFigure, Fail> {
     let model = &scenario.model;
     let mut kinematics = Kinematics::new(model);
-    let [right, ahead, up] = directions(model);
-    let mut columns = vec![];
+    let mut postures = vec![];
     for (i, (posture, text)) in found.postures.iter().zip(&text.postures).enumerate() {
         kinematics.update(model, &posture.relaxed.posture).map_err(|error| Fail::job("picture", error))?;
-        let lines = sticks(model, &kinematics);
-        let center = kinematics.center_of_mass(model);
-        let view = |label: String, across: nalgebra::Vector3<f64>| {
-            let flat = |p: &nalgebra::Vector3<f64>| [across.dot(p), up.dot(p)];
-            let flatten = |lines: &Lines| lines.iter().map(|line| line.iter().map(flat).collect()).collect();
-            PoseView {
-                label,
-                end: flatten(&lines),
-                center_of_mass: center.as_ref().map(flat),
-                targets: posture.supports.iter().filter_map(|s| s.center_of_pressure.as_ref()).map(flat).collect(),
-                ..PoseView::default()
-            }
+        let contact = |carried: &Carried| Contact {
+            force: carried.force,
+            share: carried.share,
+            center_of_pressure: carried.center_of_pressure,
+            couple: Vector3::zeros(),
         };
-        // Face to face with the body its right hand is on the left.
-        let front = view(format!("{}: effort {:.4}", i + 1, text.effort), -right);
-        columns.push(PoseColumn { views: vec![front, view(weight(text), ahead)] });
+        let standing = Standing {
+            contacts: posture.supports.iter().map(contact).collect(),
+            center_of_mass: kinematics.center_of_mass(model).unwrap_or_default(),
+            ..Standing::default()
+        };
+        let [external, passive] = &posture.torques;
+        let frame = frame(model, posture.relaxed.posture.values(), [external, passive], standing);
+        let mut drawn = body::body(model, &scenario.supports, &frame)?;
+        drawn.title = format!("{}: effort {:.4}", i + 1, text.effort);
+        // The first number is the effort of all muscles, not that of the task.
+        drawn.notes = body::key_numbers(model, &scenario.supports, &frame).split_off(1);
+        postures.push(drawn);
     }
     let subtitle = match found.postures.len() {
-        1 => "one posture of least effort, from the front and from the right".to_owned(),
-        n => format!("{n} postures of least effort, from the front and from the right"),
+        1 => "one posture of least effort".to_owned(),
+        n => format!("{n} postures of least effort"),
     };
-    let target = "centre of pressure".to_owned();
     let least = found.postures.first().map_or(0.0, |posture| posture.relaxed.effort);
     let more = found
         .postures
         .get(1)
         .map(|posture| format!("; the next takes {} more", percent(posture.relaxed.effort / least - 1.0)));
-    Ok(PoseGrid {
-        title: scenario.title.clone(),
-        subtitle: subtitle + more.as_deref().unwrap_or_default(),
-        target,
-        columns,
-    })
+    let subtitle = subtitle + more.as_deref().unwrap_or_default();
+    Ok(BodyFigure { title: scenario.title.clone(), subtitle, postures, ..BodyFigure::default() })
 }
 
 /// Something that turns on standard error; invisible when that is no terminal.

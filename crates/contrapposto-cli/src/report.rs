@@ -1,5 +1,7 @@
 //! `report.html`: from a scenario, a recording of its run and its summary to the plain numbers that the page shows.
 
+pub(crate) mod body;
+mod figures;
 mod film;
 mod solid;
 mod story;
@@ -17,7 +19,11 @@ use crate::fail::Fail;
 use crate::pose::directions;
 use crate::simulate::Recording;
 
-use film::{Event, Film, Frame};
+pub(crate) use figures::{before_and_after, both, figures_of_run};
+pub(crate) use film::Frame;
+use film::{Event, Film};
+pub(crate) use story::pelvis_list;
+pub(crate) use words::{group as group_in_words, plain};
 
 /// Angles at which the torques of a joint are drawn.
 const ANGLES: usize = 121;
@@ -46,7 +52,7 @@ pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary:
     for &i in &shown {
         report.joints.push(joint(scenario, i, &frames)?);
     }
-    report.main = shown.iter().position(|&i| i == main_coordinate(summary, &shown)).unwrap_or(0);
+    report.main = shown.iter().position(|&i| i == main_coordinate(scenario, summary)).unwrap_or(0);
     report.decisions = decisions(scenario, &film, &shown);
     story::tell(scenario, &film, summary, &shown, &mut report);
     Ok(contrapposto_report::write(&report))
@@ -60,25 +66,25 @@ fn shown(model: &Model) -> Vec<usize> {
     if holding.is_empty() { all().collect() } else { holding }
 }
 
-/// The coordinate that the story is about: the one most often relieved, of equals the hardest worked.
-fn main_coordinate(summary: &Summary, shown: &[usize]) -> usize {
+/// The coordinate that the story is about: the one most often relieved, of equals a free one, of equals the hardest worked.
+pub(crate) fn main_coordinate(scenario: &Scenario, summary: &Summary) -> usize {
     let weight = |i: usize| {
         let coordinate = &summary.coordinates[i];
-        (coordinate.iterations.iter().sum::<u64>(), coordinate.peak_load)
+        (coordinate.iterations.iter().sum::<u64>(), scenario.free[i], coordinate.peak_load)
     };
     let more = |a: &usize, b: &usize| {
         let (a, b) = (weight(*a), weight(*b));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
     };
     // The first of equals.
-    shown.iter().copied().rev().max_by(more).unwrap_or(0)
+    shown(&scenario.model).into_iter().rev().max_by(more).unwrap_or(0)
 }
 
 /// How ground axes are turned so that x is forward, y up and z right.
 pub(crate) struct Turn(Rotation3<f64>);
 
 impl Turn {
-    fn point(&self, p: Vector3<f64>) -> [f64; 3] {
+    pub(crate) fn point(&self, p: Vector3<f64>) -> [f64; 3] {
         (self.0 * p).into()
     }
 
@@ -89,7 +95,7 @@ impl Turn {
     }
 }
 
-fn turn(model: &Model) -> Turn {
+pub(crate) fn turn(model: &Model) -> Turn {
     let [right, ahead, up] = directions(model);
     Turn(Rotation3::from_matrix_unchecked(Matrix3::from_rows(&[ahead.transpose(), up.transpose(), right.transpose()])))
 }
@@ -98,14 +104,7 @@ fn segments(model: &Model, frames: &[&Frame], shown: &[usize], turn: &Turn) -> R
     let mut kinematics = Kinematics::new(model);
     let mut parts: Vec<(usize, Segment)> = vec![];
     for (s, segment) in model.segments().iter().enumerate() {
-        // What is welded on belongs to the joint of what it is welded to.
-        let mut carrier = s;
-        while let (true, Some(parent)) =
-            (model.segments()[carrier].coordinates.is_empty(), model.segments()[carrier].parent)
-        {
-            carrier = parent;
-        }
-        let coordinates = model.segments()[carrier].coordinates.clone();
+        let coordinates = solid::joined_by(model, s);
         let joints = shown.iter().enumerate().filter(|(_, i)| coordinates.contains(i)).map(|(place, _)| place);
         let joints: Vec<usize> = joints.collect();
         for balls in solid::parts(model, s) {

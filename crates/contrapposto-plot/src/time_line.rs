@@ -8,8 +8,8 @@ use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::style::{
-    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, MARGIN, NEGATIVE_PEN, PASSIVE_PEN, POSITIVE_PEN,
-    Pen, RECOVERY_PEN, TEXT,
+    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, FRAME_LEFT, MARGIN, NEGATIVE_PEN, PASSIVE_PEN,
+    POSITIVE_PEN, Pen, RECOVERY_PEN, TEXT,
 };
 use crate::tags::{Tag, draw_tags, draw_uprights, tags_height};
 
@@ -61,7 +61,7 @@ struct Part<'a> {
 pub fn time_line(line: &TimeLine) -> Figure {
     let mut canvas = Canvas::new();
     let tags: Vec<Tag> = line.events.iter().map(|(time, label)| Tag::note(*time, label.as_str(), TEXT)).collect();
-    let mut top = heading(&mut canvas, &line.title, &line.subtitle, MARGIN) + tags_height(&tags);
+    let mut top = heading(&mut canvas, FRAME_LEFT, &line.title, &line.subtitle, MARGIN) + tags_height(&tags);
     let times = Range::around(line.time_s.iter().copied());
 
     let parts = parts(line);

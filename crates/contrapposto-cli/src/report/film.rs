@@ -85,7 +85,7 @@ impl Film {
 }
 
 impl Frame {
-    fn new(row: Row) -> Self {
+    pub(super) fn new(row: Row) -> Self {
         let contact = |numbers: &[f64; 10]| {
             let [share, fx, fy, fz, px, py, pz, cx, cy, cz] = *numbers;
             let (force, at, couple) = ([fx, fy, fz].into(), [px, py, pz].into(), [cx, cy, cz].into());

@@ -22,7 +22,7 @@ pub(crate) fn tell(scenario: &Scenario, film: &Film, summary: &Summary, shown: &
         return;
     };
     let story = Story { scenario, first, last, main };
-    let lists = pelvis_list(&scenario.model, first).zip(pelvis_list(&scenario.model, last));
+    let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
     let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
@@ -209,10 +209,10 @@ fn hardest(scenario: &Scenario, frame: &Frame) -> Option<(String, f64)> {
 }
 
 /// How far the pelvis hangs to its right, degrees.
-fn pelvis_list(model: &Model, frame: &Frame) -> Option<f64> {
+pub(crate) fn pelvis_list(model: &Model, posture: &[f64]) -> Option<f64> {
     let pelvis = model.segment("pelvis")?;
     let mut kinematics = Kinematics::new(model);
-    kinematics.update(model, &Posture::new(frame.posture.clone())).ok()?;
+    kinematics.update(model, &Posture::new(posture.to_vec())).ok()?;
     let [right, _, up] = directions(model);
     let across = kinematics.placement(model, pelvis).rotation * right;
     Some(-across.dot(&up).clamp(-1.0, 1.0).asin().to_degrees())

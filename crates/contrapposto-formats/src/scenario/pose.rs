@@ -1,5 +1,6 @@
 //! A scenario read for `contrapposto pose`: body, start, loads and goals in order of priority, all checked.
 
+use contrapposto::contact::Support;
 use contrapposto::ik::task::{Placement, Task};
 use contrapposto::ik::{Goal, Options};
 use contrapposto::kinematics::Kinematics;
@@ -29,6 +30,8 @@ pub struct PoseScenario {
     pub locked: Vec<usize>,
     /// What pulls on it besides its weight.
     pub loads: Vec<Load>,
+    /// What carries it; none where the patch of a support is not known.
+    pub supports: Vec<Support>,
     /// The most important first; supports, if any, are the first one, and hard.
     pub goals: Vec<Goal>,
     /// A name for every task of every goal.
@@ -130,6 +133,8 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
         title: text.title.clone(),
         locked: locked(at, &model, text, &free)?,
         loads,
+        // To stay where it is, a segment needs no patch.
+        supports: support::supports(at, &model, &text.support, &kinematics).unwrap_or_default(),
         goals,
         labels,
         options: options(at, text)?,
