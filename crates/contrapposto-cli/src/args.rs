@@ -296,6 +296,10 @@ pub(crate) struct AssessArgs {
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that fail first
+    /// their torques over angle and their course, each as SVG and PNG.
+    #[arg(long, requires = "out")]
+    pub(crate) figures: bool,
     /// Print assess.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,

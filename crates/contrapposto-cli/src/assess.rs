@@ -14,6 +14,7 @@ use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::{Opened, Tissue, open, tell};
 use crate::output::{Folder, print};
+use crate::report::{Moments, figures_of_assessment};
 use crate::torques::{Frame, Order, Row, Torques, header, loads_of, no_segment, outside, patch, read_motion, row};
 use text::{AssessText, report};
 
@@ -51,6 +52,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     notes.iter().for_each(|note| tell("note", note));
 
     let mut tables = Tables::new(model, motion.len());
+    let mut moments = args.figures.then(|| Moments::new(model, motion.len()));
     let found = assessed(
         model,
         &motion,
@@ -61,20 +63,29 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
             }
         },
         &settings,
-        |instant| tables.take(instant),
+        |instant| {
+            tables.take(instant);
+            moments.iter_mut().for_each(|moments| moments.take(instant));
+        },
     )
     .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
     let warnings = warnings(args, &opened, &found, motion.len());
     warnings.iter().for_each(|warning| tell("warning", warning));
 
     let times = tables.times.clone();
-    let files = if args.out.is_some() { FILES.map(str::to_owned).to_vec() } else { vec![] };
+    let worst = found.groups.iter().map(|group| group.coordinate);
+    let name = args.motion.file_name().unwrap_or_default().to_string_lossy();
+    let figures = moments.map(|moments| figures_of_assessment(&name, model, &settings.supports, moments, worst));
+    let figures = figures.transpose()?.unwrap_or_default();
+    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
+    let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
     let text = AssessText::new(model, &args.motion, &times, &found, warnings, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("assess.json", error))? + "\n";
     if let Some(out) = &args.out {
         let fatigue = tables.fatigue()?;
-        let contents = [&json, &tables.torques, &fatigue];
-        Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
+        let contents = [&json, &tables.torques, &fatigue].map(String::as_bytes);
+        let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+        Folder::open(out)?.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
     print(&if args.json { json } else { report(&text) })
 }
@@ -166,7 +177,7 @@ impl<'a> Tables<'a> {
     }
 
     fn take(&mut self, instant: &Instant) {
-        let Instant { index, time, values, external, passive, fatigue, load } = *instant;
+        let Instant { index, time, values, external, passive, fatigue, load, .. } = *instant;
         let torques = |row: &Row| Torques::new(external[row.rate], passive[row.rate]);
         let rows = self.order.rows.iter().map(torques).collect();
         let frame = Frame { index, time, values, rows, coupled: vec![], center_of_mass: None, gradient: None };

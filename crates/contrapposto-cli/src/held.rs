@@ -1,11 +1,10 @@
 //! What does a posture that is held still ask of the muscles? External, passive and active torque, contact forces of least effort.
 
-use contrapposto::contact::{Balance, ContactForces, Support};
-use contrapposto::kinematics::Kinematics;
+use contrapposto::contact::Support;
 use contrapposto::model::{Model, Side};
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{Contact, Standing};
-use contrapposto::statics::{ExternalTorque, Load, PassiveTorque};
+use contrapposto::simulation::{AssessSettings, Contact, Instant, Standing, assess};
+use contrapposto::statics::Load;
 use nalgebra::Vector3;
 
 use crate::fail::Fail;
@@ -18,34 +17,43 @@ pub(crate) fn held(
     loads: &[Load],
     supports: &[Support],
 ) -> Result<Option<Frame>, Fail> {
-    let mut kinematics = Kinematics::new(model);
-    kinematics.update(model, posture).map_err(|error| Fail::job("posture", error))?;
-    let mut external = ExternalTorque::new(model);
-    external.update(model, &kinematics, loads).map_err(|error| Fail::job("load", error))?;
-    let mut passive = PassiveTorque::new(model);
-    passive.update(model, &kinematics);
-    let mut contacts = vec![];
-    if !supports.is_empty() {
-        let refused = |error| Fail::job("support", error);
-        let mut contact = ContactForces::new(model, supports.to_vec()).map_err(refused)?;
-        if contact.update(model, &kinematics, external.torques(), passive.torques()) != Balance::Held {
-            return Ok(None);
-        }
-        let all: Vec<Load> = loads.iter().chain(contact.loads()).cloned().collect();
-        external.update(model, &kinematics, &all).map_err(|error| Fail::job("load", error))?;
-        contacts.extend((0..supports.len()).map(|i| Contact {
-            force: contact.force(i),
-            share: contact.share(i),
-            center_of_pressure: contact.center_of_pressure(model, &kinematics, i),
-            couple: Vector3::zeros(),
-        }));
-    }
-    let center_of_mass = kinematics.center_of_mass(model).unwrap_or_default();
-    let standing = Standing { contacts, center_of_mass, ..Standing::default() };
-    Ok(Some(frame(model, kinematics.values(), [external.torques(), passive.torques()], standing)))
+    let settings = AssessSettings { supports: supports.to_vec(), ..AssessSettings::default() };
+    let mut frame = None;
+    let found = assess(
+        model,
+        &[(0.0, posture.clone())],
+        |_, _, all| all.extend_from_slice(loads),
+        &settings,
+        |instant| frame = Some(frame_of_instant(model, instant)),
+    )
+    .map_err(|error| Fail::job("posture", error))?;
+    Ok(frame.filter(|_| found.unheld == 0))
 }
 
-/// A moment of which postures and torques (external and passive, by rate) are known.
+/// An instant of a motion that is assessed.
+pub(crate) fn frame_of_instant(model: &Model, instant: &Instant) -> Frame {
+    let kinematics = instant.kinematics;
+    let contact = instant.contact.iter().flat_map(|contact| {
+        (0..contact.supports().len()).map(|i| Contact {
+            force: contact.force(i),
+            share: contact.share(i),
+            center_of_pressure: contact.center_of_pressure(model, kinematics, i),
+            couple: Vector3::zeros(), // no picture shows it
+        })
+    });
+    let standing = Standing {
+        contacts: contact.collect(),
+        center_of_mass: kinematics.center_of_mass(model).unwrap_or_default(),
+        ..Standing::default()
+    };
+    Frame {
+        time: instant.time,
+        fatigue: instant.fatigue.to_vec(),
+        ..frame(model, instant.values, [instant.external, instant.passive], standing)
+    }
+}
+
+/// A moment of which posture and torques (external and passive, by rate) are known.
 pub(crate) fn frame(model: &Model, posture: &[f64], torques: [&[f64]; 2], standing: Standing) -> Frame {
     let coordinates = model.coordinates();
     let by_coordinate = |torques: &[f64]| -> Vec<f64> {
@@ -54,8 +62,9 @@ pub(crate) fn frame(model: &Model, posture: &[f64], torques: [&[f64]; 2], standi
     let [external, passive] = torques.map(by_coordinate);
     let load = |(i, coordinate): (usize, &contrapposto::model::Coordinate)| {
         let active = -(passive[i] + external[i]);
-        let group = coordinate.groups.as_ref().map(|groups| &groups[Side::of(active).index()]);
-        group.map_or(0.0, |group| active.abs() / group.strength.torque(posture[i]))
+        // Torques of followers are those of their leaders.
+        let groups = coordinate.groups.as_ref().filter(|_| coordinate.rate.is_some() && !model.is_dependent(i));
+        groups.map_or(0.0, |groups| active.abs() / groups[Side::of(active).index()].strength.torque(posture[i]))
     };
     Frame {
         time: 0.0,

@@ -3,6 +3,7 @@
 pub(crate) mod body;
 mod figures;
 mod film;
+mod moments;
 mod solid;
 mod story;
 mod words;
@@ -19,9 +20,10 @@ use crate::fail::Fail;
 use crate::pose::directions;
 use crate::simulate::Recording;
 
-pub(crate) use figures::{before_and_after, both, figures_of_run};
+pub(crate) use figures::{before_and_after, both, figures_of_assessment, figures_of_run};
 pub(crate) use film::Frame;
 use film::{Event, Film};
+pub(crate) use moments::Moments;
 pub(crate) use story::pelvis_list;
 pub(crate) use words::{group as group_in_words, plain};
 

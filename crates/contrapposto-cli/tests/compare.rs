@@ -225,6 +225,51 @@ fn figures_are_whole_named_and_the_same_twice() {
 }
 
 #[test]
+fn a_motion_that_is_assessed_has_figures_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let relaxed = short("stand-relaxed.toml", folder.path());
+    let run = folder.path().join("run");
+    assert_eq!(contrapposto(["simulate"]).arg(&relaxed).arg("--out").arg(&run).run().code, 0);
+    let assess = |motion: &Path, more: &[&str]| {
+        let call = contrapposto(["assess", "adult:female,1.65m,60kg"]).arg(motion);
+        call.args(["--support", "calcn_r,calcn_l", "--json"]).args(more).run()
+    };
+    let out = folder.path().join("out");
+    let assessed = assess(&run.join("motion.mot"), &["--figures", "--out", out.to_str().unwrap()]);
+    let found = json(&assessed.stdout);
+    let files: Vec<&str> = found["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
+    let drawn = contents(&out.join("figures"));
+    assert_eq!(files.len(), 3 + drawn.len());
+    assert!(drawn.iter().all(|(name, _)| files.contains(&format!("figures/{name}").as_str())));
+    // The joints that fail first have charts, in this order.
+    let mut worst: Vec<&str> = vec![];
+    for group in found["groups"].as_array().unwrap() {
+        let name = group["coordinate"].as_str().unwrap();
+        if !worst.contains(&name) && worst.len() < 5 {
+            worst.push(name);
+        }
+    }
+    for (i, name) in worst.iter().enumerate() {
+        for chart in ["time-line", "torque-balance"] {
+            let file = format!("{chart}-{}-{name}.svg", i + 1);
+            assert!(drawn.iter().any(|(found, _)| *found == file), "{file}");
+        }
+    }
+    let svg = |name: &str| String::from_utf8(drawn.iter().find(|(found, _)| found == name).unwrap().1.clone()).unwrap();
+    assert!(svg("body.svg").contains("end, 10 s") && svg("body.svg").contains("contact force"));
+    // Who does not move is drawn once.
+    let still = folder.path().join("still.csv");
+    std::fs::write(&still, "time,elbow_flex_r_deg\n0,20\n5,20\n").unwrap();
+    let out = folder.path().join("still");
+    let run = assess(&still, &["--figures", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let body = std::fs::read_to_string(out.join("figures/body.svg")).unwrap();
+    assert!(body.contains("throughout, 5.0 s") && !body.contains(">end, "));
+    let refused = assess(&still, &["--figures"]);
+    assert!(refused.code == 2 && refused.stderr.contains("--out"), "{}", refused.stderr);
+}
+
+#[test]
 fn page_and_figures_have_the_same_colours() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../contrapposto-report/page/data.js");
     let page = std::fs::read_to_string(page).unwrap();

@@ -3,7 +3,7 @@
 //! Fatigue is followed for both muscle groups of the coordinate, one for each sign of the active torque (the paper's
 //! half-joints). Relief begins when a group passes the critical level and ends at the lower recovery level.
 
-use crate::axes::{Frame, Range};
+use crate::axes::{Frame, Range, drawable};
 use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
@@ -38,9 +38,9 @@ pub struct TimeLine {
     pub fatigue_positive: Vec<f64>,
     /// Fatigue of the muscle group that produces negative torque, 0 to 1, at each time; may be empty.
     pub fatigue_negative: Vec<f64>,
-    /// Fatigue at which relief begins, 0 to 1.
+    /// Fatigue at which relief begins, 0 to 1; NaN where there is none.
     pub critical_level: f64,
-    /// Fatigue at which relief ends, 0 to 1.
+    /// Fatigue at which relief ends, 0 to 1; NaN where there is none.
     pub recovery_level: f64,
     /// Changes of case: time, s, and a short label, e.g. "3.2". Every event has an upright line (the first 60), and a
     /// label as long as there is room.
@@ -120,7 +120,7 @@ fn parts(line: &TimeLine) -> [Part<'_>; 3] {
 
 fn draw_part(canvas: &mut Canvas, frame: &Frame, part: &Part, times: &[f64]) {
     let mut entries: Vec<(Mark, &str)> = Vec::new();
-    for &(level, pen, label) in &part.levels {
+    for &(level, pen, label) in part.levels.iter().filter(|(level, ..)| drawable(*level)) {
         frame.level(canvas, level, pen);
         entries.push((Mark::Line(pen), label));
     }

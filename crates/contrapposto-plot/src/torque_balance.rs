@@ -8,8 +8,8 @@ use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::style::{
-    ACTIVE, ACTIVE_PEN, BELOW_FRAME, EXTERNAL_PEN, FRAME_LEFT, GOAL, MARGIN, MINUS_ACTIVE_PEN, PAPER, PASSIVE_PEN,
-    PATH_PEN, START, TOLERANCE_PEN,
+    ACTIVE, ACTIVE_PEN, BELOW_FRAME, EXTERNAL, EXTERNAL_PEN, FRAME_LEFT, GOAL, MARGIN, MINUS_ACTIVE_PEN, PAPER,
+    PASSIVE_PEN, PATH_PEN, START, TOLERANCE_PEN,
 };
 use crate::tags::{MOST_TAGS, PostureSketch, SketchRole, Tag, draw_tags, draw_uprights, tags_height};
 
@@ -33,7 +33,8 @@ pub struct TorqueBalance {
     pub angles_deg: Vec<f64>,
     /// External torque at each angle, N m.
     pub external_nm: Vec<f64>,
-    /// Red path: angle, degrees, and external torque, N m, of every step, where it is known only there; may be empty.
+    /// Red path with a point at its end: angle, degrees, and external torque, N m, of every step, where it is known only there; may
+    /// be empty.
     pub external_path: Vec<(f64, f64)>,
     /// Minus the passive torque at each angle, N m.
     pub minus_passive_nm: Vec<f64>,
@@ -171,6 +172,9 @@ fn draw_curves(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
 fn draw_points(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
     for &zero in panel.zero_torque_deg.iter().filter(|zero| drawable(**zero)).take(MOST_TAGS) {
         frame.dot(canvas, (zero, 0.0), 4.0, PAPER, ACTIVE);
+    }
+    if let Some(end) = panel.external_path.last() {
+        frame.dot(canvas, *end, 4.5, EXTERNAL, PAPER);
     }
     if let Some(start) = panel.start {
         frame.dot(canvas, start, 6.0, START, PAPER);

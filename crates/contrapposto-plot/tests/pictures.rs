@@ -185,8 +185,8 @@ fn the_balance_shows_the_colours_and_marks_of_the_paper() {
     {
         assert!(svg.contains(&format!("stroke=\"{colour}\"")), "{what}");
     }
-    // Start, goal and one zero; each once in the picture and once in the legend.
-    assert_eq!(count(&svg, "<circle"), 6);
+    // Start, goal and one zero; each once in the picture and once in the legend. The end of the path of external torque.
+    assert_eq!(count(&svg, "<circle"), 7);
     // Each drawing has one line that is not empty.
     assert_eq!(count(&svg, "stroke-width=\"4\""), 2);
 }

@@ -30,12 +30,12 @@ pub struct PoseScenario {
     pub locked: Vec<usize>,
     /// What pulls on it besides its weight.
     pub loads: Vec<Load>,
-    /// What carries it; none where the patch of a support is not known.
-    pub supports: Vec<Support>,
     /// The most important first; supports, if any, are the first one, and hard.
     pub goals: Vec<Goal>,
     /// A name for every task of every goal.
     pub labels: Vec<Vec<String>>,
+    /// What carries it, where the patches of all supports are known; else empty. Goals know supports without them.
+    pub supports: Vec<Support>,
     /// How it is solved.
     pub options: Options,
     /// Tables of the file that have no part in a pose.
@@ -129,12 +129,13 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
         ("event", at.has("event")),
         ("run", text.run.is_some()),
     ];
+    // Friction, planes and shares have no part in the goals: what is wrong with them is no error here.
+    let carriers = support::supports(at, &model, &text.support, &kinematics).unwrap_or_default();
     Ok(PoseScenario {
         title: text.title.clone(),
+        supports: carriers,
         locked: locked(at, &model, text, &free)?,
         loads,
-        // To stay where it is, a segment needs no patch.
-        supports: support::supports(at, &model, &text.support, &kinematics).unwrap_or_default(),
         goals,
         labels,
         options: options(at, text)?,
