@@ -225,7 +225,9 @@ fn whatever_it_is_given_it_draws_well_formed() {
 
 #[test]
 fn nothing_says_so_and_the_same_gives_the_same() {
-    for postures in [vec![], vec![BodyPosture::default()], vec![BodyPosture::default(); 3]] {
+    let part = BodyPart { balls: vec![[0.0, 0.0, 0.0, -0.1], [f64::NAN, 0.0, 0.0, 0.1]], load: Some(0.1) };
+    let unreal = BodyPosture { parts: vec![part], ..BodyPosture::default() };
+    for postures in [vec![], vec![BodyPosture::default()], vec![BodyPosture::default(); 3], vec![unreal]] {
         let drawn = body_figure(&figure(postures, ""));
         assert!(drawn.svg().contains("nothing to draw"));
         drawn.png().unwrap();
