@@ -47,8 +47,10 @@ pub(crate) enum Verb {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto simulate scenarios/figure-07.toml --out out\n\n\
-    Writes into DIR: summary.json, trajectory.csv, motion.mot, torques.sto, fatigue.sto, decisions.csv, time-line.svg/.png, and for \
+    Writes into DIR: summary.json, report.html, trajectory.csv, torques.sto, fatigue.sto, decisions.csv, time-line.svg/.png, and for \
     one joint torque-balance.svg/.png, for a body on its supports ground_reaction.mot and postures.svg/.png.\n\
+    For other programs the body in motion: motion.glb (glTF: Blender, three.js, viewers), motion.bvh (BVH, in cm: animation programs), \
+    motion.mot with model.osim (OpenSim).\n\
     Ctrl-C ends a run with what is done, and a snapshot.json from which --resume goes on to the same bytes.")]
 pub(crate) struct SimulateArgs {
     /// Scenario file (TOML); `-` reads standard input.

@@ -24,6 +24,7 @@ pub(crate) use figures::{before_and_after, both, figures_of_assessment, figures_
 pub(crate) use film::Frame;
 use film::{Event, Film};
 pub(crate) use moments::Moments;
+pub(crate) use solid::parts;
 pub(crate) use story::pelvis_list;
 pub(crate) use words::{group as group_in_words, plain};
 

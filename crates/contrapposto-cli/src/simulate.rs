@@ -1,5 +1,6 @@
 //! `contrapposto simulate` and `contrapposto demo`: a scenario over time.
 
+mod body;
 mod recording;
 mod snapshot;
 mod tables;
@@ -111,6 +112,7 @@ fn write(
         ("report.html", report_of_run(scenario, recording, summary)?.into_bytes()),
         ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
     ];
+    contents.extend(body::bodies(scenario, recording)?);
     if !scenario.supports.is_empty() {
         contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
     }

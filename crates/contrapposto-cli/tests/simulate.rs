@@ -14,9 +14,12 @@ use serde_json::Value;
 use support::{Run, contents, contrapposto, scenarios};
 
 /// What a run of one joint writes, in order of names.
-const FILES: [&str; 11] = [
+const FILES: [&str; 14] = [
     "decisions.csv",
     "fatigue.sto",
+    "model.osim",
+    "motion.bvh",
+    "motion.glb",
     "motion.mot",
     "report.html",
     "summary.json",
@@ -29,10 +32,13 @@ const FILES: [&str; 11] = [
 ];
 
 /// What a run of a body on its supports writes.
-const FILES_OF_A_BODY: [&str; 12] = [
+const FILES_OF_A_BODY: [&str; 15] = [
     "decisions.csv",
     "fatigue.sto",
     "ground_reaction.mot",
+    "model.osim",
+    "motion.bvh",
+    "motion.glb",
     "motion.mot",
     "postures.png",
     "postures.svg",

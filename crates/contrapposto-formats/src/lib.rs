@@ -1,8 +1,9 @@
-//! Text from outside, text to outside: scenario files, decision lines, tables and summaries.
+//! Text from outside, text to outside: scenario files, models, motion, decision lines, tables and summaries.
 //!
 //! Everything here reads bytes of strangers and is total: any input gives a value or an [`InputError`] with its place. The
 //! crate opens no files; the program does.
 
+pub mod animation;
 pub mod body;
 pub use contrapposto::math::expression;
 pub mod mjcf;

@@ -1,6 +1,7 @@
 //! The writers: what they write our readers read as the same model, and other programs give the same torques.
 //!
 //! `write/laws.rs`: passive laws. `write/imported.rs`: model files survive their own format. `write/peers.rs`: what other programs say.
+//! `write/motion.rs`: a body in motion, read back by the readers of `write/players.rs`.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -9,8 +10,12 @@ mod common;
 mod imported;
 #[path = "write/laws.rs"]
 mod laws;
+#[path = "write/motion.rs"]
+mod motion;
 #[path = "write/peers.rs"]
 mod peers;
+#[path = "write/players.rs"]
+mod players;
 
 use std::collections::BTreeMap;
 

@@ -5,6 +5,7 @@ use std::fmt::Display;
 use contrapposto::model::{Coordinate, CoordinateKind};
 use contrapposto::simulation::Scenario;
 use contrapposto_formats::motion::write_sto;
+use contrapposto_formats::write::osim_motion;
 use contrapposto_formats::{TableRow, csv_header, csv_row};
 
 use super::recording::{Recording, Row};
@@ -21,11 +22,10 @@ pub(super) fn trajectory(scenario: &Scenario, recording: &Recording) -> String {
     text
 }
 
-/// `motion.mot`: every coordinate, in degrees.
+/// `motion.mot`: every coordinate, in degrees where OpenSim agrees on what is an angle; it plays `model.osim`.
 pub(super) fn motion(scenario: &Scenario, recording: &Recording) -> Result<String, Fail> {
-    let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows: Vec<&[f64]> = recording.rows().map(|row| row.posture).collect();
-    write_sto(title(scenario), &columns, true, recording.times(), &rows).map_err(failed("motion.mot"))
+    osim_motion(&scenario.model, title(scenario), recording.times(), &rows).map_err(failed("motion.mot"))
 }
 
 /// `torques.sto`: external, passive and active torque of every coordinate, N m (N for slides).

@@ -12,6 +12,7 @@ mod write;
 
 pub use postures::{Postures, Units, postures};
 pub use read::read_table;
+pub(crate) use write::plain;
 pub use write::{UnwritableTable, write_csv, write_sto};
 
 /// Largest table file, bytes.

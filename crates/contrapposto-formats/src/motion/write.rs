@@ -156,7 +156,7 @@ fn body<R: AsRef<[f64]>>(
 
 /// A name as it can stand in a table: without control characters; without blanks, at which OpenSim's `Storage` cuts labels,
 /// or, for CSV, without commas, quotes and blanks around it.
-pub(super) fn plain(name: &str, csv: bool) -> String {
+pub(crate) fn plain(name: &str, csv: bool) -> String {
     let bad = |c: char| c.is_control() || if csv { c == ',' || c == '"' } else { c == ' ' };
     let mut plain: String = name.chars().map(|c| if bad(c) { '_' } else { c }).collect();
     if plain.starts_with(' ') {

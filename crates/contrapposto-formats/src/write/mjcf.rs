@@ -53,7 +53,7 @@ pub fn mjcf(model: &Model) -> Result<Written, WriteError> {
     writer.xml.close();
     writer.equalities();
     writer.losses();
-    Ok(Written { text: writer.xml.finish(), lost: writer.lost })
+    Ok(Written { text: writer.xml.finish(&writer.lost), lost: writer.lost })
 }
 
 struct Writer<'m> {

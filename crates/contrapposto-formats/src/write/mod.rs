@@ -2,7 +2,7 @@
 //!
 //! Each writer gives the text and, in plain sentences, what the format cannot hold. Numbers stand in the shortest form that
 //! reads back as the same bits; orientations are chosen so that our readers find the same quaternion where there is one such
-//! choice (`exact.rs`). The same model always gives the same text.
+//! choice (`exact.rs`). What is lost stands at the head of the file too. The same model always gives the same text.
 //!
 //! Coordinates keep their names and values everywhere, except balls in `.osim` files, which become three angles. External
 //! torque is what the programs call generalised gravity, with the other sign.
@@ -15,12 +15,15 @@ mod names;
 mod osim;
 mod osim_functions;
 mod osim_joint;
+mod osim_motion;
 mod steps;
 mod urdf;
 mod xml;
 
 pub use mjcf::mjcf;
+pub(crate) use names::Names;
 pub use osim::osim;
+pub use osim_motion::osim_motion;
 pub use urdf::urdf;
 
 use contrapposto::model::Model;
@@ -28,7 +31,7 @@ use contrapposto::model::Model;
 /// A file, and what it does not say.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// The whole file.
+    /// The whole file; comments at its head tell what is lost.
     pub text: String,
     /// What the format cannot hold: plain sentences, in the order in which it was met.
     pub lost: Vec<String>,

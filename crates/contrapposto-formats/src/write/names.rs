@@ -3,19 +3,24 @@
 use std::collections::BTreeSet;
 
 /// Names given so far.
-pub(super) struct Names {
+pub(crate) struct Names {
     taken: BTreeSet<String>,
     accepts: fn(char) -> bool,
 }
 
 impl Names {
     /// `reserved` are never given.
-    pub(super) fn new(reserved: &[&str], accepts: fn(char) -> bool) -> Self {
+    pub(crate) fn new(reserved: &[&str], accepts: fn(char) -> bool) -> Self {
         Self { taken: reserved.iter().map(|&name| name.to_owned()).collect(), accepts }
     }
 
+    /// Whether the name can stand as it is, if it is free.
+    pub(super) fn fits(&self, name: &str) -> bool {
+        !name.is_empty() && name.chars().all(self.accepts)
+    }
+
     /// The name, or the nearest one that is accepted and free.
-    pub(super) fn take(&mut self, name: &str) -> String {
+    pub(crate) fn take(&mut self, name: &str) -> String {
         let mut made: String = name.chars().map(|c| if (self.accepts)(c) { c } else { '_' }).collect();
         if made.is_empty() {
             made.push('_');

@@ -50,33 +50,36 @@ pub fn osim(model: &Model) -> Result<Written, WriteError> {
     });
     writer.set("ForceSet", |writer| writer.forces(&mut lost));
     writer.set("ConstraintSet", |writer| writer.couplings(&mut lost));
-    Ok(Written { text: writer.xml.finish(), lost })
+    Ok(Written { text: writer.xml.finish(&lost), lost })
 }
 
-struct Writer<'m> {
+pub(super) struct Writer<'m> {
     model: &'m Model,
     xml: Xml,
     /// Of each segment: name of its body.
     bodies: Vec<String>,
     /// Of each segment: its joints, and the names of the bodies without mass between them.
-    pieces: Vec<(Vec<Piece<'m>>, Vec<String>)>,
+    pub(super) pieces: Vec<(Vec<Piece<'m>>, Vec<String>)>,
     joints: Names,
-    /// Of each coordinate: its name, and whether forces count it in degrees.
-    coordinates: Vec<(String, bool)>,
+    /// Of each coordinate: its name, and whether OpenSim counts it in degrees, in forces and tables.
+    pub(super) coordinates: Vec<(String, bool)>,
 }
 
 impl<'m> Writer<'m> {
-    fn new(model: &'m Model, lost: &mut Vec<String>) -> Result<Self, WriteError> {
+    pub(super) fn new(model: &'m Model, lost: &mut Vec<String>) -> Result<Self, WriteError> {
         let mut names = Names::new(&["ground"], accepts);
         let bodies: Vec<String> = model.segments().iter().map(|s| names.keep("segment", &s.name, lost)).collect();
         let mut taken = Names::new(&[], accepts);
-        let mut coordinates: Vec<(String, bool)> = vec![];
-        for coordinate in model.coordinates() {
-            let name = match coordinate.kind {
-                CoordinateKind::Quaternion => coordinate.name.clone(),
-                _ => taken.keep("coordinate", &coordinate.name, lost),
-            };
-            coordinates.push((name, coordinate.kind == CoordinateKind::Rotation));
+        let own = |c: &Coordinate| (c.name.clone(), c.kind == CoordinateKind::Rotation);
+        let mut coordinates: Vec<(String, bool)> = model.coordinates().iter().map(own).collect();
+        // Names that fit stay, whatever the others must become.
+        for fit in [true, false] {
+            let named = model.coordinates().iter().zip(&mut coordinates);
+            for (coordinate, (name, _)) in named.filter(|(c, _)| c.kind != CoordinateKind::Quaternion) {
+                if taken.fits(&coordinate.name) == fit {
+                    *name = taken.keep("coordinate", &coordinate.name, lost);
+                }
+            }
         }
         let mut all = vec![];
         for (segment, body) in model.segments().iter().zip(&bodies) {

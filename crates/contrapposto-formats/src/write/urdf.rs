@@ -64,7 +64,7 @@ pub fn urdf(model: &Model) -> Result<Written, WriteError> {
         writer.segment(index, parent, start, &mut lost)?;
     }
     writer.losses(&mut lost);
-    Ok(Written { text: writer.xml.finish(), lost })
+    Ok(Written { text: writer.xml.finish(&lost), lost })
 }
 
 /// The shortest turn that takes the direction of gravity to -z.

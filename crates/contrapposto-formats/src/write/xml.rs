@@ -13,9 +13,7 @@ pub(super) struct Xml {
 
 impl Xml {
     pub(super) fn new() -> Self {
-        let mut xml = Self { text: "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n".to_owned(), open: vec![] };
-        xml.comment(super::MADE_BY);
-        xml
+        Self { text: String::new(), open: vec![] }
     }
 
     /// `text` must not contain `--`.
@@ -51,11 +49,16 @@ impl Xml {
         self.text.push_str(&format!("</{tag}>\n"));
     }
 
-    pub(super) fn finish(mut self) -> String {
+    /// The document, headed by what made it and what it has lost.
+    pub(super) fn finish(mut self, lost: &[String]) -> String {
         while !self.open.is_empty() {
             self.close();
         }
-        self.text
+        let mut head = Self::new();
+        head.comment(super::MADE_BY);
+        // Names may hold what no comment can.
+        lost.iter().for_each(|lost| head.comment(&format!("Lost: {}", lost.replace("--", "\u{2010}\u{2010}"))));
+        format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}{}", head.text, self.text)
     }
 
     fn indent(&mut self) {

@@ -1,0 +1,120 @@
+//! A body in motion for programs that draw: glTF for viewers and modellers ([`glb`]), BVH for animation programs ([`bvh`]).
+//!
+//! Both stand upright with y up, look along z and have their left at x, as those programs expect. In both a segment is a node
+//! at the centre of its joint: the origin of the joint's moved frame, the point about which the segment turns.
+
+mod buffer;
+mod bvh;
+mod euler;
+mod glb;
+mod hull;
+mod track;
+
+pub use bvh::bvh;
+pub(crate) use euler::zyx;
+pub use glb::glb;
+pub use hull::Solid;
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Model, Placement};
+use contrapposto::posture::{Posture, PostureError};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// A motion to be drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Clip<'a> {
+    /// The body.
+    pub model: &'a Model,
+    /// Name of the motion.
+    pub title: &'a str,
+    /// Left, up and ahead: unit vectors in ground axes, at right angles, right-handed in this order.
+    pub directions: [Vector3<f64>; 3],
+    /// Times, s, rising. The first one becomes time 0 of the file.
+    pub times: &'a [f64],
+    /// A posture for every time: values in the model's order, rad and m.
+    pub postures: &'a [&'a [f64]],
+}
+
+/// Why a motion was not written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AnimationError {
+    /// Nothing to write.
+    #[error("a motion needs a posture, and a body a segment")]
+    Empty,
+    /// Times and postures are not equally many.
+    #[error("{times} times and {postures} postures: there must be one posture for every time")]
+    Ragged {
+        /// Times given.
+        times: usize,
+        /// Postures given.
+        postures: usize,
+    },
+    /// A time is not after the one before it, or the format asks for even steps.
+    #[error("time {time} s of posture {index} {problem}")]
+    Time {
+        /// The posture, counted from 0.
+        index: usize,
+        /// Its time, s.
+        time: f64,
+        /// What is wrong with it.
+        problem: &'static str,
+    },
+    /// The directions are no axes.
+    #[error("left, up and ahead must be unit vectors at right angles, right-handed in this order")]
+    Directions,
+    /// A posture does not fit the model.
+    #[error("posture {index}: {source}")]
+    Posture {
+        /// The posture, counted from 0.
+        index: usize,
+        /// Why.
+        source: PostureError,
+    },
+}
+
+impl Clip<'_> {
+    /// The rotation from ground to the file's axes.
+    fn drawn(&self) -> Rotation3<f64> {
+        Rotation3::from_matrix_unchecked(Matrix3::from_rows(&self.directions.map(|d| d.transpose())))
+    }
+
+    fn check(&self) -> Result<(), AnimationError> {
+        let (times, postures) = (self.times.len(), self.postures.len());
+        if times != postures {
+            return Err(AnimationError::Ragged { times, postures });
+        }
+        if times == 0 || self.model.segments().is_empty() {
+            return Err(AnimationError::Empty);
+        }
+        let rises = |i: usize| self.times[i].is_finite() && (i == 0 || self.times[i] > self.times[i - 1]);
+        if let Some(index) = (0..times).find(|&i| !rises(i)) {
+            let problem = "must be finite and after the one before it";
+            return Err(AnimationError::Time { index, time: self.times[index], problem });
+        }
+        let drawn = self.drawn().into_inner();
+        let off = (drawn * drawn.transpose() - Matrix3::identity()).norm();
+        if off < 1e-9 && drawn.determinant() > 0.0 { Ok(()) } else { Err(AnimationError::Directions) }
+    }
+
+    /// Gives the index and the joint frames of every posture to `take`.
+    fn play(&self, mut take: impl FnMut(usize, &[Placement])) -> Result<(), AnimationError> {
+        self.check()?;
+        let mut kinematics = Kinematics::new(self.model);
+        for (index, values) in self.postures.iter().enumerate() {
+            let posture = Posture::new(values.to_vec());
+            kinematics.update(self.model, &posture).map_err(|source| AnimationError::Posture { index, source })?;
+            take(index, &joint_frames(self.model, &kinematics));
+        }
+        Ok(())
+    }
+}
+
+/// Of every segment the centre of its joint and the direction of its axes, in ground.
+fn joint_frames(model: &Model, kinematics: &Kinematics) -> Vec<Placement> {
+    let frame = |s: usize| {
+        let center = kinematics.station(model, s, model.segments()[s].in_segment.translation.vector);
+        Placement::from_parts(center.into(), kinematics.placement(model, s).rotation)
+    };
+    (0..model.segments().len()).map(frame).collect()
+}
