@@ -20,9 +20,10 @@ use crate::model_file::tell;
 use crate::output::{Folder, print};
 use crate::pose::drawing::{Lines, directions, sticks};
 use crate::pose::model_of;
+use crate::report::report_of_equilibria;
 use text::{RelaxText, percent, report, weight};
 
-const FILES: [&str; 5] = ["relax.json", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
+const FILES: [&str; 6] = ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
 /// Largest change of a joint in one step, rad.
 const STEP: f64 = 0.1;
 /// Most steps of the last stage of each posture.
@@ -62,8 +63,8 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let text = RelaxText::new(&scenario, &found, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("relax.json", error))? + "\n";
     let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, out)).transpose()?;
-    let picture = folder.map(|folder| format!("picture: {}\n", folder.path("postures.svg").display()));
-    print(&if args.json { json } else { report(&text) + picture.as_deref().unwrap_or_default() })
+    let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
+    print(&if args.json { json } else { report(&text) + page.as_deref().unwrap_or_default() })
 }
 
 /// Writes all files.
@@ -83,7 +84,8 @@ fn write(
     let picture = pose_grid(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
-    let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let page = report_of_equilibria(scenario, found)?;
+    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     folder.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     Ok(folder)
 }

@@ -143,8 +143,8 @@ fn pictures(scenario: &Scenario, summary: &Summary, recording: &Recording) -> Re
         let views = views(&scenario.model, &start, &Posture::new(posture), &scenario.title, &subtitle)?;
         return Ok([pose_views(&views), time_line(&line)]);
     }
-    let mut sweep = Sweep::new(scenario, main, &posture);
-    let mut balance = sweep.balance(&scenario.title, &subtitle)?;
+    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, main, &posture);
+    let mut balance = sweep.balance(&scenario.title, &subtitle, scenario.relief.torque_tolerance)?;
     balance.path = line.angle_deg.iter().copied().zip(line.active_nm.iter().copied()).collect();
     balance.start = balance.path.first().copied();
     balance.goal = balance.path.last().copied();

@@ -25,6 +25,16 @@ struct Marks {
 
 /// The picture of a solved pose.
 pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<PoseViews, Fail> {
+    let texts = [&scenario.title, subtitle];
+    picture(&scenario.model, [&scenario.start, &pose.posture], &marks(scenario, pose)?, texts)
+}
+
+/// Places that the tasks of a pose ask for, ground, m.
+pub(crate) fn targets(scenario: &PoseScenario, pose: &Pose) -> Result<Vec<Vector3<f64>>, Fail> {
+    Ok(marks(scenario, pose)?.targets)
+}
+
+fn marks(scenario: &PoseScenario, pose: &Pose) -> Result<Marks, Fail> {
     let model = &scenario.model;
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &pose.posture).map_err(|error| Fail::job("picture", error))?;
@@ -48,7 +58,7 @@ pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str)
             _ => {}
         }
     }
-    picture(model, [&scenario.start, &pose.posture], &marks, [&scenario.title, subtitle])
+    Ok(marks)
 }
 
 /// A body before and after, from the front and from the side.
