@@ -83,7 +83,7 @@ pub(crate) struct DemoArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto pose scenarios/poses/reach-shelf.toml --out out\n\n\
-    Writes pose.json, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to those above it is no failure; supports \
+    Writes pose.json, report.html, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to those above it is no failure; supports \
     that cannot hold, and steps that run out, are (exit code 1).")]
 pub(crate) struct PoseArgs {
     /// Scenario file (TOML) with tasks; `-` reads standard input.
@@ -100,7 +100,7 @@ pub(crate) struct PoseArgs {
 #[command(after_help = "Examples:\n  contrapposto relax scenarios/stand-relaxed.toml --out out\n  \
     contrapposto relax scenarios/stand-relaxed.toml --json\n\n\
     Searches from starts of both strategies: coordinates at their active goals, at their passive goals, and mirror images. Writes \
-    relax.json, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] have no part in \
+    relax.json, report.html, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] have no part in \
     it. Exit code 1 when the supports cannot hold the body in any posture that was tried.")]
 pub(crate) struct RelaxArgs {
     /// Scenario file (TOML) with supports and tasks; `-` reads standard input.
@@ -281,7 +281,7 @@ pub(crate) struct TorquesArgs {
 #[command(after_help = "Examples:\n  contrapposto assess subject.osim lifting.mot --grf forces.mot --out out\n  \
     contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
     Each posture counts as held at rest, and loads change in a straight line from one to the next. Writes assess.json, \
-    torques.sto and fatigue.sto into DIR.")]
+    report.html, torques.sto and fatigue.sto into DIR.")]
 pub(crate) struct AssessArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,

@@ -14,11 +14,11 @@ use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::{Opened, Tissue, open, tell};
 use crate::output::{Folder, print};
-use crate::report::{Moments, figures_of_assessment};
+use crate::report::{Shots, figures_of_assessment, report_of_assessment};
 use crate::torques::{Frame, Order, Row, Torques, header, loads_of, no_segment, outside, patch, read_motion, row};
 use text::{AssessText, report};
 
-const FILES: [&str; 3] = ["assess.json", "torques.sto", "fatigue.sto"];
+const FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
 /// A residual of this share of the body's weight is worth a word.
@@ -52,7 +52,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     notes.iter().for_each(|note| tell("note", note));
 
     let mut tables = Tables::new(model, motion.len());
-    let mut moments = args.figures.then(|| Moments::new(model, motion.len()));
+    let mut shots = args.out.as_ref().map(|_| Shots::new(model, motion.len()));
     let found = assessed(
         model,
         &motion,
@@ -65,7 +65,12 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         &settings,
         |instant| {
             tables.take(instant);
-            moments.iter_mut().for_each(|moments| moments.take(instant));
+            if let Some(shots) = &mut shots {
+                let measured = ground.as_ref();
+                shots.take(instant, |loads| {
+                    measured.iter().for_each(|g| g.loads(instant.time, model, instant.kinematics, loads));
+                });
+            }
         },
     )
     .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
@@ -73,17 +78,20 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     warnings.iter().for_each(|warning| tell("warning", warning));
 
     let times = tables.times.clone();
-    let worst = found.groups.iter().map(|group| group.coordinate);
-    let name = args.motion.file_name().unwrap_or_default().to_string_lossy();
-    let figures = moments.map(|moments| figures_of_assessment(&name, model, &settings.supports, moments, worst));
+    let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let figures = shots.as_ref().filter(|_| args.figures).map(|shots| {
+        let worst = found.groups.iter().map(|group| group.coordinate);
+        figures_of_assessment(&title, model, &settings.supports, shots.frames(), worst)
+    });
     let figures = figures.transpose()?.unwrap_or_default();
     let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
+    let page = shots.map(|shots| report_of_assessment(&title, &shots, &found, &settings.supports, &held, &warnings));
     let text = AssessText::new(model, &args.motion, &times, &found, warnings, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("assess.json", error))? + "\n";
-    if let Some(out) = &args.out {
+    if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
         let fatigue = tables.fatigue()?;
-        let contents = [&json, &tables.torques, &fatigue].map(String::as_bytes);
+        let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes);
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
         Folder::open(out)?.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }

@@ -125,7 +125,7 @@ fn frame_of(sample: &Sample) -> Frame {
         external: sample.external.to_vec(),
         passive: sample.passive.to_vec(),
         load: sample.load.to_vec(),
-        fatigue: sample.fatigue.to_vec(),
+        fatigue: Some(sample.fatigue.to_vec()),
         standing: sample.standing.cloned(),
     }
 }

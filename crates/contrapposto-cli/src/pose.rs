@@ -16,11 +16,12 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::{open, tell};
 use crate::output::{Folder, print};
+use crate::report::report_of_pose;
 use crate::torques::plain_table;
 
 pub(crate) use drawing::directions;
 
-const FILES: [&str; 5] = ["pose.json", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
+const FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
@@ -76,7 +77,8 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
     let picture = body_figure(&drawing::pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let page = report_of_pose(scenario, pose, text)?;
+    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     Ok(json)
 }
@@ -91,11 +93,11 @@ fn subtitle(text: &PoseText) -> String {
 }
 
 /// The entries of each task: one, or one for each of its units.
-fn tasks(text: &PoseText) -> impl Iterator<Item = &[PoseLevelText]> {
+pub(crate) fn tasks(text: &PoseText) -> impl Iterator<Item = &[PoseLevelText]> {
     text.levels.chunk_by(|a, b| a.priority == b.priority && a.task == b.task && a.unit != b.unit)
 }
 
-fn reached(entries: &[PoseLevelText]) -> bool {
+pub(crate) fn reached(entries: &[PoseLevelText]) -> bool {
     entries.iter().all(|entry| entry.reached)
 }
 
@@ -132,7 +134,7 @@ fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, folder: &Folder
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
     let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };
-    format!("{title}{table}\n{reason} ({steps})\npicture: {}\n", folder.path("pose.svg").display())
+    format!("{title}{table}\n{reason} ({steps})\nreport: {}\n", folder.path("report.html").display())
 }
 
 /// A task that yields is no failure; supports that slip, and steps that ran out, are.

@@ -5,27 +5,23 @@ mod text;
 use std::fmt::Write;
 use std::path::Path;
 
-use contrapposto::kinematics::Kinematics;
 use contrapposto::model::CoordinateKind;
-use contrapposto::relax::{Carried, Equilibria, Options, Search, SearchError, equilibria};
-use contrapposto::simulation::{Contact, Standing};
+use contrapposto::relax::{Equilibria, Options, Search, SearchError, equilibria};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::{MOST_BYTES, RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};
 use indicatif::{ProgressBar, ProgressStyle};
-use nalgebra::Vector3;
 
 use crate::args::RelaxArgs;
 use crate::fail::Fail;
-use crate::held::frame;
 use crate::input::read;
 use crate::model_file::tell;
 use crate::output::{Folder, print};
 use crate::pose::model_of;
-use crate::report::body;
+use crate::report::{body, frame_of_posture, report_of_equilibria};
 use text::{RelaxText, percent, report};
 
-const FILES: [&str; 5] = ["relax.json", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
+const FILES: [&str; 6] = ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
 /// Largest change of a joint in one step, rad.
 const STEP: f64 = 0.1;
 /// Most steps of the last stage of each posture.
@@ -65,8 +61,8 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let text = RelaxText::new(&scenario, &found, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("relax.json", error))? + "\n";
     let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, out)).transpose()?;
-    let picture = folder.map(|folder| format!("picture: {}\n", folder.path("postures.svg").display()));
-    print(&if args.json { json } else { report(&text) + picture.as_deref().unwrap_or_default() })
+    let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
+    print(&if args.json { json } else { report(&text) + page.as_deref().unwrap_or_default() })
 }
 
 /// Writes all files.
@@ -86,7 +82,8 @@ fn write(
     let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
-    let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let page = report_of_equilibria(scenario, found)?;
+    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     folder.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     Ok(folder)
 }
@@ -120,23 +117,9 @@ fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
 /// All postures side by side.
 fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<BodyFigure, Fail> {
     let model = &scenario.model;
-    let mut kinematics = Kinematics::new(model);
     let mut postures = vec![];
     for (i, (posture, text)) in found.postures.iter().zip(&text.postures).enumerate() {
-        kinematics.update(model, &posture.relaxed.posture).map_err(|error| Fail::job("picture", error))?;
-        let contact = |carried: &Carried| Contact {
-            force: carried.force,
-            share: carried.share,
-            center_of_pressure: carried.center_of_pressure,
-            couple: Vector3::zeros(),
-        };
-        let standing = Standing {
-            contacts: posture.supports.iter().map(contact).collect(),
-            center_of_mass: kinematics.center_of_mass(model).unwrap_or_default(),
-            ..Standing::default()
-        };
-        let [external, passive] = &posture.torques;
-        let frame = frame(model, posture.relaxed.posture.values(), [external, passive], standing);
+        let frame = frame_of_posture(model, posture)?;
         let mut drawn = body::body(model, &scenario.supports, &frame)?;
         drawn.title = format!("{}: effort {:.4}", i + 1, text.effort);
         // The first number is the effort of all muscles, not that of the task.

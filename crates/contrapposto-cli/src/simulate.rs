@@ -150,8 +150,8 @@ fn pictures(scenario: &Scenario, summary: &Summary, recording: &Recording) -> Re
         return Ok([body_figure(&before_and_after(scenario, recording, &subtitle)?), time_line(&line)]);
     }
     let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
-    let mut sweep = Sweep::new(scenario, main, &posture);
-    let mut balance = sweep.balance(&scenario.title, &subtitle)?;
+    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, main, &posture);
+    let mut balance = sweep.balance(&scenario.title, &subtitle, scenario.relief.torque_tolerance)?;
     balance.path = line.angle_deg.iter().copied().zip(line.active_nm.iter().copied()).collect();
     balance.start = balance.path.first().copied();
     balance.goal = balance.path.last().copied();

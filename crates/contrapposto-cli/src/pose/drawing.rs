@@ -12,6 +12,16 @@ use crate::fail::Fail;
 use crate::held::held;
 use crate::report::{body, turn};
 
+/// What is drawn beside the body, ground, m.
+#[derive(Default)]
+struct Marks {
+    targets: Vec<Vector3<f64>>,
+    /// Lines of sight: eye, and what it should meet.
+    gazes: Vec<[Vector3<f64>; 2]>,
+    /// Of mass.
+    center: Option<Vector3<f64>>,
+}
+
 /// The picture of a solved pose.
 pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<BodyFigure, Fail> {
     let mut posture = pose_posture(scenario, pose)?;
@@ -32,32 +42,43 @@ fn pose_posture(scenario: &PoseScenario, pose: &Pose) -> Result<BodyPosture, Fai
         Some(frame) => body::body(model, &scenario.supports, frame)?,
         None => BodyPosture { parts: body::parts(model, pose.posture.values(), None)?, ..BodyPosture::default() },
     };
+    let (turn, marks) = (turn(model), marks(scenario, pose)?);
+    posture.targets = marks.targets.into_iter().map(|at| turn.point(at)).collect();
+    posture.gazes = marks.gazes.into_iter().map(|gaze| gaze.map(|at| turn.point(at))).collect();
+    posture.center_of_mass = posture.center_of_mass.or_else(|| marks.center.map(|center| turn.point(center)));
+    Ok(posture)
+}
+
+/// Places that the tasks of a pose ask for, ground, m.
+pub(crate) fn targets(scenario: &PoseScenario, pose: &Pose) -> Result<Vec<Vector3<f64>>, Fail> {
+    Ok(marks(scenario, pose)?.targets)
+}
+
+fn marks(scenario: &PoseScenario, pose: &Pose) -> Result<Marks, Fail> {
+    let model = &scenario.model;
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &pose.posture).map_err(|error| Fail::job("picture", error))?;
     let center = kinematics.center_of_mass(model);
-    let turn = turn(model);
-    let mut target = |at: Vector3<f64>| posture.targets.push(turn.point(at));
+    let mut marks = Marks { center, ..Marks::default() };
     for task in scenario.goals.iter().filter(|goal| !goal.hard).flat_map(|goal| &goal.tasks) {
         match task {
-            Task::Point(task) => {
-                target(unasked(task.axes, task.target, || kinematics.station(model, task.segment, task.point)));
-            }
-            Task::Placement(task) => target(task.target.translation.vector),
+            Task::Point(task) => marks
+                .targets
+                .push(unasked(task.axes, task.target, || kinematics.station(model, task.segment, task.point))),
+            Task::Placement(task) => marks.targets.push(task.target.translation.vector),
             Task::LookAt(task) => {
-                target(task.target);
-                let eye = kinematics.station(model, task.segment, task.eye);
-                posture.gazes.push([eye, task.target].map(|at| turn.point(at)));
+                marks.targets.push(task.target);
+                marks.gazes.push([kinematics.station(model, task.segment, task.eye), task.target]);
             }
             Task::CenterOfMass(task) => {
-                if let Goal::At { target: goal, axes } = &task.goal {
-                    target(unasked(*axes, *goal, || center.unwrap_or(*goal)));
+                if let Goal::At { target, axes } = &task.goal {
+                    marks.targets.push(unasked(*axes, *target, || center.unwrap_or(*target)));
                 }
             }
             _ => {}
         }
     }
-    posture.center_of_mass = posture.center_of_mass.or_else(|| center.map(|center| turn.point(center)));
-    Ok(posture)
+    Ok(marks)
 }
 
 /// A target on some axes only: the others are where the body is.

@@ -9,7 +9,6 @@ use contrapposto_plot::{
 };
 
 use super::film::{Film, Frame};
-use super::moments::Moments;
 use super::{ANGLES, body, main_coordinate, shown, visible, words};
 use crate::chart::{Sweep, angle_label, course};
 use crate::fail::Fail;
@@ -55,11 +54,10 @@ pub(crate) fn figures_of_assessment(
     title: &str,
     model: &Model,
     supports: &[Support],
-    moments_of: Moments,
+    frames: &[Frame],
     worst: impl Iterator<Item = usize>,
 ) -> Result<Vec<(String, Vec<u8>)>, Fail> {
-    let frames = moments_of.frames();
-    let mut figures = vec![("body".to_owned(), moments(title, model, supports, &frames)?)];
+    let mut figures = vec![("body".to_owned(), moments(title, model, supports, frames)?)];
     let mut shown: Vec<usize> = vec![];
     for i in worst.filter(|&i| model.coordinates()[i].kind == CoordinateKind::Rotation) {
         if !shown.contains(&i) && shown.len() < MOST_JOINTS {
@@ -75,15 +73,20 @@ pub(crate) fn figures_of_assessment(
             external_nm: over(&|frame| frame.external[i]),
             passive_nm: over(&|frame| frame.passive[i]),
             active_nm: over(&|frame| frame.active(i)),
-            fatigue_positive: over(&|frame| frame.fatigue[i][0]),
-            fatigue_negative: over(&|frame| frame.fatigue[i][1]),
+            fatigue_positive: over(&|frame| tired(frame, i, 0)),
+            fatigue_negative: over(&|frame| tired(frame, i, 1)),
             critical_level: f64::NAN,
             recovery_level: f64::NAN,
             ..TimeLine::default()
         };
-        charts(&mut figures, title, (number, &model.coordinates()[i]), been(model, &frames, i), line);
+        charts(&mut figures, title, (number, &model.coordinates()[i]), been(model, frames, i), line);
     }
     files(&figures)
+}
+
+/// Fatigue of a group; NaN where it is not known.
+fn tired(frame: &Frame, i: usize, side: usize) -> f64 {
+    frame.fatigue.as_ref().map_or(f64::NAN, |fatigue| fatigue[i][side])
 }
 
 /// Both charts of joint `number`, counted from 0.
@@ -121,7 +124,7 @@ pub(crate) fn both(name: &str, figure: &Figure) -> Result<[(String, Vec<u8>); 2]
 /// The body as a run leaves it, and pale as it began.
 pub(crate) fn before_and_after(scenario: &Scenario, recording: &Recording, subtitle: &str) -> Result<BodyFigure, Fail> {
     let rows = recording.times().len();
-    let [first, last] = [0, rows.saturating_sub(1)].map(|row| Frame::new(recording.row(row)));
+    let [first, last] = [0, rows.saturating_sub(1)].map(|row| Frame::of_row(recording.row(row)));
     let mut posture = body::body(&scenario.model, &scenario.supports, &last)?;
     posture.start = body::parts(&scenario.model, &first.posture, None)?;
     posture.notes = vec![body::key_numbers(&scenario.model, &scenario.supports, &last).join("; ")];
@@ -175,7 +178,7 @@ fn joints(scenario: &Scenario, summary: &Summary) -> Vec<usize> {
 /// Torques of a joint over its range while everything else is held, and how they went.
 fn swept(scenario: &Scenario, frames: &[Frame], i: usize) -> Result<TorqueBalance, Fail> {
     let Some(last) = frames.last() else { return Ok(TorqueBalance::default()) };
-    let chart = Sweep::new(scenario, i, &last.posture).balance("", "")?;
+    let chart = Sweep::new(&scenario.model, &scenario.loads, i, &last.posture).balance("", "", 0.0)?;
     Ok(with_path(chart, &scenario.model.coordinates()[i], frames, i))
 }
 
