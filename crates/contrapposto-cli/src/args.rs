@@ -24,6 +24,8 @@ pub(crate) enum Verb {
     Pose(PoseArgs),
     /// Find the different postures of least effort under the tasks, and say what holds each.
     Relax(RelaxArgs),
+    /// Carry out two to five scenarios and show their postures side by side: a picture, and what differs.
+    Compare(CompareArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.
     Figures(FiguresArgs),
     /// Decide single joints: one JSON problem a line in, one JSON decision a line out.
@@ -59,6 +61,10 @@ pub(crate) struct SimulateArgs {
     /// Go on from the snapshot that an interrupted run left in DIR.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that matter most
+    /// their torques over angle and their course, each as SVG and PNG.
+    #[arg(long)]
+    pub(crate) figures: bool,
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
@@ -77,7 +83,7 @@ pub(crate) struct DemoArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto pose scenarios/poses/reach-shelf.toml --out out\n\n\
-    Writes pose.json, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to those above it is no failure; supports \
+    Writes pose.json, report.html, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to those above it is no failure; supports \
     that cannot hold, and steps that run out, are (exit code 1).")]
 pub(crate) struct PoseArgs {
     /// Scenario file (TOML) with tasks; `-` reads standard input.
@@ -94,7 +100,7 @@ pub(crate) struct PoseArgs {
 #[command(after_help = "Examples:\n  contrapposto relax scenarios/stand-relaxed.toml --out out\n  \
     contrapposto relax scenarios/stand-relaxed.toml --json\n\n\
     Searches from starts of both strategies: coordinates at their active goals, at their passive goals, and mirror images. Writes \
-    relax.json, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] have no part in \
+    relax.json, report.html, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] have no part in \
     it. Exit code 1 when the supports cannot hold the body in any posture that was tried.")]
 pub(crate) struct RelaxArgs {
     /// Scenario file (TOML) with supports and tasks; `-` reads standard input.
@@ -103,6 +109,24 @@ pub(crate) struct RelaxArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print relax.json instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    after_help = "Example:\n  contrapposto compare scenarios/stand-ready.toml scenarios/stand-relaxed.toml --out out\n\n\
+    A scenario with [run] is simulated, and its last posture taken; one without is posed. Writes compare.json and \
+    compare.svg/.png into DIR. Bodies may differ: what has the same name is compared."
+)]
+pub(crate) struct CompareArgs {
+    /// Two to five scenario files (TOML); `-` reads standard input.
+    #[arg(required = true, num_args = 2..=5, value_name = "SCENARIO")]
+    pub(crate) scenarios: Vec<PathBuf>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Print compare.json instead of tables.
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -257,7 +281,7 @@ pub(crate) struct TorquesArgs {
 #[command(after_help = "Examples:\n  contrapposto assess subject.osim lifting.mot --grf forces.mot --out out\n  \
     contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
     Each posture counts as held at rest, and loads change in a straight line from one to the next. Writes assess.json, \
-    torques.sto and fatigue.sto into DIR.")]
+    report.html, torques.sto and fatigue.sto into DIR.")]
 pub(crate) struct AssessArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
@@ -274,6 +298,10 @@ pub(crate) struct AssessArgs {
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that fail first
+    /// their torques over angle and their course, each as SVG and PNG.
+    #[arg(long, requires = "out")]
+    pub(crate) figures: bool,
     /// Print assess.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,

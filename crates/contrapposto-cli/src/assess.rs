@@ -14,10 +14,11 @@ use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::{Opened, Tissue, open, tell};
 use crate::output::{Folder, print};
+use crate::report::{Shots, figures_of_assessment, report_of_assessment};
 use crate::torques::{Frame, Order, Row, Torques, header, loads_of, no_segment, outside, patch, read_motion, row};
 use text::{AssessText, report};
 
-const FILES: [&str; 3] = ["assess.json", "torques.sto", "fatigue.sto"];
+const FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
 /// A residual of this share of the body's weight is worth a word.
@@ -51,6 +52,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     notes.iter().for_each(|note| tell("note", note));
 
     let mut tables = Tables::new(model, motion.len());
+    let mut shots = args.out.as_ref().map(|_| Shots::new(model, motion.len()));
     let found = assessed(
         model,
         &motion,
@@ -61,20 +63,37 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
             }
         },
         &settings,
-        |instant| tables.take(instant),
+        |instant| {
+            tables.take(instant);
+            if let Some(shots) = &mut shots {
+                let measured = ground.as_ref();
+                shots.take(instant, |loads| {
+                    measured.iter().for_each(|g| g.loads(instant.time, model, instant.kinematics, loads));
+                });
+            }
+        },
     )
     .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
     let warnings = warnings(args, &opened, &found, motion.len());
     warnings.iter().for_each(|warning| tell("warning", warning));
 
     let times = tables.times.clone();
-    let files = if args.out.is_some() { FILES.map(str::to_owned).to_vec() } else { vec![] };
+    let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let figures = shots.as_ref().filter(|_| args.figures).map(|shots| {
+        let worst = found.groups.iter().map(|group| group.coordinate);
+        figures_of_assessment(&title, model, &settings.supports, shots.frames(), worst)
+    });
+    let figures = figures.transpose()?.unwrap_or_default();
+    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
+    let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
+    let page = shots.map(|shots| report_of_assessment(&title, &shots, &found, &settings.supports, &held, &warnings));
     let text = AssessText::new(model, &args.motion, &times, &found, warnings, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("assess.json", error))? + "\n";
-    if let Some(out) = &args.out {
+    if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
         let fatigue = tables.fatigue()?;
-        let contents = [&json, &tables.torques, &fatigue];
-        Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
+        let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes);
+        let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+        Folder::open(out)?.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
     print(&if args.json { json } else { report(&text) })
 }
@@ -166,7 +185,7 @@ impl<'a> Tables<'a> {
     }
 
     fn take(&mut self, instant: &Instant) {
-        let Instant { index, time, values, external, passive, fatigue, load } = *instant;
+        let Instant { index, time, values, external, passive, fatigue, load, .. } = *instant;
         let torques = |row: &Row| Torques::new(external[row.rate], passive[row.rate]);
         let rows = self.order.rows.iter().map(torques).collect();
         let frame = Frame { index, time, values, rows, coupled: vec![], center_of_mass: None, gradient: None };

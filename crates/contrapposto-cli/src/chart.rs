@@ -4,8 +4,8 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::math::dichotomy;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{ReliefLog, ReliefRecord, Scenario};
-use contrapposto::statics::ExternalTorque;
+use contrapposto::simulation::{ReliefLog, ReliefRecord};
+use contrapposto::statics::{ExternalTorque, Load};
 use contrapposto_plot::{PostureSketch, SketchRole, TimeLine, TorqueBalance};
 use nalgebra::Vector3;
 
@@ -20,7 +20,8 @@ const INTERVALS: usize = 720;
 
 /// The torques of one coordinate over its range, everything else held.
 pub(crate) struct Sweep<'a> {
-    scenario: &'a Scenario,
+    model: &'a Model,
+    loads: &'a [Load],
     coordinate: usize,
     posture: Posture,
     kinematics: Kinematics,
@@ -28,27 +29,23 @@ pub(crate) struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    pub(crate) fn new(scenario: &'a Scenario, coordinate: usize, posture: &[f64]) -> Self {
+    pub(crate) fn new(model: &'a Model, loads: &'a [Load], coordinate: usize, posture: &[f64]) -> Self {
         Self {
-            scenario,
+            model,
+            loads,
             coordinate,
             posture: Posture::new(posture.to_vec()),
-            kinematics: Kinematics::new(&scenario.model),
-            external: ExternalTorque::new(&scenario.model),
+            kinematics: Kinematics::new(model),
+            external: ExternalTorque::new(model),
         }
-    }
-
-    fn model(&self) -> &'a Model {
-        &self.scenario.model
     }
 
     /// External and passive torque at `angle` (rad), N m.
     pub(crate) fn torques(&mut self, angle: f64) -> Result<(f64, f64), Fail> {
         self.posture.values_mut()[self.coordinate] = angle;
-        let model = self.model();
+        let model = self.model;
         self.kinematics.update(model, &self.posture).map_err(|error| Fail::job("posture", error))?;
-        let loads = &self.scenario.loads;
-        self.external.update(model, &self.kinematics, loads).map_err(|error| Fail::job("load", error))?;
+        self.external.update(model, &self.kinematics, self.loads).map_err(|error| Fail::job("load", error))?;
         let coordinate = &model.coordinates()[self.coordinate];
         let external = coordinate.rate.map_or(0.0, |rate| self.external.torques()[rate]);
         Ok((
@@ -59,7 +56,7 @@ impl<'a> Sweep<'a> {
 
     /// Angles (deg) where the true active torque is zero.
     pub(crate) fn zeros(&mut self) -> Result<Vec<f64>, Fail> {
-        let (min, max) = self.model().coordinates()[self.coordinate].range;
+        let (min, max) = self.model.coordinates()[self.coordinate].range;
         let mut zeros: Vec<f64> = vec![];
         let mut before = (min, self.active(min)?);
         for i in 1..=INTERVALS {
@@ -82,14 +79,14 @@ impl<'a> Sweep<'a> {
     }
 
     /// The chart's curves; path, start, goal and sketches are the caller's.
-    pub(crate) fn balance(&mut self, title: &str, subtitle: &str) -> Result<TorqueBalance, Fail> {
-        let coordinate = &self.model().coordinates()[self.coordinate];
+    pub(crate) fn balance(&mut self, title: &str, subtitle: &str, tolerance: f64) -> Result<TorqueBalance, Fail> {
+        let coordinate = &self.model.coordinates()[self.coordinate];
         let (min, max) = coordinate.range;
         let mut chart = TorqueBalance {
             title: title.to_owned(),
             subtitle: subtitle.to_owned(),
             angle_label: angle_label(&coordinate.name, &coordinate.positive),
-            tolerance_nm: self.scenario.relief.torque_tolerance,
+            tolerance_nm: tolerance,
             zero_torque_deg: self.zeros()?,
             ..TorqueBalance::default()
         };
@@ -107,7 +104,7 @@ impl<'a> Sweep<'a> {
     /// A small drawing of the body with the coordinate at `angle_deg`.
     pub(crate) fn sketch(&mut self, label: &str, angle_deg: f64, role: SketchRole) -> Result<PostureSketch, Fail> {
         self.torques(angle_deg.to_radians())?;
-        let model = self.model();
+        let model = self.model;
         let rate = model.coordinates()[self.coordinate].rate;
         let axis = rate.map_or(Vector3::z(), |rate| self.kinematics.axis(model, rate));
         // Look along the ground axis nearest the joint's: from the right, from behind, or from above.

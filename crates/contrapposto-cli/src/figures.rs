@@ -119,13 +119,14 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
     if curve == ElbowCurve::Measured {
         scenario = with_measured_curve(scenario, elbow)?;
     }
-    let mut sweep = Sweep::new(&scenario, elbow, scenario.start.values());
+    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, elbow, scenario.start.values());
+    let tolerance = scenario.relief.torque_tolerance;
     let zeros = sweep.zeros()?;
     let mut runs = vec![];
     let mut panels: Vec<TorqueBalance> = vec![];
     if figure.runs.is_empty() {
         let subtitle = format!("{} without active torque", postures(zeros.len()));
-        let mut panel = sweep.balance(&scenario.title, &subtitle)?;
+        let mut panel = sweep.balance(&scenario.title, &subtitle, tolerance)?;
         for &zero in &zeros {
             panel.postures.push(sweep.sketch(&format!("{zero:.1} deg"), zero, SketchRole::Zero)?);
         }
@@ -159,7 +160,7 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
         ]);
         let note = if verdict == "yes" { String::new() } else { format!(" ({verdict})") };
         let title = if panels.is_empty() { scenario.title.as_str() } else { "" };
-        let mut panel = sweep.balance(title, &(story(&scenario, summary) + &note))?;
+        let mut panel = sweep.balance(title, &(story(&scenario, summary) + &note), tolerance)?;
         let (start, goal) = (path.first().copied(), path.last().copied());
         for (point, label, role) in [(start, "start", SketchRole::Start), (goal, "end", SketchRole::Goal)] {
             if let Some((angle, _)) = point {

@@ -6,9 +6,11 @@
 mod args;
 mod assess;
 mod chart;
+mod compare;
 mod convert;
 mod fail;
 mod figures;
+mod held;
 mod input;
 mod inspect;
 mod minimize;
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Verb::Demo(args) => simulate::demo(&args),
         Verb::Pose(args) => pose::pose(&args),
         Verb::Relax(args) => relax::relax(&args),
+        Verb::Compare(args) => compare::compare(&args),
         Verb::Figures(args) => figures::figures(&args),
         Verb::Minimize(args) => minimize::minimize(&args),
         Verb::Passive(args) => passive::passive(&args),

@@ -40,9 +40,13 @@ impl Folder {
         Ok(Self { path: path.to_owned() })
     }
 
-    /// Begins a file of that name.
+    /// Begins a file of that name; what stands before a `/` is a folder, made if it is not there.
     pub(crate) fn begin(&self, name: &str) -> Result<Pending, Fail> {
         let path = self.path.join(name);
+        if let Some((folder, _)) = name.rsplit_once('/') {
+            let folder = self.path.join(folder);
+            std::fs::create_dir_all(&folder).map_err(|error| Fail::job(folder.display(), error))?;
+        }
         let mut builder = tempfile::Builder::new();
         builder.prefix(".contrapposto-");
         #[cfg(unix)]

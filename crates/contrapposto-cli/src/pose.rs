@@ -2,8 +2,6 @@
 
 pub(crate) mod drawing;
 
-pub(crate) use self::drawing::views;
-
 use std::path::{Path, PathBuf};
 
 use contrapposto::ik::{Engine, Pose, Reason};
@@ -11,18 +9,19 @@ use contrapposto::model::Model;
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::{MOST_BYTES, ModelFile, PoseLevelText, PoseScenario, PoseText, read_pose, scenario_model};
-use contrapposto_plot::pose_views;
+use contrapposto_plot::body_figure;
 
 use crate::args::{ModelArgs, PoseArgs, RootChoice};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::{open, tell};
 use crate::output::{Folder, print};
+use crate::report::report_of_pose;
 use crate::torques::plain_table;
 
 pub(crate) use drawing::directions;
 
-const FILES: [&str; 5] = ["pose.json", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
+const FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let bytes = read(&args.scenario, MOST_BYTES)?;
@@ -76,9 +75,10 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
-    let picture = pose_views(&drawing::pose_picture(scenario, pose, &subtitle(text))?);
+    let picture = body_figure(&drawing::pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let page = report_of_pose(scenario, pose, text)?;
+    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     Ok(json)
 }
@@ -93,11 +93,11 @@ fn subtitle(text: &PoseText) -> String {
 }
 
 /// The entries of each task: one, or one for each of its units.
-fn tasks(text: &PoseText) -> impl Iterator<Item = &[PoseLevelText]> {
+pub(crate) fn tasks(text: &PoseText) -> impl Iterator<Item = &[PoseLevelText]> {
     text.levels.chunk_by(|a, b| a.priority == b.priority && a.task == b.task && a.unit != b.unit)
 }
 
-fn reached(entries: &[PoseLevelText]) -> bool {
+pub(crate) fn reached(entries: &[PoseLevelText]) -> bool {
     entries.iter().all(|entry| entry.reached)
 }
 
@@ -134,7 +134,7 @@ fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, folder: &Folder
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
     let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };
-    format!("{title}{table}\n{reason} ({steps})\npicture: {}\n", folder.path("pose.svg").display())
+    format!("{title}{table}\n{reason} ({steps})\nreport: {}\n", folder.path("report.html").display())
 }
 
 /// A task that yields is no failure; supports that slip, and steps that ran out, are.

@@ -5,12 +5,11 @@ mod text;
 use std::fmt::Write;
 use std::path::Path;
 
-use contrapposto::kinematics::Kinematics;
 use contrapposto::model::CoordinateKind;
 use contrapposto::relax::{Equilibria, Options, Search, SearchError, equilibria};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::{MOST_BYTES, RelaxScenario, read_relax};
-use contrapposto_plot::{PoseColumn, PoseGrid, PoseView, pose_grid};
+use contrapposto_plot::{BodyFigure, body_figure};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::RelaxArgs;
@@ -18,11 +17,11 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::tell;
 use crate::output::{Folder, print};
-use crate::pose::drawing::{Lines, directions, sticks};
 use crate::pose::model_of;
-use text::{RelaxText, percent, report, weight};
+use crate::report::{body, frame_of_posture, report_of_equilibria};
+use text::{RelaxText, percent, report};
 
-const FILES: [&str; 5] = ["relax.json", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
+const FILES: [&str; 6] = ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
 /// Largest change of a joint in one step, rad.
 const STEP: f64 = 0.1;
 /// Most steps of the last stage of each posture.
@@ -62,8 +61,8 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let text = RelaxText::new(&scenario, &found, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("relax.json", error))? + "\n";
     let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, out)).transpose()?;
-    let picture = folder.map(|folder| format!("picture: {}\n", folder.path("postures.svg").display()));
-    print(&if args.json { json } else { report(&text) + picture.as_deref().unwrap_or_default() })
+    let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
+    print(&if args.json { json } else { report(&text) + page.as_deref().unwrap_or_default() })
 }
 
 /// Writes all files.
@@ -80,10 +79,11 @@ fn write(
     let title = if scenario.title.is_empty() { "postures of least effort" } else { &scenario.title };
     let mot = write_sto(title, &columns, true, &times, &rows).map_err(|error| Fail::job("postures.mot", error))?;
     let csv = table(scenario, found);
-    let picture = pose_grid(&drawing(scenario, found, text)?);
+    let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
-    let contents = [json.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let page = report_of_equilibria(scenario, found)?;
+    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     folder.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     Ok(folder)
 }
@@ -114,47 +114,29 @@ fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
     csv
 }
 
-/// All postures, from the front and from the right.
-fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<PoseGrid, Fail> {
+/// All postures side by side.
+fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<BodyFigure, Fail> {
     let model = &scenario.model;
-    let mut kinematics = Kinematics::new(model);
-    let [right, ahead, up] = directions(model);
-    let mut columns = vec![];
+    let mut postures = vec![];
     for (i, (posture, text)) in found.postures.iter().zip(&text.postures).enumerate() {
-        kinematics.update(model, &posture.relaxed.posture).map_err(|error| Fail::job("picture", error))?;
-        let lines = sticks(model, &kinematics);
-        let center = kinematics.center_of_mass(model);
-        let view = |label: String, across: nalgebra::Vector3<f64>| {
-            let flat = |p: &nalgebra::Vector3<f64>| [across.dot(p), up.dot(p)];
-            let flatten = |lines: &Lines| lines.iter().map(|line| line.iter().map(flat).collect()).collect();
-            PoseView {
-                label,
-                end: flatten(&lines),
-                center_of_mass: center.as_ref().map(flat),
-                targets: posture.supports.iter().filter_map(|s| s.center_of_pressure.as_ref()).map(flat).collect(),
-                ..PoseView::default()
-            }
-        };
-        // Face to face with the body its right hand is on the left.
-        let front = view(format!("{}: effort {:.4}", i + 1, text.effort), -right);
-        columns.push(PoseColumn { views: vec![front, view(weight(text), ahead)] });
+        let frame = frame_of_posture(model, posture)?;
+        let mut drawn = body::body(model, &scenario.supports, &frame)?;
+        drawn.title = format!("{}: effort {:.4}", i + 1, text.effort);
+        // The first number is the effort of all muscles, not that of the task.
+        drawn.notes = body::key_numbers(model, &scenario.supports, &frame).split_off(1);
+        postures.push(drawn);
     }
     let subtitle = match found.postures.len() {
-        1 => "one posture of least effort, from the front and from the right".to_owned(),
-        n => format!("{n} postures of least effort, from the front and from the right"),
+        1 => "one posture of least effort".to_owned(),
+        n => format!("{n} postures of least effort"),
     };
-    let target = "centre of pressure".to_owned();
     let least = found.postures.first().map_or(0.0, |posture| posture.relaxed.effort);
     let more = found
         .postures
         .get(1)
         .map(|posture| format!("; the next takes {} more", percent(posture.relaxed.effort / least - 1.0)));
-    Ok(PoseGrid {
-        title: scenario.title.clone(),
-        subtitle: subtitle + more.as_deref().unwrap_or_default(),
-        target,
-        columns,
-    })
+    let subtitle = subtitle + more.as_deref().unwrap_or_default();
+    Ok(BodyFigure { title: scenario.title.clone(), subtitle, postures, ..BodyFigure::default() })
 }
 
 /// Something that turns on standard error; invisible when that is no terminal.

@@ -1,56 +1,175 @@
-//! `report.html`: from a scenario, a recording of its run and its summary to the plain numbers that the page shows.
+//! `report.html`: from what a command found to the plain numbers that the page shows. [`Scene`] is what all pages share; one file
+//! a command adds its words.
 
+mod assessed;
+pub(crate) mod body;
+mod figures;
 mod film;
+mod postures;
+mod run;
 mod solid;
 mod story;
+mod surfaces;
 mod words;
 
+pub(crate) use assessed::{Shots, report_of_assessment};
+pub(crate) use figures::{before_and_after, both, figures_of_assessment, figures_of_run};
+pub(crate) use film::Frame;
+pub(crate) use postures::{frame_of_posture, report_of_equilibria, report_of_pose};
+pub(crate) use run::{main_coordinate, report_of_run};
+
+pub(crate) use solid::parts;
+pub(crate) use story::pelvis_list;
+pub(crate) use words::{group as group_in_words, plain};
+
+use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{Scenario, Summary};
-use contrapposto_report::{Balance, Decision, Group, Joint, Report, Segment, Support};
+use contrapposto::statics::Load;
+use contrapposto_report::{Balance, Group, Joint, Moments, Report, Segment};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::chart::Sweep;
 use crate::fail::Fail;
 use crate::pose::directions;
-use crate::simulate::Recording;
-
-use film::{Event, Film, Frame};
-pub(crate) use solid::parts;
 
 /// Angles at which the torques of a joint are drawn.
 const ANGLES: usize = 121;
 
-/// The page of a run.
-pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary: &Summary) -> Result<String, Fail> {
-    let film = Film::new(scenario, recording, summary);
-    let frames: Vec<&Frame> = film.frames.iter().collect();
-    let model = &scenario.model;
-    let shown = shown(model);
-    let turn = turn(model);
-    let mut report = Report {
-        title: scenario.title.clone(),
-        body: model.name().to_owned(),
-        times: frames.iter().map(|frame| frame.time).collect(),
-        segments: segments(model, &frames, &shown, &turn)?,
-        levels: [scenario.hysteresis.critical_level, scenario.hysteresis.recovery_level],
-        supports: supports(scenario, &frames, &turn),
-        ..Report::default()
-    };
-    if frames.iter().all(|frame| frame.standing.is_some()) {
-        report.center_of_mass =
-            frames.iter().filter_map(|frame| frame.standing.as_ref()).map(|s| turn.point(s.center_of_mass)).collect();
+/// A body in some moments, and what it rests on.
+struct Scene<'a> {
+    title: &'a str,
+    model: &'a Model,
+    /// Its posture before anything happened.
+    start: &'a [f64],
+    frames: &'a [Frame],
+    /// What carries it, in a place of its own.
+    supports: &'a [Support],
+    /// Segments of the contacts of every frame.
+    carried: Vec<usize>,
+    /// What pulls on it while one joint alone is moved; `None` where that makes no sense, as under a body that stands.
+    held: Option<&'a [Load]>,
+}
+
+impl<'a> Scene<'a> {
+    /// The page without its words. `main`: the coordinate to show first.
+    fn report(&self, moments: Moments, main: usize) -> Result<Report, Fail> {
+        let model = self.model;
+        let (shown, turn) = (shown(model), turn(model));
+        let surroundings = surfaces::surroundings(self, &turn)?;
+        let standing = self.frames.iter().filter_map(|frame| frame.standing.as_ref());
+        let centers: Vec<[f64; 3]> = standing.map(|standing| turn.point(standing.center_of_mass)).collect();
+        // Postures that differ bend the curves of coupled laws each in its own way.
+        let last = self.frames.last().into_iter().collect();
+        let bent: Vec<&Frame> = if matches!(moments, Moments::Times(_)) { last } else { self.frames.iter().collect() };
+        Ok(Report {
+            title: self.title.to_owned(),
+            body: model.name().to_owned(),
+            moments,
+            segments: self.segments(&shown, &turn)?,
+            joints: shown.iter().map(|&i| self.joint(i, &bent)).collect::<Result<_, _>>()?,
+            main: shown.iter().position(|&i| i == main).unwrap_or(0),
+            supports: self.supports(&turn),
+            ground: surroundings.ground,
+            surfaces: surroundings.surfaces,
+            center_of_mass: if centers.len() == self.frames.len() { centers } else { vec![] },
+            ..Report::default()
+        })
     }
-    report.effort = frames.iter().map(|frame| frame.effort()).collect();
-    for &i in &shown {
-        report.joints.push(joint(scenario, i, &frames)?);
+
+    fn segments(&self, shown: &[usize], turn: &Turn) -> Result<Vec<Segment>, Fail> {
+        let model = self.model;
+        let mut kinematics = Kinematics::new(model);
+        let mut parts: Vec<(usize, Segment)> = vec![];
+        for (s, segment) in model.segments().iter().enumerate() {
+            let coordinates = solid::joined_by(model, s);
+            let joints = shown.iter().enumerate().filter(|(_, i)| coordinates.contains(i)).map(|(place, _)| place);
+            let joints: Vec<usize> = joints.collect();
+            for balls in solid::parts(model, s) {
+                let name = segment.name.clone();
+                parts.push((s, Segment { name, balls, joints: joints.clone(), ..Segment::default() }));
+            }
+        }
+        let mut see = |posture: &[f64], parts: &mut [(usize, Segment)], put: fn(&mut Segment, [f64; 7])| {
+            let posture = Posture::new(posture.to_vec());
+            kinematics.update(model, &posture).map_err(|error| Fail::job("report", error))?;
+            parts.iter_mut().for_each(|(s, part)| put(part, turn.place(&kinematics.placement(model, *s))));
+            Ok::<(), Fail>(())
+        };
+        for frame in self.frames {
+            see(&frame.posture, &mut parts, |part, place| part.places.push(place))?;
+        }
+        see(self.start, &mut parts, |part, place| part.start = place)?;
+        Ok(parts.into_iter().map(|(_, part)| part).collect())
     }
-    report.main = shown.iter().position(|&i| i == main_coordinate(summary, &shown)).unwrap_or(0);
-    report.decisions = decisions(scenario, &film, &shown);
-    story::tell(scenario, &film, summary, &shown, &mut report);
-    Ok(contrapposto_report::write(&report))
+
+    fn supports(&self, turn: &Turn) -> Vec<contrapposto_report::Support> {
+        let support = |(i, &segment): (usize, &usize)| {
+            let label = words::plain(&self.model.segments()[segment].name);
+            let mut shown = contrapposto_report::Support { label, ..Default::default() };
+            let mut at = Vector3::zeros();
+            for contact in self.frames.iter().filter_map(|frame| frame.standing.as_ref()?.contacts.get(i)) {
+                at = contact.center_of_pressure.unwrap_or(at);
+                shown.force.push(turn.point(contact.force));
+                shown.at.push(turn.point(at));
+                shown.share.push(contact.share);
+            }
+            shown
+        };
+        self.carried.iter().enumerate().map(support).collect()
+    }
+
+    fn joint(&self, i: usize, bent: &[&Frame]) -> Result<Joint, Fail> {
+        let coordinate = &self.model.coordinates()[i];
+        let over = |value: &dyn Fn(&Frame) -> f64| self.frames.iter().map(value).collect::<Vec<f64>>();
+        let tires = self.frames.iter().all(|frame| frame.fatigue.is_some());
+        let group = |side: Side| {
+            let group = &coordinate.groups.as_ref()?[side.index()];
+            let fatigue = |frame: &Frame| frame.fatigue.as_ref().map_or(0.0, |fatigue| fatigue[i][side.index()]);
+            let left = |frame: &Frame| {
+                let load = if Side::of(frame.active(i)) == side { frame.load[i] } else { 0.0 };
+                group.fatigue.time_left(fatigue(frame), load)
+            };
+            let label = words::group(&group.name, &coordinate.name);
+            Some(Group { label, fatigue: if tires { over(&fatigue) } else { vec![] }, left: over(&left) })
+        };
+        Ok(Joint {
+            name: coordinate.name.clone(),
+            label: words::plain(&coordinate.name),
+            positive: coordinate.positive.clone(),
+            slides: coordinate.kind == CoordinateKind::Translation,
+            groups: group(Side::Positive).zip(group(Side::Negative)).map(|(a, b)| [a, b]),
+            angle: over(&|frame| visible(coordinate, frame.posture[i])),
+            external: over(&|frame| frame.external[i]),
+            passive: over(&|frame| frame.passive[i]),
+            load: over(&|frame| frame.load[i]),
+            balance: bent.iter().filter_map(|frame| self.balance(i, frame).transpose()).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Torques over the range, in the posture of a frame; none of a joint without passive tissue.
+    fn balance(&self, i: usize, frame: &Frame) -> Result<Option<Balance>, Fail> {
+        let coordinate = &self.model.coordinates()[i];
+        let Some(law) = &coordinate.passive else { return Ok(None) };
+        let (min, max) = coordinate.range;
+        let mut balance = Balance::default();
+        let mut values = frame.posture.clone();
+        let mut sweep = self.held.map(|loads| Sweep::new(self.model, loads, i, &frame.posture));
+        for k in 0..ANGLES {
+            let angle = min + (max - min) * k as f64 / (ANGLES - 1) as f64;
+            balance.angle.push(visible(coordinate, angle));
+            if let Some(sweep) = &mut sweep {
+                let (external, passive) = sweep.torques(angle)?;
+                balance.minus_passive.push(-passive);
+                balance.external.push(external);
+            } else {
+                values[i] = angle;
+                balance.minus_passive.push(-law.torque(i, &values));
+            }
+        }
+        Ok(Some(balance))
+    }
 }
 
 /// Coordinates that hold a torque: all with muscles or passive tissue; of a body without any, all.
@@ -61,25 +180,11 @@ fn shown(model: &Model) -> Vec<usize> {
     if holding.is_empty() { all().collect() } else { holding }
 }
 
-/// The coordinate that the story is about: the one most often relieved, of equals the hardest worked.
-fn main_coordinate(summary: &Summary, shown: &[usize]) -> usize {
-    let weight = |i: usize| {
-        let coordinate = &summary.coordinates[i];
-        (coordinate.iterations.iter().sum::<u64>(), coordinate.peak_load)
-    };
-    let more = |a: &usize, b: &usize| {
-        let (a, b) = (weight(*a), weight(*b));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-    };
-    // The first of equals.
-    shown.iter().copied().rev().max_by(more).unwrap_or(0)
-}
-
 /// How ground axes are turned so that x is forward, y up and z right.
 pub(crate) struct Turn(Rotation3<f64>);
 
 impl Turn {
-    fn point(&self, p: Vector3<f64>) -> [f64; 3] {
+    pub(crate) fn point(&self, p: Vector3<f64>) -> [f64; 3] {
         (self.0 * p).into()
     }
 
@@ -90,114 +195,12 @@ impl Turn {
     }
 }
 
-fn turn(model: &Model) -> Turn {
+pub(crate) fn turn(model: &Model) -> Turn {
     let [right, ahead, up] = directions(model);
     Turn(Rotation3::from_matrix_unchecked(Matrix3::from_rows(&[ahead.transpose(), up.transpose(), right.transpose()])))
-}
-
-fn segments(model: &Model, frames: &[&Frame], shown: &[usize], turn: &Turn) -> Result<Vec<Segment>, Fail> {
-    let mut kinematics = Kinematics::new(model);
-    let mut parts: Vec<(usize, Segment)> = vec![];
-    for (s, segment) in model.segments().iter().enumerate() {
-        // What is welded on belongs to the joint of what it is welded to.
-        let mut carrier = s;
-        while let (true, Some(parent)) =
-            (model.segments()[carrier].coordinates.is_empty(), model.segments()[carrier].parent)
-        {
-            carrier = parent;
-        }
-        let coordinates = model.segments()[carrier].coordinates.clone();
-        let joints = shown.iter().enumerate().filter(|(_, i)| coordinates.contains(i)).map(|(place, _)| place);
-        let joints: Vec<usize> = joints.collect();
-        for balls in solid::parts(model, s) {
-            parts.push((s, Segment { name: segment.name.clone(), balls, joints: joints.clone(), places: vec![] }));
-        }
-    }
-    for frame in frames {
-        let posture = Posture::new(frame.posture.clone());
-        kinematics.update(model, &posture).map_err(|error| Fail::job("report", error))?;
-        for (s, part) in &mut parts {
-            part.places.push(turn.place(&kinematics.placement(model, *s)));
-        }
-    }
-    Ok(parts.into_iter().map(|(_, part)| part).collect())
-}
-
-fn supports(scenario: &Scenario, frames: &[&Frame], turn: &Turn) -> Vec<Support> {
-    let support = |(i, support): (usize, &contrapposto::contact::Support)| {
-        let mut shown =
-            Support { label: words::plain(&scenario.model.segments()[support.segment].name), ..Support::default() };
-        let mut at = Vector3::zeros();
-        for contact in frames.iter().filter_map(|frame| frame.standing.as_ref()?.contacts.get(i)) {
-            at = contact.center_of_pressure.unwrap_or(at);
-            shown.force.push(turn.point(contact.force));
-            shown.at.push(turn.point(at));
-            shown.share.push(contact.share);
-        }
-        shown
-    };
-    scenario.supports.iter().enumerate().map(support).collect()
 }
 
 /// In degrees, slides in m.
 fn visible(coordinate: &Coordinate, value: f64) -> f64 {
     if coordinate.kind == CoordinateKind::Rotation { value.to_degrees() } else { value }
-}
-
-fn joint(scenario: &Scenario, i: usize, frames: &[&Frame]) -> Result<Joint, Fail> {
-    let coordinate = &scenario.model.coordinates()[i];
-    let over = |value: &dyn Fn(&Frame) -> f64| frames.iter().map(|frame| value(frame)).collect::<Vec<f64>>();
-    let group = |side: Side| {
-        let group = &coordinate.groups.as_ref()?[side.index()];
-        let left = |frame: &Frame| {
-            let load = if Side::of(frame.active(i)) == side { frame.load[i] } else { 0.0 };
-            group.fatigue.time_left(frame.fatigue[i][side.index()], load)
-        };
-        let label = words::group(&group.name, &coordinate.name);
-        Some(Group { label, fatigue: over(&|frame| frame.fatigue[i][side.index()]), left: over(&left) })
-    };
-    Ok(Joint {
-        name: coordinate.name.clone(),
-        label: words::plain(&coordinate.name),
-        positive: coordinate.positive.clone(),
-        slides: coordinate.kind == CoordinateKind::Translation,
-        groups: group(Side::Positive).zip(group(Side::Negative)).map(|(a, b)| [a, b]),
-        angle: over(&|frame| visible(coordinate, frame.posture[i])),
-        external: over(&|frame| frame.external[i]),
-        passive: over(&|frame| frame.passive[i]),
-        load: over(&|frame| frame.load[i]),
-        balance: balance(scenario, i, frames)?,
-    })
-}
-
-/// Torques over the range. External torque is swept only where everything else can be held: not under a body that stands.
-fn balance(scenario: &Scenario, i: usize, frames: &[&Frame]) -> Result<Balance, Fail> {
-    let coordinate = &scenario.model.coordinates()[i];
-    let (Some(last), Some(passive)) = (frames.last(), &coordinate.passive) else { return Ok(Balance::default()) };
-    let (min, max) = coordinate.range;
-    let mut balance = Balance::default();
-    let mut values = last.posture.clone();
-    let mut sweep = (!scenario.is_whole()).then(|| Sweep::new(scenario, i, &last.posture));
-    for k in 0..ANGLES {
-        let angle = min + (max - min) * k as f64 / (ANGLES - 1) as f64;
-        balance.angle.push(visible(coordinate, angle));
-        if let Some(sweep) = &mut sweep {
-            let (external, passive) = sweep.torques(angle)?;
-            balance.minus_passive.push(-passive);
-            balance.external.push(external);
-        } else {
-            values[i] = angle;
-            balance.minus_passive.push(-passive.torque(i, &values));
-        }
-    }
-    Ok(balance)
-}
-
-fn decisions(scenario: &Scenario, film: &Film, shown: &[usize]) -> Vec<Decision> {
-    let decision = |event: &Event| {
-        let joint = shown.iter().position(|&i| i == event.coordinate)?;
-        let frame = film.frames.iter().position(|frame| frame.time >= event.time)?;
-        Some(Decision { frame, joint, text: words::decision(scenario, event, &film.frames[frame]) })
-    };
-    film.events.iter().filter_map(decision).collect()
 }

@@ -13,10 +13,9 @@ use comfy_table::Table;
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
-use contrapposto::posture::Posture;
 use contrapposto::simulation::{Contact, CoordinateSummary, Run, Scenario, Standing, StopReason, Summary};
 use contrapposto_formats::{MOST_BYTES, SummaryText, decisions_csv, read_scenario};
-use contrapposto_plot::{Figure, SketchRole, pose_views, time_line, torque_balance};
+use contrapposto_plot::{Figure, SketchRole, body_figure, time_line, torque_balance};
 use indicatif::{ProgressBar, ProgressStyle};
 
 pub(crate) use self::recording::{Recording, Row};
@@ -26,8 +25,8 @@ use crate::chart::{Sweep, course};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::output::{Folder, print};
-use crate::pose::{model_of, views};
-use crate::report::report_of_run;
+use crate::pose::model_of;
+use crate::report::{before_and_after, figures_of_run, main_coordinate, report_of_run};
 
 /// The scenario of `contrapposto demo`.
 const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../scenarios/figure-08.toml"));
@@ -43,15 +42,15 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let name = args.scenario.display().to_string();
     let model = model_of(&args.scenario, &name, &bytes)?;
     let scenario = read_scenario(&name, &bytes, model)?;
-    carry_out(&scenario, &args.out, args.resume, args.json)
+    carry_out(&scenario, &args.out, args.resume, args.figures, args.json)
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     let scenario = read_scenario(DEMO.0, DEMO.1.as_bytes(), None)?;
-    carry_out(&scenario, &args.out, false, args.json)
+    carry_out(&scenario, &args.out, false, false, args.json)
 }
 
-fn carry_out(scenario: &Scenario, out: &Path, resume: bool, json: bool) -> Result<(), Fail> {
+fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json: bool) -> Result<(), Fail> {
     let folder = Folder::open(out)?;
     // A second handler is refused, which only happens if there is one already.
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
@@ -77,7 +76,8 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, json: bool) -> Resul
     }
     progress.finish_and_clear();
     let summary = run.summary();
-    let json_text = write(scenario, &summary, &recording, &folder)?;
+    let figures = if figures { figures_of_run(scenario, &recording, &summary)? } else { vec![] };
+    let json_text = write(scenario, &summary, &recording, &figures, &folder)?;
     let partial = summary.reason == StopReason::Interrupted;
     if partial {
         save(scenario, &run, &recording, &folder)?;
@@ -97,7 +97,13 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, json: bool) -> Resul
 }
 
 /// All files but the snapshot; gives the text of `summary.json`.
-fn write(scenario: &Scenario, summary: &Summary, recording: &Recording, folder: &Folder) -> Result<String, Fail> {
+fn write(
+    scenario: &Scenario,
+    summary: &Summary,
+    recording: &Recording,
+    figures: &[(String, Vec<u8>)],
+    folder: &Folder,
+) -> Result<String, Fail> {
     let mut contents = vec![
         ("trajectory.csv", tables::trajectory(scenario, recording).into_bytes()),
         ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
@@ -120,6 +126,7 @@ fn write(scenario: &Scenario, summary: &Summary, recording: &Recording, folder: 
         contents.push((names[0], figure.svg().into_bytes()));
         contents.push((names[1], figure.png().map_err(|error| Fail::job("PNG", error))?));
     }
+    contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
     let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
     let text = SummaryText::new(scenario, summary, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("summary.json", error))? + "\n";
@@ -139,14 +146,12 @@ fn pictures(scenario: &Scenario, summary: &Summary, recording: &Recording) -> Re
     line.coordinate.clone_from(&coordinate.name);
     line.critical_level = scenario.hysteresis.critical_level;
     line.recovery_level = scenario.hysteresis.recovery_level;
-    let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
     if scenario.is_whole() {
-        let start = Posture::new(recording.row(0).posture.to_vec());
-        let views = views(&scenario.model, &start, &Posture::new(posture), &scenario.title, &subtitle)?;
-        return Ok([pose_views(&views), time_line(&line)]);
+        return Ok([body_figure(&before_and_after(scenario, recording, &subtitle)?), time_line(&line)]);
     }
-    let mut sweep = Sweep::new(scenario, main, &posture);
-    let mut balance = sweep.balance(&scenario.title, &subtitle)?;
+    let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
+    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, main, &posture);
+    let mut balance = sweep.balance(&scenario.title, &subtitle, scenario.relief.torque_tolerance)?;
     balance.path = line.angle_deg.iter().copied().zip(line.active_nm.iter().copied()).collect();
     balance.start = balance.path.first().copied();
     balance.goal = balance.path.last().copied();
@@ -155,14 +160,6 @@ fn pictures(scenario: &Scenario, summary: &Summary, recording: &Recording) -> Re
         balance.postures.push(sweep.sketch("end", goal.0, SketchRole::Goal)?);
     }
     Ok([torque_balance(&[balance]), time_line(&line)])
-}
-
-/// The coordinate worth a picture: the one most often relieved, else the first free one, else the first.
-fn main_coordinate(scenario: &Scenario, summary: &Summary) -> usize {
-    let decisions = |i: usize| summary.coordinates[i].iterations.iter().sum::<u64>();
-    let free = (0..scenario.free.len()).filter(|&i| scenario.free[i]);
-    // The first of equals: ties are broken by the model's order.
-    free.rev().max_by_key(|&i| decisions(i)).unwrap_or(0)
 }
 
 /// `active, R_min 0.2: cases 3.1 x6, 3.3 x33, 2.1 x1`.
@@ -247,7 +244,7 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
 }
 
 /// Simulated time on standard error; invisible when that is no terminal.
-fn progress_bar(duration: f64) -> ProgressBar {
+pub(crate) fn progress_bar(duration: f64) -> ProgressBar {
     let bar = ProgressBar::new(duration.ceil() as u64);
     if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} s simulated") {
         bar.set_style(style);

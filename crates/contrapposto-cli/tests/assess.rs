@@ -14,7 +14,7 @@ use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::statics::{ExternalTorque, LoadKind, PassiveTorque};
 use contrapposto_formats::motion::{Table, read_table};
 use nalgebra::Vector3;
-use program::{json, leg, refused, run, write};
+use program::{column, joint, json, leg, page, refused, run, write};
 use serde_json::Value;
 
 fn table(path: &Path) -> Table {
@@ -155,6 +155,20 @@ fn ground_reaction_and_supports_give_the_same_torques() {
         worst = worst.max((a - b).abs());
     }
     assert!(worst < 1e-7, "{worst} N m");
+    // Both pages show the same forces at the same places, the centre of mass between them, and the same ground.
+    let [on_page, grf_page] = ["on", "grf"].map(|name| page(&folder.path().join(name)));
+    for (a, b) in [0, 1].map(|i| (&on_page["supports"][i], &grf_page["supports"][i])) {
+        assert_eq!(a["label"], b["label"]);
+        for (key, near) in [("force", 0.51), ("at", 2.1e-4)] {
+            for k in 0..3 {
+                let (a, b) = (column(&a[key][k], 3), column(&b[key][k], 3));
+                assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < near), "{key} {a:?} {b:?}");
+            }
+        }
+        assert!(column(&a["share"], 3).iter().all(|share| (0.2..0.8).contains(share)));
+    }
+    assert!((on_page["ground"].as_f64().unwrap() - grf_page["ground"].as_f64().unwrap()).abs() < 1e-3);
+    assert_eq!(on_page["center"], grf_page["center"]);
     // The root is held, by the ground alone.
     for (label, column) in on.columns.iter().zip(0..).filter(|(label, _)| label.starts_with("pelvis_")) {
         if label.contains(".active_") {
@@ -175,7 +189,7 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
     assert_eq!(answer.out, read("assess.json"));
     let report: Value = serde_json::from_str(&answer.out).unwrap();
-    assert_eq!(report["files"], serde_json::json!(["assess.json", "torques.sto", "fatigue.sto"]));
+    assert_eq!(report["files"], serde_json::json!(["assess.json", "torques.sto", "fatigue.sto", "report.html"]));
     assert_eq!(report["warnings"].as_array().unwrap().len(), 1);
     let plain = folder.path().join("plain.sto");
     let arguments = ["torques", "adult", &motion, "--load", "hand_r 3kg", "--out", plain.to_str().unwrap()];
@@ -188,6 +202,20 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     assert_eq!(fatigue.rows[1][at("elbow_flex_r.fatigue_positive")], elbow["fatigue_at_end"]);
     assert_eq!(fatigue.rows[0][at("elbow_flex_r.load_positive")], elbow["peak_load"]["value"]);
     assert_eq!(fatigue.rows[1][at("elbow_flex_r.load_negative")], 0.0);
+
+    let page = page(&out);
+    assert_eq!((&page["title"], column(&page["times"], 2)), (&serde_json::json!("two.csv"), vec![0.0, 5.0]));
+    let shown = joint(&page, "elbow_flex_r");
+    assert_eq!(column(&shown["angle"], 2), [90.0, 60.0]);
+    let [load, tired] = [&shown["load"], &shown["groups"][0]["fatigue"]].map(|values| column(values, 2));
+    assert!((load[0] - elbow["peak_load"]["value"].as_f64().unwrap()).abs() < 6e-4, "{load:?}");
+    assert!((tired[1] - elbow["fatigue_at_end"].as_f64().unwrap()).abs() < 6e-4, "{tired:?}");
+    assert!(page["levels"].is_null() && page["reasons"][0].as_str().unwrap().starts_with("Nothing holds the body up"));
+    // What would relieve the elbow is told, with the angle of assess.json.
+    let goal = elbow["proposals"][0]["goal_deg"].as_f64().unwrap();
+    let told = page["list"]["entries"].as_array().unwrap().iter().map(|entry| entry["text"].as_str().unwrap());
+    let told: Vec<&str> = told.filter(|text| text.starts_with("Right elbow flexion: greatest load")).collect();
+    assert!(told.len() == 1 && told[0].contains(&format!("to {goal:.1}°")), "{told:?} {goal}");
 }
 
 #[test]

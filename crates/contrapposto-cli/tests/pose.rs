@@ -2,9 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
+mod program;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Sex, adult};
+use program::{column, joint, numbers, page};
 use serde_json::Value;
 
 struct Run {
@@ -54,6 +59,72 @@ fn the_shelf_is_reached_on_both_feet() {
     for file in ["pose.mot", "pose.csv", "pose.svg"] {
         assert!(std::fs::metadata(folder.path().join(file)).unwrap().len() > 100, "{file}");
     }
+    shown_as_found(&page(folder.path()), &found);
+}
+
+/// The page has the posture of `pose.json`, no time, and forces that carry the body through its centre of mass.
+fn shown_as_found(page: &Value, found: &Value) {
+    assert!(page["times"].is_null() && page["levels"].is_null());
+    assert_eq!((&page["frames"], page["names"].as_array().unwrap().len()), (&serde_json::json!(1), 1));
+    for name in ["arm_flex_r", "hip_flexion_l", "lumbar_rotation"] {
+        let angle = found["coordinates"][name].as_f64().unwrap().to_degrees();
+        assert!((column(&joint(page, name)["angle"], 1)[0] - angle).abs() < 0.011, "{name}");
+        assert!(joint(page, name)["groups"][0]["fatigue"].is_null(), "nothing tires in a posture");
+    }
+    let center = numbers(&found["center_of_mass_m"]);
+    let [mut force, mut moment] = [0.0, 0.0];
+    for support in page["supports"].as_array().unwrap() {
+        let [up, at] = [&support["force"][1], &support["at"][0]].map(|value| column(value, 1)[0]);
+        (force, moment) = (force + up, moment + up * at);
+    }
+    assert!((force - 60.0 * 9.80665).abs() < 2.0 && (moment / force - center[0]).abs() < 1e-3, "{force} {moment}");
+    for k in 0..3 {
+        assert!((column(&page["center"][k], 1)[0] - center[k]).abs() < 1e-4);
+    }
+    assert_eq!(page["targets"][0], serde_json::json!([0.45, 1.55, 0.25]));
+    assert_eq!(page["table"]["rows"].as_array().unwrap().len(), 7);
+    assert_eq!(page["list"]["entries"], serde_json::json!([]));
+}
+
+/// What is under the pelvis is drawn, level and where the patch of the seat is; the feet stand on the ground.
+#[test]
+fn a_seat_is_under_who_sits() {
+    const SITS: &str = "format = 1\n[model]\nadult = { sex = \"female\", stature_m = 1.65, mass_kg = 60 }\n\
+        [posture]\npelvis_ty_m = 0.512\nhip_flexion_r_deg = 85\nhip_flexion_l_deg = 85\nknee_angle_r_deg = 85\n\
+        knee_angle_l_deg = 85\n[[support]]\nsegment = \"pelvis\"\n[[support]]\nsegment = \"calcn_r\"\n\
+        [[support]]\nsegment = \"calcn_l\"\n[[task]]\nkind = \"posture\"\n";
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = folder.path().join("sits.toml");
+    std::fs::write(&scenario, SITS).unwrap();
+    assert_eq!(pose(&scenario, folder.path(), &[]).code, 0);
+    let page = page(folder.path());
+    let model = adult(&Adult { sex: Sex::Female, stature: 1.65, mass: 60.0, ..Adult::default() }).unwrap();
+    let mut posture = model.default_posture();
+    for (name, value) in
+        [("pelvis_ty", 0.512), ("hip_flexion_r", 85f64.to_radians()), ("knee_angle_r", 85f64.to_radians())]
+    {
+        posture.values_mut()[model.coordinate(name).unwrap()] = value;
+    }
+    let mut kinematics = Kinematics::new(&model);
+    kinematics.update(&model, &posture).unwrap();
+    let patch = |segment: &str| -> Vec<_> {
+        let segment = model.segment(segment).unwrap();
+        model.segments()[segment].patch.iter().map(|corner| kinematics.station(&model, segment, *corner)).collect()
+    };
+    let (seat, sole) = (patch("pelvis"), patch("calcn_r"));
+    let surfaces = page["surfaces"].as_array().unwrap();
+    assert_eq!(surfaces.len(), 1);
+    let corners: Vec<Vec<f64>> = surfaces[0].as_array().unwrap().iter().map(numbers).collect();
+    for corner in &seat {
+        assert!(corners.iter().all(|drawn| (drawn[1] - corner.y).abs() < 1e-3), "{corners:?} {corner}");
+        for (axis, value) in [(0, corner.x), (2, corner.z)] {
+            let across = corners.iter().map(|drawn| drawn[axis]);
+            let (low, high) = (across.clone().fold(f64::INFINITY, f64::min), across.fold(f64::NEG_INFINITY, f64::max));
+            assert!(low < value - 0.05 && high > value + 0.05, "{corners:?} {corner}");
+        }
+    }
+    let ground = sole.iter().map(|corner| corner.y).sum::<f64>() / sole.len() as f64;
+    assert!((page["ground"].as_f64().unwrap() - ground).abs() < 1e-3);
 }
 
 #[test]

@@ -2,8 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
+mod program;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use program::{column, joint, page};
 
 use serde_json::Value;
 
@@ -59,6 +63,24 @@ fn one_leg_rests_by_a_slouch_or_level() {
     let efforts: Vec<f64> = postures.iter().map(|p| p["effort"].as_f64().unwrap()).collect();
     println!("hips {hips:?} deg, efforts {efforts:?}");
     assert!(hips[0] > 18.0 && hips[1] < 8.0 && efforts[0] < 0.7 * efforts[1]);
+    // The page shows both, as they stand in relax.json, to choose between.
+    let page = page(&out);
+    assert_eq!(page["names"], serde_json::json!(["posture 1", "posture 2"]));
+    let hip = joint(&page, "hip_adduction_r");
+    let angles = column(&hip["angle"], 2);
+    assert!(angles.iter().zip(&hips).all(|(shown, found)| (shown - found).abs() < 0.011), "{angles:?}");
+    let hanging = &postures[0]["hanging"][0];
+    assert_eq!(hanging["coordinate"], "hip_adduction_r");
+    assert_eq!(page["joints"][page["main"].as_u64().unwrap() as usize]["name"], "hip_adduction_r");
+    for (key, torque) in [("external", "external_nm"), ("passive", "passive_nm")] {
+        assert!((column(&hip[key], 2)[0] - hanging[torque].as_f64().unwrap()).abs() < 0.006, "{key}");
+    }
+    assert_eq!(hip["balance"].as_array().unwrap().len(), 2, "a curve for each");
+    let share = column(&page["supports"][0]["share"], 2)[0];
+    assert!((share - postures[0]["supports"][0]["share"].as_f64().unwrap()).abs() < 6e-4);
+    let told = page["list"]["entries"].as_array().unwrap();
+    assert!(told[0]["text"].as_str().unwrap().contains("right hip adduction at 21.8°"), "{}", told[0]);
+    assert_eq!((told.len(), &told[1]["frame"]), (2, &serde_json::json!(1)));
     let first = &postures[0]["hanging"][0];
     assert_eq!(first["coordinate"], "hip_adduction_r");
     assert!(first["passive_nm"].as_f64().unwrap() < -30.0 && first["share"].as_f64().unwrap() > 0.9);
@@ -87,7 +109,7 @@ fn one_leg_rests_by_a_slouch_or_level() {
     for name in found["files"].as_array().unwrap() {
         assert!(std::fs::metadata(out.join(name.as_str().unwrap())).unwrap().len() > 1000, "{name}");
     }
-    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 5);
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 6);
 }
 
 #[test]

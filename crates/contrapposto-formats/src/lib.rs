@@ -30,7 +30,7 @@ pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
     MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, ScenarioText, read_pose, read_relax, read_scenario,
-    scenario_model, scenario_schema,
+    scenario_model, scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use trajectory_csv::{TableRow, csv_header, csv_row};

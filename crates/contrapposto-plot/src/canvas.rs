@@ -88,16 +88,35 @@ impl Canvas {
         });
     }
 
+    /// A filled shape with an outline, as SVG path data that ends in `Z`.
+    pub(crate) fn shape(&mut self, d: String, fill: Ink, pen: Pen) {
+        self.scene.add(Primitive::Path(Box::new(PathData {
+            d,
+            fill: Some(color(fill)),
+            stroke: color(pen.ink),
+            stroke_width: pen.width,
+            opacity: None,
+            stroke_dasharray: None,
+        })));
+    }
+
+    /// A filled polygon with an outline; of fewer than three points, nothing.
+    pub(crate) fn polygon(&mut self, corners: &[Point], fill: Ink, pen: Pen) {
+        if corners.len() > 2 {
+            self.shape(path_data(&[corners.to_vec()]) + "Z", fill, pen);
+        }
+    }
+
     /// One line of text; `at` is on its baseline.
     pub(crate) fn text(&mut self, at: Point, content: &str, size: u32, align: Align, ink: Ink) {
         self.spans(at, TextSpan::plain(printable(content)), size, align, ink);
     }
 
     /// One line of bold text, in the colour of text.
-    pub(crate) fn heading(&mut self, at: Point, content: &str, size: u32) {
+    pub(crate) fn heading(&mut self, at: Point, content: &str, size: u32, align: Align) {
         let mut span = TextSpan::plain(printable(content));
         span.bold = true;
-        self.spans(at, span, size, Align::Left, TEXT);
+        self.spans(at, span, size, align, TEXT);
     }
 
     /// One line of text that reads upwards, centred on `at`.

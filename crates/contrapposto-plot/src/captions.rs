@@ -2,9 +2,7 @@
 
 use crate::axes::Frame;
 use crate::canvas::{Align, Canvas, fit};
-use crate::style::{
-    FRAME_LEFT, Ink, LABEL_SIZE, LEGEND_LEFT, MARGIN, Pen, QUIET_TEXT, SMALL_SIZE, TEXT, TITLE_SIZE, WIDTH,
-};
+use crate::style::{Ink, LABEL_SIZE, LEGEND_LEFT, MARGIN, Pen, QUIET_TEXT, SMALL_SIZE, TEXT, TITLE_SIZE, WIDTH};
 
 /// Vertical distance of two entries, px.
 const LINE_HEIGHT: f64 = 19.0;
@@ -12,18 +10,18 @@ const LINE_HEIGHT: f64 = 19.0;
 const SAMPLE: f64 = 22.0;
 
 /// Title and subtitle; returns where they end.
-pub(crate) fn heading(canvas: &mut Canvas, title: &str, subtitle: &str, top: f64) -> f64 {
-    let width = WIDTH - FRAME_LEFT - MARGIN;
+pub(crate) fn heading(canvas: &mut Canvas, left: f64, title: &str, subtitle: &str, top: f64) -> f64 {
+    let width = WIDTH - left - MARGIN;
     let mut bottom = top;
     if !title.is_empty() {
         bottom += 18.0;
         // Bold letters are a tenth wider.
         let title = fit(title, TITLE_SIZE, 0.9 * width);
-        canvas.heading((FRAME_LEFT, bottom - 4.0), &title, TITLE_SIZE);
+        canvas.heading((left, bottom - 4.0), &title, TITLE_SIZE, Align::Left);
     }
     if !subtitle.is_empty() {
         bottom += 18.0;
-        let at = (FRAME_LEFT, bottom - 4.0);
+        let at = (left, bottom - 4.0);
         let subtitle = fit(subtitle, LABEL_SIZE, width);
         canvas.text(at, &subtitle, LABEL_SIZE, Align::Left, QUIET_TEXT);
     }

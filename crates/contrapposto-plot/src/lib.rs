@@ -4,8 +4,7 @@
 //! |---|---|---|
 //! | Torque balance | [`torque_balance()`] | Figures 1 and 7-14 of Rodriguez & Boulic (2007): torques against the angle, the path of the active torque, the arm |
 //! | Passive curve | [`passive_curve()`] | passive torque and its slope over the range of a coordinate |
-//! | Pose | [`pose_views()`] | a stick figure from several sides: start, result, targets, centre of mass |
-//! | Poses | [`pose_grid()`] | several postures side by side, each from several sides, in one scale |
+//! | Bodies | [`body_figure()`] | one posture from three sides, or several side by side: load colours, contact forces, centre of mass, targets, the start as a ghost |
 //! | Time line | [`time_line()`] | angle, torques and fatigue of one coordinate against time |
 //!
 //! Every function takes any input without panicking: numbers that are not finite (or beyond 1e9 in size) leave a gap
@@ -14,25 +13,31 @@
 //!
 //! Inside, every file stands on those above it in this list:
 //! `style` (colours, pens, sizes), `canvas` (the only file that knows the drawing library), `geometry` (clipping, dashes, spreading),
-//! `axes` (data to paper), `captions`, `tags` (notes and postures above a frame), then one file for each picture.
+//! `axes` (data to paper), `captions`, `tags` (notes and postures above a frame), `outline` (hulls of circles), `depth` (what hides
+//! what), `body` (numbers), `body_view` (from where), `body_paper` (shapes), `body_legend`, then one file for each picture.
 
 mod axes;
+mod body;
+mod body_figure;
+mod body_legend;
+mod body_paper;
+mod body_view;
 mod canvas;
 mod captions;
+mod depth;
 mod figure;
 mod geometry;
+mod outline;
 mod passive_chart;
-mod pose_grid;
-mod pose_views;
 mod style;
 mod tags;
 mod time_line;
 mod torque_balance;
 
+pub use body::{BodyFigure, BodyForce, BodyPart, BodyPosture};
+pub use body_figure::body_figure;
 pub use figure::{Figure, PlotError};
 pub use passive_chart::{PassiveChart, passive_curve};
-pub use pose_grid::{PoseColumn, PoseGrid, pose_grid};
-pub use pose_views::{PoseView, PoseViews, pose_views};
 pub use tags::{PostureSketch, SketchRole};
 pub use time_line::{TimeLine, time_line};
 pub use torque_balance::{TorqueBalance, torque_balance};

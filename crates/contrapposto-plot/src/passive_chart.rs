@@ -42,7 +42,7 @@ pub struct PassiveChart {
 pub fn passive_curve(chart: &PassiveChart) -> Figure {
     let mut canvas = Canvas::new();
     let tags = tags(chart);
-    let top = heading(&mut canvas, &chart.title, "", MARGIN) + tags_height(&tags);
+    let top = heading(&mut canvas, FRAME_LEFT, &chart.title, "", MARGIN) + tags_height(&tags);
 
     let (low, high) = chart.range_deg;
     let angles = Range::around(chart.angles_deg.iter().copied().chain([low, high])).padded(0.02);

@@ -27,6 +27,26 @@ pub(crate) const TRUNK: Ink = Ink(0xb0, 0xb0, 0xb0);
 pub(crate) const FLAT_ZONE: Ink = Ink(0xe6, 0xee, 0xf9);
 pub(crate) const PAPER: Ink = Ink(0xff, 0xff, 0xff);
 
+/// Bodies: colours of the report's page.
+const LOAD: [[f64; 3]; 4] = [[0.98, 0.93, 0.76], [0.98, 0.72, 0.34], [0.86, 0.36, 0.13], [0.52, 0.08, 0.12]];
+pub(crate) const UNKNOWN: Ink = Ink(0xb9, 0xbf, 0xc9);
+pub(crate) const FORCE: Ink = Ink(0x00, 0x9e, 0x73);
+pub(crate) const CENTER: Ink = Ink(0x1b, 0x1f, 0x26);
+pub(crate) const GHOST: Ink = Ink(0xec, 0xee, 0xf1);
+pub(crate) const GHOST_EDGE: Ink = Ink(0xb4, 0xbb, 0xc6);
+pub(crate) const GROUND: Ink = Ink(0xf5, 0xf6, 0xf8);
+
+/// The colour of a load, 0 to 1 of the end of the scale: paler than none is none, darker than all is all.
+pub(crate) fn load_ink(share: f64) -> Ink {
+    let place = share.clamp(0.0, 1.0) * (LOAD.len() - 1) as f64;
+    let below = (place.floor() as usize).min(LOAD.len() - 2);
+    let [red, green, blue] = [0, 1, 2].map(|k| {
+        let (a, b) = (LOAD[below][k], LOAD[below + 1][k]);
+        (255.0 * (a + (b - a) * (place - below as f64))).round() as u8
+    });
+    Ink(red, green, blue)
+}
+
 /// Sizes of text, px.
 pub(crate) const TITLE_SIZE: u32 = 15;
 pub(crate) const LABEL_SIZE: u32 = 12;
@@ -80,3 +100,8 @@ pub(crate) const FRAME_PEN: Pen = Pen::solid(FRAME, 1.0);
 pub(crate) const GRID_PEN: Pen = Pen::solid(GRID, 1.0);
 pub(crate) const ZERO_PEN: Pen = Pen::solid(LEADER, 1.0);
 pub(crate) const LEADER_PEN: Pen = Pen::dashed(LEADER, 1.0, 3.0, 3.0);
+pub(crate) const OUTLINE_PEN: Pen = Pen::solid(Ink(0x45, 0x4b, 0x55), 0.8);
+pub(crate) const GROUND_PEN: Pen = Pen::solid(LEADER, 1.0);
+pub(crate) const PLUMB_PEN: Pen = Pen::dashed(CENTER, 1.2, 4.0, 3.0);
+pub(crate) const TARGET_PEN: Pen = Pen::solid(EXTERNAL, 2.4);
+pub(crate) const GAZE_PEN: Pen = Pen::dashed(PASSIVE, 1.2, 5.0, 4.0);

@@ -3,13 +3,13 @@
 //! Fatigue is followed for both muscle groups of the coordinate, one for each sign of the active torque (the paper's
 //! half-joints). Relief begins when a group passes the critical level and ends at the lower recovery level.
 
-use crate::axes::{Frame, Range};
+use crate::axes::{Frame, Range, drawable};
 use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::style::{
-    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, MARGIN, NEGATIVE_PEN, PASSIVE_PEN, POSITIVE_PEN,
-    Pen, RECOVERY_PEN, TEXT,
+    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, FRAME_LEFT, MARGIN, NEGATIVE_PEN, PASSIVE_PEN,
+    POSITIVE_PEN, Pen, RECOVERY_PEN, TEXT,
 };
 use crate::tags::{Tag, draw_tags, draw_uprights, tags_height};
 
@@ -38,9 +38,9 @@ pub struct TimeLine {
     pub fatigue_positive: Vec<f64>,
     /// Fatigue of the muscle group that produces negative torque, 0 to 1, at each time; may be empty.
     pub fatigue_negative: Vec<f64>,
-    /// Fatigue at which relief begins, 0 to 1.
+    /// Fatigue at which relief begins, 0 to 1; NaN where there is none.
     pub critical_level: f64,
-    /// Fatigue at which relief ends, 0 to 1.
+    /// Fatigue at which relief ends, 0 to 1; NaN where there is none.
     pub recovery_level: f64,
     /// Changes of case: time, s, and a short label, e.g. "3.2". Every event has an upright line (the first 60), and a
     /// label as long as there is room.
@@ -61,7 +61,7 @@ struct Part<'a> {
 pub fn time_line(line: &TimeLine) -> Figure {
     let mut canvas = Canvas::new();
     let tags: Vec<Tag> = line.events.iter().map(|(time, label)| Tag::note(*time, label.as_str(), TEXT)).collect();
-    let mut top = heading(&mut canvas, &line.title, &line.subtitle, MARGIN) + tags_height(&tags);
+    let mut top = heading(&mut canvas, FRAME_LEFT, &line.title, &line.subtitle, MARGIN) + tags_height(&tags);
     let times = Range::around(line.time_s.iter().copied());
 
     let parts = parts(line);
@@ -120,7 +120,7 @@ fn parts(line: &TimeLine) -> [Part<'_>; 3] {
 
 fn draw_part(canvas: &mut Canvas, frame: &Frame, part: &Part, times: &[f64]) {
     let mut entries: Vec<(Mark, &str)> = Vec::new();
-    for &(level, pen, label) in &part.levels {
+    for &(level, pen, label) in part.levels.iter().filter(|(level, ..)| drawable(*level)) {
         frame.level(canvas, level, pen);
         entries.push((Mark::Line(pen), label));
     }

@@ -8,8 +8,8 @@ use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::style::{
-    ACTIVE, ACTIVE_PEN, BELOW_FRAME, EXTERNAL_PEN, GOAL, MARGIN, MINUS_ACTIVE_PEN, PAPER, PASSIVE_PEN, PATH_PEN, START,
-    TOLERANCE_PEN,
+    ACTIVE, ACTIVE_PEN, BELOW_FRAME, EXTERNAL, EXTERNAL_PEN, FRAME_LEFT, GOAL, MARGIN, MINUS_ACTIVE_PEN, PAPER,
+    PASSIVE_PEN, PATH_PEN, START, TOLERANCE_PEN,
 };
 use crate::tags::{MOST_TAGS, PostureSketch, SketchRole, Tag, draw_tags, draw_uprights, tags_height};
 
@@ -33,6 +33,9 @@ pub struct TorqueBalance {
     pub angles_deg: Vec<f64>,
     /// External torque at each angle, N m.
     pub external_nm: Vec<f64>,
+    /// Red path with a point at its end: angle, degrees, and external torque, N m, of every step, where it is known only there; may
+    /// be empty.
+    pub external_path: Vec<(f64, f64)>,
     /// Minus the passive torque at each angle, N m.
     pub minus_passive_nm: Vec<f64>,
     /// Active torque at each angle, N m; its opposite is drawn too.
@@ -72,7 +75,7 @@ pub fn torque_balance(panels: &[TorqueBalance]) -> Figure {
 
 /// Draws one panel below `top`; returns where it ends.
 fn draw_panel(canvas: &mut Canvas, panel: &TorqueBalance, top: f64) -> f64 {
-    let text_top = heading(canvas, &panel.title, &panel.subtitle, top);
+    let text_top = heading(canvas, FRAME_LEFT, &panel.title, &panel.subtitle, top);
     let tags = tags(panel);
     let frame_top = text_top + tags_height(&tags);
     let frame = Frame::new(frame_top, FRAME_HEIGHT, angles(panel), torques(panel));
@@ -98,13 +101,13 @@ fn tags(panel: &TorqueBalance) -> Vec<Tag<'_>> {
 }
 
 fn angles(panel: &TorqueBalance) -> Range {
-    let points = panel.start.iter().chain(&panel.path).chain(&panel.goal);
+    let points = panel.start.iter().chain(&panel.path).chain(&panel.external_path).chain(&panel.goal);
     let marked = points.map(|point| point.0);
     Range::around(panel.angles_deg.iter().copied().chain(marked))
 }
 
 fn torques(panel: &TorqueBalance) -> Range {
-    let points = panel.start.iter().chain(&panel.path).chain(&panel.goal);
+    let points = panel.start.iter().chain(&panel.path).chain(&panel.external_path).chain(&panel.goal);
     let marked = points.map(|point| point.1);
     let mut most = extreme(panel.external_nm.iter().copied().chain(marked));
     if most == 0.0 {
@@ -135,7 +138,9 @@ fn draw_curves(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
             entries.push((Mark::Line(TOLERANCE_PEN), &tolerance_label));
         }
     }
-    if frame.curve(canvas, angles, &panel.external_nm, EXTERNAL_PEN) {
+    let (path_angles, path_torques): (Vec<f64>, Vec<f64>) = panel.external_path.iter().copied().unzip();
+    let external = frame.curve(canvas, &path_angles, &path_torques, EXTERNAL_PEN);
+    if frame.curve(canvas, angles, &panel.external_nm, EXTERNAL_PEN) || external {
         entries.push((Mark::Line(EXTERNAL_PEN), "external"));
     }
     let minus_active: Vec<f64> = panel.active_nm.iter().map(|torque| -torque).collect();
@@ -167,6 +172,9 @@ fn draw_curves(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
 fn draw_points(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
     for &zero in panel.zero_torque_deg.iter().filter(|zero| drawable(**zero)).take(MOST_TAGS) {
         frame.dot(canvas, (zero, 0.0), 4.0, PAPER, ACTIVE);
+    }
+    if let Some(end) = panel.external_path.last() {
+        frame.dot(canvas, *end, 4.5, EXTERNAL, PAPER);
     }
     if let Some(start) = panel.start {
         frame.dot(canvas, start, 6.0, START, PAPER);

@@ -3,7 +3,6 @@
 use contrapposto_plot::{
     Figure, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, passive_curve, time_line, torque_balance,
 };
-use contrapposto_plot::{PoseColumn, PoseGrid, PoseView, pose_grid};
 
 const HOSTILE_TEXT: &str = "<script>alert(\"&'\")</script> $\\frac{a}{b}$ \u{0} \u{ffff} 関節 \u{202e}";
 
@@ -50,6 +49,7 @@ fn balance(xs: &[f64], ys: &[f64], text: &str) -> TorqueBalance {
         angle_label: text.to_owned(),
         angles_deg: xs.to_vec(),
         external_nm: ys.to_vec(),
+        external_path: points().collect(),
         minus_passive_nm: xs.to_vec(),
         active_nm: ys.to_vec(),
         tolerance_nm: ys.first().copied().unwrap_or(0.1),
@@ -185,8 +185,8 @@ fn the_balance_shows_the_colours_and_marks_of_the_paper() {
     {
         assert!(svg.contains(&format!("stroke=\"{colour}\"")), "{what}");
     }
-    // Start, goal and one zero; each once in the picture and once in the legend.
-    assert_eq!(count(&svg, "<circle"), 6);
+    // Start, goal and one zero; each once in the picture and once in the legend. The end of the path of external torque.
+    assert_eq!(count(&svg, "<circle"), 7);
     // Each drawing has one line that is not empty.
     assert_eq!(count(&svg, "stroke-width=\"4\""), 2);
 }
@@ -230,26 +230,4 @@ fn a_picture_of_nothing_says_so() {
         assert!(figure.svg().contains("nothing to draw"));
         figure.png().unwrap();
     }
-}
-
-#[test]
-fn postures_stand_side_by_side_in_one_scale_whatever_they_hold() {
-    let column = |points: &[[f64; 2]], text: &str| {
-        let view = PoseView { label: text.to_owned(), end: vec![points.to_vec()], ..PoseView::default() };
-        PoseColumn { views: vec![view.clone(), view] }
-    };
-    let grid = |columns: Vec<PoseColumn>, text: &str| {
-        let text = text.to_owned();
-        pose_grid(&PoseGrid { title: text.clone(), subtitle: text.clone(), target: text, columns })
-    };
-    for list in hostile_lists() {
-        let points: Vec<[f64; 2]> = list.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-        assert_well_formed(&grid(vec![column(&points, "<&>"); 7], "<&>").svg());
-    }
-    assert_well_formed(&grid(vec![], "").svg());
-    let stick = column(&[[0.0, 0.0], [0.0, 1.7]], "1: effort 0.1");
-    let figure = grid(vec![stick.clone(), stick.clone()], "two");
-    assert_eq!(figure.svg(), grid(vec![stick.clone(), stick], "two").svg());
-    assert_eq!(count(&figure.svg(), "1: effort 0.1"), 4);
-    assert!(figure.png().is_ok());
 }

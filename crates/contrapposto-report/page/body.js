@@ -3,6 +3,38 @@ function Body(canvas, onTurn) {
   const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: true });
   if (!gl) return null;
   const RINGS = 16, SLICES = 24;
+  const cross = (p, q) => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+
+  // --- Shaders: a light from above the left shoulder of who looks, and a little from everywhere. They are
+  // compiled elsewhere while meshes are made here.
+  const shader = (kind, source) => {
+    const made = gl.createShader(kind);
+    gl.shaderSource(made, source);
+    gl.compileShader(made);
+    return made;
+  };
+  const program = gl.createProgram();
+  gl.attachShader(program, shader(gl.VERTEX_SHADER, `
+    attribute vec3 point, normal;
+    uniform mat4 place, view;
+    varying vec3 facing;
+    void main() {
+      facing = mat3(place) * normal;
+      gl_Position = view * place * vec4(point, 1.0);
+    }`));
+  gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `
+    precision mediump float;
+    uniform vec4 color;
+    uniform vec3 light, eye;
+    uniform float flat_;
+    varying vec3 facing;
+    void main() {
+      vec3 n = normalize(facing);
+      float shade = 0.58 + 0.2 * n.y + 0.34 * max(dot(n, light), 0.0);
+      shade *= 0.72 + 0.28 * smoothstep(0.0, 0.55, abs(dot(n, eye)));
+      gl_FragColor = vec4(color.rgb * mix(shade, 1.0, flat_), color.a);
+    }`));
+  gl.linkProgram(program);
 
   // --- Meshes: one triangle list a part; a normal a point.
   const directions = [];
@@ -43,36 +75,23 @@ function Body(canvas, onTurn) {
   const ball = hull([[0, 0, 0, 1]]);
   const shaft = hull([[0, 0, 0, 0.012], [0, 1, 0, 0.012]]);
   const tip = hull([[0, -0.09, 0, 0.034], [0, -0.002, 0, 0.002]]);
+  // Seats, tables, walls: a thin slab each, its faces as triangles and its edges as lines.
+  const slabs = report.surfaces.map((top) => {
+    const [u, v] = [1, 3].map((i) => top[i].map((x, k) => x - top[0][k]));
+    const across = cross(u, v), size = Math.hypot(...across) || 1, down = across.map((x) => -x / size);
+    const bottom = top.map((corner) => corner.map((x, k) => x + 0.025 * down[k]));
+    const faces = [], edges = [], add = (list, corner, n) => list.push(...corner, ...n);
+    const face = (a, b, c, d, n) => { for (const corner of [a, b, c, a, c, d]) add(faces, corner, n); };
+    face(...top, down.map((x) => -x));
+    face(...bottom, down);
+    top.forEach((a, i) => {
+      const j = (i + 1) % 4, out = cross(top[j].map((x, k) => x - a[k]), down), length = Math.hypot(...out) || 1;
+      face(a, top[j], bottom[j], bottom[i], out.map((x) => x / length));
+      for (const corner of [a, top[j], bottom[i], bottom[j], a, bottom[i]]) add(edges, corner, [0, 1, 0]);
+    });
+    return [[gl.TRIANGLES, faces, 0.45], [gl.LINES, edges, 0.85]].map(([kind, list, alpha]) => ({ kind, alpha, count: list.length / 6, data: buffer(gl.ARRAY_BUFFER, new Float32Array(list)) }));
+  });
 
-  // --- Shaders: a light from above the left shoulder of who looks, and a little from everywhere.
-  const shader = (kind, source) => {
-    const made = gl.createShader(kind);
-    gl.shaderSource(made, source);
-    gl.compileShader(made);
-    return made;
-  };
-  const program = gl.createProgram();
-  gl.attachShader(program, shader(gl.VERTEX_SHADER, `
-    attribute vec3 point, normal;
-    uniform mat4 place, view;
-    varying vec3 facing;
-    void main() {
-      facing = mat3(place) * normal;
-      gl_Position = view * place * vec4(point, 1.0);
-    }`));
-  gl.attachShader(program, shader(gl.FRAGMENT_SHADER, `
-    precision mediump float;
-    uniform vec4 color;
-    uniform vec3 light, eye;
-    uniform float flat_;
-    varying vec3 facing;
-    void main() {
-      vec3 n = normalize(facing);
-      float shade = 0.58 + 0.2 * n.y + 0.34 * max(dot(n, light), 0.0);
-      shade *= 0.72 + 0.28 * smoothstep(0.0, 0.55, abs(dot(n, eye)));
-      gl_FragColor = vec4(color.rgb * mix(shade, 1.0, flat_), color.a);
-    }`));
-  gl.linkProgram(program);
   gl.useProgram(program);
   const at = (name) => gl.getUniformLocation(program, name);
   const place = at("place"), view = at("view"), color = at("color"), light = at("light"), eye = at("eye"), flat = at("flat_");
@@ -96,30 +115,31 @@ function Body(canvas, onTurn) {
   const pointing = (from, along, thick, stretch) => {
     const length = Math.hypot(...along) || 1, y = along.map((v) => v / length);
     const k = Math.abs(y[0]) < 0.9 ? [1, 0, 0] : [0, 0, 1];
-    const cross = (p, q) => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
     const across = cross(k, y), size = Math.hypot(...across), x = across.map((v) => v / size), z = cross(x, y);
     return [...x.map((v) => v * thick), 0, ...y.map((v) => v * stretch), 0, ...z.map((v) => v * thick), 0, ...from, 1];
   };
 
-  // --- The space that the run takes: the eye looks at its middle.
+  // --- The space that everything takes: the eye looks at its middle.
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   const frames = Array.from({ length: 12 }, (_, i) => Math.round(i / 11 * (report.frames - 1)));
+  const reach = (k, from, to) => {
+    low[k] = Math.min(low[k], from);
+    high[k] = Math.max(high[k], to);
+  };
   for (const segment of report.segments) {
-    for (const m of frames.map((frame) => placed(segment.places, frame))) {
+    for (const m of [placed(segment.start, 0), ...frames.map((frame) => placed(segment.places, frame))]) {
       for (const [x, y, z, r] of segment.balls) {
         for (let k = 0; k < 3; k++) {
           const c = m[k] * x + m[4 + k] * y + m[8 + k] * z + m[12 + k];
-          low[k] = Math.min(low[k], c - r);
-          high[k] = Math.max(high[k], c + r);
+          reach(k, c - r, c + r);
         }
       }
     }
   }
+  for (const corner of [...report.surfaces.flat(), ...report.targets]) corner.forEach((c, k) => reach(k, c, c));
   const middle = low.map((v, k) => (v + high[k]) / 2 || 0);
   const tall = Math.max(0.3, high[1] - low[1]) || 1, wide = Math.max(0.2, Math.hypot(high[0] - low[0], high[2] - low[2])) || 1;
-  const stands = report.supports.length > 0;
-  // The ground is where the lowest support is at the start.
-  const floor = stands ? Math.min(...report.supports.map((support) => support.at[1][0])) : 0;
+  const floor = report.ground;
   const ground = [];
   for (let i = -6; i <= 6; i++) {
     const [x, z] = [Math.round(4 * middle[0]) / 4, Math.round(4 * middle[2]) / 4];
@@ -149,13 +169,20 @@ function Body(canvas, onTurn) {
     gl.uniform3fv(eye, back);
   };
 
-  const mesh = (part, matrix, rgb, alpha = 1) => {
-    gl.bindBuffer(gl.ARRAY_BUFFER, part);
+  const ready = (data, matrix, rgb, alpha) => {
+    gl.bindBuffer(gl.ARRAY_BUFFER, data);
     gl.vertexAttribPointer(point, 3, gl.FLOAT, false, 24, 0);
     gl.vertexAttribPointer(normal, 3, gl.FLOAT, false, 24, 12);
     gl.uniformMatrix4fv(place, false, matrix);
     gl.uniform4f(color, ...rgb, alpha);
+  };
+  const mesh = (part, matrix, rgb, alpha = 1) => {
+    ready(part, matrix, rgb, alpha);
     gl.drawElements(gl.TRIANGLES, corners.length, gl.UNSIGNED_SHORT, 0);
+  };
+  const here = (data, kind, count, rgb, alpha) => {
+    ready(data, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], rgb, alpha);
+    gl.drawArrays(kind, 0, count);
   };
   const paint = (name) => {
     const hex = getComputedStyle(document.documentElement).getPropertyValue(name).trim().replace(/^#(.)(.)(.)$/, "#$1$1$2$2$3$3");
@@ -175,12 +202,16 @@ function Body(canvas, onTurn) {
       mesh(shaft, pointing(foot, arrow, 1, Math.max(0.001, length - 0.09)), force, alpha);
       mesh(tip, pointing(foot.map((v, k) => v + arrow[k]), arrow, 1, 1), force, alpha);
     }
-    if (stands && report.center.every((column) => column.length)) {
+    const spot = (at, size, flat, rgb) => mesh(ball, [size, 0, 0, 0, 0, flat, 0, 0, 0, 0, size, 0, ...at, 1], rgb, alpha);
+    if (report.center) {
       const [x, y, z] = report.center.map((column) => column[frame]);
-      mesh(ball, [0.03, 0, 0, 0, 0, 0.03, 0, 0, 0, 0, 0.03, 0, x, y, z, 1], center, alpha);
-      mesh(shaft, pointing([x, floor, z], [0, 1, 0], 0.35, y - floor), center, alpha);
-      mesh(ball, [0.025, 0, 0, 0, 0, 0.004, 0, 0, 0, 0, 0.025, 0, x, floor + 0.002, z, 1], center, alpha);
+      spot([x, y, z], 0.03, 0.03, center);
+      if (floor !== null) {
+        mesh(shaft, pointing([x, floor, z], [0, 1, 0], 0.35, y - floor), center, alpha);
+        spot([x, floor + 0.002, z], 0.025, 0.004, center);
+      }
     }
+    for (const target of report.targets) spot(target, 0.022, 0.022, paint("--target"));
   };
 
   function draw(frame, measure) {
@@ -195,14 +226,7 @@ function Body(canvas, onTurn) {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, cornerBuffer);
     gl.disable(gl.BLEND);
     gl.uniform1f(flat, 1);
-    if (stands) {
-      gl.bindBuffer(gl.ARRAY_BUFFER, grid);
-      gl.vertexAttribPointer(point, 3, gl.FLOAT, false, 24, 0);
-      gl.vertexAttribPointer(normal, 3, gl.FLOAT, false, 24, 12);
-      gl.uniformMatrix4fv(place, false, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
-      gl.uniform4f(color, ...paint("--ground"), 1);
-      gl.drawArrays(gl.LINES, 0, ground.length / 6);
-    }
+    if (floor !== null) here(grid, gl.LINES, ground.length / 6, paint("--ground"), 1);
     gl.uniform1f(flat, 0);
     const unknown = paint("--none");
     report.segments.forEach((segment, i) => {
@@ -211,17 +235,21 @@ function Body(canvas, onTurn) {
     });
     gl.uniform1f(flat, 0.35);
     marks(frame, 1);
+    // Seats, tables, walls: what is behind them shines through.
+    gl.uniform1f(flat, 0.6);
+    gl.enable(gl.BLEND);
+    gl.depthMask(false);
+    for (const { data, kind, count, alpha } of slabs.flat()) here(data, kind, count, paint("--surface"), alpha);
+    gl.depthMask(true);
     // The start as a ghost: only its nearest surface, so that overlapping parts are not darker.
     gl.uniform1f(flat, 0);
     const ghost = paint("--ghost");
-    const moved = frame > 0;
-    for (const pass of moved ? [0, 1] : []) {
-      gl.colorMask(pass > 0, pass > 0, pass > 0, pass > 0);
-      if (pass) gl.enable(gl.BLEND);
-      report.segments.forEach((segment, i) => mesh(parts[i], placed(segment.places, 0), ghost, 0.24));
+    const moved = report.segments.some((s) => s.start.some((column, k) => Math.abs(column[0] - s.places[k][frame]) > 1e-3));
+    for (const pass of moved ? [false, true] : []) {
+      gl.colorMask(pass, pass, pass, pass);
+      report.segments.forEach((segment, i) => mesh(parts[i], placed(segment.start, 0), ghost, 0.24));
     }
     gl.colorMask(true, true, true, true);
-    gl.enable(gl.BLEND);
     gl.disable(gl.DEPTH_TEST);
     gl.uniform1f(flat, 1);
     marks(frame, 0.4);

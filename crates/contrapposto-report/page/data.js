@@ -4,6 +4,7 @@ const report = (() => {
   const read = JSON.parse(document.getElementById("data").textContent);
   const n = read.frames;
   const list = (column) => {
+    if (!column) return null; // not known
     const values = new Float64Array(n);
     let sum = 0;
     for (let i = 0; i < n; i++) {
@@ -13,9 +14,11 @@ const report = (() => {
     return values;
   };
   read.times = list(read.times);
-  read.effort = list(read.effort);
-  read.center = read.center.map(list);
-  for (const segment of read.segments) segment.places = segment.places.map(list);
+  read.center = read.center && read.center.map(list);
+  for (const segment of read.segments) {
+    segment.places = segment.places.map(list);
+    segment.start = segment.start.map((value) => [value]);
+  }
   for (const support of read.supports) {
     support.force = support.force.map(list);
     support.at = support.at.map(list);
@@ -58,11 +61,9 @@ const measures = {
   },
 };
 {
-  // The scale of loads ends at the next round number above the largest of the run.
+  // The scale of loads ends at the next round number above the largest.
   let largest = 0;
-  for (const segment of report.segments) {
-    for (let i = 0; i < report.frames; i++) largest = Math.max(largest, measures.load.of(segment, i) || 0);
-  }
+  for (const joint of report.joints) if (joint.groups) for (const load of joint.load) largest = Math.max(largest, load);
   measures.load.largest = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1].find((top) => largest <= top) || 1;
   measures.passive.largest = 1;
 }

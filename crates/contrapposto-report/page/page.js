@@ -8,11 +8,13 @@
     return made;
   };
   const state = { frame: 0, joint: report.main, measure: measures.load, playing: null };
-  const last = Math.max(0, report.frames - 1), end = report.times[last] || 0;
+  const last = Math.max(0, report.frames - 1), times = report.times || [], end = times[last] || 0;
+  const moves = times.length > 1, tires = report.joints.some((joint) => (joint.groups || []).some((group) => group.fatigue));
   const slider = find("slider"), rows = find("groups").tBodies[0];
 
   // --- In words.
   const clock = (t) => (end < 300 ? `${t.toFixed(end < 20 ? 2 : 1)} s` : `${Math.floor(t / 60)} min ${String(Math.floor(t % 60)).padStart(2, "0")} s`);
+  const moment = (frame) => (report.names ? report.names[frame] : clock(times[frame] || 0));
   const percent = (share) => `${(100 * share).toFixed(share < 0.0995 ? 1 : 0)}\u00a0%`;
   const signed = (value) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(Math.abs(value) < 9.95 ? 2 : 1)}`;
   const span = (s) => (s < 0 ? "no limit" : s < 100 ? `${s.toFixed(0)} s` : s < 5400 ? `${(s / 60).toFixed(0)} min` : `${(s / 3600).toFixed(1)} h`);
@@ -33,19 +35,43 @@
     option.value = i;
     find("chooser").append(option);
   });
-  if (!report.supports.length) document.querySelectorAll(".carried").forEach((key) => { key.hidden = true; });
-  report.decisions.forEach((decision) => {
+  // What is not known has no place on the page.
+  const shown = {
+    "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length, "key-target": report.targets.length,
+    "key-ghost": moves || report.names, time: moves, "over-time": moves, postures: last > 0 && report.names, joint: report.joints.length,
+    list: report.list.entries.length || report.list.none, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
+  };
+  for (const [id, known] of Object.entries(shown)) find(id).hidden = !known;
+  document.documentElement.toggleAttribute("data-still", !moves);
+  if (!tires) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
+  find("keys").textContent = (moves ? "Space plays. Arrow keys step (with Shift by ten), Home and End jump. " : last > 0 ? "Arrow keys go from posture to posture. " : "") + "Drag the body to turn it.";
+  find("list-heading").textContent = report.list.heading;
+  report.list.entries.forEach((entry) => {
     const item = make("li"), button = make("button");
     button.type = "button";
-    button.append(make("time", clock(report.times[decision.frame])), make("span", decision.text));
+    if (moves || report.names) button.append(make("time", moment(entry.frame)));
+    button.append(make("span", entry.text));
     button.addEventListener("click", () => {
-      choose(decision.joint);
-      show(decision.frame);
+      choose(entry.joint);
+      show(entry.frame);
     });
     item.append(button);
     find("decisions").append(item);
   });
-  if (!report.decisions.length) find("decisions").append(make("li", "Nothing: no muscle group asked for relief.", "hint"));
+  if (!report.list.entries.length) find("decisions").append(make("li", report.list.none, "hint"));
+  find("overview-heading").textContent = report.table.heading;
+  const lines = find("table").tBodies[0];
+  for (const [kind, part, cells] of [["th", find("table").tHead, report.table.columns], ...report.table.rows.map((row) => ["td", lines, row])]) {
+    const line = make("tr");
+    line.append(...cells.map((text) => make(kind, text)));
+    part.append(line);
+  }
+  if (shown.postures) report.names.forEach((name, frame) => {
+    const button = make("button", name);
+    button.type = "button";
+    button.addEventListener("click", () => show(frame));
+    find("postures").append(button);
+  });
 
   // --- Body and charts.
   const body = Body(find("body"), (view) => {
@@ -53,31 +79,31 @@
     paintBody();
   });
   if (!body) find("no-body").hidden = false;
-  const charts = Charts(find("balance"), find("course"), (time) => show(frameAt(time)));
+  const charts = Charts((time) => show(frameAt(time)));
   const paintBody = () => { if (body) body.draw(state.frame, state.measure); };
 
   function frameAt(time) {
     let low = 0, high = last;
     while (low < high) {
       const middle = (low + high) >> 1;
-      if (report.times[middle] < time) low = middle + 1; else high = middle;
+      if (times[middle] < time) low = middle + 1; else high = middle;
     }
-    return low > 0 && time - report.times[low - 1] < report.times[low] - time ? low - 1 : low;
+    return low > 0 && time - times[low - 1] < times[low] - time ? low - 1 : low;
   }
-
 
   // --- A moment.
   function show(frame) {
     state.frame = Math.min(last, Math.max(0, frame));
-    const time = report.times[state.frame] || 0;
+    const time = times[state.frame] || 0, name = moment(state.frame);
     slider.value = time;
-    slider.setAttribute("aria-valuetext", clock(time));
-    find("clock").textContent = `${clock(time)} of ${clock(end)}`;
+    slider.setAttribute("aria-valuetext", name);
+    find("clock").textContent = `${name} of ${clock(end)}`;
+    document.querySelectorAll("#postures button").forEach((b, i) => b.setAttribute("aria-pressed", String(i === state.frame)));
     paintBody();
     charts.drawFrame(state.frame);
     tellJoint();
-    tellGroups(time);
-    const current = report.decisions.findLastIndex((decision) => decision.frame <= state.frame);
+    tellGroups(name);
+    const current = report.list.entries.findLastIndex((entry) => entry.frame <= state.frame);
     document.querySelectorAll("#decisions button").forEach((b, i) => b.classList.toggle("current", i === current));
   }
 
@@ -91,27 +117,27 @@
   }
 
   // The hardest worked groups of the moment.
-  function tellGroups(time) {
+  function tellGroups(name) {
     const i = state.frame, found = [];
     report.joints.forEach((joint, place) => (joint.groups || []).forEach((group, side) => {
       const works = side === (joint.active[i] < 0 ? 1 : 0);
-      const row = { place, group, load: works ? joint.load[i] : 0, fatigue: group.fatigue[i] };
+      const row = { place, group, load: works ? joint.load[i] : 0, fatigue: group.fatigue ? group.fatigue[i] : 0 };
       if (row.load >= 0.001 || row.fatigue >= 0.005) found.push(row);
     }));
     found.sort((a, b) => b.load - a.load || b.fatigue - a.fatigue);
-    find("when").textContent = `at ${clock(time)}`;
+    find("when").textContent = moves ? `at ${name}` : last > 0 ? name : "";
     while (rows.rows.length > Math.min(8, found.length)) rows.deleteRow(-1);
     found.slice(0, 8).forEach((row, k) => {
       const line = rows.rows[k] || newRow();
       line.dataset.joint = row.place;
       const cells = [row.group.label, percent(row.load), percent(row.fatigue), row.load < 0.005 ? "rests" : span(row.group.left[i])];
       cells.forEach((text, c) => { line.cells[c].textContent = text; });
-      line.cells[2].classList.toggle("tired", row.fatigue >= report.levels[0]);
+      line.cells[2].classList.toggle("tired", row.fatigue >= (report.levels || [1])[0]);
     });
   }
   function newRow() {
     const row = rows.insertRow();
-    for (let c = 0; c < 4; c++) row.insertCell();
+    for (let c = 0; c < 4; c++) row.insertCell().hidden = c === 2 && !tires;
     row.tabIndex = 0;
     row.addEventListener("click", () => choose(Number(row.dataset.joint)));
     row.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(Number(row.dataset.joint)); });
@@ -123,11 +149,13 @@
     state.joint = place;
     find("chooser").value = place;
     const joint = report.joints[place];
-    find("balance-hint").textContent = !joint ? "" : joint.balance.external.length
-      ? "Where external torque meets minus passive torque the joint hangs on its ligaments: the gap between them is what muscles hold."
-      : "External torque where the body went in this run. Where it meets minus passive torque the joint hangs on its ligaments: the gap is what muscles hold.";
-    charts.drawJoint(place, state.frame);
+    const swept = joint && joint.balance.some((balance) => balance.external.length), known = joint && joint.balance.length;
+    find("balance-hint").textContent = (swept ? "Where external torque meets minus passive torque the joint hangs on its ligaments: the gap between them is what muscles hold."
+      : `External torque ${moves ? "where the body went" : last > 0 ? "in each posture" : "in this posture"}. ` +
+        (known ? "Where it meets minus passive torque the joint hangs on its ligaments: the gap is what muscles hold." : "Nothing is known of its ligaments.")) +
+      (moves || last > 0 ? " Large dots: now." : "");
     tellJoint();
+    return charts.drawJoint(place, state.frame);
   }
 
   // --- A measure.
@@ -143,7 +171,7 @@
 
   // --- Time goes by: the whole run in twelve seconds at most, and never slower than it was.
   function play() {
-    const pace = Math.max(1, end / 12), from = state.frame >= last ? 0 : report.times[state.frame];
+    const pace = Math.max(1, end / 12), from = state.frame >= last ? 0 : times[state.frame];
     const begin = performance.now();
     const step = (now) => {
       const time = from + (now - begin) / 1000 * pace;
@@ -179,7 +207,7 @@
     if (event.altKey || event.ctrlKey || event.metaKey || event.target.tagName === "SELECT") return;
     const far = event.shiftKey ? 10 : 1;
     const to = { ArrowLeft: state.frame - far, ArrowRight: state.frame + far, Home: 0, End: last }[event.key];
-    if (event.key === " " && event.target.tagName !== "BUTTON") toggle();
+    if (event.key === " " && moves && event.target.tagName !== "BUTTON") toggle();
     else if (to !== undefined) { stop(); show(to); }
     else return;
     event.preventDefault();
@@ -199,13 +227,20 @@
   addEventListener("afterprint", () => print(false));
   matchMedia("print").addEventListener("change", (change) => { print(change.matches); charts.resize(); });
 
-  measure("load");
+  const known = report.joints.some((joint) => joint.groups);
+  find("by-load").hidden = !known;
+  measure(known ? "load" : "passive");
   choose(state.joint);
-  show(last);
-  document.documentElement.dataset.drawn = String(Math.round(performance.now()));
-  // The charts' library stands below and takes a moment to read; the body and the words are there already.
-  addEventListener("DOMContentLoaded", () => {
-    redraw();
-    document.documentElement.dataset.ready = String(Math.round(performance.now()));
+  show(report.names ? 0 : last);
+  // The body and the words are there; the charts' library takes a moment to read and comes after they are painted.
+  const painted = new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+  const parsed = new Promise((done) => addEventListener("DOMContentLoaded", done));
+  const mark = (name) => { document.documentElement.dataset[name] = String(Math.round(performance.now())); };
+  painted.then(() => mark("drawn"));
+  Promise.all([painted, parsed]).then(async () => {
+    document.head.append(make("script", find("plotly").textContent));
+    find("plotly").remove();
+    await choose(state.joint);
+    mark("ready");
   });
 })();

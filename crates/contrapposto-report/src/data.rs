@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::column::{column, columns};
-use crate::{Balance, Decision, Group, Joint, Report, Segment, Support};
+use crate::{Balance, Entry, Group, Joint, Moments, Report, Segment, Support};
 
 /// What can be seen on a page.
 const SECONDS: f64 = 1e-3;
@@ -18,7 +18,11 @@ const FOR_EVER: f64 = 1e5;
 
 /// The JSON text of a report. No `<`, `>` or `&` is left in it, so nothing in it can end or begin an element.
 pub(crate) fn data(report: &Report) -> String {
-    let n = report.times.len();
+    let n = report.moments.len();
+    let (times, names) = match &report.moments {
+        Moments::Times(times) => (column(times.iter().copied(), n, SECONDS), Value::Null),
+        Moments::Postures(names) => (Value::Null, json!(names)),
+    };
     let value = json!({
         "title": report.title,
         "body": report.body,
@@ -26,15 +30,23 @@ pub(crate) fn data(report: &Report) -> String {
         "reasons": report.reasons,
         "figures": report.figures.iter().map(|f| json!([f.label, f.value, f.note])).collect::<Value>(),
         "frames": n,
-        "times": column(report.times.iter().copied(), n, SECONDS),
+        "times": times,
+        "names": names,
         "segments": report.segments.iter().map(|s| segment(s, n)).collect::<Value>(),
         "joints": report.joints.iter().map(|j| joint(j, n)).collect::<Value>(),
         "main": report.main,
         "levels": report.levels,
         "supports": report.supports.iter().map(|s| support(s, n)).collect::<Value>(),
-        "center": columns(&report.center_of_mass, n, [METRES; 3]),
-        "effort": column(report.effort.iter().copied(), n, SHARE),
-        "decisions": report.decisions.iter().map(decision).collect::<Value>(),
+        "ground": report.ground.map(|height| short(&[height], METRES)[0].clone()),
+        "surfaces": report.surfaces.iter().map(|corners| points(corners)).collect::<Value>(),
+        "targets": points(&report.targets),
+        "center": known(&report.center_of_mass, || columns(&report.center_of_mass, n, [METRES; 3])),
+        "list": {
+            "heading": report.list.heading,
+            "entries": report.list.entries.iter().map(entry).collect::<Value>(),
+            "none": report.list.none,
+        },
+        "table": { "heading": report.table.heading, "columns": report.table.columns, "rows": report.table.rows },
     });
     escape(&value.to_string())
 }
@@ -58,6 +70,7 @@ fn segment(segment: &Segment, n: usize) -> Value {
         "balls": segment.balls.iter().map(|ball| short(ball, METRES)).collect::<Value>(),
         "joints": segment.joints,
         "places": columns(&segment.places, n, [m, m, m, t, t, t, t]),
+        "start": short(&segment.start, METRES),
     })
 }
 
@@ -74,7 +87,7 @@ fn joint(joint: &Joint, n: usize) -> Value {
         "external": list(&joint.external, TORQUE),
         "passive": list(&joint.passive, TORQUE),
         "load": list(&joint.load, SHARE),
-        "balance": balance(&joint.balance, angle),
+        "balance": joint.balance.iter().map(|b| balance(b, angle)).collect::<Value>(),
     })
 }
 
@@ -82,7 +95,7 @@ fn group(group: &Group, n: usize) -> Value {
     let left = |&seconds: &f64| if seconds < FOR_EVER { seconds.max(0.0) } else { -1.0 };
     json!({
         "label": group.label,
-        "fatigue": column(group.fatigue.iter().copied(), n, SHARE),
+        "fatigue": known(&group.fatigue, || column(group.fatigue.iter().copied(), n, SHARE)),
         "left": column(group.left.iter().map(left), n, 1.0),
     })
 }
@@ -104,8 +117,17 @@ fn support(support: &Support, n: usize) -> Value {
     })
 }
 
-fn decision(decision: &Decision) -> Value {
-    json!({ "frame": decision.frame, "joint": decision.joint, "text": decision.text })
+fn entry(entry: &Entry) -> Value {
+    json!({ "frame": entry.frame, "joint": entry.joint, "text": entry.text })
+}
+
+fn points(points: &[[f64; 3]]) -> Value {
+    points.iter().map(|point| short(point, METRES)).collect()
+}
+
+/// Nothing where there is nothing.
+fn known<T>(values: &[T], write: impl FnOnce() -> Value) -> Value {
+    if values.is_empty() { Value::Null } else { write() }
 }
 
 /// Numbers rounded to what can be seen.
@@ -117,6 +139,7 @@ fn short(values: &[f64], step: f64) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::List;
 
     #[test]
     fn hostile_names_stay_data() {
@@ -124,7 +147,7 @@ mod tests {
         let report = Report {
             title: name.to_owned(),
             segments: vec![Segment { name: name.to_owned(), ..Segment::default() }],
-            decisions: vec![Decision { text: name.to_owned(), ..Decision::default() }],
+            list: List { entries: vec![Entry { text: name.to_owned(), ..Entry::default() }], ..List::default() },
             ..Report::default()
         };
         let text = data(&report);
@@ -132,6 +155,6 @@ mod tests {
         let back: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(back["title"], name);
         assert_eq!(back["segments"][0]["name"], name);
-        assert_eq!(back["decisions"][0]["text"], name);
+        assert_eq!(back["list"]["entries"][0]["text"], name);
     }
 }

@@ -1,5 +1,6 @@
-//! How does a run become a page that opens anywhere? Plain numbers in, one `report.html` out: the body in three dimensions,
-//! charts of every joint, decisions in plain words. It needs no network, and its content security policy allows none.
+//! How does a result become a page that opens anywhere? Plain numbers in, one `report.html` out: the body in three dimensions,
+//! over time or in a few postures, charts of every joint, decisions in plain words. It needs no network, and its content security
+//! policy allows none. What is not known stands nowhere on the page.
 //!
 //! Inside, every file stands on those above it in this list: `solid` (thickness of segments), `column` (numbers over time,
 //! short), `data` (what the page's script reads), `page` (the file itself). The page's own script and style stand in `page/`.
@@ -18,7 +19,7 @@ pub use solid::balls_of;
 /// Everything a page shows. Ground axes: x forward, y up, z to the right; m, s, N, N m, degrees.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    /// Title of the run.
+    /// Title of the job.
     pub title: String,
     /// Name of the body.
     pub body: String,
@@ -28,24 +29,55 @@ pub struct Report {
     pub reasons: Vec<String>,
     /// The few numbers that say most.
     pub figures: Vec<Figure>,
-    /// Moments of all frames, s, rising.
-    pub times: Vec<f64>,
+    /// What its frames are.
+    pub moments: Moments,
     /// What the body is made of.
     pub segments: Vec<Segment>,
     /// Its coordinates, those that hold a torque.
     pub joints: Vec<Joint>,
     /// Place in `joints` of the one to show first.
     pub main: usize,
-    /// Fatigue at which relief begins and ends, 0..=1.
-    pub levels: [f64; 2],
-    /// What carries the body; without, it is held by its root and no ground is drawn.
+    /// Fatigue at which relief begins and ends, 0..=1; none where nobody is relieved.
+    pub levels: Option<[f64; 2]>,
+    /// What carries the body; without, it is held by its root.
     pub supports: Vec<Support>,
+    /// Height of the ground, m; without, none is drawn.
+    pub ground: Option<f64>,
+    /// Other things that the body rests on, a seat, a table, a wall: corners of flat pieces, around, m.
+    pub surfaces: Vec<[[f64; 3]; 4]>,
+    /// Places that tasks ask for, m.
+    pub targets: Vec<[f64; 3]>,
     /// Centre of mass in every frame; may be empty.
     pub center_of_mass: Vec<[f64; 3]>,
-    /// Sum of squares of relative loads in every frame; may be empty.
-    pub effort: Vec<f64>,
-    /// What was decided, in the order of time.
-    pub decisions: Vec<Decision>,
+    /// What there is to read of single frames.
+    pub list: List,
+    /// What there is to read of all of them; may be empty.
+    pub table: Table,
+}
+
+/// What the frames of a report are.
+#[derive(Clone, Debug)]
+pub enum Moments {
+    /// Moments of a motion, s, rising: a slider and a button to play go through them.
+    Times(Vec<f64>),
+    /// Postures to choose between, each with its name.
+    Postures(Vec<String>),
+}
+
+impl Default for Moments {
+    fn default() -> Self {
+        Self::Times(vec![])
+    }
+}
+
+impl Moments {
+    /// Number of frames.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Times(times) => times.len(),
+            Self::Postures(names) => names.len(),
+        }
+    }
 }
 
 /// A number worth a large print.
@@ -73,6 +105,8 @@ pub struct Segment {
     pub joints: Vec<usize>,
     /// Where it is in every frame: origin, m, and unit quaternion `w x y z`.
     pub places: Vec<[f64; 7]>,
+    /// Where it was before anything happened: a ghost shows it.
+    pub start: [f64; 7],
 }
 
 /// One coordinate over time.
@@ -96,8 +130,8 @@ pub struct Joint {
     pub passive: Vec<f64>,
     /// |Active torque| over strength in every frame.
     pub load: Vec<f64>,
-    /// Its torques over its range; may be empty.
-    pub balance: Balance,
+    /// Its torques over its range: one for all frames, one for each, or none.
+    pub balance: Vec<Balance>,
 }
 
 /// Torques over the range of a joint.
@@ -116,7 +150,7 @@ pub struct Balance {
 pub struct Group {
     /// In words.
     pub label: String,
-    /// Fatigue in every frame, 0..=1.
+    /// Fatigue in every frame, 0..=1; empty where it is not known.
     pub fatigue: Vec<f64>,
     /// How long the present load can still be held, s, in every frame; infinite for ever.
     pub left: Vec<f64>,
@@ -135,13 +169,35 @@ pub struct Support {
     pub share: Vec<f64>,
 }
 
-/// Something decided.
+/// What there is to read of single frames; empty with nothing in it.
 #[derive(Clone, Debug, Default)]
-pub struct Decision {
-    /// Place in [`Report::times`].
+pub struct List {
+    /// What the list is.
+    pub heading: String,
+    /// In the order of frames.
+    pub entries: Vec<Entry>,
+    /// What to say where there are none.
+    pub none: String,
+}
+
+/// Something that a frame and a joint show: a click goes there.
+#[derive(Clone, Debug, Default)]
+pub struct Entry {
+    /// Number of the frame.
     pub frame: usize,
     /// Place in [`Report::joints`].
     pub joint: usize,
     /// In plain words.
     pub text: String,
+}
+
+/// A table of texts.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    /// What it shows.
+    pub heading: String,
+    /// Names of its columns.
+    pub columns: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
 }

@@ -7,7 +7,9 @@ mod support;
 
 use std::path::PathBuf;
 
-use contrapposto_report::{Balance, Decision, Figure, Group, Joint, Report, Segment, Support, balls_of, write};
+use contrapposto_report::{
+    Balance, Entry, Figure, Group, Joint, List, Moments, Report, Segment, Support, Table, balls_of, write,
+};
 use serde_json::json;
 use support::chromium::Chromium;
 
@@ -32,10 +34,10 @@ fn report() -> Report {
         external: over(&|t| size * (t - 5.0)),
         passive: over(&|t| -0.5 * size * t),
         load: over(&|t| 0.02 * t * size),
-        balance: Balance { angle: vec![-10.0, 90.0], minus_passive: vec![-1.0, 9.0], external: vec![2.0, 3.0] },
+        balance: vec![Balance { angle: vec![-10.0, 90.0], minus_passive: vec![-1.0, 9.0], external: vec![2.0, 3.0] }],
         ..Joint::default()
     };
-    let decision = |frame, joint, text: &str| Decision { frame, joint, text: text.to_owned() };
+    let entry = |frame, joint, text: &str| Entry { frame, joint, text: text.to_owned() };
     Report {
         title: HOSTILE.to_owned(),
         body: HOSTILE.to_owned(),
@@ -47,10 +49,11 @@ fn report() -> Report {
             balls: balls_of(&[[0.0, 0.0, 0.0, 1.0], [0.0, -0.8, 0.0, 0.7]], 0.008),
             joints: vec![0, 1],
             places: times.iter().map(place).collect(),
+            start: place(&0.0),
         }],
         joints: vec![joint(HOSTILE, 1.0), joint("second", 2.0)],
         main: 0,
-        levels: [0.6, 0.3],
+        levels: Some([0.6, 0.3]),
         supports: vec![Support {
             label: HOSTILE.to_owned(),
             force: vec![[0.0, 80.0, 0.0]; 50],
@@ -58,10 +61,44 @@ fn report() -> Report {
             share: vec![1.0; 50],
         }],
         center_of_mass: vec![[0.0, 0.6, 0.0]; 50],
-        effort: over(&|t| t * t),
-        decisions: vec![decision(0, 0, HOSTILE), decision(30, 1, "the second joint is relieved")],
-        times,
+        ground: Some(0.0),
+        surfaces: vec![],
+        targets: vec![],
+        list: List {
+            heading: HOSTILE.to_owned(),
+            entries: vec![entry(0, 0, HOSTILE), entry(30, 1, "the second joint is relieved")],
+            none: HOSTILE.to_owned(),
+        },
+        table: Table {
+            heading: HOSTILE.to_owned(),
+            columns: vec!["a column".to_owned(); 6],
+            rows: vec![vec![HOSTILE.to_owned(); 6]],
+        },
+        moments: Moments::Times(times),
     }
+}
+
+/// The same bar in `count` postures: nothing tires.
+fn postures(count: usize) -> Report {
+    let mut report = report();
+    report.moments = Moments::Postures((1..=count).map(|number| format!("{number} {HOSTILE}")).collect());
+    report.levels = None;
+    for joint in &mut report.joints {
+        let range = joint.balance[0].clone();
+        joint.balance = (0..count)
+            .map(|k| Balance { external: vec![], minus_passive: vec![-1.0, 9.0 + k as f64], ..range.clone() })
+            .collect();
+        joint.groups.iter_mut().flatten().for_each(|group| group.fatigue.clear());
+        for values in [&mut joint.angle, &mut joint.external, &mut joint.passive, &mut joint.load] {
+            *values = values.iter().step_by(20).copied().collect();
+        }
+    }
+    for segment in &mut report.segments {
+        segment.places = segment.places.iter().step_by(20).copied().collect();
+    }
+    report.list.entries = (0..count).map(|frame| Entry { frame, joint: frame % 2, text: HOSTILE.to_owned() }).collect();
+    report.targets = vec![[0.2, 0.5, 0.1]];
+    report
 }
 
 fn file(name: &str, page: &str) -> PathBuf {
@@ -72,25 +109,35 @@ fn file(name: &str, page: &str) -> PathBuf {
 
 /// The page, open; `None` where there is no browser.
 fn open(name: &str) -> Option<Chromium> {
+    open_page(name, &report())
+}
+
+fn open_page(name: &str, report: &Report) -> Option<Chromium> {
     let Some(mut browser) = Chromium::start() else {
         println!("skipped: no Chromium on this machine (CONTRAPPOSTO_CHROMIUM may name one)");
         return None;
     };
-    browser.open(&file(name, &write(&report())));
+    browser.open(&file(name, &write(report)));
     Some(browser)
 }
 
 const FRAME: &str = "Number(document.getElementById('slider').value)";
 const PICTURE: &str = "document.getElementById('body').toDataURL()";
-const POINT: &str = "document.getElementById('balance').data.at(-1).x[0]";
-const CURSOR: &str = "document.getElementById('course').layout.shapes.at(-1).x0";
+/// Where the present point and the cursor stand, read back from the charts' axes.
+const POINT: &str = "(() => { const x = document.getElementById('balance')._fullLayout.xaxis;
+  return x.p2l(Number(document.querySelector('#balance-now circle').getAttribute('cx')) - x._offset); })()";
+const CURSOR: &str = "(() => { const x = document.getElementById('course')._fullLayout.xaxis;
+  return x.p2l(parseFloat(document.getElementById('cursor').style.left) - x._offset); })()";
+/// Parts of the page that are shown.
+const SHOWN: &str = "[...document.querySelectorAll('section, #time, #postures, #over-time, th.fatigue, .key')]
+  .filter((part) => part.offsetParent !== null).map((part) => part.id).join(' ')";
 
 #[test]
 fn slider_keys_and_decisions_move_everything() {
     let Some(mut page) = open("moves.html") else { return };
     let start = [PICTURE, POINT, CURSOR].map(|what| page.evaluate(what));
     page.evaluate("{ const s = document.getElementById('slider'); s.value = 2; s.dispatchEvent(new Event('input')); }");
-    page.wait_for(&format!("{CURSOR} === 2"));
+    page.wait_for(&format!("Math.abs({CURSOR} - 2) < 0.01"));
     for (what, before) in [PICTURE, POINT, CURSOR].into_iter().zip(&start) {
         assert_ne!(page.evaluate(what), *before, "{what} has not moved");
     }
@@ -124,6 +171,57 @@ fn slider_keys_and_decisions_move_everything() {
         page.call("Input.dispatchMouseEvent", event);
     }
     assert_ne!(page.evaluate(PICTURE), before, "the body has not turned");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn postures_are_chosen_from() {
+    let Some(mut page) = open_page("postures.html", &postures(3)) else { return };
+    let parts = "scene key-ghost key-force key-center key-target postures list joint muscles overview";
+    assert_eq!(page.evaluate(SHOWN), parts, "no time, no fatigue");
+    let name = "document.querySelector('#postures [aria-pressed=true]').textContent";
+    let top = "Math.max(...document.getElementById('balance').data.at(-1).y)";
+    assert_eq!(page.evaluate(name), format!("1 {HOSTILE}"));
+    let start = [PICTURE, POINT].map(|what| page.evaluate(what));
+    page.press("ArrowRight");
+    assert_eq!(page.evaluate(name), format!("2 {HOSTILE}"));
+    assert_eq!(page.evaluate(top), 10.0, "its own curve");
+    assert!((page.evaluate(POINT).as_f64().unwrap() - 0.32f64.to_degrees()).abs() < 0.02);
+    for (what, before) in [PICTURE, POINT].into_iter().zip(&start) {
+        assert_ne!(page.evaluate(what), *before, "{what} has not moved");
+    }
+    page.evaluate("document.querySelectorAll('#decisions button')[1].click()");
+    assert_eq!(page.evaluate("document.getElementById('chooser').selectedOptions[0].textContent"), "second");
+    page.evaluate("document.querySelectorAll('#postures button')[2].click()");
+    assert_eq!(page.evaluate(name), format!("3 {HOSTILE}"));
+    page.press(" ");
+    assert_eq!(page.evaluate(name), format!("3 {HOSTILE}"), "nothing plays");
+    assert_eq!(page.evaluate("document.querySelector('#table td').textContent"), HOSTILE);
+    assert_eq!(page.evaluate("document.querySelectorAll('img:not(#printed), a, iframe, object').length"), 0);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn what_is_not_known_is_not_shown() {
+    let mut report = postures(1);
+    (report.list, report.table) = (List::default(), Table::default());
+    (report.center_of_mass, report.supports, report.targets) = (vec![], vec![], vec![]);
+    report.joints.iter_mut().for_each(|joint| joint.groups = None);
+    let Some(mut page) = open_page("one.html", &report) else { return };
+    assert_eq!(page.evaluate(SHOWN), "scene key-ghost joint");
+    assert_eq!(page.evaluate("document.getElementById('by-load').hidden"), true, "no load is known");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn a_seat_is_drawn() {
+    let mut report = report();
+    let Some(mut page) = open_page("floor.html", &report) else { return };
+    let without = page.evaluate(PICTURE);
+    report.surfaces = vec![[[-0.2, 0.1, 0.2], [0.2, 0.1, 0.2], [0.2, 0.1, -0.2], [-0.2, 0.1, -0.2]]];
+    page.open(&file("seat.html", &write(&report)));
+    assert_ne!(page.evaluate(PICTURE), without);
+    assert_eq!(page.evaluate("document.getElementById('key-surface').hidden"), false);
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
 

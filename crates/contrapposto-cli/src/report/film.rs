@@ -1,12 +1,15 @@
 //! A run as a page shows it: some hundred moments, those of decisions among them.
 
+use contrapposto::contact::ContactForces;
 use contrapposto::hybrid::Decision;
-use contrapposto::simulation::{Contact, Scenario, Standing, Summary};
+use contrapposto::model::{Model, Side};
+use contrapposto::simulation::{Contact, Instant, Scenario, Standing, Summary};
+use nalgebra::Vector3;
 
 use crate::simulate::{Recording, Row};
 
 /// Most frames besides those of decisions.
-const MOST_FRAMES: usize = 600;
+pub(super) const MOST_FRAMES: usize = 600;
 /// Most decisions that are told.
 const MOST_EVENTS: usize = 120;
 
@@ -18,7 +21,8 @@ pub(crate) struct Frame {
     pub(crate) external: Vec<f64>,
     pub(crate) passive: Vec<f64>,
     pub(crate) load: Vec<f64>,
-    pub(crate) fatigue: Vec<[f64; 2]>,
+    /// Where it is known.
+    pub(crate) fatigue: Option<Vec<[f64; 2]>>,
     pub(crate) standing: Option<Standing>,
 }
 
@@ -80,12 +84,12 @@ impl Film {
         rows.extend(events.iter().map(|event| row_of(event.time)));
         rows.sort_unstable();
         rows.dedup();
-        Self { frames: rows.into_iter().map(|row| Frame::new(recording.row(row))).collect(), events, happened }
+        Self { frames: rows.into_iter().map(|row| Frame::of_row(recording.row(row))).collect(), events, happened }
     }
 }
 
 impl Frame {
-    fn new(row: Row) -> Self {
+    pub(super) fn of_row(row: Row) -> Self {
         let contact = |numbers: &[f64; 10]| {
             let [share, fx, fy, fz, px, py, pz, cx, cy, cz] = *numbers;
             let (force, at, couple) = ([fx, fy, fz].into(), [px, py, pz].into(), [cx, cy, cz].into());
@@ -102,9 +106,41 @@ impl Frame {
             external: row.external.to_vec(),
             passive: row.passive.to_vec(),
             load: row.load.to_vec(),
-            fatigue: row.fatigue.to_vec(),
+            fatigue: Some(row.fatigue.to_vec()),
             standing,
         }
+    }
+
+    /// A posture with its torques by rate.
+    pub(super) fn at(model: &Model, time: f64, posture: &[f64], [external, passive]: [&[f64]; 2]) -> Self {
+        let of = |torques: &[f64]| -> Vec<f64> {
+            model.coordinates().iter().map(|coordinate| coordinate.rate.map_or(0.0, |rate| torques[rate])).collect()
+        };
+        let (external, passive) = (of(external), of(passive));
+        let load = |(i, coordinate): (usize, &contrapposto::model::Coordinate)| {
+            let (active, known) = (-(passive[i] + external[i]), !model.is_dependent(i));
+            let groups = coordinate.groups.as_ref().filter(|_| known && coordinate.rate.is_some());
+            groups.map_or(0.0, |groups| active.abs() / groups[Side::of(active).index()].strength.torque(posture[i]))
+        };
+        let load = model.coordinates().iter().enumerate().map(load).collect();
+        Self { time, posture: posture.to_vec(), external, passive, load, fatigue: None, standing: None }
+    }
+
+    /// A posture that was given, held at rest.
+    pub(crate) fn of_instant(model: &Model, instant: &Instant) -> Self {
+        let torques = [instant.external, instant.passive];
+        let contact = |contact: &ContactForces, i: usize| Contact {
+            force: contact.force(i),
+            share: contact.share(i),
+            center_of_pressure: contact.center_of_pressure(model, instant.kinematics, i),
+            couple: Vector3::zeros(),
+        };
+        let standing = instant.contact.map(|forces| Standing {
+            contacts: (0..forces.supports().len()).map(|i| contact(forces, i)).collect(),
+            center_of_mass: instant.kinematics.center_of_mass(model).unwrap_or_default(),
+            ..Standing::default()
+        });
+        Self { standing, ..Self::at(model, instant.time, instant.values, torques) }
     }
 
     /// Active torque of a coordinate, N m.

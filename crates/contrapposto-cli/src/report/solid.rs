@@ -18,7 +18,9 @@ pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
     let mut ends: Vec<(Vector3<f64>, f64)> = vec![];
     for child in model.segments().iter().filter(|child| child.parent == Some(s)) {
         let end = child.in_parent.translation.vector;
-        if (end - joint).norm() > NEAR && ends.iter().all(|(other, _)| (other - end).norm() > NEAR) {
+        // A joint in the sole, as that of the toes, makes nothing thicker.
+        let within = upwards(&segment.patch, joint).is_some_and(|up| up.dot(&(end - segment.patch[0])) < EDGE);
+        if (end - joint).norm() > NEAR && !within && ends.iter().all(|(other, _)| (other - end).norm() > NEAR) {
             ends.push((end, child.mass));
         }
     }
@@ -31,7 +33,7 @@ pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
         [] if segment.name.eq_ignore_ascii_case("head") => {
             let skull = balls_of(&[ball(joint + 0.95 * reach, 0.9), ball(joint + 1.3 * reach, 1.0)], 0.85 * volume);
             let neck = 0.55 * skull[0][3];
-            return vec![skull, vec![ball(joint, neck), ball(joint + reach, neck)]];
+            return vec![vec![ball(joint, neck), ball(joint + reach, neck)], skull];
         }
         [] if reach.norm() > NEAR => points.push(ball(joint + 2.0 * reach, 0.75)),
         [] if segment.mass > 0.0 => points = vec![ball(segment.center_of_mass, 1.0)],
@@ -45,13 +47,37 @@ pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
         }
     }
     points.extend(sole(&segment.patch, joint));
-    vec![balls_of(&points, volume)]
+    let mut balls = balls_of(&points, volume);
+    if let Some(up) = upwards(&segment.patch, joint) {
+        // Nothing goes through the sole, but a palm may be in the middle of its hand.
+        for ball in &mut balls {
+            let above = up.dot(&(Vector3::new(ball[0], ball[1], ball[2]) - segment.patch[0]));
+            ball[3] = if above > EDGE { ball[3].min(above) } else { ball[3] };
+        }
+    }
+    vec![balls]
+}
+
+/// Coordinates of the joint that moves a segment. What is welded on belongs to the joint of what it is welded to.
+pub(crate) fn joined_by(model: &Model, s: usize) -> std::ops::Range<usize> {
+    let mut carrier = s;
+    while let (true, Some(parent)) =
+        (model.segments()[carrier].coordinates.is_empty(), model.segments()[carrier].parent)
+    {
+        carrier = parent;
+    }
+    model.segments()[carrier].coordinates.clone()
+}
+
+/// Across a patch of three corners or more, to the side of the joint.
+fn upwards(patch: &[Vector3<f64>], joint: Vector3<f64>) -> Option<Vector3<f64>> {
+    let [a, b, c, ..] = patch else { return None };
+    let across = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+    Some(if across.dot(&(joint - a)) < 0.0 { -across } else { across })
 }
 
 /// The corners of a patch, as much above it as the edge is thick.
 fn sole(patch: &[Vector3<f64>], joint: Vector3<f64>) -> Vec<Ball> {
-    let [a, b, c, ..] = patch else { return vec![] };
-    let across = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
-    let up = if across.dot(&(joint - a)) < 0.0 { -across } else { across };
+    let Some(up) = upwards(patch, joint) else { return vec![] };
     patch.iter().map(|corner| corner + EDGE * up).map(|p| [p.x, p.y, p.z, 0.0]).collect()
 }

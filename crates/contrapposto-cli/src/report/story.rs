@@ -22,7 +22,7 @@ pub(crate) fn tell(scenario: &Scenario, film: &Film, summary: &Summary, shown: &
         return;
     };
     let story = Story { scenario, first, last, main };
-    let lists = pelvis_list(&scenario.model, first).zip(pelvis_list(&scenario.model, last));
+    let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
     let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
@@ -57,7 +57,7 @@ impl Story<'_> {
     /// Nobody asked for relief.
     fn of_rest(&self, seconds: f64) -> String {
         let long = if seconds < 100.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
-        let hardest = match hardest(self.scenario, self.last) {
+        let hardest = match hardest(&self.scenario.model, self.last) {
             Some((name, load)) => format!("; {name} works hardest, at {} of its strength", percent(load)),
             None => String::new(),
         };
@@ -73,7 +73,8 @@ impl Story<'_> {
 
     fn of_joint(&self) -> String {
         let name = sentence(&plain(&self.scenario.model.coordinates()[self.main].name));
-        let [from, to] = [self.first, self.last].map(|frame| value(self.scenario, self.main, frame.posture[self.main]));
+        let [from, to] =
+            [self.first, self.last].map(|frame| value(&self.scenario.model, self.main, frame.posture[self.main]));
         let [before, after] = [self.first, self.last].map(|frame| frame.active(self.main).abs());
         if self.moved().abs() < STAYED {
             return format!("{name} stayed at {to}: its muscles hold {after:.1} N m.");
@@ -99,14 +100,15 @@ impl Story<'_> {
         let name = plain(&scenario.model.coordinates()[main].name);
         let mut reasons = vec![];
         let critical = scenario.hysteresis.critical_level;
-        if let Some((group, fatigue)) = tired(scenario, main, first).filter(|(_, fatigue)| *fatigue >= critical) {
+        if let Some((group, fatigue)) = tired(&scenario.model, main, first).filter(|(_, fatigue)| *fatigue >= critical)
+        {
             reasons.push(format!(
                 "Why: the muscles of {group} were tired from the start ({}) and asked for rest.",
                 percent(fatigue)
             ));
         }
         if standing && self.moved().abs() >= STAYED {
-            let [from, to] = [first, last].map(|frame| value(scenario, main, frame.posture[main]));
+            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.posture[main]));
             let [before, after] = [first, last].map(|frame| frame.active(main).abs());
             reasons.push(format!(
                 "{} moved from {from} to {to}; its muscles hold {after:.1} N m, at the start {before:.1}.",
@@ -164,7 +166,7 @@ impl Story<'_> {
             ));
         }
         if scenario.supports.is_empty() {
-            let [from, to] = [first, last].map(|frame| value(scenario, main, frame.posture[main]));
+            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.posture[main]));
             figures.push(figure(
                 &sentence(&plain(&scenario.model.coordinates()[main].name)),
                 to,
@@ -194,7 +196,7 @@ impl Story<'_> {
             change,
             format!("sum of squared loads, {before:.3} to {after:.3}"),
         ));
-        if let Some((name, load)) = hardest(scenario, last) {
+        if let Some((name, load)) = hardest(&scenario.model, last) {
             figures.push(figure("Hardest worked", percent(load), name));
         }
         figures
@@ -202,17 +204,17 @@ impl Story<'_> {
 }
 
 /// The group that works hardest, and its load.
-fn hardest(scenario: &Scenario, frame: &Frame) -> Option<(String, f64)> {
+pub(super) fn hardest(model: &Model, frame: &Frame) -> Option<(String, f64)> {
     let i = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]))?;
-    let name = working(scenario, i, frame).unwrap_or_else(|| plain(&scenario.model.coordinates()[i].name));
+    let name = working(model, i, frame).unwrap_or_else(|| plain(&model.coordinates()[i].name));
     Some((name, frame.load[i]))
 }
 
 /// How far the pelvis hangs to its right, degrees.
-fn pelvis_list(model: &Model, frame: &Frame) -> Option<f64> {
+pub(crate) fn pelvis_list(model: &Model, posture: &[f64]) -> Option<f64> {
     let pelvis = model.segment("pelvis")?;
     let mut kinematics = Kinematics::new(model);
-    kinematics.update(model, &Posture::new(frame.posture.clone())).ok()?;
+    kinematics.update(model, &Posture::new(posture.to_vec())).ok()?;
     let [right, _, up] = directions(model);
     let across = kinematics.placement(model, pelvis).rotation * right;
     Some(-across.dot(&up).clamp(-1.0, 1.0).asin().to_degrees())

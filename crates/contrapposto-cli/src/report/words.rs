@@ -1,8 +1,7 @@
 //! Names and decisions in plain words.
 
 use contrapposto::hybrid::{Carrier, Decision, Equilibrium, Outcome};
-use contrapposto::model::Side;
-use contrapposto::simulation::Scenario;
+use contrapposto::model::{Model, Side};
 
 use super::film::{Event, Frame, What};
 use super::visible;
@@ -46,9 +45,18 @@ pub(crate) fn sentence(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// `a, b and c`.
+pub(crate) fn list(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
+    }
+}
+
 /// `21.8°`, `0.120 m`.
-pub(crate) fn value(scenario: &Scenario, i: usize, value: f64) -> String {
-    let coordinate = &scenario.model.coordinates()[i];
+pub(crate) fn value(model: &Model, i: usize, value: f64) -> String {
+    let coordinate = &model.coordinates()[i];
     let slides = coordinate.kind == contrapposto::model::CoordinateKind::Translation;
     let value = visible(coordinate, value);
     let text = if slides { format!("{value:.3} m") } else { format!("{value:.1}°") };
@@ -61,34 +69,35 @@ pub(crate) fn percent(share: f64) -> String {
 }
 
 /// The name of the group of a coordinate that works.
-pub(crate) fn working(scenario: &Scenario, i: usize, frame: &Frame) -> Option<String> {
-    let coordinate = &scenario.model.coordinates()[i];
+pub(crate) fn working(model: &Model, i: usize, frame: &Frame) -> Option<String> {
+    let coordinate = &model.coordinates()[i];
     let groups = coordinate.groups.as_ref()?;
     Some(group(&groups[Side::of(frame.active(i)).index()].name, &coordinate.name))
 }
 
 /// The name of the more tired group of a coordinate, and how tired it is.
-pub(crate) fn tired(scenario: &Scenario, i: usize, frame: &Frame) -> Option<(String, f64)> {
-    let coordinate = &scenario.model.coordinates()[i];
-    let [positive, negative] = frame.fatigue[i];
+pub(crate) fn tired(model: &Model, i: usize, frame: &Frame) -> Option<(String, f64)> {
+    let coordinate = &model.coordinates()[i];
+    let [positive, negative] = frame.fatigue.as_ref()?[i];
     let side = usize::from(negative > positive);
     let groups = coordinate.groups.as_ref()?;
     Some((group(&groups[side].name, &coordinate.name), positive.max(negative)))
 }
 
 /// What was decided, and about what.
-pub(crate) fn decision(scenario: &Scenario, event: &Event, frame: &Frame) -> String {
+pub(crate) fn decision(model: &Model, event: &Event, frame: &Frame) -> String {
     let i = event.coordinate;
-    let name = sentence(&plain(&scenario.model.coordinates()[i].name));
-    let tired = match tired(scenario, i, frame) {
+    let name = sentence(&plain(&model.coordinates()[i].name));
+    let tired = match tired(model, i, frame) {
         Some((group, fatigue)) => format!("muscles of {group} are at {} fatigue", percent(fatigue)),
         None => "it asks for relief".to_owned(),
     };
     match &event.what {
         What::Decided(decision) => {
-            let from = value(scenario, i, frame.posture[i]);
-            let goal = decision.goal.map(|goal| value(scenario, i, goal)).unwrap_or_default();
-            format!("{name}: {tired}. {} (case {})", answer(decision, &from, &goal), decision.case)
+            let from = value(model, i, frame.posture[i]);
+            let goal = decision.goal.map(|goal| value(model, i, goal)).unwrap_or_default();
+            let answer = sentence(&answer(decision, &from, &goal));
+            format!("{name}: {tired}. {answer} (case {})", decision.case)
         }
         What::Waits => {
             format!(
@@ -99,11 +108,12 @@ pub(crate) fn decision(scenario: &Scenario, event: &Event, frame: &Frame) -> Str
     }
 }
 
-fn answer(decision: &Decision, from: &str, goal: &str) -> String {
-    let go = if from == goal { format!("It stays at {from}") } else { format!("It goes from {from} to {goal}") };
+/// Where relief lies, as the second half of a sentence about a joint.
+pub(crate) fn answer(decision: &Decision, from: &str, goal: &str) -> String {
+    let go = if from == goal { format!("it stays at {from}") } else { format!("it goes from {from} to {goal}") };
     match (decision.outcome, decision.equilibrium) {
-        (Outcome::Stay, _) => format!("It stays at {from}: muscles hold next to nothing there."),
-        (Outcome::None, _) => format!("It stays at {from}: the printed tables find no goal."),
+        (Outcome::Stay, _) => format!("it stays at {from}: muscles hold next to nothing there."),
+        (Outcome::None, _) => format!("it stays at {from}: the printed tables find no goal."),
         (Outcome::AtLimit, _) => format!("{go}, the end of its range, where least is left for muscles."),
         (Outcome::Active, None) => format!("{go}, where muscles work well and hold least."),
         (Outcome::Active, Some(_)) => format!("{go}, where it balances in the middle of its range."),

@@ -60,6 +60,28 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
+/// What the script of a `report.html` reads.
+pub(crate) fn page(folder: &Path) -> Value {
+    let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
+    let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    serde_json::from_str(data).unwrap()
+}
+
+/// One of its columns: whole multiples of a step, each as the difference from the one before.
+pub(crate) fn column(column: &Value, frames: usize) -> Vec<f64> {
+    let by = numbers(&column["by"]);
+    let sums = (0..frames).scan(0.0, |sum, i| {
+        *sum += by.get(i).unwrap_or(&0.0);
+        Some(*sum)
+    });
+    sums.map(|sum| sum * column["step"].as_f64().unwrap()).collect()
+}
+
+/// One of its joints.
+pub(crate) fn joint<'a>(page: &'a Value, name: &str) -> &'a Value {
+    page["joints"].as_array().unwrap().iter().find(|joint| joint["name"] == name).unwrap()
+}
+
 /// The keys of an object.
 pub(crate) fn keys(value: &Value) -> Vec<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()

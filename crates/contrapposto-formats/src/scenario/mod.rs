@@ -33,6 +33,14 @@ pub fn read_scenario(name: &str, bytes: &[u8], model: Option<Model>) -> Result<S
     read_toml(name, bytes, |at, text| convert::scenario(at, text, model))
 }
 
+/// Does a scenario ask for time, as a run does and a pose does not? `name` is its file's name for messages.
+///
+/// # Errors
+/// [`InputError`] when it is no scenario.
+pub fn scenario_runs(name: &str, bytes: &[u8]) -> Result<bool, InputError> {
+    read_toml(name, bytes, |_, text: &ScenarioText| Ok(text.run.is_some()))
+}
+
 /// Reads a TOML file of ours: known keys, finite numbers, and whatever else `convert` asks of it.
 pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
     name: &str,

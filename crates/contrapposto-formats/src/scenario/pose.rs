@@ -1,5 +1,6 @@
 //! A scenario read for `contrapposto pose`: body, start, loads and goals in order of priority, all checked.
 
+use contrapposto::contact::Support;
 use contrapposto::ik::task::{Placement, Task};
 use contrapposto::ik::{Goal, Options};
 use contrapposto::kinematics::Kinematics;
@@ -33,6 +34,8 @@ pub struct PoseScenario {
     pub goals: Vec<Goal>,
     /// A name for every task of every goal.
     pub labels: Vec<Vec<String>>,
+    /// What carries it, where the patches of all supports are known; else empty. Goals know supports without them.
+    pub supports: Vec<Support>,
     /// How it is solved.
     pub options: Options,
     /// Tables of the file that have no part in a pose.
@@ -126,8 +129,11 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
         ("event", at.has("event")),
         ("run", text.run.is_some()),
     ];
+    // Friction, planes and shares have no part in the goals: what is wrong with them is no error here.
+    let carriers = support::supports(at, &model, &text.support, &kinematics).unwrap_or_default();
     Ok(PoseScenario {
         title: text.title.clone(),
+        supports: carriers,
         locked: locked(at, &model, text, &free)?,
         loads,
         goals,

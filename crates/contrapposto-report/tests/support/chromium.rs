@@ -26,8 +26,18 @@ fn program() -> Option<String> {
 }
 
 impl Chromium {
-    /// Starts one; `None` without a browser on the machine.
+    /// Starts one that tells what goes wrong; `None` without a browser on the machine.
     pub(crate) fn start() -> Option<Self> {
+        let mut page = Self::start_quietly()?;
+        for domain in ["Runtime.enable", "Network.enable", "Log.enable"] {
+            page.call(domain, json!({}));
+        }
+        Some(page)
+    }
+
+    /// Starts one that tells nothing, and so is as fast as the browser of a person: a browser that is listened to notes where
+    /// in the source everything stands, which for a large script takes longer than to run it.
+    pub(crate) fn start_quietly() -> Option<Self> {
         let profile = tempfile::tempdir().unwrap();
         // Chromium reads its pipe from descriptor 3 and writes to 4.
         let mut child = Command::new("sh")
@@ -47,9 +57,7 @@ impl Chromium {
         let target = page.call("Target.createTarget", json!({ "url": "about:blank" }));
         let attach = json!({ "targetId": target["targetId"], "flatten": true });
         page.session = page.call("Target.attachToTarget", attach)["sessionId"].as_str().unwrap().to_owned();
-        for domain in ["Page.enable", "Runtime.enable", "Network.enable", "Log.enable"] {
-            page.call(domain, json!({}));
-        }
+        page.call("Page.enable", json!({}));
         Some(page)
     }
 

@@ -64,6 +64,10 @@ pub struct Instant<'a> {
     pub fatigue: &'a [[f64; 2]],
     /// Active torque over strength of the same.
     pub load: &'a [[f64; 2]],
+    /// Where everything is.
+    pub kinematics: &'a Kinematics,
+    /// What the supports give; none without supports.
+    pub contact: Option<&'a ContactForces>,
 }
 
 /// A value and when it was there.
@@ -243,6 +247,8 @@ pub fn assess(
             passive: &statics.passive,
             fatigue: &groups.fatigue,
             load: &groups.load,
+            kinematics: &statics.kinematics,
+            contact: statics.contact.as_ref(),
         });
         before = Some(*time);
     }

@@ -1,0 +1,144 @@
+//! How does one body become shapes on paper? Parts from the farthest to the nearest, then what is marked on them.
+
+use crate::axes::drawable;
+use crate::body::{BodyForce, BodyPart, BodyPosture};
+use crate::body_view::{Bounds, MOST_PARTS, View, balls};
+use crate::canvas::Canvas;
+use crate::depth::{Solid, order};
+use crate::geometry::Point;
+use crate::style::{
+    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, GROUND, GROUND_PEN, Ink, OUTLINE_PEN, PAPER, PLUMB_PEN, Pen,
+    TARGET_PEN, UNKNOWN, load_ink,
+};
+
+/// Half the width of a cross, px.
+const CROSS: f64 = 5.0;
+/// Length and half the width of the head of an arrow, px.
+const HEAD: (f64, f64) = (9.0, 4.0);
+/// Shorter arrows are not drawn, px.
+const SHORT: f64 = 2.0;
+/// Farther than this beyond what is drawn, m, a target is outside.
+const BEYOND: f64 = 1e-9;
+
+/// Where a body stands on the sheet, and how large.
+pub(crate) struct Paper<'a> {
+    pub(crate) view: &'a View,
+    /// On the sheet, px, and what is there, m.
+    pub(crate) center: Point,
+    pub(crate) middle: [f64; 2],
+    /// px/m.
+    pub(crate) scale: f64,
+    /// Length of a force, m/N.
+    pub(crate) reach: f64,
+    /// Load of the darkest colour.
+    pub(crate) scale_end: f64,
+}
+
+impl Paper<'_> {
+    /// Place on the sheet and nearness, px.
+    fn place(&self, point: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = self.view.see(point);
+        let across = self.center.0 + self.scale * (x - self.middle[0]);
+        [across, self.center.1 - self.scale * (y - self.middle[1]), self.scale * z]
+    }
+
+    fn point(&self, point: [f64; 3]) -> Option<Point> {
+        let [x, y, _] = self.place(point);
+        point.into_iter().all(drawable).then_some((x, y))
+    }
+
+    /// Draws a posture that is within `bounds`; gives the number of targets outside of them.
+    pub(crate) fn draw(&self, canvas: &mut Canvas, posture: &BodyPosture, bounds: &Bounds) -> usize {
+        if let Some(square) = posture.ground_square() {
+            let corners: Vec<Point> = square.into_iter().filter_map(|corner| self.point(corner)).collect();
+            canvas.polygon(&corners, GROUND, GROUND_PEN);
+        }
+        self.ghost(canvas, &posture.start);
+        self.parts(canvas, &posture.parts);
+        for gaze in posture.gazes.iter().take(MOST_PARTS) {
+            let points: Vec<Point> =
+                gaze.iter().filter(|p| within(bounds, self.view, **p)).filter_map(|p| self.point(*p)).collect();
+            canvas.line(&points, GAZE_PEN);
+        }
+        for force in posture.forces.iter().take(MOST_PARTS) {
+            self.force(canvas, force);
+        }
+        if let Some((center, at)) = posture.center_of_mass.and_then(|center| Some((center, self.point(center)?))) {
+            if let Some(foot) = posture.ground.and_then(|ground| self.point([center[0], ground, center[2]])) {
+                canvas.line(&[at, foot], PLUMB_PEN);
+                canvas.dot(foot, 2.0, CENTER, CENTER);
+            }
+            canvas.dot(at, 5.0, CENTER, PAPER);
+        }
+        let targets = posture.targets.iter().take(MOST_PARTS);
+        let mut outside = 0;
+        for target in targets {
+            match self.point(*target).filter(|_| within(bounds, self.view, *target)) {
+                Some(at) => cross(canvas, at),
+                None => outside += 1,
+            }
+        }
+        outside
+    }
+
+    fn solids(&self, parts: &[BodyPart]) -> Vec<(Solid, Option<f64>)> {
+        let ball = |[x, y, z, r]: [f64; 4]| {
+            let [x, y, z] = self.place([x, y, z]);
+            [x, y, z, self.scale * r]
+        };
+        let parts = parts.iter().take(MOST_PARTS);
+        let seen = parts.map(|part| (balls(part).map(ball).collect::<Vec<_>>(), part.load));
+        seen.filter(|(balls, _)| !balls.is_empty()).map(|(balls, load)| (Solid::new(&balls), load)).collect()
+    }
+
+    /// One outline about all parts together.
+    fn ghost(&self, canvas: &mut Canvas, parts: &[BodyPart]) {
+        let paths: Vec<String> = self.solids(parts).iter().map(|(solid, _)| solid.outline.path_data()).collect();
+        for (fill, pen) in [(GHOST_EDGE, Pen::solid(GHOST_EDGE, 2.0)), (GHOST, Pen::solid(GHOST, 0.4))] {
+            paths.iter().for_each(|path| canvas.shape(path.clone(), fill, pen));
+        }
+    }
+
+    fn parts(&self, canvas: &mut Canvas, parts: &[BodyPart]) {
+        let (solids, loads): (Vec<Solid>, Vec<Option<f64>>) = self.solids(parts).into_iter().unzip();
+        for i in order(&solids) {
+            let known = loads[i].filter(|load| !load.is_nan());
+            let fill = known.map_or(UNKNOWN, |load| load_ink(load / self.scale_end));
+            canvas.shape(solids[i].outline.path_data(), fill, OUTLINE_PEN);
+        }
+    }
+
+    fn force(&self, canvas: &mut Canvas, force: &BodyForce) {
+        if let (Some(foot), Some(tip)) = (self.point(force.at), self.point(force.tip(self.reach))) {
+            arrow(canvas, foot, tip, FORCE);
+        }
+    }
+}
+
+fn within(bounds: &Bounds, view: &View, point: [f64; 3]) -> bool {
+    let [x, y, _] = view.see(point);
+    [x, y].into_iter().enumerate().all(|(k, v)| v >= bounds.low[k] - BEYOND && v <= bounds.high[k] + BEYOND)
+}
+
+/// An arrow with a thin rim of paper, so that it can be told from what is below it.
+pub(crate) fn arrow(canvas: &mut Canvas, foot: Point, tip: Point, ink: Ink) {
+    let length = (tip.0 - foot.0).hypot(tip.1 - foot.1);
+    if length < SHORT {
+        return;
+    }
+    let (x, y) = ((tip.0 - foot.0) / length, (tip.1 - foot.1) / length);
+    let head = HEAD.0.min(length);
+    let neck = (tip.0 - head * x, tip.1 - head * y);
+    let half = HEAD.1 * head / HEAD.0;
+    let corners = [tip, (neck.0 - half * y, neck.1 + half * x), (neck.0 + half * y, neck.1 - half * x)];
+    for (ink, rim) in [(PAPER, 2.0), (ink, 0.0)] {
+        canvas.line(&[foot, neck], Pen::solid(ink, 2.2 + rim));
+        canvas.polygon(&corners, ink, Pen::solid(ink, 0.4 + rim));
+    }
+}
+
+pub(crate) fn cross(canvas: &mut Canvas, (x, y): Point) {
+    for slope in [-1.0, 1.0] {
+        canvas.line(&[(x - CROSS, y - slope * CROSS), (x + CROSS, y + slope * CROSS)], TARGET_PEN);
+    }
+}

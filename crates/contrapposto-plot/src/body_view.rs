@@ -1,0 +1,111 @@
+//! From where is a body seen, and how large is it then? Bodies have axes x forward, y up, z to the right; a view has x right, y up and
+//! z towards who looks. Nothing gets smaller with distance, so lengths can be measured on paper.
+
+use crate::axes::drawable;
+use crate::body::{BodyPart, BodyPosture};
+use crate::depth::Ball;
+use crate::outline::MOST_CIRCLES;
+
+/// Most parts of a body, and most forces, targets and lines of sight, that are drawn.
+pub(crate) const MOST_PARTS: usize = 120;
+
+/// A direction to look from.
+pub(crate) struct View {
+    pub(crate) label: &'static str,
+    /// From the front 0, from the body's right a quarter turn, rad.
+    yaw: f64,
+    /// From above, rad.
+    pitch: f64,
+}
+
+/// The views of every body, those of the report's page.
+pub(crate) const VIEWS: [View; 3] = [
+    View { label: "from the front", yaw: 0.0, pitch: 0.0 },
+    View { label: "from the right", yaw: std::f64::consts::FRAC_PI_2, pitch: 0.0 },
+    View { label: "three-quarter view", yaw: 0.55, pitch: 0.2 },
+];
+
+impl View {
+    pub(crate) fn see(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let ((sy, cy), (sp, cp)) = (self.yaw.sin_cos(), self.pitch.sin_cos());
+        // Face to face with the body its right hand is on the left.
+        let (across, ahead) = (sy * x - cy * z, cy * x + sy * z);
+        [across, cp * y - sp * ahead, cp * ahead + sp * y]
+    }
+}
+
+/// The balls of a part that can be drawn.
+pub(crate) fn balls(part: &BodyPart) -> impl Iterator<Item = Ball> + '_ {
+    let good = |ball: &&Ball| ball.iter().all(|v| drawable(*v)) && ball[3] >= 0.0;
+    part.balls.iter().filter(good).take(MOST_CIRCLES).copied()
+}
+
+/// A rectangle in a view, m; of nothing, empty.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    pub(crate) low: [f64; 2],
+    pub(crate) high: [f64; 2],
+}
+
+impl Bounds {
+    pub(crate) const NOTHING: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+
+    /// All of a posture, targets and forces included. `reach`: length of a force, m/N.
+    pub(crate) fn of(posture: &BodyPosture, view: &View, reach: f64) -> Self {
+        let mut bounds = Self::NOTHING;
+        for [x, y, z, r] in posture.parts.iter().chain(&posture.start).take(2 * MOST_PARTS).flat_map(balls) {
+            let [x, y, _] = view.see([x, y, z]);
+            bounds.take([x - r, y - r]);
+            bounds.take([x + r, y + r]);
+        }
+        let tips = posture.forces.iter().take(MOST_PARTS).map(|force| force.tip(reach));
+        let marks = tips.chain(posture.center_of_mass).chain(posture.ground_square().into_iter().flatten());
+        marks.for_each(|mark| bounds.take_point(view, mark));
+        // Targets that are far off do not make the body small.
+        let size = bounds.size().into_iter().fold(0.0, f64::max);
+        let near = bounds;
+        for target in posture.targets.iter().take(MOST_PARTS) {
+            let [x, y, _] = view.see(*target);
+            if [x, y].into_iter().enumerate().all(|(k, v)| v >= near.low[k] - size && v <= near.high[k] + size) {
+                bounds.take_point(view, *target);
+            }
+        }
+        bounds
+    }
+
+    fn take_point(&mut self, view: &View, point: [f64; 3]) {
+        if point.into_iter().all(drawable) {
+            let [x, y, _] = view.see(point);
+            self.take([x, y]);
+        }
+    }
+
+    fn take(&mut self, point: [f64; 2]) {
+        for (k, value) in point.into_iter().enumerate() {
+            self.low[k] = self.low[k].min(value);
+            self.high[k] = self.high[k].max(value);
+        }
+    }
+
+    pub(crate) fn with(mut self, other: &Self) -> Self {
+        if !other.is_empty() {
+            self.take(other.low);
+            self.take(other.high);
+        }
+        self
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.low[0] > self.high[0]
+    }
+
+    /// Width and height, m; of nothing, 0.
+    pub(crate) fn size(&self) -> [f64; 2] {
+        [0, 1].map(|k| (self.high[k] - self.low[k]).max(0.0))
+    }
+
+    /// Of nothing, the origin.
+    pub(crate) fn middle(&self) -> [f64; 2] {
+        if self.is_empty() { [0.0; 2] } else { [0, 1].map(|k| 0.5 * (self.low[k] + self.high[k])) }
+    }
+}

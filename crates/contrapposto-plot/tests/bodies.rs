@@ -1,0 +1,238 @@
+//! Bodies side by side: every mark is there, no text touches another or a body, and nothing that strangers give breaks the picture.
+
+#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto_plot::{BodyFigure, BodyForce, BodyPart, BodyPosture, body_figure};
+
+const HOSTILE_TEXT: &str = "</text><script>alert(\"&'\")</script> $x$ \u{0} \u{ffff} 関節 \u{202e}";
+
+/// A standing body of a few parts: trunk, head, two arms, two legs.
+fn body(load: f64) -> BodyPosture {
+    let part = |balls: &[[f64; 4]], load: Option<f64>| BodyPart { balls: balls.to_vec(), load };
+    let limb = |z: f64, top: f64, bottom: f64| part(&[[0.0, top, z, 0.07], [0.05, bottom, z, 0.05]], Some(load));
+    BodyPosture {
+        title: "A: standing".to_owned(),
+        notes: vec![
+            "effort 0.1234".to_owned(),
+            "right foot 85 %".to_owned(),
+            "pelvis 15.7° down to the left".to_owned(),
+        ],
+        parts: vec![
+            part(&[[0.0, 1.0, 0.0, 0.12], [0.0, 1.3, 0.1, 0.1], [0.0, 1.3, -0.1, 0.1]], None),
+            part(&[[0.0, 1.62, 0.0, 0.1]], Some(0.0)),
+            limb(0.25, 1.35, 0.8),
+            limb(-0.25, 1.35, 0.8),
+            limb(0.1, 0.95, 0.05),
+            limb(-0.1, 0.95, 0.05),
+        ],
+        start: vec![part(&[[0.0, 1.0, 0.3, 0.2]], Some(1.0))],
+        forces: vec![BodyForce { at: [0.0, 0.0, 0.1], force: [0.0, 500.0, 0.0] }],
+        center_of_mass: Some([0.02, 0.95, 0.0]),
+        ground: Some(0.0),
+        targets: vec![[0.4, 1.5, 0.2]],
+        gazes: vec![[[0.05, 1.6, 0.0], [0.4, 1.5, 0.2]]],
+    }
+}
+
+fn figure(postures: Vec<BodyPosture>, text: &str) -> BodyFigure {
+    let text = text.to_owned();
+    BodyFigure { title: text.clone(), subtitle: text.clone(), target: text, postures }
+}
+
+/// Value of an attribute of an element.
+fn attribute<'a>(element: &'a str, name: &str) -> &'a str {
+    element.split(&format!(" {name}=\"")).nth(1).and_then(|rest| rest.split('"').next()).unwrap_or_default()
+}
+
+fn number(element: &str, name: &str) -> f64 {
+    attribute(element, name).parse().unwrap_or_else(|_| panic!("no number {name} in {element}"))
+}
+
+/// A rectangle on the sheet: left, top, right, bottom.
+type Extent = [f64; 4];
+
+/// Advance of a letter of DejaVu Sans, em: the widest of its kind.
+fn advance(c: char) -> f64 {
+    match c {
+        'i' | 'j' | 'l' | ' ' | '.' | ',' => 0.32,
+        'f' | 't' | 'r' | '-' | '(' | ')' | ':' => 0.42,
+        'm' | 'w' | '%' | 'M' | 'W' | '…' => 1.0,
+        'A'..='Z' => 0.78,
+        _ => 0.64,
+    }
+}
+
+/// The texts of a picture, as long as DejaVu Sans at most makes them, and what they say.
+fn texts(svg: &str) -> Vec<(Extent, String)> {
+    let text = |element: &str| {
+        let (opening, rest) = element.split_once('>').unwrap();
+        let said = rest.split("</text>").next().unwrap().replace("</tspan>", "");
+        let said =
+            said.split_once('>').filter(|_| said.starts_with("<tspan")).map_or(said.clone(), |(_, s)| s.to_owned());
+        let (x, y, size) = (number(opening, "x"), number(opening, "y"), number(opening, "font-size"));
+        let width = size * said.chars().map(advance).sum::<f64>();
+        let left = match attribute(opening, "text-anchor") {
+            "middle" => x - 0.5 * width,
+            "end" => x - width,
+            _ => x,
+        };
+        ([left, y - 0.76 * size, left + width, y + 0.22 * size], said)
+    };
+    svg.split("<text").skip(1).map(text).filter(|(_, said)| !said.is_empty()).collect()
+}
+
+/// Filled shapes with curved outlines: parts of bodies. Their points and handles bound them.
+fn parts(svg: &str) -> Vec<Extent> {
+    let curved = svg.lines().filter(|line| line.contains("<path") && attribute(line, "d").contains('C'));
+    let extent = |line: &str| {
+        let numbers: Vec<f64> = attribute(line, "d")
+            .split(|c: char| c.is_alphabetic() || c == ' ')
+            .filter_map(|n| n.parse().ok())
+            .collect();
+        numbers.chunks_exact(2).fold([f64::INFINITY, f64::INFINITY, 0.0, 0.0], |[l, t, r, b], p| {
+            [l.min(p[0]), t.min(p[1]), r.max(p[0]), b.max(p[1])]
+        })
+    };
+    curved.map(extent).collect()
+}
+
+fn touch(a: &Extent, b: &Extent) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+#[test]
+fn no_text_touches_another_or_a_body_and_all_are_on_the_sheet() {
+    for count in 1..=5 {
+        let mut wide = body(0.2);
+        wide.parts[2].balls[1] = [1.2, 1.35, 0.9, 0.05];
+        let mut postures = vec![body(0.1); count - 1];
+        postures.push(wide);
+        for text in ["Standing", "", &"long words ".repeat(40)] {
+            let svg = body_figure(&figure(postures.clone(), text)).svg();
+            let (texts, parts) = (texts(&svg), parts(&svg));
+            assert_eq!(parts.len(), count * 3 * (6 + 2), "parts, and the ghost twice");
+            for (i, (extent, said)) in texts.iter().enumerate() {
+                assert!(extent[0] >= 0.0 && extent[2] <= 800.0 + 0.12 * (extent[2] - extent[0]), "{said}: {extent:?}");
+                for (other, also) in &texts[..i] {
+                    assert!(!touch(extent, other), "{said} on {also}");
+                }
+                assert!(!parts.iter().any(|part| touch(extent, part)), "{said} on a body");
+            }
+            let height = number(&svg, "height");
+            assert!(parts.iter().all(|p| p[0] >= 0.0 && p[2] <= 800.0 && p[1] >= 0.0 && p[3] <= height));
+        }
+    }
+}
+
+#[test]
+fn all_postures_have_one_scale_and_stand_on_one_ground() {
+    let mut small = body(0.1);
+    for ball in small.parts.iter_mut().chain(&mut small.start).flat_map(|part| &mut part.balls) {
+        *ball = ball.map(|v| 0.5 * v);
+    }
+    let svg = body_figure(&figure(vec![body(0.1), small], "")).svg();
+    let parts = parts(&svg);
+    // Front views come first: of both postures the ghost twice, then the parts.
+    let [tall, short] = [0, 1].map(|i| {
+        let own = &parts[8 * i + 2..8 * i + 8];
+        let [top, bottom] = [1, 3].map(|k| own.iter().map(move |p| p[k]));
+        (top.fold(f64::INFINITY, f64::min), bottom.fold(0.0, f64::max))
+    });
+    assert!(((tall.1 - tall.0) / (short.1 - short.0) - 2.0).abs() < 0.01, "{tall:?} {short:?}");
+    assert!((tall.1 - short.1).abs() < 0.1, "{tall:?} {short:?}");
+}
+
+#[test]
+fn colours_are_those_of_loads_and_the_scale_ends_at_a_round_number() {
+    let with_loads = |loads: [Option<f64>; 3]| {
+        let parts = loads.map(|load| BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load });
+        body_figure(&figure(vec![BodyPosture { parts: parts.to_vec(), ..BodyPosture::default() }], "")).svg()
+    };
+    // Ends and the second stop of the page's scale, and what is not known.
+    let svg = with_loads([Some(0.0), Some(0.1), Some(0.3)]);
+    for colour in ["#faedc2", "#fab857", "#85141f"] {
+        assert_eq!(
+            svg.lines().filter(|l| l.contains('C') && l.contains(&format!("fill=\"{colour}\""))).count(),
+            3,
+            "{colour}"
+        );
+    }
+    assert!(svg.contains("30 % of strength") && !svg.contains("or more") && !svg.contains("not known"));
+    let svg = with_loads([Some(0.31), Some(3.0), None]);
+    assert!(svg.contains("100 % of strength or more") && svg.contains("load not known"));
+    assert_eq!(svg.matches("fill=\"#b9bfc9\"").count(), 3 + 1, "three views and the legend");
+    assert!(!with_loads([None, None, None]).contains("of strength"));
+}
+
+#[test]
+fn the_length_of_an_arrow_is_what_the_legend_says() {
+    let svg = body_figure(&figure(vec![body(0.1)], "")).svg();
+    let words = texts(&svg).into_iter().map(|(_, said)| said).find(|said| said.starts_with("contact force, ")).unwrap();
+    let newtons: f64 = words.split_whitespace().nth(2).unwrap().parse().unwrap();
+    // Heads of arrows: the tip comes first; before it stands the shaft, from its foot.
+    let lines: Vec<&str> = svg.lines().collect();
+    let lengths = lines.windows(2).filter(|pair| pair.iter().all(|line| line.contains("#009e73")));
+    let lengths: Vec<f64> = lengths
+        .map(|pair| {
+            let point = |line: &str| -> Vec<f64> {
+                let d = attribute(line, "d").trim_start_matches('M').replace(['L', ','], " ");
+                d.split_whitespace().take(2).map(|n| n.trim().parse().unwrap()).collect()
+            };
+            let (foot, tip) = (point(pair[0]), point(pair[1]));
+            (tip[0] - foot[0]).hypot(tip[1] - foot[1])
+        })
+        .collect();
+    // Front, right, three-quarter, legend; the third one is seen from above.
+    assert_eq!(lengths.len(), 4);
+    assert!((lengths[0] - lengths[3] * 500.0 / newtons).abs() < 0.1, "{lengths:?} {newtons}");
+    assert!((lengths[0] - lengths[1]).abs() < 0.02 && lengths[2] < lengths[0]);
+}
+
+#[test]
+fn whatever_it_is_given_it_draws_well_formed() {
+    let odd = [0.0, -0.0, 1e9, -1e9, 1e308, 1e-300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    let mut postures = vec![];
+    for &a in &odd {
+        for &b in &odd {
+            let parts = vec![
+                BodyPart { balls: vec![[a, b, a, b], [b, a, b, a], [0.0, 0.0, 0.0, 0.1]], load: Some(a) },
+                BodyPart { balls: vec![], load: Some(b) },
+            ];
+            postures.push(BodyPosture {
+                title: HOSTILE_TEXT.to_owned(),
+                notes: vec![HOSTILE_TEXT.repeat(50); 20],
+                start: parts.clone(),
+                parts,
+                forces: vec![BodyForce { at: [a, b, a], force: [b, a, b] }],
+                center_of_mass: Some([a, a, b]),
+                ground: Some(b),
+                targets: vec![[a, b, b]],
+                gazes: vec![[[a, b, a], [b, b, a]]],
+            });
+        }
+    }
+    for chunk in postures.chunks(4) {
+        let drawn = body_figure(&figure(chunk.to_vec(), HOSTILE_TEXT));
+        let svg = drawn.svg();
+        assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("<script"));
+        assert!(svg.contains("&lt;/text&gt;") && !svg.contains('\u{0}') && !svg.contains('\u{ffff}'));
+        assert_eq!(svg.matches("<text").count(), svg.matches("</text>").count());
+        assert!(drawn.png().unwrap().starts_with(b"\x89PNG"));
+    }
+    let many = BodyPosture { parts: vec![postures[0].parts[0].clone(); 5_000], ..BodyPosture::default() };
+    assert!(body_figure(&figure(vec![many; 9], "many")).svg().len() < 4_000_000);
+}
+
+#[test]
+fn nothing_says_so_and_the_same_gives_the_same() {
+    let part = BodyPart { balls: vec![[0.0, 0.0, 0.0, -0.1], [f64::NAN, 0.0, 0.0, 0.1]], load: Some(0.1) };
+    let unreal = BodyPosture { parts: vec![part], ..BodyPosture::default() };
+    for postures in [vec![], vec![BodyPosture::default()], vec![BodyPosture::default(); 3], vec![unreal]] {
+        let drawn = body_figure(&figure(postures, ""));
+        assert!(drawn.svg().contains("nothing to draw"));
+        drawn.png().unwrap();
+    }
+    let twice = [0, 1].map(|_| body_figure(&figure(vec![body(0.1), body(0.3)], "twice")));
+    assert_eq!(twice[0].svg(), twice[1].svg());
+    assert_eq!(twice[0].png().unwrap(), twice[1].png().unwrap());
+}
