@@ -5,7 +5,7 @@
 //! they are estimated anew: the `lambda` that leaves the shortest `J^T r + A^T lambda` over all rates that are not at the end of
 //! their range (the first-order estimate of Gill, Murray & Wright 1981, "Practical Optimization", section 6.6).
 
-use crate::math::lexicographic::{Level, Multipliers, Problem};
+use crate::math::lexicographic::{Level, Multipliers, Problem, dot};
 
 /// A rate or row with less room than this, in its units, is at the end of its range.
 const NO_ROOM: f64 = 1e-9;
@@ -100,10 +100,6 @@ impl Hold {
             }
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
