@@ -16,8 +16,9 @@ const MOST_POSTURES: usize = 5;
 const MOST_NOTES: usize = 6;
 /// Greatest height of a body that stands alone, and of one in columns, px.
 const HEIGHT: [f64; 2] = [400.0, 290.0];
-/// Space between two columns or rows, px.
+/// Space between two columns, and above every row for the name of its view, px.
 const BETWEEN: f64 = 22.0;
+const NAME: f64 = 27.0;
 /// Height of a line of text, px.
 const LINE: f64 = 15.0;
 /// Length of an arrow that carries the whole weight, m.
@@ -64,16 +65,16 @@ pub fn body_figure(picture: &BodyFigure) -> Figure {
         canvas.text(at, &fit(view.label, LABEL_SIZE, width), LABEL_SIZE, Align::Left, QUIET_TEXT);
         for (i, posture) in postures.iter().enumerate() {
             let middle = [cells[k][i].middle()[0], rows[k].middle()[1]];
-            let center = (column(first + i) + 0.5 * width, top + BETWEEN + 0.5 * height);
+            let center = (column(first + i) + 0.5 * width, top + NAME + 0.5 * height);
             let paper = Paper { view, center, middle, scale, reach, scale_end };
             outside = outside.max(paper.draw(&mut canvas, posture, &cells[k][i]));
         }
         if !alone {
-            top += BETWEEN + height;
+            top += NAME + height;
         }
     }
     if alone {
-        top += BETWEEN + scale * tallest;
+        top += NAME + scale * tallest;
     }
     if rows.iter().all(Bounds::is_empty) {
         canvas.text((0.5 * WIDTH, top + LINE), "nothing to draw", LABEL_SIZE, Align::Middle, QUIET_TEXT);
