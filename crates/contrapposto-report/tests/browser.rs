@@ -216,9 +216,12 @@ fn what_is_not_known_is_not_shown() {
 #[test]
 fn a_seat_is_drawn() {
     let mut report = report();
-    let Some(mut page) = open_page("floor.html", &report) else { return };
+    // Seen from as far away, a seat without any width.
+    let [a, b] = [[-0.2, 0.1, 0.2], [0.2, 0.1, -0.2]];
+    report.surfaces = vec![[a, b, b, a]];
+    let Some(mut page) = open_page("edge.html", &report) else { return };
     let without = page.evaluate(PICTURE);
-    report.surfaces = vec![[[-0.2, 0.1, 0.2], [0.2, 0.1, 0.2], [0.2, 0.1, -0.2], [-0.2, 0.1, -0.2]]];
+    report.surfaces = vec![[a, [0.2, 0.1, 0.2], b, [-0.2, 0.1, -0.2]]];
     page.open(&file("seat.html", &write(&report)));
     assert_ne!(page.evaluate(PICTURE), without);
     assert_eq!(page.evaluate("document.getElementById('key-surface').hidden"), false);
@@ -257,6 +260,7 @@ fn a_phone_in_the_dark_and_paper_have_no_overflow() {
     assert_eq!(page.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(20, 23, 28)");
     page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
     assert_eq!(page.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(255, 255, 255)");
+    assert_eq!(page.evaluate("getComputedStyle(document.getElementById('printed')).display"), "block", "the body");
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
 
