@@ -91,6 +91,9 @@ pub(crate) struct PoseArgs {
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
+    /// Also draw, into DIR/figures, the torques over angle of the five joints that work hardest, each as SVG and PNG.
+    #[arg(long)]
+    pub(crate) figures: bool,
     /// Print pose.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
@@ -108,6 +111,9 @@ pub(crate) struct RelaxArgs {
     /// Folder for the results; made if it is not there. Nothing is written without it.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Also draw, into DIR/figures, the torques over angle of the five joints that work hardest, each as SVG and PNG.
+    #[arg(long, requires = "out")]
+    pub(crate) figures: bool,
     /// Print relax.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,

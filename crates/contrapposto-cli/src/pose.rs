@@ -16,7 +16,7 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::{open, tell};
 use crate::output::{Folder, print};
-use crate::report::report_of_pose;
+use crate::report::{figures_of_pose, report_of_pose};
 use crate::torques::plain_table;
 
 pub(crate) use drawing::directions;
@@ -37,8 +37,10 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));
     let pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
-    let text = PoseText::new(&scenario, &pose, FILES.map(str::to_owned).to_vec());
-    let json = write(&scenario, &pose, &text, &args.out)?;
+    let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
+    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
+    let text = PoseText::new(&scenario, &pose, names.collect());
+    let json = write(&scenario, &pose, &text, &figures, &args.out)?;
     let folder = Folder::open(&args.out)?;
     print(&if args.json { json } else { report(&scenario, &pose, &text, &folder) })?;
     verdict(&scenario, &pose, &text)
@@ -68,7 +70,13 @@ fn model_args(scenario: &Path, file: &ModelFile) -> ModelArgs {
 }
 
 /// Writes all files, and gives back the text of `pose.json`.
-fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> Result<String, Fail> {
+fn write(
+    scenario: &PoseScenario,
+    pose: &Pose,
+    text: &PoseText,
+    figures: &[(String, Vec<u8>)],
+    out: &Path,
+) -> Result<String, Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows = [pose.posture.values()];
     let title = if scenario.title.is_empty() { "pose" } else { &scenario.title };
@@ -79,7 +87,8 @@ fn write(scenario: &PoseScenario, pose: &Pose, text: &PoseText, out: &Path) -> R
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let page = report_of_pose(scenario, pose, text)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
-    Folder::open(out)?.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
+    let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+    Folder::open(out)?.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     Ok(json)
 }
 

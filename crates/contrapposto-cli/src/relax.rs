@@ -18,7 +18,7 @@ use crate::input::read;
 use crate::model_file::tell;
 use crate::output::{Folder, print};
 use crate::pose::model_of;
-use crate::report::{body, frame_of_posture, report_of_equilibria};
+use crate::report::{body, figures_of_equilibria, frame_of_posture, report_of_equilibria};
 use text::{RelaxText, percent, report};
 
 const FILES: [&str; 6] = ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
@@ -57,10 +57,12 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         SearchError::Relax(error) => Fail::Refused(format!("{name}: {error}")),
         error => Fail::Job(format!("{name}: {error}")),
     })?;
-    let files = if args.out.is_some() { FILES.map(str::to_owned).to_vec() } else { vec![] };
+    let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
+    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
+    let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
     let text = RelaxText::new(&scenario, &found, files);
     let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("relax.json", error))? + "\n";
-    let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, out)).transpose()?;
+    let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, &figures, out)).transpose()?;
     let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
     print(&if args.json { json } else { report(&text) + page.as_deref().unwrap_or_default() })
 }
@@ -71,6 +73,7 @@ fn write(
     found: &Equilibria,
     text: &RelaxText,
     json: &str,
+    figures: &[(String, Vec<u8>)],
     out: &Path,
 ) -> Result<Folder, Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
@@ -84,7 +87,8 @@ fn write(
     let folder = Folder::open(out)?;
     let page = report_of_equilibria(scenario, found)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
-    folder.write(&FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
+    let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+    folder.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     Ok(folder)
 }
 

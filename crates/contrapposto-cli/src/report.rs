@@ -15,7 +15,9 @@ mod words;
 pub(crate) use assessed::{Shots, report_of_assessment};
 pub(crate) use figures::{before_and_after, both, figures_of_assessment, figures_of_run};
 pub(crate) use film::Frame;
-pub(crate) use postures::{frame_of_posture, report_of_equilibria, report_of_pose};
+pub(crate) use postures::{
+    figures_of_equilibria, figures_of_pose, frame_of_posture, report_of_equilibria, report_of_pose,
+};
 pub(crate) use run::{main_coordinate, report_of_run};
 
 pub(crate) use solid::parts;

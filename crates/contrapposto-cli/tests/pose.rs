@@ -44,7 +44,7 @@ fn residuals(pose: &Value, task: &str) -> Vec<f64> {
 #[test]
 fn the_shelf_is_reached_on_both_feet() {
     let folder = tempfile::tempdir().unwrap();
-    let run = pose(&shelf(), folder.path(), &["--json"]);
+    let run = pose(&shelf(), folder.path(), &["--json", "--figures"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     let written = std::fs::read_to_string(folder.path().join("pose.json")).unwrap();
     assert_eq!(run.stdout.trim(), written.trim());
@@ -56,9 +56,10 @@ fn the_shelf_is_reached_on_both_feet() {
     }
     let order = found["coordinate_order"].as_array().unwrap();
     assert_eq!(order.len(), found["coordinates"].as_object().unwrap().len());
-    for file in ["pose.mot", "pose.csv", "pose.svg"] {
-        assert!(std::fs::metadata(folder.path().join(file)).unwrap().len() > 100, "{file}");
+    for file in found["files"].as_array().unwrap() {
+        assert!(std::fs::metadata(folder.path().join(file.as_str().unwrap())).unwrap().len() > 100, "{file}");
     }
+    assert_eq!(found["files"].as_array().unwrap().len(), 6 + 2 * 5);
     shown_as_found(&page(folder.path()), &found);
 }
 

@@ -50,7 +50,7 @@ fn written(folder: &Path, text: &str) -> PathBuf {
 fn one_leg_rests_by_a_slouch_or_level() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let run = relax(&standing(), &["--json", "--out", out.to_str().unwrap()]);
+    let run = relax(&standing(), &["--json", "--figures", "--out", out.to_str().unwrap()]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stderr.contains("[strategy], [fatigue], [run] have no part"), "{}", run.stderr);
     let text = std::fs::read_to_string(out.join("relax.json")).unwrap();
@@ -106,10 +106,17 @@ fn one_leg_rests_by_a_slouch_or_level() {
         let torques: f64 = cells[4..7].iter().map(|cell| cell.parse::<f64>().unwrap()).sum();
         assert!(cells.len() == 8 && torques.abs() < 1e-9, "{row}");
     }
+    // A panel for each posture; the adduction that differs most works hardest in one of them.
+    let chart = std::fs::read_to_string(out.join("figures/torque-balance-1-hip_adduction_r.svg")).unwrap();
+    for words in ["right hip adduction, posture 1", "right hip adduction, posture 2", ">external<", ">active<"] {
+        assert!(chart.contains(words), "{words}");
+    }
+    assert!(!chart.contains(">start<") && !chart.contains(">goal<"));
+    assert_eq!(found["files"].as_array().unwrap().len(), 6 + 2 * 5);
     for name in found["files"].as_array().unwrap() {
         assert!(std::fs::metadata(out.join(name.as_str().unwrap())).unwrap().len() > 1000, "{name}");
     }
-    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 6);
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 6 + 1, "six files, a folder of figures");
 }
 
 #[test]

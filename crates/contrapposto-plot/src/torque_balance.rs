@@ -43,7 +43,8 @@ pub struct TorqueBalance {
     /// Tolerance on the active torque, N m: two dotted lines beside minus the passive torque (the paper's Figure 2),
     /// where they are far enough from it to be seen. 0 for none.
     pub tolerance_nm: f64,
-    /// Black point: angle, degrees, and active torque, N m, at the beginning.
+    /// Black point: angle, degrees, and active torque, N m, at the beginning; of a posture that stands for itself (one point in
+    /// [`TorqueBalance::path`], no goal) its active torque.
     pub start: Option<(f64, f64)>,
     /// Yellow path: angle, degrees, and active torque, N m, of every step.
     pub path: Vec<(f64, f64)>,
@@ -156,8 +157,12 @@ fn draw_curves(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
         frame.say_empty(canvas);
     }
 
+    // A posture that stands for itself has no course.
+    let alone = panel.goal.is_none() && panel.path.len() == 1;
+    let external_point = !external && panel.external_nm.is_empty() && !panel.external_path.is_empty();
     let marks = [
-        (panel.start.is_some(), START, PAPER, "start"),
+        (external_point, EXTERNAL, PAPER, "external"),
+        (panel.start.is_some(), START, PAPER, if alone { "active" } else { "start" }),
         (panel.goal.is_some(), GOAL, PAPER, "goal"),
         (!panel.zero_torque_deg.is_empty(), PAPER, ACTIVE, "active = 0"),
     ];

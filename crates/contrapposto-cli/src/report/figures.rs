@@ -84,6 +84,33 @@ pub(crate) fn figures_of_assessment(
     files(&figures)
 }
 
+/// Torque balances of postures that stand for themselves, one panel each, of the joints that work hardest in any of them.
+pub(crate) fn figures_of_postures(
+    title: &str,
+    model: &Model,
+    frames: &[Frame],
+    names: &[String],
+) -> Result<Vec<(String, Vec<u8>)>, Fail> {
+    let hardest = |i: usize| frames.iter().fold(0.0, |most: f64, frame| most.max(frame.load[i]));
+    let turns = |i: &usize| model.coordinates()[*i].kind == CoordinateKind::Rotation;
+    let mut joints: Vec<usize> = shown(model).into_iter().filter(turns).filter(|&i| hardest(i) >= IDLE).collect();
+    joints.sort_by(|&a, &b| hardest(b).total_cmp(&hardest(a)));
+    let mut figures = vec![];
+    for (number, i) in joints.into_iter().take(MOST_JOINTS).enumerate() {
+        let coordinate = &model.coordinates()[i];
+        let panel = |(frame, name): (&Frame, &String)| TorqueBalance {
+            title: title.to_owned(),
+            subtitle: format!("{}, {name}", words::plain(&coordinate.name)),
+            goal: None,
+            ..been(model, std::slice::from_ref(frame), i)
+        };
+        let panels: Vec<TorqueBalance> = frames.iter().zip(names).map(panel).collect();
+        let name = format!("torque-balance-{}-{}", number + 1, plain_name(&coordinate.name));
+        figures.push((name, torque_balance(&panels)));
+    }
+    files(&figures)
+}
+
 /// Fatigue of a group; NaN where it is not known.
 fn tired(frame: &Frame, i: usize, side: usize) -> f64 {
     frame.fatigue.as_ref().map_or(f64::NAN, |fatigue| fatigue[i][side])

@@ -10,6 +10,7 @@ use contrapposto::simulation::{AssessSettings, Contact, Standing, assess};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText, RelaxScenario};
 use contrapposto_report::{Entry, Figure, List, Moments, Report, Table};
 
+use super::figures::figures_of_postures;
 use super::film::Frame;
 use super::story::hardest;
 use super::words::{list, percent, plain, sentence, value};
@@ -24,16 +25,7 @@ const SHOWN: usize = 3;
 /// The page of a solved pose.
 pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseText) -> Result<String, Fail> {
     let model = &scenario.model;
-    let settings = AssessSettings { supports: scenario.supports.clone(), ..AssessSettings::default() };
-    let mut frames = vec![];
-    let held = assess(
-        model,
-        &[(0.0, pose.posture.clone())],
-        |_, _, loads| loads.extend_from_slice(&scenario.loads),
-        &settings,
-        |instant| frames.push(Frame::of_instant(model, instant)),
-    )
-    .map_err(|error| Fail::job("report", error))?;
+    let (frames, unheld) = frames_of_pose(scenario, pose)?;
     let supported = scenario.goals.iter().any(|goal| goal.hard);
     let scene = Scene {
         title: &scenario.title,
@@ -71,7 +63,7 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
         report.reasons.push("The supports do not stay where they are.".to_owned());
     }
     let free = !root_rates(model).is_empty();
-    report.reasons.extend(if held.unheld > 0 {
+    report.reasons.extend(if unheld > 0 {
         Some("Supports that only push cannot hold the body in this posture: it would fall; torques are those of a body that is held at its root besides.".to_owned())
     } else {
         let nothing = scenario.supports.is_empty() && free;
@@ -93,6 +85,28 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
     Ok(contrapposto_report::write(&report))
 }
 
+/// What holds the posture, and in how many moments (none or one) its supports cannot.
+fn frames_of_pose(scenario: &PoseScenario, pose: &Pose) -> Result<(Vec<Frame>, usize), Fail> {
+    let model = &scenario.model;
+    let settings = AssessSettings { supports: scenario.supports.clone(), ..AssessSettings::default() };
+    let mut frames = vec![];
+    let held = assess(
+        model,
+        &[(0.0, pose.posture.clone())],
+        |_, _, loads| loads.extend_from_slice(&scenario.loads),
+        &settings,
+        |instant| frames.push(Frame::of_instant(model, instant)),
+    )
+    .map_err(|error| Fail::job("report", error))?;
+    Ok((frames, held.unheld))
+}
+
+/// `--figures` of a solved pose.
+pub(crate) fn figures_of_pose(scenario: &PoseScenario, pose: &Pose) -> Result<Vec<(String, Vec<u8>)>, Fail> {
+    let (frames, _) = frames_of_pose(scenario, pose)?;
+    figures_of_postures(&scenario.title, &scenario.model, &frames, &["the posture".to_owned()])
+}
+
 /// `look_at head` is `look at head`, `point hand_r` is `point right hand`.
 fn plain_task(task: &str) -> String {
     let words: Vec<String> =
@@ -110,13 +124,28 @@ fn left(entries: &[PoseLevelText]) -> String {
     if reached(entries) { "nothing".to_owned() } else { entries.iter().map(text).collect::<Vec<_>>().join(", ") }
 }
 
+/// `--figures` of all postures of least effort.
+pub(crate) fn figures_of_equilibria(
+    scenario: &RelaxScenario,
+    found: &Equilibria,
+) -> Result<Vec<(String, Vec<u8>)>, Fail> {
+    let frames = frames_of_postures(&scenario.model, &found.postures)?;
+    figures_of_postures(&scenario.title, &scenario.model, &frames, &numbered(frames.len()))
+}
+
+fn frames_of_postures(model: &Model, postures: &[RelaxedPosture]) -> Result<Vec<Frame>, Fail> {
+    postures.iter().map(|posture| frame_of_posture(model, posture)).collect()
+}
+
+/// `posture 1`, `posture 2`, ...
+fn numbered(count: usize) -> Vec<String> {
+    (1..=count).map(|number| format!("posture {number}")).collect()
+}
+
 /// The page of all postures of least effort.
 pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria) -> Result<String, Fail> {
     let model = &scenario.model;
-    let mut frames = vec![];
-    for posture in &found.postures {
-        frames.push(frame_of_posture(model, posture)?);
-    }
+    let frames = frames_of_postures(model, &found.postures)?;
     let scene = Scene {
         title: &scenario.title,
         model,
@@ -127,9 +156,8 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
         held: None,
     };
     let shown = shown(model);
-    let names = (1..=frames.len()).map(|number| format!("posture {number}")).collect();
     let first = found.postures.first().map_or(0, speaking);
-    let mut report = scene.report(Moments::Postures(names), first)?;
+    let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;
     let supports = carriers(&scene);
     let entry = |(frame, posture): (usize, &RelaxedPosture)| Entry {
         frame,
