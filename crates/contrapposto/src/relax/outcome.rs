@@ -11,7 +11,7 @@ use crate::posture::Posture;
 pub struct Options {
     /// Largest change of any rate in one step, rad or m.
     pub max_step: f64,
-    /// Largest number of steps of [`Engine::solve`].
+    /// Largest number of steps of [`Engine::solve`](super::Engine::solve).
     pub max_steps: usize,
     /// Steps end when no rate would change by more than this, rad or m.
     pub still: f64,
@@ -19,7 +19,7 @@ pub struct Options {
     pub gain: f64,
     /// Steps that made things worse are taken back; without it every step counts, and the next one is shorter.
     pub guarded: bool,
-    /// Valleys of effort that [`Engine::solve`] looks into before its steps: 1 for the nearest one, more for others beside it; 0
+    /// Valleys of effort that [`Engine::solve`](super::Engine::solve) looks into before its steps: 1 for the nearest one, more for others beside it; 0
     /// for steps alone, which stay nearest to the start.
     pub valleys: usize,
 }
@@ -59,7 +59,7 @@ pub struct Step {
     pub status: Status,
 }
 
-/// Why [`Engine::solve`] ended.
+/// Why [`Engine::solve`](super::Engine::solve) ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
     /// Nothing moves any more, or nothing is gained.
@@ -68,7 +68,7 @@ pub enum Reason {
     Steps,
 }
 
-/// Where [`Engine::solve`] came to.
+/// Where [`Engine::solve`](super::Engine::solve) came to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relaxed {
     /// All coordinates.
