@@ -96,7 +96,7 @@ fn posed(file: &str, bytes: &[u8], model: Option<Model>, letter: char) -> Result
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));
     let pose = engine.solve(&scenario.start).map_err(|error| Fail::job(file, error))?;
-    let frame = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let frame = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
     if frame.is_none() {
         tell("note", &format!("{file}: its supports cannot hold the body in its last posture; loads are not known"));
     }

@@ -9,13 +9,23 @@ use contrapposto::statics::Load;
 use crate::fail::Fail;
 use crate::report::Frame;
 
-/// A posture and what it asks for; `None` where the supports cannot hold it. Without supports its root is held as if by hand.
-pub(crate) fn held(
-    model: &Model,
-    posture: &Posture,
-    loads: &[Load],
-    supports: &[Support],
-) -> Result<Option<Frame>, Fail> {
+/// A posture that is held still.
+pub(crate) struct Held {
+    /// What it asks for. Where the supports cannot hold it, with the root held besides, as if by hand.
+    pub(crate) frame: Frame,
+    /// Do the supports hold it? True without supports.
+    pub(crate) holds: bool,
+}
+
+impl Held {
+    /// What it asks for, where that is known.
+    pub(crate) fn known(self) -> Option<Frame> {
+        self.holds.then_some(self.frame)
+    }
+}
+
+/// Without supports the root is held as if by hand.
+pub(crate) fn held(model: &Model, posture: &Posture, loads: &[Load], supports: &[Support]) -> Result<Held, Fail> {
     let settings = AssessSettings { supports: supports.to_vec(), ..AssessSettings::default() };
     let mut frame = None;
     let found = assess(
@@ -26,5 +36,6 @@ pub(crate) fn held(
         |instant| frame = Some(Frame::of_instant(model, instant)),
     )
     .map_err(|error| Fail::job("posture", error))?;
-    Ok(frame.filter(|_| found.unheld == 0))
+    let frame = frame.ok_or_else(|| Fail::job("posture", "it has no torques"))?;
+    Ok(Held { frame, holds: found.unheld == 0 })
 }

@@ -124,8 +124,10 @@ fn other_targets_within_reach_are_reached_too() {
     let Some(peer) = Peer::read() else { return };
     let rng = &mut Pcg64::seed_from_u64(seed());
     let mut steps_to_success = vec![];
+    // One of seed 1, where the last level swings ever wider if it is not bent.
+    let swing = Vector3::new(0.48315487357555337, 0.42526972032297927, 1.425907949471182);
     for i in 0..200 {
-        let (target, _) = reachable(&peer, rng);
+        let target = if i == 0 { swing } else { reachable(&peer, rng).0 };
         let mut engine = Engine::new(&peer.model, peer.goals(target), &[], Options::default()).unwrap();
         let mut posture = peer.rest.clone();
         let mut success = None;

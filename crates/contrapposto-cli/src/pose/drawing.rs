@@ -37,7 +37,7 @@ pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str)
 /// The body of a solved pose, with what it should reach.
 fn pose_posture(scenario: &PoseScenario, pose: &Pose) -> Result<BodyPosture, Fail> {
     let model = &scenario.model;
-    let frame = held(model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let frame = held(model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
     let mut posture = match &frame {
         Some(frame) => body::body(model, &scenario.supports, frame)?,
         None => BodyPosture { parts: body::parts(model, pose.posture.values(), None)?, ..BodyPosture::default() },

@@ -6,7 +6,7 @@ use contrapposto::ik::{Pose, Reason};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::relax::{Direction, Equilibria, RelaxedPosture};
-use contrapposto::simulation::{AssessSettings, Contact, Standing, assess};
+use contrapposto::simulation::{Contact, Standing};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText, RelaxScenario};
 use contrapposto_report::{Entry, Figure, List, Moments, Report, Table};
 
@@ -16,6 +16,7 @@ use super::story::hardest;
 use super::words::{list, percent, plain, sentence, value};
 use super::{Scene, shown, turn};
 use crate::fail::Fail;
+use crate::held::{Held, held};
 use crate::pose::drawing::targets;
 use crate::pose::{reached, tasks};
 
@@ -25,7 +26,8 @@ const SHOWN: usize = 3;
 /// The page of a solved pose.
 pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseText) -> Result<String, Fail> {
     let model = &scenario.model;
-    let (frames, unheld) = frames_of_pose(scenario, pose)?;
+    let Held { frame, holds } = held(model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let frames = [frame];
     let supported = scenario.goals.iter().any(|goal| goal.hard);
     let scene = Scene {
         title: &scenario.title,
@@ -36,8 +38,8 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
         carried: scenario.supports.iter().map(|support| support.segment).collect(),
         held: (!supported).then_some(scenario.loads.as_slice()),
     };
-    let worst =
-        frames.first().and_then(|frame| (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b])));
+    let [frame] = &frames;
+    let worst = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]));
     let mut report = scene.report(Moments::Postures(vec!["the posture".to_owned()]), worst.unwrap_or(0))?;
     let turn = turn(model);
     report.targets = targets(scenario, pose)?.into_iter().map(|target| turn.point(target)).collect();
@@ -63,16 +65,14 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
         report.reasons.push("The supports do not stay where they are.".to_owned());
     }
     let free = !root_rates(model).is_empty();
-    report.reasons.extend(if unheld > 0 {
+    report.reasons.extend(if !holds {
         Some("Supports that only push cannot hold the body in this posture: it would fall; torques are those of a body that is held at its root besides.".to_owned())
     } else {
         let nothing = scenario.supports.is_empty() && free;
         nothing.then(|| "Where supports touch is not known, so torques are those of a body that is held at its root.".to_owned())
     });
     report.figures.push(figure("Tasks reached", format!("{done} of {}", all.len()), "supports among them"));
-    if let Some(frame) = frames.first() {
-        figures_of(model, frame, &carriers(&scene), &mut report);
-    }
+    figures_of(model, frame, &carriers(&scene), &mut report);
     let row = |entries: &&[PoseLevelText]| {
         let mark = if reached(entries) { "reached" } else { "as near as those above allow" };
         vec![entries[0].priority.to_string(), plain_task(&entries[0].task), left(entries), mark.to_owned()]
@@ -85,26 +85,10 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
     Ok(contrapposto_report::write(&report))
 }
 
-/// What holds the posture, and in how many moments (none or one) its supports cannot.
-fn frames_of_pose(scenario: &PoseScenario, pose: &Pose) -> Result<(Vec<Frame>, usize), Fail> {
-    let model = &scenario.model;
-    let settings = AssessSettings { supports: scenario.supports.clone(), ..AssessSettings::default() };
-    let mut frames = vec![];
-    let held = assess(
-        model,
-        &[(0.0, pose.posture.clone())],
-        |_, _, loads| loads.extend_from_slice(&scenario.loads),
-        &settings,
-        |instant| frames.push(Frame::of_instant(model, instant)),
-    )
-    .map_err(|error| Fail::job("report", error))?;
-    Ok((frames, held.unheld))
-}
-
 /// `--figures` of a solved pose.
 pub(crate) fn figures_of_pose(scenario: &PoseScenario, pose: &Pose) -> Result<Vec<(String, Vec<u8>)>, Fail> {
-    let (frames, _) = frames_of_pose(scenario, pose)?;
-    figures_of_postures(&scenario.title, &scenario.model, &frames, &["the posture".to_owned()])
+    let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    figures_of_postures(&scenario.title, &scenario.model, &[held.frame], &["the posture".to_owned()])
 }
 
 /// `look_at head` is `look at head`, `point hand_r` is `point right hand`.

@@ -364,19 +364,8 @@ impl<'a> Engine<'a> {
             self.errors[k] = missing.map(|m| m * m).sum::<f64>().sqrt();
         }
         let most = self.reach.min(self.ceiling);
-        for (i, rate) in self.model.rates().iter().enumerate() {
-            let (lower, upper) = match rate.coordinate {
-                _ if self.locked[i] => (0.0, 0.0),
-                Some(c) => {
-                    let (lower, upper) = self.model.coordinates()[c].range;
-                    let value = posture.values()[c];
-                    // A posture outside its range comes back with a step.
-                    ((lower - value).clamp(-most, most), (upper - value).clamp(-most, most))
-                }
-                None => (-most, most),
-            };
-            (self.problem.lower[i], self.problem.upper[i]) = (lower.min(upper), upper);
-        }
+        let Problem { lower, upper, .. } = &mut self.problem;
+        bound_rates(self.model, &self.locked, posture, most, lower, upper);
         Ok(())
     }
 
@@ -505,6 +494,30 @@ const SETTLED: f64 = 1e-4;
 const DAMPING: f64 = 2.0;
 /// Largest error that damping knows of.
 const MOST: f64 = 1.0;
+
+/// Bounds of every rate in one step: its range, and `most` at most. What is `locked` does not move; a posture outside its range
+/// comes back with a step.
+pub(crate) fn bound_rates(
+    model: &Model,
+    locked: &[bool],
+    posture: &Posture,
+    most: f64,
+    lower: &mut [f64],
+    upper: &mut [f64],
+) {
+    for (i, rate) in model.rates().iter().enumerate() {
+        let (least, greatest) = match rate.coordinate {
+            _ if locked[i] => (0.0, 0.0),
+            Some(c) => {
+                let (lower, upper) = model.coordinates()[c].range;
+                let value = posture.values()[c];
+                ((lower - value).clamp(-most, most), (upper - value).clamp(-most, most))
+            }
+            None => (-most, most),
+        };
+        (lower[i], upper[i]) = (least.min(greatest), greatest);
+    }
+}
 
 fn check_half_space(model: &Model, space: &crate::constraint::HalfSpace) -> Result<(), String> {
     let (given, needed) = (space.normal.len(), model.coordinates().len());

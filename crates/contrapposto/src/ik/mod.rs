@@ -12,6 +12,7 @@ mod hold;
 mod symmetric;
 pub mod task;
 
+pub(crate) use engine::bound_rates;
 pub use engine::{Engine, GoalError, Options, Pose, Reached, Reason, Step};
 
 use crate::constraint::HalfSpace;

@@ -3,6 +3,7 @@
 use super::super::site::fill_forces;
 use super::{BEFORE, Engine};
 use crate::contact::{Unknowns, bounds, friction_rows, share_row};
+use crate::ik::bound_rates;
 use crate::ik::task::Task;
 use crate::math::lexicographic::Level;
 use crate::posture::Posture;
@@ -82,19 +83,8 @@ impl Engine<'_> {
 
     /// Ranges, largest step, and forces that only push.
     pub(super) fn bound(&mut self, posture: &Posture) {
-        let most = self.reach;
-        for (i, rate) in self.model.rates().iter().enumerate() {
-            let (lower, upper) = match rate.coordinate {
-                _ if self.locked[i] => (0.0, 0.0),
-                Some(c) => {
-                    let (lower, upper) = self.model.coordinates()[c].range;
-                    let value = posture.values()[c];
-                    ((lower - value).clamp(-most, most), (upper - value).clamp(-most, most))
-                }
-                None => (-most, most),
-            };
-            (self.problem.lower[i], self.problem.upper[i]) = (lower.min(upper), upper);
-        }
+        let (lower, upper) = (&mut self.problem.lower, &mut self.problem.upper);
+        bound_rates(self.model, &self.locked, posture, self.reach, lower, upper);
         let rates = self.model.rates().len();
         for (i, force) in self.contact.forces().iter().enumerate() {
             let (lower, upper) = bounds(i);
