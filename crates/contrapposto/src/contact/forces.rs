@@ -77,6 +77,15 @@ impl ContactForces {
     /// [`SupportError`] when a support does not fit the model.
     pub fn new(model: &Model, supports: Vec<Support>) -> Result<Self, SupportError> {
         supports.iter().try_for_each(|support| support.check(model))?;
+        Ok(Self::build(model, supports, root_rates(model)))
+    }
+
+    /// Of a part of a body that no support holds: no forces, and its root is held by the rest of the body.
+    pub(crate) fn of_a_limb(model: &Model) -> Self {
+        Self::build(model, vec![], vec![])
+    }
+
+    fn build(model: &Model, supports: Vec<Support>, root: Vec<usize>) -> Self {
         let mut loads = vec![];
         let mut axes = vec![];
         for support in &supports {
@@ -99,7 +108,7 @@ impl ContactForces {
         let mut forces = Self {
             sides: vec![Side::Positive; working.len()],
             working,
-            root: root_rates(model),
+            root,
             weight: if weight > 0.0 { weight } else { 1.0 },
             loads,
             axes,
@@ -115,7 +124,7 @@ impl ContactForces {
             supports,
         };
         forces.problem.levels.resize(5, Level::default());
-        Ok(forces)
+        forces
     }
 
     /// Forgets what earlier postures have shown: the next answer is that of new forces, to the bit.

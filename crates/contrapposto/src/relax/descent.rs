@@ -8,10 +8,11 @@
 //! optimization"), or feet that turn would keep steps short.
 
 use super::hessian::Hessian;
-use super::quadratic::{Quadratic, dot};
+use super::quadratic::Quadratic;
 use super::site::{Ask, Site};
 use crate::contact::bounds;
 use crate::ik::body::BodyError;
+use crate::math::lexicographic::dot;
 use crate::model::Model;
 use crate::posture::Posture;
 
@@ -27,8 +28,6 @@ pub(super) struct Manner {
     pub(super) steps: usize,
     /// It ends when a step is foreseen to gain less than this share of the merit.
     pub(super) gain: f64,
-    /// An effort below which it must come; it ends when that is out of sight.
-    pub(super) below: f64,
 }
 
 /// Where it came to.
@@ -43,10 +42,6 @@ pub(super) struct Bottom {
     pub(super) settled: bool,
 }
 
-/// Steps after which it may see that it will not come low enough.
-const PATIENCE: usize = 5;
-/// So many times the gain foreseen for the next step are all that is hoped for.
-const HOPE: f64 = 30.0;
 /// Shift after a step that was taken back, at least.
 const LEAST: f64 = 1e-4;
 /// No rate changes by more any longer, rad or m.
@@ -126,7 +121,7 @@ impl Descent {
                 std::mem::swap(&mut self.at, &mut self.next);
                 self.multipliers.clone_from(&self.problem.multipliers);
                 let agreement = if noise { 1.0 } else { ratio.min(1.5) };
-                let factor = (1.0 - (2.0 * agreement - 1.0).powi(3)).clamp(0.2, 3.0);
+                let factor = (1.0 - (2.0 * agreement - 1.0).powi(3)).clamp(1.0 / 3.0, 3.0);
                 shift = if factor > 1.0 { (factor * needed).max(1e-5) } else { factor * needed.min(shift) };
                 if shift < 1e-7 {
                     shift = 0.0;
@@ -139,9 +134,6 @@ impl Descent {
             }
             little = if foreseen <= manner.gain * before && share == 1.0 { little + 1 } else { 0 };
             settled = little >= 2 || length * largest <= STILL || (little > 0 && foreseen < 1e-13 * before);
-            if steps >= PATIENCE && share == 1.0 && self.at.effort - HOPE * foreseen > manner.below {
-                break;
-            }
         }
         Ok(Bottom { effort: self.at.effort, violation: self.at.violation(), steps, settled })
     }
@@ -170,7 +162,7 @@ impl Descent {
         Ok(())
     }
 
-    fn begin(&mut self, ask: &Ask<'_>, start: &Posture, forces: &[f64]) -> Result<(), BodyError> {
+    pub(super) fn begin(&mut self, ask: &Ask<'_>, start: &Posture, forces: &[f64]) -> Result<(), BodyError> {
         self.at.posture.values_mut().copy_from_slice(start.values());
         for site in [&mut self.at, &mut self.next] {
             site.forces.clear();

@@ -11,11 +11,11 @@
 
 use nalgebra::Vector3;
 
-use super::quadratic::{Quadratic, dot};
+use super::quadratic::Quadratic;
 use super::site::{Ask, Site, columns};
 use crate::ik::body::{Body, Needs};
 use crate::ik::task::{Task, share_of_strength};
-use crate::math::lexicographic::add_scaled;
+use crate::math::lexicographic::{add_scaled, dot};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;

@@ -13,6 +13,7 @@ mod finder;
 #[cfg(test)]
 mod ground;
 mod hessian;
+mod limbs;
 mod mirror;
 mod outcome;
 mod probe;

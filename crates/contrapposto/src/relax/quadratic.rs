@@ -8,7 +8,7 @@
 //! The guess is put right a few times only. Where most unknowns lie at bounds it may still be wrong then (one in ten of small
 //! random problems): bounds hold, rows may be missed, and a descent, which judges every step by what comes of it, goes on.
 
-use crate::math::lexicographic::add_scaled;
+use crate::math::lexicographic::{add_scaled, add_squares, dot};
 
 /// Weight of held rows in `M`, against the largest diagonal entry.
 const FAST: f64 = 10.0;
@@ -20,8 +20,9 @@ const ROUNDS: usize = 14;
 const WORST: f64 = 0.3;
 /// Relative size of a violation or multiplier that counts as zero.
 const NOTHING: f64 = 1e-12;
-/// The first shift that is tried.
-const LEAST: f64 = 3e-6;
+/// The first shift that is tried, and by what it grows until it is enough: too much of it makes steps short.
+const LEAST: f64 = 1e-4;
+const MORE: f64 = 3.0;
 /// Rows shorter than this count as zero.
 const SHORT: f64 = 1e-12;
 
@@ -47,6 +48,10 @@ pub(super) struct Quadratic {
     /// The answer, and the multipliers of the rows.
     pub(super) step: Vec<f64>,
     pub(super) multipliers: Vec<f64>,
+    /// `H` with the squares of equations added, whole, the weight of each, and `g` with their pulls.
+    stiff: Vec<f64>,
+    weights: Vec<f64>,
+    pull: Vec<f64>,
     /// Is each unknown held at a bound, each row at a limit: -1, 0 or 1?
     held: Vec<i8>,
     kept: Vec<i8>,
@@ -75,6 +80,7 @@ impl Quadratic {
         self.step.resize(n, 0.0);
         self.bent.resize(n, 0.0);
         self.mirror();
+        self.stiffen();
         for round in 0..ROUNDS {
             self.choose();
             loop {
@@ -82,7 +88,7 @@ impl Quadratic {
                 if self.factorise(shift) {
                     break;
                 }
-                shift = (8.0 * shift).max(LEAST);
+                shift = (MORE * shift).max(LEAST);
                 if shift > 1e6 {
                     return None;
                 }
@@ -136,6 +142,30 @@ impl Quadratic {
         }
     }
 
+    /// What serves every guess: equations are always held.
+    fn stiffen(&mut self) {
+        let n = self.n;
+        let size = (0..n).fold(0.0, |size: f64, i| size.max(self.matrix[i * n + i].abs()));
+        self.stiff.clone_from(&self.matrix);
+        self.pull.clone_from(&self.slope);
+        self.weights.clear();
+        for (r, row) in self.rows.chunks_exact(n).enumerate() {
+            let square = dot(row, row);
+            let weight = if square > SHORT { FAST * size / square } else { 0.0 };
+            self.weights.push(weight);
+            if self.lower[r] == self.upper[r] {
+                add_scaled(&mut self.pull, -weight * self.lower[r], row);
+            }
+        }
+        let (lower, upper, weights) = (&self.lower, &self.upper, &self.weights);
+        add_squares(&mut self.stiff, n, &self.rows, |r| if lower[r] == upper[r] { weights[r] } else { 0.0 });
+        for i in 1..n {
+            for j in 0..i {
+                self.stiff[i * n + j] = self.stiff[j * n + i];
+            }
+        }
+    }
+
     /// What is free, what is held.
     fn choose(&mut self) {
         self.free.clear();
@@ -164,42 +194,40 @@ impl Quadratic {
     fn fill(&mut self) {
         let (n, k, q) = (self.n, self.free.len(), self.on.len());
         let w = k + q + 1;
-        self.factor.clear();
         self.factor.resize((k + q) * w, 0.0);
-        self.table.clear();
-        self.table.resize(q * k, 0.0);
         let all = k == n;
         for (a, &i) in self.free.iter().enumerate() {
-            let (from, to) = (&self.matrix[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
-            let mut slope = self.slope[i];
+            let (from, to) = (&self.stiff[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
+            let mut pull = self.pull[i];
             if all {
                 to[a..k].copy_from_slice(&from[a..]);
             } else {
                 to[a..k].iter_mut().zip(&self.free[a..]).for_each(|(to, j)| *to = from[*j]);
-                slope += dot(from, &self.step);
+                pull += dot(from, &self.step);
             }
-            to[k + q] = -slope;
+            for (to, row) in to[k..].iter_mut().zip(&self.on) {
+                *to = self.rows[row * n + i];
+            }
+            to[k + q] = -pull;
         }
-        let size = (0..k).fold(0.0, |size: f64, a| size.max(self.factor[a * w + a].abs()));
         for (r, &row) in self.on.iter().enumerate() {
             let from = &self.rows[row * n..(row + 1) * n];
             let target = if self.kept[row] > 0 { self.upper[row] } else { self.lower[row] };
             let target = target - if all { 0.0 } else { dot(from, &self.step) };
-            let short = &mut self.table[r * k..(r + 1) * k];
-            short.iter_mut().zip(&self.free).for_each(|(to, i)| *to = from[*i]);
-            let square = dot(short, short);
-            let weight = if square > SHORT { FAST * size / square } else { 0.0 };
-            for a in 0..k {
-                let entry = short[a];
-                if entry == 0.0 {
-                    continue;
-                }
-                let line = &mut self.factor[a * w..(a + 1) * w];
-                add_scaled(&mut line[a..k], weight * entry, &short[a..]);
-                line[k + r] = entry;
-                line[k + q] += weight * entry * target;
+            let line = &mut self.factor[(k + r) * w..(k + r + 1) * w];
+            line.fill(0.0);
+            line[k + q] = target;
+            if self.lower[row] == self.upper[row] {
+                continue;
             }
-            self.factor[(k + r) * w + k + q] = target;
+            // The square of a limit that is held.
+            let weight = self.weights[row];
+            for (a, &i) in self.free.iter().enumerate().filter(|(_, i)| from[**i] != 0.0) {
+                let line = &mut self.factor[a * w..(a + 1) * w];
+                let by = weight * from[i];
+                line[a..k].iter_mut().zip(&self.free[a..]).for_each(|(to, j)| *to += by * from[*j]);
+                line[k + q] += by * target;
+            }
         }
     }
 
@@ -386,19 +414,6 @@ fn back(factor: &[f64], w: usize, b: &mut [f64]) {
         let row = &factor[i * w..i * w + k];
         b[i] = (b[i] - dot(&row[i + 1..], &b[i + 1..])) / row[i];
     }
-}
-
-/// `a . b`, four sums at once.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
-    for (a, b) in a.by_ref().zip(b.by_ref()) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 #[cfg(test)]

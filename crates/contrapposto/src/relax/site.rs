@@ -7,7 +7,7 @@ use crate::contact::{ContactForces, Unknowns, friction_rows, share_row};
 use crate::ik::Goal;
 use crate::ik::body::{Body, BodyError, Needs};
 use crate::ik::task::{Task, share_of_strength};
-use crate::math::lexicographic::{Level, add_scaled};
+use crate::math::lexicographic::{Level, add_scaled, add_squares};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind, PassiveTorque};
@@ -33,6 +33,15 @@ impl Ask<'_> {
     /// What must hold, besides the root's equilibrium and friction: places of supports, and goals above effort.
     pub(super) fn goals(&self) -> impl Iterator<Item = &Goal> {
         std::iter::once(self.places).chain(self.above)
+    }
+
+    /// Coordinates whose effort counts, in the order of the errors.
+    pub(super) fn efforts(&self) -> impl Iterator<Item = usize> {
+        let coordinates = self.effort.tasks.iter().filter_map(|task| match task {
+            Task::Effort(effort) => Some(&effort.coordinates),
+            _ => None,
+        });
+        coordinates.flatten().copied()
     }
 
     /// Number of unknowns: rates that move, then forces.
@@ -103,7 +112,9 @@ impl Site {
             let kind = LoadKind::Force(contact.weight() * force, FixedIn::World);
             self.loads.push(Load { kind, ..*load });
         }
-        self.body.update(model, &self.posture, &self.loads, Needs { torque: true, center_of_mass: true })?;
+        let needs = Needs { torque: true, center_of_mass: false };
+        let needs = ask.goals().flat_map(|goal| &goal.tasks).fold(needs, |needs, task| needs.with(task.needs()));
+        self.body.update(model, &self.posture, &self.loads, needs)?;
         self.passive.update(model, self.body.kinematics());
         columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
         self.effort_rows(ask);
@@ -206,10 +217,8 @@ impl Site {
         problem.matrix.resize(n * n, 0.0);
         problem.slope.clear();
         problem.slope.resize(n, 0.0);
+        add_squares(&mut problem.matrix, n, &self.slopes, |_| 1.0);
         for (row, error) in self.slopes.chunks_exact(n).zip(&self.errors) {
-            for (i, entry) in row.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
-                add_scaled(&mut problem.matrix[i * n + i..(i + 1) * n], *entry, &row[i..]);
-            }
             add_scaled(&mut problem.slope, *error, row);
         }
         (0..problem.shifted).fold(0.0, |size: f64, i| size.max(problem.matrix[i * n + i]))

@@ -1,28 +1,33 @@
 //! Which valley of effort lies lowest, of those near the start?
 //!
 //! Effort has many: arms, neck and spine each rest on their tissue in more than one way. From the bottom of the nearest one
-//! the body is moved aside, as far as supports and goals let it to first order, and goes down again; what lies lower is kept
-//! (Wales & Doye 1997, "Global optimization by basin-hopping"). The directions come from a fixed sequence of numbers: the same
-//! problem has the same answer. A descent ends as soon as it is out of sight of the lowest bottom.
+//! the limbs are moved aside, as far as goals let them to first order, and go down again; what lies lower is kept (Wales & Doye
+//! 1997, "Global optimization by basin-hopping"), part by part where parts rest by themselves ([`super::limbs`]). The directions
+//! come from a fixed sequence of numbers: the same problem has the same answer.
 
 use super::descent::{Bottom, Descent, Manner};
+use super::limbs::{Limbs, Parts};
 use super::site::Ask;
 use crate::ik::body::BodyError;
 use crate::model::Model;
 use crate::posture::Posture;
 
 /// The way to the nearest valley.
-const NEAR: Manner = Manner { pace: 0.15, plain: 0, reach: 0.3, steps: 100, gain: 1e-4, below: f64::INFINITY };
+const NEAR: Manner = Manner { pace: 0.15, plain: 0, reach: 0.3, steps: 100, gain: 1e-3 };
 /// The way down from aside, where goals are still near.
-const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.3, steps: 20, gain: 1e-3, below: f64::INFINITY };
+const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.3, steps: 20, gain: 0.03 };
+/// Another way to a valley whose goals are far.
+const AGAIN: Manner = Manner { steps: 100, gain: 1e-3, ..ASIDE };
+/// The way down from a posture put together from parts.
+const MIXED: Manner = Manner { plain: 0, ..ASIDE };
 /// The way to the bottom of a posture that hardly moves any more: a step that gains a millionth is not worth a move.
-const SINK: Manner = Manner { pace: 0.4, plain: 0, reach: 0.1, steps: 40, gain: 1e-6, below: f64::INFINITY };
+const SINK: Manner = Manner { pace: 0.4, plain: 0, reach: 0.1, steps: 40, gain: 1e-6 };
 /// The way to the very bottom.
-const LAST: Manner = Manner { pace: 0.4, plain: 0, reach: 0.3, steps: 100, gain: 1e-13, below: f64::INFINITY };
+const LAST: Manner = Manner { pace: 0.4, plain: 0, reach: 0.3, steps: 100, gain: 1e-13 };
 /// How far aside, as a share of the range of each coordinate.
 const FAR: f64 = 0.7;
-/// Share of the coordinates that go aside, neighbours in the model's order: a limb or two.
-const PART: f64 = 0.5;
+/// Share of the coordinates that go aside, neighbours in the model's order.
+const PART: f64 = 0.7;
 /// Largest range that counts, rad or m.
 const WIDE: f64 = 2.0;
 /// A bottom counts when it is lower by this share.
@@ -41,6 +46,8 @@ pub(super) struct Valleys {
     aside: Posture,
     aside_forces: Vec<f64>,
     wish: Vec<f64>,
+    /// The bottom of the nearest valley.
+    near: Posture,
 }
 
 impl Valleys {
@@ -52,6 +59,7 @@ impl Valleys {
             multipliers: vec![],
             aside: model.default_posture(),
             aside_forces: vec![],
+            near: model.default_posture(),
             wish: vec![],
         }
     }
@@ -64,44 +72,83 @@ impl Valleys {
         posture: &mut Posture,
         count: usize,
     ) -> Result<Option<Bottom>, BodyError> {
+        let limbs = Limbs::of(ask);
         self.forces.clear();
         self.forces.extend_from_slice(ask.contact.forces());
         self.posture.values_mut().copy_from_slice(posture.values());
-        self.multipliers.clear();
-        let mut best = self.descent.go(ask, &self.posture, &self.forces, &self.multipliers, &NEAR)?;
-        let mut steps = best.steps;
-        if best.violation > ROUGH {
-            // Another way down.
-            best = self.descent.go(ask, &self.posture, &self.forces, &[], &Manner { steps: 100, ..ASIDE })?;
-            steps += best.steps;
+        let mut steps = 0;
+        if limbs.alone {
+            // First what limbs can do by themselves: the rest of the body has less to do then.
+            let bottom = self.descent.go(&limbs.ask(ask), &self.posture, &[], &[], &NEAR)?;
+            steps += bottom.steps;
+            if bottom.violation <= ROUGH {
+                self.posture.values_mut().copy_from_slice(self.descent.at.posture.values());
+            }
         }
-        if best.violation > ROUGH {
+        let mut near = self.descent.go(ask, &self.posture, &self.forces, &[], &NEAR)?;
+        steps += near.steps;
+        if near.violation > ROUGH {
+            near = self.descent.go(ask, &self.posture, &self.forces, &[], &AGAIN)?;
+            steps += near.steps;
+        }
+        if near.violation > ROUGH {
             return Ok(None);
         }
-        self.keep();
-        let mut random = 0;
-        for _ in 1..count {
-            self.wish(ask, &mut random);
-            if self.descent.aside(ask, &self.posture, &self.forces, &self.wish).is_err() {
-                continue;
-            }
-            self.aside.values_mut().copy_from_slice(self.descent.at.posture.values());
-            self.aside_forces.clone_from(&self.descent.at.forces);
-            let lower = best.effort * (1.0 - LOWER);
-            let manner = Manner { below: lower, ..ASIDE };
-            let Ok(bottom) = self.descent.go(ask, &self.aside, &self.aside_forces, &[], &manner) else { continue };
-            steps += bottom.steps;
-            if bottom.violation <= ROUGH && bottom.effort < lower {
-                best = bottom;
-                self.keep();
-            }
+        self.keep(false);
+        self.near.values_mut().copy_from_slice(self.posture.values());
+        steps += self.search(&limbs, ask, count)?;
+        let mut last = self.descent.go(ask, &self.posture, &self.forces, &self.multipliers, &LAST)?;
+        steps += last.steps;
+        if limbs.alone && (last.violation > ROUGH || last.effort > near.effort) {
+            // What the limbs gained cost the rest more.
+            last = self.descent.go(ask, &self.near, &self.forces, &self.multipliers, &LAST)?;
+            steps += last.steps;
         }
-        let last = self.descent.go(ask, &self.posture, &self.forces, &self.multipliers, &LAST)?;
         if last.violation > ROUGH {
             return Ok(None);
         }
         posture.values_mut().copy_from_slice(self.descent.at.posture.values());
-        Ok(Some(Bottom { steps: steps + last.steps, settled: last.settled && last.violation <= EXACT, ..last }))
+        Ok(Some(Bottom { steps, settled: last.settled && last.violation <= EXACT, ..last }))
+    }
+
+    /// Moves the limbs of `posture` to the lowest of so many valleys and returns the number of steps that took.
+    fn search(&mut self, limbs: &Limbs, ask: &Ask<'_>, count: usize) -> Result<usize, BodyError> {
+        let ask = limbs.ask(ask);
+        let forces = if limbs.alone { vec![] } else { self.forces.clone() };
+        self.descent.begin(&ask, &self.posture, &forces)?;
+        let parts = Parts::of(&ask, &self.descent.at);
+        let mut efforts = parts.efforts(&self.descent.at.errors);
+        let (mut best, mut steps, mut random) = (self.descent.at.effort, 0, 0);
+        for _ in 1..count {
+            self.wish(&ask, &mut random);
+            if self.descent.aside(&ask, &self.posture, &forces, &self.wish).is_err() {
+                continue;
+            }
+            self.set_aside();
+            let Ok(bottom) = self.descent.go(&ask, &self.aside, &self.aside_forces, &[], &ASIDE) else { continue };
+            steps += bottom.steps;
+            if bottom.violation > ROUGH {
+                continue;
+            }
+            let found = parts.efforts(&self.descent.at.errors);
+            let mixed: f64 = efforts.iter().zip(&found).map(|(a, b)| a.min(*b)).sum();
+            self.aside.values_mut().copy_from_slice(self.posture.values());
+            parts.mix(&ask, &mut self.aside, &efforts, &self.descent.at.posture, &found);
+            self.aside_forces.clone_from(&self.descent.at.forces);
+            if bottom.effort < best * (1.0 - LOWER) {
+                (best, efforts) = (bottom.effort, found);
+                self.keep(limbs.alone);
+            }
+            if mixed < best * (1.0 - LOWER) {
+                let Ok(bottom) = self.descent.go(&ask, &self.aside, &self.aside_forces, &[], &MIXED) else { continue };
+                steps += bottom.steps;
+                if bottom.violation <= ROUGH && bottom.effort < best * (1.0 - LOWER) {
+                    (best, efforts) = (bottom.effort, parts.efforts(&self.descent.at.errors));
+                    self.keep(limbs.alone);
+                }
+            }
+        }
+        Ok(steps)
     }
 
     /// Moves `posture` to the bottom of its own valley, and says whether it did: not if that lies farther away than `most` in any
@@ -119,11 +166,19 @@ impl Valleys {
         Ok(there)
     }
 
-    /// Where the descent is now is the lowest place so far.
-    fn keep(&mut self) {
+    /// Where the descent is now is the lowest place so far; limbs by themselves know no forces.
+    fn keep(&mut self, limbs: bool) {
         self.posture.values_mut().copy_from_slice(self.descent.at.posture.values());
-        self.forces.clone_from(&self.descent.at.forces);
-        self.multipliers.clone_from(&self.descent.multipliers);
+        if !limbs {
+            self.forces.clone_from(&self.descent.at.forces);
+            self.multipliers.clone_from(&self.descent.multipliers);
+        }
+    }
+
+    /// The next descent begins where this one is.
+    fn set_aside(&mut self) {
+        self.aside.values_mut().copy_from_slice(self.descent.at.posture.values());
+        self.aside_forces.clone_from(&self.descent.at.forces);
     }
 
     /// A direction for every unknown: numbers from -1 to 1, times how far each coordinate of a part of the body may go.

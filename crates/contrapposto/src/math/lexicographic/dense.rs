@@ -37,6 +37,28 @@ pub(crate) fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
     }
 }
 
+/// `matrix += sum_r weight_r row_r^T row_r` on and above the diagonal; rows of width `n`, one after the other.
+pub(crate) fn add_squares(matrix: &mut [f64], n: usize, rows: &[f64], weight: impl Fn(usize) -> f64) {
+    for (block, rows) in rows.chunks(4 * n).enumerate() {
+        let mut parts: [&[f64]; 4] = [&rows[..n]; 4];
+        let mut weights = [0.0; 4];
+        for (r, row) in rows.chunks_exact(n).enumerate() {
+            (parts[r], weights[r]) = (row, weight(4 * block + r));
+        }
+        let [a, b, c, d] = parts;
+        for (i, to) in matrix.chunks_exact_mut(n).enumerate() {
+            let by = [weights[0] * a[i], weights[1] * b[i], weights[2] * c[i], weights[3] * d[i]];
+            if by == [0.0; 4] {
+                continue;
+            }
+            let rest = a[i..].iter().zip(&b[i..]).zip(c[i..].iter().zip(&d[i..]));
+            for (to, ((a, b), (c, d))) in to[i..].iter_mut().zip(rest) {
+                *to += (by[0] * a + by[1] * b) + (by[2] * c + by[3] * d);
+            }
+        }
+    }
+}
+
 /// `a . t` and `b . t`; lengths are whole eights.
 #[inline]
 pub(super) fn dot_pair(a: &[f64], b: &[f64], t: &[f64]) -> (f64, f64) {
