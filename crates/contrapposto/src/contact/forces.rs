@@ -148,7 +148,7 @@ impl ContactForces {
             }
             self.forces.copy_from_slice(self.solver.solution());
             self.sum();
-            if !self.turn_sides(external, passive) {
+            if !self.turn_sides(model, kinematics, external, passive) {
                 break;
             }
         }
@@ -228,12 +228,18 @@ impl ContactForces {
         }
     }
 
-    /// Puts the sides right on which muscles work; `false` if all were.
-    fn turn_sides(&mut self, external: &[f64], passive: &[f64]) -> bool {
+    /// Puts the sides right on which muscles work; `false` if that changes no strength.
+    fn turn_sides(&mut self, model: &Model, kinematics: &Kinematics, external: &[f64], passive: &[f64]) -> bool {
         let mut turned = false;
-        for (side, &(_, rate)) in self.sides.iter_mut().zip(&self.working) {
+        for (side, &(coordinate, rate)) in self.sides.iter_mut().zip(&self.working) {
             let now = Side::of(-(external[rate] + passive[rate] + self.torques[rate]));
-            turned |= now != *side;
+            if now != *side
+                && let Some(groups) = &model.coordinates()[coordinate].groups
+            {
+                let [before, after] =
+                    [*side, now].map(|side| groups[side.index()].strength.torque(kinematics.values()[coordinate]));
+                turned |= before != after;
+            }
             *side = now;
         }
         turned

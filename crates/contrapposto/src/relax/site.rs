@@ -57,6 +57,7 @@ pub(super) struct Site {
     /// As [`ContactForces::forces`].
     pub(super) forces: Vec<f64>,
     pub(super) body: Body,
+    /// Of a body with a root that supports must hold.
     passive: PassiveTorque,
     /// Loads of the scenario, then one a corner.
     pub(super) loads: Vec<Load>,
@@ -115,7 +116,9 @@ impl Site {
         let needs = Needs { torque: true, center_of_mass: false };
         let needs = ask.goals().flat_map(|goal| &goal.tasks).fold(needs, |needs, task| needs.with(task.needs()));
         self.body.update(model, &self.posture, &self.loads, needs)?;
-        self.passive.update(model, self.body.kinematics());
+        if !contact.root().is_empty() {
+            self.passive.update(model, self.body.kinematics());
+        }
         columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
         self.effort_rows(ask);
         self.rows.clear();
@@ -139,7 +142,7 @@ impl Site {
                 self.slopes.extend(ask.free.iter().map(|rate| row[*rate]));
                 let start = self.slopes.len();
                 self.slopes.resize(start + self.forces.len(), 0.0);
-                if let Task::Effort(effort) = task {
+                if let (Task::Effort(effort), false) = (task, self.forces.is_empty()) {
                     let to = &mut self.slopes[start..];
                     fill_forces(ask.model, &self.body, &self.columns, effort.coordinates[i], to);
                 }
