@@ -22,7 +22,7 @@ pub(crate) use run::{main_coordinate, report_of_run};
 
 pub(crate) use solid::parts;
 pub(crate) use story::pelvis_list;
-pub(crate) use words::{group as group_in_words, plain};
+pub(crate) use words::{group as group_in_words, how_long, plain};
 
 use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;

@@ -7,7 +7,7 @@ mod program;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use program::{column, joint, page};
+use program::{column, joint, json, page};
 
 use serde_json::Value;
 
@@ -138,6 +138,47 @@ fn an_arm_without_supports_reaches_and_rests() {
     assert!(found["postures"].as_array().unwrap().iter().all(|p| p["effort"].as_f64().unwrap() >= least));
     assert!(found["postures"][0]["tasks"][0]["error"].as_f64().unwrap() < 1e-5);
     assert_eq!(found["files"].as_array().unwrap().len(), 0);
+}
+
+/// Every group says how long it can hold its load, by the curves of Frey-Law & Avin 2010 (written down here again); a run that holds
+/// the posture ends with the group that was named, at the time that was named.
+#[test]
+fn a_posture_says_how_long_it_can_be_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let held = "[fatigue]\nlaw = \"endurance\"\n[[load]]\nsegment = \"hand_r\"\nmass_kg = 3\n";
+    let run = relax(&written(folder.path(), &format!("{ARM}{held}")), &["--json"]);
+    assert!(run.code == 0 && !run.stderr.contains("no part"), "{}", run.stderr);
+    let found: Value = serde_json::from_str(&run.stdout).unwrap();
+    let posture = &found["postures"][0];
+    let mut least = f64::INFINITY;
+    for group in posture["groups"].as_array().unwrap() {
+        let (b0, b1) = match group["coordinate"].as_str().unwrap() {
+            "elbow_flex_r" => (17.98, -2.21),
+            name if name.starts_with("arm_") => (14.86, -1.83),
+            _ => (33.55, -1.61),
+        };
+        let law = b0 * group["relative_load"].as_f64().unwrap().powf(b1);
+        assert!((group["endurance_s"].as_f64().unwrap() / law - 1.0).abs() < 1e-12, "{group}");
+        least = least.min(law);
+    }
+    let first = &posture["fails_first"];
+    assert!((first["endurance_s"].as_f64().unwrap() / least - 1.0).abs() < 1e-12);
+
+    let degrees = |(name, value): (&String, &Value)| format!("{name}_deg = {}\n", value.as_f64().unwrap().to_degrees());
+    let start: String = posture["coordinates"].as_object().unwrap().iter().map(degrees).collect();
+    let body = ARM.split("[[task]]").next().unwrap();
+    let text = format!(
+        "{body}{held}[posture]\n{start}[coordinates]\nfree = []\n[strategy]\nkind = \"active\"\n\
+        [run]\nduration_s = {}\nstep_s = 0.1\n",
+        least.ceil() + 1.0
+    );
+    let scenario = written(folder.path(), &text);
+    let out = folder.path().join("out");
+    let summary = json(&["simulate", scenario.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()]);
+    let failed = &summary["failed_first"];
+    println!("foretold {least:.2} s, {first}; held {failed}");
+    assert_eq!((&failed["coordinate"], &failed["group"]), (&first["coordinate"], &first["group"]));
+    assert!((failed["at_s"].as_f64().unwrap() - least).abs() < 0.11);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use contrapposto_report::{Entry, Figure, List, Moments, Report, Table};
 use super::figures::figures_of_postures;
 use super::film::Frame;
 use super::story::hardest;
-use super::words::{list, percent, plain, sentence, value};
+use super::words::{fails_first, how_long, list, percent, plain, sentence, value};
 use super::{Scene, shown, turn};
 use crate::fail::Fail;
 use crate::held::{Held, held};
@@ -281,6 +281,10 @@ fn told(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String
     if let Some((name, load)) = hardest(model, frame) {
         told.push(format!("Works hardest: {name}, {}.", percent(load)));
     }
+    told.push(match fails_first(model, frame) {
+        Some((name, time)) => format!("Can be held: {}, then {name} gives up.", how_long(time)),
+        None => "Can be held for ever, as far as muscles go.".to_owned(),
+    });
     told.join(" ")
 }
 
@@ -308,5 +312,8 @@ fn figures_of(model: &Model, frame: &Frame, supports: &[String], report: &mut Re
     }
     if let Some((name, load)) = hardest(model, frame).filter(|(_, load)| *load > 0.0) {
         report.figures.push(figure("Hardest worked", percent(load), &sentence(&name)));
+    }
+    if let Some((name, time)) = fails_first(model, frame) {
+        report.figures.push(figure("Can be held", how_long(time), &format!("then {name} gives up")));
     }
 }
