@@ -55,6 +55,12 @@ struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
+    /// A body in some moments on its supports, which alone touch it; no joint is moved alone.
+    fn of(title: &'a str, model: &'a Model, start: &'a [f64], frames: &'a [Frame], supports: &'a [Support]) -> Self {
+        let carried = supports.iter().map(|support| support.segment).collect();
+        Self { title, model, start, frames, supports, carried, held: None }
+    }
+
     /// The page without its words. `main`: the coordinate to show first.
     fn report(&self, moments: Moments, main: usize) -> Result<Report, Fail> {
         let model = self.model;

@@ -2,43 +2,21 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
-mod program;
+mod support;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use program::{column, joint, json, page};
+use support::{ARM, Run, column, contrapposto, joint, json, page, scenarios};
 
 use serde_json::Value;
 
-struct Run {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
 fn relax(scenario: &Path, more: &[&str]) -> Run {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_contrapposto")).arg("relax").arg(scenario).args(more).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Run { code: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    contrapposto(["relax"]).arg(scenario).args(more).run()
 }
 
 fn standing() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/stand-relaxed.toml")
+    scenarios().join("stand-relaxed.toml")
 }
-
-/// A small body: an arm that is held up by its tasks alone, so that a run takes no time.
-const ARM: &str = r#"
-format = 1
-title = "A hand held up"
-[model]
-adult = { sex = "male", stature_m = 1.74, mass_kg = 73, part = "right_arm" }
-[[task]]
-kind = "point"
-segment = "hand_r"
-target_m = [0.3, 1.2, 0.2]
-"#;
 
 fn written(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("scenario.toml");
@@ -81,6 +59,10 @@ fn one_leg_rests_by_a_slouch_or_level() {
     let told = page["list"]["entries"].as_array().unwrap();
     assert!(told[0]["text"].as_str().unwrap().contains("right hip adduction at 21.8°"), "{}", told[0]);
     assert_eq!((told.len(), &told[1]["frame"]), (2, &serde_json::json!(1)));
+    for (entry, posture) in told.iter().zip(postures) {
+        let ends = if posture["fails_first"].is_null() { "for ever, as far as muscles go." } else { "gives up." };
+        assert!(entry["text"].as_str().unwrap().ends_with(ends), "{entry}");
+    }
     let first = &postures[0]["hanging"][0];
     assert_eq!(first["coordinate"], "hip_adduction_r");
     assert!(first["passive_nm"].as_f64().unwrap() < -30.0 && first["share"].as_f64().unwrap() > 0.9);
@@ -141,7 +123,7 @@ fn an_arm_without_supports_reaches_and_rests() {
 }
 
 /// Every group says how long it can hold its load, by the curves of Frey-Law & Avin 2010 (written down here again); a run that holds
-/// the posture ends with the group that was named, at the time that was named.
+/// the posture until the second gives up names the first, and its time.
 #[test]
 fn a_posture_says_how_long_it_can_be_held() {
     let folder = tempfile::tempdir().unwrap();
@@ -150,7 +132,7 @@ fn a_posture_says_how_long_it_can_be_held() {
     assert!(run.code == 0 && !run.stderr.contains("no part"), "{}", run.stderr);
     let found: Value = serde_json::from_str(&run.stdout).unwrap();
     let posture = &found["postures"][0];
-    let mut least = f64::INFINITY;
+    let mut times = vec![];
     for group in posture["groups"].as_array().unwrap() {
         let (b0, b1) = match group["coordinate"].as_str().unwrap() {
             "elbow_flex_r" => (17.98, -2.21),
@@ -159,8 +141,10 @@ fn a_posture_says_how_long_it_can_be_held() {
         };
         let law = b0 * group["relative_load"].as_f64().unwrap().powf(b1);
         assert!((group["endurance_s"].as_f64().unwrap() / law - 1.0).abs() < 1e-12, "{group}");
-        least = least.min(law);
+        times.push(law);
     }
+    times.sort_by(f64::total_cmp);
+    let least = times[0];
     let first = &posture["fails_first"];
     assert!((first["endurance_s"].as_f64().unwrap() / least - 1.0).abs() < 1e-12);
 
@@ -169,8 +153,8 @@ fn a_posture_says_how_long_it_can_be_held() {
     let body = ARM.split("[[task]]").next().unwrap();
     let text = format!(
         "{body}{held}[posture]\n{start}[coordinates]\nfree = []\n[strategy]\nkind = \"active\"\n\
-        [run]\nduration_s = {}\nstep_s = 0.1\n",
-        least.ceil() + 1.0
+        [run]\nduration_s = {}\nstep_s = 0.5\n",
+        times[1].ceil()
     );
     let scenario = written(folder.path(), &text);
     let out = folder.path().join("out");
@@ -178,7 +162,7 @@ fn a_posture_says_how_long_it_can_be_held() {
     let failed = &summary["failed_first"];
     println!("foretold {least:.2} s, {first}; held {failed}");
     assert_eq!((&failed["coordinate"], &failed["group"]), (&first["coordinate"], &first["group"]));
-    assert!((failed["at_s"].as_f64().unwrap() - least).abs() < 0.11);
+    assert!((failed["at_s"].as_f64().unwrap() - least).abs() < 0.51);
 }
 
 #[test]

@@ -30,13 +30,8 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
     let frames = [frame];
     let supported = scenario.goals.iter().any(|goal| goal.hard);
     let scene = Scene {
-        title: &scenario.title,
-        model,
-        start: scenario.start.values(),
-        frames: &frames,
-        supports: &scenario.supports,
-        carried: scenario.supports.iter().map(|support| support.segment).collect(),
         held: (!supported).then_some(scenario.loads.as_slice()),
+        ..Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports)
     };
     let [frame] = &frames;
     let worst = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]));
@@ -130,15 +125,7 @@ fn numbered(count: usize) -> Vec<String> {
 pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria) -> Result<String, Fail> {
     let model = &scenario.model;
     let frames = frames_of_postures(model, &found.postures)?;
-    let scene = Scene {
-        title: &scenario.title,
-        model,
-        start: scenario.start.values(),
-        frames: &frames,
-        supports: &scenario.supports,
-        carried: scenario.supports.iter().map(|support| support.segment).collect(),
-        held: None,
-    };
+    let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports);
     let shown = shown(model);
     let first = found.postures.first().map_or(0, speaking);
     let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;
