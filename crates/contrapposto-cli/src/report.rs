@@ -22,7 +22,7 @@ pub(crate) use run::{main_coordinate, report_of_run};
 
 pub(crate) use solid::parts;
 pub(crate) use story::pelvis_list;
-pub(crate) use words::{group as group_in_words, plain};
+pub(crate) use words::{group as group_in_words, how_long, plain};
 
 use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
@@ -55,6 +55,12 @@ struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
+    /// A body in some moments on its supports, which alone touch it; no joint is moved alone.
+    fn of(title: &'a str, model: &'a Model, start: &'a [f64], frames: &'a [Frame], supports: &'a [Support]) -> Self {
+        let carried = supports.iter().map(|support| support.segment).collect();
+        Self { title, model, start, frames, supports, carried, held: None }
+    }
+
     /// The page without its words. `main`: the coordinate to show first.
     fn report(&self, moments: Moments, main: usize) -> Result<Report, Fail> {
         let model = self.model;

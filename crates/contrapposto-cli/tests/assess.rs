@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
 
-mod program;
+mod support;
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,8 +14,8 @@ use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::statics::{ExternalTorque, LoadKind, PassiveTorque};
 use contrapposto_formats::motion::{Table, read_table};
 use nalgebra::Vector3;
-use program::{column, joint, json, leg, page, refused, run, write};
 use serde_json::Value;
+use support::{column, joint, json, leg, page, refused, run, write};
 
 fn table(path: &Path) -> Table {
     read_table("table", &std::fs::read(path).unwrap()).unwrap()
@@ -82,9 +82,9 @@ fn relief_is_proposed_at_the_peaks() {
     assert!((proposals[0]["angle_deg"].as_f64().unwrap() - 90.0).abs() < 1e-9);
     let answer = run(&["assess", "adult", &lower, "--load", "hand_r 3kg"]);
     assert!(
-        answer.out.contains("muscle group") && answer.out.contains("relief, if that joint alone moved:"),
+        answer.stdout.contains("muscle group") && answer.stdout.contains("relief, if that joint alone moved:"),
         "{}",
-        answer.out
+        answer.stdout
     );
 }
 
@@ -145,8 +145,8 @@ fn ground_reaction_and_supports_give_the_same_torques() {
     let on = run(&["assess", "adult", &motion, "--support", "calcn_r,calcn_l", "--out", &out("on")]);
     let grf = run(&["assess", "adult", &motion, "--grf", &ground, "--grf-on", "calcn_r,calcn_l", "--out", &out("grf")]);
     for answer in [&on, &grf] {
-        assert_eq!(answer.code, 0, "{}", answer.told);
-        assert!(!answer.told.contains("warning"), "{}", answer.told);
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
+        assert!(!answer.stderr.contains("warning"), "{}", answer.stderr);
     }
     let [on, grf] = ["on", "grf"].map(|name| table(&folder.path().join(name).join("torques.sto")));
     assert_eq!((on.columns.len(), on.rows.len(), &on.columns), (grf.columns.len(), 3, &grf.columns));
@@ -184,11 +184,11 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     let out = folder.path().join("out");
     let target = out.to_str().unwrap();
     let answer = run(&["assess", "adult", &motion, "--load", "hand_r 3kg", "--json", "--out", target]);
-    assert_eq!(answer.code, 0, "{}", answer.told);
-    assert!(answer.told.contains("warning: nothing holds the body up"), "{}", answer.told);
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    assert!(answer.stderr.contains("warning: nothing holds the body up"), "{}", answer.stderr);
     let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
-    assert_eq!(answer.out, read("assess.json"));
-    let report: Value = serde_json::from_str(&answer.out).unwrap();
+    assert_eq!(answer.stdout, read("assess.json"));
+    let report: Value = serde_json::from_str(&answer.stdout).unwrap();
     assert_eq!(report["files"], serde_json::json!(["assess.json", "torques.sto", "fatigue.sto", "report.html"]));
     assert_eq!(report["warnings"].as_array().unwrap().len(), 1);
     let plain = folder.path().join("plain.sto");
@@ -227,10 +227,10 @@ fn a_swing_is_no_posture() {
         writeln!(text, "{time},{}", 40.0 * (10.0 * time).sin()).unwrap();
     }
     let swing = write(folder.path(), "swing.csv", &text);
-    let told = run(&["assess", "adult", &swing]).told;
+    let told = run(&["assess", "adult", &swing]).stderr;
     assert!(told.contains("warning: the centre of mass accelerates by more than 1 m/s2 in "), "{told}");
     let slow = write(folder.path(), "slow.csv", &text.replace("time,hip_flexion_r", "time,wrist_flex_r"));
-    let told = run(&["assess", "adult", &slow]).told;
+    let told = run(&["assess", "adult", &slow]).stderr;
     assert!(!told.contains("accelerates"), "{told}");
 }
 

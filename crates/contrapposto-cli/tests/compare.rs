@@ -7,19 +7,7 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use support::{Run, contents, contrapposto, scenarios};
-
-/// An arm on its own.
-const ARM: &str = r#"
-format = 1
-title = "A hand held up"
-[model]
-adult = { sex = "male", stature_m = 1.74, mass_kg = 73, part = "right_arm" }
-[[task]]
-kind = "point"
-segment = "hand_r"
-target_m = [0.3, 1.2, 0.2]
-"#;
+use support::{ARM, Run, contents, contrapposto, scenarios};
 
 fn shelf() -> PathBuf {
     scenarios().join("poses/reach-shelf.toml")

@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
 
-mod program;
+mod support;
 
 use std::path::Path;
 use std::time::Instant;
 
-use program::{json, keys, leg, refused, run, shared, write};
+use support::{json, keys, leg, refused, run, shared, write};
 
 #[test]
 fn every_number_of_the_adult_has_a_status() {
@@ -41,9 +41,9 @@ fn every_number_of_the_adult_has_a_status() {
     }
     assert!(passive >= 7, "{passive}");
     let readable = run(&["inspect", "adult"]);
-    assert_eq!(readable.code, 0, "{}", readable.told);
+    assert_eq!(readable.code, 0, "{}", readable.stderr);
     for part in ["elbow_flex_r", "sources:", "[1]", "assumed", "verified"] {
-        assert!(readable.out.contains(part), "{part}: {}", readable.out);
+        assert!(readable.stdout.contains(part), "{part}: {}", readable.stdout);
     }
 }
 
@@ -116,7 +116,7 @@ fn convert_writes_what_reads_back() {
     for name in ["out.osim", "out.xml"] {
         let out = folder.path().join(name);
         let answer = run(&["convert", &model, out.to_str().unwrap()]);
-        assert_eq!(answer.code, 0, "{}", answer.told);
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
         assert!((external(out.to_str().unwrap()) - external(&model)).abs() < 1e-9, "{name}");
     }
     let told = refused(&["convert", &model, &model]);

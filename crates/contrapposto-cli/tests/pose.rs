@@ -2,37 +2,21 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
-mod program;
+mod support;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Sex, adult};
-use program::{column, joint, numbers, page};
 use serde_json::Value;
-
-struct Run {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
+use support::{Run, column, contrapposto, joint, numbers, page, scenarios};
 
 fn pose(scenario: &Path, out: &Path, more: &[&str]) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_contrapposto"))
-        .arg("pose")
-        .arg(scenario)
-        .arg("--out")
-        .arg(out)
-        .args(more)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Run { code: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    contrapposto(["pose"]).arg(scenario).arg("--out").arg(out).args(more).run()
 }
 
 fn shelf() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/poses/reach-shelf.toml")
+    scenarios().join("poses/reach-shelf.toml")
 }
 
 fn residuals(pose: &Value, task: &str) -> Vec<f64> {

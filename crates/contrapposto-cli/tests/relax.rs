@@ -2,43 +2,21 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
-mod program;
+mod support;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use program::{column, joint, page};
+use support::{ARM, Run, column, contrapposto, joint, json, page, scenarios};
 
 use serde_json::Value;
 
-struct Run {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
 fn relax(scenario: &Path, more: &[&str]) -> Run {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_contrapposto")).arg("relax").arg(scenario).args(more).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Run { code: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    contrapposto(["relax"]).arg(scenario).args(more).run()
 }
 
 fn standing() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/stand-relaxed.toml")
+    scenarios().join("stand-relaxed.toml")
 }
-
-/// A small body: an arm that is held up by its tasks alone, so that a run takes no time.
-const ARM: &str = r#"
-format = 1
-title = "A hand held up"
-[model]
-adult = { sex = "male", stature_m = 1.74, mass_kg = 73, part = "right_arm" }
-[[task]]
-kind = "point"
-segment = "hand_r"
-target_m = [0.3, 1.2, 0.2]
-"#;
 
 fn written(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("scenario.toml");
@@ -81,6 +59,10 @@ fn one_leg_rests_by_a_slouch_or_level() {
     let told = page["list"]["entries"].as_array().unwrap();
     assert!(told[0]["text"].as_str().unwrap().contains("right hip adduction at 21.8°"), "{}", told[0]);
     assert_eq!((told.len(), &told[1]["frame"]), (2, &serde_json::json!(1)));
+    for (entry, posture) in told.iter().zip(postures) {
+        let ends = if posture["fails_first"].is_null() { "for ever, as far as muscles go." } else { "gives up." };
+        assert!(entry["text"].as_str().unwrap().ends_with(ends), "{entry}");
+    }
     let first = &postures[0]["hanging"][0];
     assert_eq!(first["coordinate"], "hip_adduction_r");
     assert!(first["passive_nm"].as_f64().unwrap() < -30.0 && first["share"].as_f64().unwrap() > 0.9);
@@ -138,6 +120,49 @@ fn an_arm_without_supports_reaches_and_rests() {
     assert!(found["postures"].as_array().unwrap().iter().all(|p| p["effort"].as_f64().unwrap() >= least));
     assert!(found["postures"][0]["tasks"][0]["error"].as_f64().unwrap() < 1e-5);
     assert_eq!(found["files"].as_array().unwrap().len(), 0);
+}
+
+/// Every group says how long it can hold its load, by the curves of Frey-Law & Avin 2010 (written down here again); a run that holds
+/// the posture until the second gives up names the first, and its time.
+#[test]
+fn a_posture_says_how_long_it_can_be_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let held = "[fatigue]\nlaw = \"endurance\"\n[[load]]\nsegment = \"hand_r\"\nmass_kg = 3\n";
+    let run = relax(&written(folder.path(), &format!("{ARM}{held}")), &["--json"]);
+    assert!(run.code == 0 && !run.stderr.contains("no part"), "{}", run.stderr);
+    let found: Value = serde_json::from_str(&run.stdout).unwrap();
+    let posture = &found["postures"][0];
+    let mut times = vec![];
+    for group in posture["groups"].as_array().unwrap() {
+        let (b0, b1) = match group["coordinate"].as_str().unwrap() {
+            "elbow_flex_r" => (17.98, -2.21),
+            name if name.starts_with("arm_") => (14.86, -1.83),
+            _ => (33.55, -1.61),
+        };
+        let law = b0 * group["relative_load"].as_f64().unwrap().powf(b1);
+        assert!((group["endurance_s"].as_f64().unwrap() / law - 1.0).abs() < 1e-12, "{group}");
+        times.push(law);
+    }
+    times.sort_by(f64::total_cmp);
+    let least = times[0];
+    let first = &posture["fails_first"];
+    assert!((first["endurance_s"].as_f64().unwrap() / least - 1.0).abs() < 1e-12);
+
+    let degrees = |(name, value): (&String, &Value)| format!("{name}_deg = {}\n", value.as_f64().unwrap().to_degrees());
+    let start: String = posture["coordinates"].as_object().unwrap().iter().map(degrees).collect();
+    let body = ARM.split("[[task]]").next().unwrap();
+    let text = format!(
+        "{body}{held}[posture]\n{start}[coordinates]\nfree = []\n[strategy]\nkind = \"active\"\n\
+        [run]\nduration_s = {}\nstep_s = 0.5\n",
+        times[1].ceil()
+    );
+    let scenario = written(folder.path(), &text);
+    let out = folder.path().join("out");
+    let summary = json(&["simulate", scenario.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()]);
+    let failed = &summary["failed_first"];
+    println!("foretold {least:.2} s, {first}; held {failed}");
+    assert_eq!((&failed["coordinate"], &failed["group"]), (&first["coordinate"], &first["group"]));
+    assert!((failed["at_s"].as_f64().unwrap() - least).abs() < 0.51);
 }
 
 #[test]

@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
 
-mod program;
+mod support;
 
-use program::{json, keys, leg, numbers, refused, run, shared, vectors, write};
 use serde_json::Value;
+use support::{json, keys, leg, numbers, refused, run, shared, vectors, write};
 
 /// Greatest size of what must add up to zero, N m.
 const BALANCE: f64 = 1e-9;
@@ -102,10 +102,10 @@ fn a_freed_root_has_forces_and_warns_of_its_residual() {
         &leg(1, "shin").replace(r#"<joint name="hip" type="hinge" axis="0 0 1" range="-1 1"/>"#, ""),
     );
     let answer = run(&["torques", &model, "default", "--json", "--root", "free", "--gradient"]);
-    assert_eq!(answer.code, 0, "{}", answer.told);
-    assert!(answer.told.contains("warning: nothing holds the body up"), "{}", answer.told);
-    assert!(answer.told.contains("117.72 N"), "{}", answer.told);
-    let frames: Value = serde_json::from_str(&answer.out).unwrap();
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    assert!(answer.stderr.contains("warning: nothing holds the body up"), "{}", answer.stderr);
+    assert!(answer.stderr.contains("117.72 N"), "{}", answer.stderr);
+    let frames: Value = serde_json::from_str(&answer.stdout).unwrap();
     let root = ["root_fx", "root_fy", "root_fz", "root_mx", "root_my", "root_mz"];
     let order: Vec<&str> = root.into_iter().chain(["shin"]).collect();
     assert_eq!(frames[0]["coordinate_order"], serde_json::json!(order));
@@ -119,7 +119,7 @@ fn a_freed_root_has_forces_and_warns_of_its_residual() {
     // What is read is what is written.
     let table =
         run(&["torques", &model, "default", "--root", "free", "--out", folder.path().join("t.csv").to_str().unwrap()]);
-    assert_eq!(table.code, 0, "{}", table.told);
+    assert_eq!(table.code, 0, "{}", table.stderr);
     let text = std::fs::read_to_string(folder.path().join("t.csv")).unwrap();
     assert!(text.starts_with("time,root_tx.position_m,"), "{text}");
     assert!(text.contains(",root_fx.external_n,root_fx.passive_n,root_fx.active_n,"), "{text}");
@@ -167,9 +167,9 @@ fn an_overlay_is_laid_over_and_library_signs_are_verified() {
         let bent = write(folder.path(), "bent.csv", &format!("time,elbow_flex_r_deg\n0,{degrees}\n"));
         let arguments: Vec<&str> = ["torques", model, &bent, "--json"].iter().chain(more).copied().collect();
         let answer = run(&arguments);
-        assert_eq!(answer.code, 0, "{}", answer.told);
-        let frames: Value = serde_json::from_str(&answer.out).unwrap();
-        (frames[0]["coordinates"]["elbow_flex_r"]["passive"].as_f64().unwrap(), answer.told)
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
+        let frames: Value = serde_json::from_str(&answer.stdout).unwrap();
+        (frames[0]["coordinates"]["elbow_flex_r"]["passive"].as_f64().unwrap(), answer.stderr)
     };
     let passive = |model: &str, more: &[&str]| passive_at(100, model, more);
     // The adult's elbow turns about +z; a model's that turns about -z has its curve the other way round.
@@ -251,20 +251,20 @@ fn tables_read_back() {
     let model = write(folder.path(), "leg.xml", &leg(1, "shin"));
     let two = write(folder.path(), "two.csv", "time,hip,shin\n0,0.1,0.2\n0.5,-0.1,0\n");
     let csv = run(&["torques", &model, &two, "--radians"]);
-    assert_eq!(csv.code, 0, "{}", csv.told);
-    let lines: Vec<&str> = csv.out.lines().collect();
+    assert_eq!(csv.code, 0, "{}", csv.stderr);
+    let lines: Vec<&str> = csv.stdout.lines().collect();
     assert_eq!(lines.len(), 3);
     let head = "time,hip.angle_deg,hip.external_nm,hip.passive_nm,hip.active_nm,shin.angle_deg,shin.external_nm,shin.passive_nm,shin.active_nm";
     assert_eq!(lines[0], head);
     let sto = folder.path().join("t.sto");
     let answer = run(&["torques", &model, &two, "--radians", "--gradient", "--out", sto.to_str().unwrap()]);
-    assert!(answer.code == 0 && answer.out.contains("2 frames in"), "{}{}", answer.out, answer.told);
+    assert!(answer.code == 0 && answer.stdout.contains("2 frames in"), "{}{}", answer.stdout, answer.stderr);
     // The postures in it are the postures that went in.
     let again = json(&["torques", &model, sto.to_str().unwrap(), "--json"]);
     let angle = again[0]["coordinates"]["shin"]["angle"].as_f64().unwrap();
     assert!((angle - 0.2).abs() < 1e-15, "{angle}");
     let readable = run(&["torques", &model, "default"]);
-    assert!(readable.out.contains("centre of mass"), "{}", readable.out);
+    assert!(readable.stdout.contains("centre of mass"), "{}", readable.stdout);
 }
 
 /// Greatest difference from OpenSim's inverse dynamics at rest, N m.

@@ -26,6 +26,8 @@ pub struct SummaryText {
     /// How a body with supports or tasks stood at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standing: Option<StandingText>,
+    /// The muscle group that first could no longer hold its load; `null`: none gave up.
+    pub failed_first: Option<FailureText>,
     /// How many reliefs there were; `decisions.csv` lists the first ten thousand.
     pub reliefs: u64,
     /// The order of coordinates in tables.
@@ -34,6 +36,17 @@ pub struct SummaryText {
     pub coordinates: BTreeMap<String, CoordinateText>,
     /// Files beside this one.
     pub files: Vec<String>,
+}
+
+/// A muscle group that gave up.
+#[derive(Clone, Debug, Serialize)]
+pub struct FailureText {
+    /// Its coordinate.
+    pub coordinate: String,
+    /// Its movement.
+    pub group: Option<String>,
+    /// When, s.
+    pub at_s: f64,
 }
 
 /// How a body stood.
@@ -134,9 +147,17 @@ impl SummaryText {
             };
             (c.name.clone(), text)
         });
+        let failed = model.coordinates().iter().zip(&summary.coordinates).flat_map(|(c, s)| {
+            let failure = |side: Side| {
+                let group = c.groups.as_ref().map(|groups| groups[side.index()].name.clone());
+                Some(FailureText { coordinate: c.name.clone(), group, at_s: s.exhausted_at[side.index()]? })
+            };
+            Side::BOTH.into_iter().filter_map(failure)
+        });
         Self {
             title: scenario.title.clone(),
             model: model.name().to_owned(),
+            failed_first: failed.min_by(|a, b| a.at_s.total_cmp(&b.at_s)),
             stopped: summary.reason.word(),
             partial: summary.reason == StopReason::Interrupted,
             end_s: summary.end_time,

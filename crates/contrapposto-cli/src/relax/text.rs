@@ -7,10 +7,11 @@ use contrapposto::hybrid::{Carrier, Equilibrium};
 use contrapposto::ik::Goal;
 use contrapposto::ik::task::Task;
 use contrapposto::model::Model;
-use contrapposto::relax::{Direction, Equilibria, Reason, RelaxedPosture};
+use contrapposto::relax::{Direction, Equilibria, Reason, RelaxedPosture, Work};
 use contrapposto_formats::RelaxScenario;
 use serde::Serialize;
 
+use crate::report::how_long;
 use crate::torques::plain_table;
 
 /// So many joints and groups are told of each posture.
@@ -55,6 +56,8 @@ pub(super) struct PostureText {
     hanging: Vec<HangingText>,
     /// Groups that work, the hardest first.
     groups: Vec<GroupText>,
+    /// The group that gives up first when nobody shifts, from a rested start; `null`: it can be held for ever.
+    fails_first: Option<GroupText>,
     /// rad, m, components of quaternions.
     coordinates: BTreeMap<String, f64>,
     /// Starts that led here.
@@ -109,6 +112,8 @@ struct GroupText {
     side: &'static str,
     active_nm: f64,
     relative_load: f64,
+    /// How long it can hold this from a rested start; `null`: for ever.
+    endurance_s: Option<f64>,
 }
 
 impl RelaxText {
@@ -148,7 +153,7 @@ impl PostureText {
             passive_nm: hanging.passive,
             share: hanging.share(),
         });
-        let groups = found.work.iter().map(|work| {
+        let group = |work: &Work| {
             let coordinate = &model.coordinates()[work.coordinate];
             let group = coordinate.groups.as_ref().map(|groups| groups[work.side.index()].name.clone());
             GroupText {
@@ -157,8 +162,9 @@ impl PostureText {
                 side: work.side.word(),
                 active_nm: work.active,
                 relative_load: work.relative_load(),
+                endurance_s: work.endurance.is_finite().then_some(work.endurance),
             }
-        });
+        };
         let values = found.relaxed.posture.values().iter().copied();
         Self {
             effort: found.relaxed.effort,
@@ -175,7 +181,8 @@ impl PostureText {
             tasks: tasks.map(|((_, labels), error)| TaskText { task: labels.join(" + "), error: *error }).collect(),
             slip: found.relaxed.slip,
             hanging: hanging.collect(),
-            groups: groups.collect(),
+            groups: found.work.iter().map(group).collect(),
+            fails_first: found.fails_first().map(group),
             coordinates: (0..model.coordinates().len()).map(name).zip(values).collect(),
             starts: found.starts.clone(),
         }
@@ -269,6 +276,13 @@ impl PostureText {
             "works",
             work.map(|group| format!("{} {:.1} N m, {}", group.name(), group.active_nm, percent(group.relative_load)))
                 .collect(),
+        );
+        line(
+            "can be held",
+            vec![match self.fails_first.as_ref().and_then(|group| Some((group, group.endurance_s?))) {
+                Some((group, time)) => format!("{}, then {} gives up", how_long(time), group.name()),
+                None => "for ever, as far as muscles go".to_owned(),
+            }],
         );
         let unstable = self.unstable.iter().take(SHOWN).map(|direction| {
             let joints = direction.joints.iter().take(SHOWN);

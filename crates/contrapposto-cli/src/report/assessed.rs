@@ -99,16 +99,8 @@ pub(crate) fn report_of_assessment(
     let shown = shown(model);
     let moved = |i: &&usize| frames.iter().any(|frame| (frame.posture[**i] - first.posture[**i]).abs() > 1e-6);
     let alone = supports.is_empty() && shots.pushed.is_empty() && shown.iter().filter(moved).count() <= 1;
-    let carried = supports.iter().map(|support| support.segment);
-    let scene = Scene {
-        title,
-        model,
-        start: &first.posture,
-        frames,
-        supports,
-        carried: carried.chain(shots.pushed.iter().copied()).collect(),
-        held: alone.then_some(held),
-    };
+    let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, supports) };
+    scene.carried.extend(&shots.pushed);
     let times = frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), working.first().map_or(0, |group| group.coordinate))?;
     let span = last.time - first.time;

@@ -13,7 +13,7 @@ use contrapposto_report::{Entry, Figure, List, Moments, Report, Table};
 use super::figures::figures_of_postures;
 use super::film::Frame;
 use super::story::hardest;
-use super::words::{list, percent, plain, sentence, value};
+use super::words::{fails_first, how_long, list, percent, plain, sentence, value};
 use super::{Scene, shown, turn};
 use crate::fail::Fail;
 use crate::held::{Held, held};
@@ -30,13 +30,8 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
     let frames = [frame];
     let supported = scenario.goals.iter().any(|goal| goal.hard);
     let scene = Scene {
-        title: &scenario.title,
-        model,
-        start: scenario.start.values(),
-        frames: &frames,
-        supports: &scenario.supports,
-        carried: scenario.supports.iter().map(|support| support.segment).collect(),
         held: (!supported).then_some(scenario.loads.as_slice()),
+        ..Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports)
     };
     let [frame] = &frames;
     let worst = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]));
@@ -130,15 +125,7 @@ fn numbered(count: usize) -> Vec<String> {
 pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria) -> Result<String, Fail> {
     let model = &scenario.model;
     let frames = frames_of_postures(model, &found.postures)?;
-    let scene = Scene {
-        title: &scenario.title,
-        model,
-        start: scenario.start.values(),
-        frames: &frames,
-        supports: &scenario.supports,
-        carried: scenario.supports.iter().map(|support| support.segment).collect(),
-        held: None,
-    };
+    let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports);
     let shown = shown(model);
     let first = found.postures.first().map_or(0, speaking);
     let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;
@@ -281,6 +268,10 @@ fn told(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String
     if let Some((name, load)) = hardest(model, frame) {
         told.push(format!("Works hardest: {name}, {}.", percent(load)));
     }
+    told.push(match fails_first(model, frame) {
+        Some((name, time)) => format!("Can be held: {}, then {name} gives up.", how_long(time)),
+        None => "Can be held for ever, as far as muscles go.".to_owned(),
+    });
     told.join(" ")
 }
 
@@ -308,5 +299,8 @@ fn figures_of(model: &Model, frame: &Frame, supports: &[String], report: &mut Re
     }
     if let Some((name, load)) = hardest(model, frame).filter(|(_, load)| *load > 0.0) {
         report.figures.push(figure("Hardest worked", percent(load), &sentence(&name)));
+    }
+    if let Some((name, time)) = fails_first(model, frame) {
+        report.figures.push(figure("Can be held", how_long(time), &format!("then {name} gives up")));
     }
 }

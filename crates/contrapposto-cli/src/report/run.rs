@@ -12,14 +12,10 @@ use crate::simulate::Recording;
 pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary: &Summary) -> Result<String, Fail> {
     let film = Film::new(scenario, recording, summary);
     let shown = shown(&scenario.model);
+    let start = film.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
     let scene = Scene {
-        title: &scenario.title,
-        model: &scenario.model,
-        start: film.frames.first().map_or(scenario.start.values(), |frame| &frame.posture),
-        frames: &film.frames,
-        supports: &scenario.supports,
-        carried: scenario.supports.iter().map(|support| support.segment).collect(),
         held: (!scenario.is_whole()).then_some(scenario.loads.as_slice()),
+        ..Scene::of(&scenario.title, &scenario.model, start, &film.frames, &scenario.supports)
     };
     let times = film.frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), main_coordinate(scenario, summary))?;

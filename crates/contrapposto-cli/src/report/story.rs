@@ -7,7 +7,7 @@ use contrapposto::simulation::{Scenario, StopReason, Summary};
 use contrapposto_report::{Figure, Report};
 
 use super::film::{Film, Frame};
-use super::words::{percent, plain, sentence, tired, value, working};
+use super::words::{how_long, percent, plain, sentence, tired, value, working};
 use crate::pose::directions;
 
 /// A pelvis that hangs more than this, degrees, is no level one.
@@ -56,12 +56,11 @@ impl Story<'_> {
 
     /// Nobody asked for relief.
     fn of_rest(&self, seconds: f64) -> String {
-        let long = if seconds < 100.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
         let hardest = match hardest(&self.scenario.model, self.last) {
             Some((name, load)) => format!("; {name} works hardest, at {} of its strength", percent(load)),
             None => String::new(),
         };
-        format!("It holds: in {long} no muscle got so tired that it asked for relief{hardest}.")
+        format!("It holds: in {} no muscle got so tired that it asked for relief{hardest}.", how_long(seconds))
     }
 
     fn weight(&self) -> String {

@@ -68,6 +68,29 @@ pub(crate) fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
 }
 
+/// `45 s`, `7.5 min`, `12 min`, `6.9 h`, `longer than a day`.
+pub(crate) fn how_long(seconds: f64) -> String {
+    match seconds {
+        _ if seconds < 100.0 => format!("{seconds:.0}\u{a0}s"),
+        _ if seconds < 597.0 => format!("{:.1}\u{a0}min", seconds / 60.0),
+        _ if seconds < 6000.0 => format!("{:.0}\u{a0}min", seconds / 60.0),
+        _ if seconds < 86_400.0 => format!("{:.1}\u{a0}h", seconds / 3600.0),
+        _ => "longer than a day".to_owned(),
+    }
+}
+
+/// The group that gives up first when a posture is held from a rested start and nobody shifts, and after how many seconds; none
+/// where all can hold for ever.
+pub(crate) fn fails_first(model: &Model, frame: &Frame) -> Option<(String, f64)> {
+    let time = |i: usize| {
+        let groups = model.coordinates()[i].groups.as_ref()?;
+        let time = groups[Side::of(frame.active(i)).index()].fatigue.endurance_time(frame.load[i]);
+        time.is_finite().then_some((i, time))
+    };
+    let (i, time) = (0..frame.load.len()).filter_map(time).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some((working(model, i, frame)?, time))
+}
+
 /// The name of the group of a coordinate that works.
 pub(crate) fn working(model: &Model, i: usize, frame: &Frame) -> Option<String> {
     let coordinate = &model.coordinates()[i];

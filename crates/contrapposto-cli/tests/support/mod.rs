@@ -1,12 +1,19 @@
 //! Runs the real program. Nothing here knows what the program should answer.
 
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used)] // each test uses a part
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on says where, and tests say what they skip"
+)]
 
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
+
+use serde_json::Value;
 
 /// Longest any run may take: a hang becomes a failed test.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -105,6 +112,102 @@ impl Call {
         run
     }
 }
+
+/// Runs it with arguments and nothing else.
+pub fn run(arguments: &[&str]) -> Run {
+    contrapposto(arguments).run()
+}
+
+/// Runs it, expects exit code 0 and JSON.
+pub fn json(arguments: &[&str]) -> Value {
+    let answer = run(arguments);
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    serde_json::from_str(&answer.stdout).unwrap_or_else(|error| panic!("{error}: {}", answer.stdout))
+}
+
+/// Runs it, expects exit code 2 and nothing on standard output; what it told, on one line.
+pub fn refused(arguments: &[&str]) -> String {
+    let answer = run(arguments);
+    assert_eq!(answer.code, 2, "{arguments:?}: {}{}", answer.stdout, answer.stderr);
+    assert_eq!(answer.stdout, "", "{arguments:?}");
+    answer.stderr
+}
+
+/// A file beside the project, if it is on this machine.
+pub fn shared(path: &str) -> Option<PathBuf> {
+    let full = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(path);
+    if full.exists() {
+        return Some(full);
+    }
+    println!("skipped: shared/{path} is not on this machine");
+    None
+}
+
+/// The JSON of a file beside the project.
+pub fn vectors(path: &str) -> Option<Value> {
+    shared(path).map(|path| serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap())
+}
+
+/// Writes a file; its name as an argument.
+pub fn write(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// What the script of a `report.html` reads.
+pub fn page(folder: &Path) -> Value {
+    let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
+    let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    serde_json::from_str(data).unwrap()
+}
+
+/// One of its columns: whole multiples of a step, each as the difference from the one before.
+pub fn column(column: &Value, frames: usize) -> Vec<f64> {
+    let by = numbers(&column["by"]);
+    let sums = (0..frames).scan(0.0, |sum, i| {
+        *sum += by.get(i).unwrap_or(&0.0);
+        Some(*sum)
+    });
+    sums.map(|sum| sum * column["step"].as_f64().unwrap()).collect()
+}
+
+/// One of its joints.
+pub fn joint<'a>(page: &'a Value, name: &str) -> &'a Value {
+    page["joints"].as_array().unwrap().iter().find(|joint| joint["name"] == name).unwrap()
+}
+
+/// The keys of an object.
+pub fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+pub fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+/// A pendulum of two links, the second a slide that follows nothing, in OpenSim's axes; `knee` turns about z by `sign`.
+pub fn leg(sign: i32, name: &str) -> String {
+    format!(
+        r#"<mujoco model="leg"><compiler angle="radian" autolimits="true"/><option gravity="0 -9.81 0"/><worldbody>
+        <body name="thigh" pos="0 1 0"><joint name="hip" type="hinge" axis="0 0 1" range="-1 1"/>
+        <inertial pos="0 -0.2 0" mass="8" diaginertia="0.1 0.1 0.1"/>
+        <body name="shank" pos="0 -0.4 0"><joint name="{name}" type="hinge" axis="0 0 {sign}" range="-2 2"/>
+        <inertial pos="0 -0.2 0" mass="4" diaginertia="0.1 0.1 0.1"/></body></body></worldbody></mujoco>"#
+    )
+}
+
+/// A small body: an arm that is held up by its tasks alone, so that a run takes no time.
+pub const ARM: &str = r#"
+format = 1
+title = "A hand held up"
+[model]
+adult = { sex = "male", stature_m = 1.74, mass_kg = 73, part = "right_arm" }
+[[task]]
+kind = "point"
+segment = "hand_r"
+target_m = [0.3, 1.2, 0.2]
+"#;
 
 /// The folder of the scenarios that come with the program.
 pub fn scenarios() -> PathBuf {

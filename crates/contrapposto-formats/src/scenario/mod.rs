@@ -88,6 +88,12 @@ impl Located<'_> {
         self.tree.get(table).is_some()
     }
 
+    /// Does the table of that name have keys beside these?
+    pub(crate) fn has_beside(&self, table: &str, keys: &[&str]) -> bool {
+        let table = self.tree.get(table).and_then(|value| value.get_ref().as_table());
+        table.is_some_and(|table| table.keys().any(|key| !keys.contains(&key.get_ref().as_ref())))
+    }
+
     fn span(&self, path: &[&str], key: bool) -> Option<Range<usize>> {
         let (first, rest) = path.split_first()?;
         let (name, mut value) = self.tree.get_key_value(*first)?;

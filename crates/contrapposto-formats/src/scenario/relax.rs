@@ -107,7 +107,8 @@ fn relax(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<Rela
         ("strategy", text.strategy.is_some()),
         ("solver", text.solver.is_some()),
         ("relief", at.has("relief")),
-        ("fatigue", at.has("fatigue")),
+        // The law says how long a posture can be held.
+        ("fatigue", at.has_beside("fatigue", &["law", "curve"])),
         ("event", at.has("event")),
         ("run", text.run.is_some()),
     ];

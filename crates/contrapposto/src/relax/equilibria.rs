@@ -77,6 +77,8 @@ pub struct Work {
     pub active: f64,
     /// Strength of the group at its angle, N m.
     pub strength: f64,
+    /// How long the group, rested at first, can hold this, s; infinite if for ever.
+    pub endurance: f64,
 }
 
 impl Work {
@@ -132,6 +134,14 @@ pub struct RelaxedPosture {
     pub hanging: Vec<Hanging>,
     /// Starts that led here, in words.
     pub starts: Vec<String>,
+}
+
+impl RelaxedPosture {
+    /// The group that gives up first when the posture is held and nobody shifts; none where all can hold for ever.
+    pub fn fails_first(&self) -> Option<&Work> {
+        let tires = self.work.iter().filter(|work| work.endurance.is_finite());
+        tires.min_by(|a, b| a.endurance.total_cmp(&b.endurance))
+    }
 }
 
 /// What was found.

@@ -266,8 +266,10 @@ impl<'a> Finder<'a> {
         }
         let active = -(engine.body().external_torque().torques()[rate] + engine.passive()[rate]);
         let side = Side::of(active);
-        let strength = groups[side.index()].strength.torque(engine.body().kinematics().values()[i]);
-        Some(Work { coordinate: i, side, active, strength })
+        let group = &groups[side.index()];
+        let strength = group.strength.torque(engine.body().kinematics().values()[i]);
+        let endurance = group.fatigue.endurance_time(active.abs() / strength);
+        Some(Work { coordinate: i, side, active, strength, endurance })
     }
 
     /// What every coordinate's muscles have to set against, as shares of their strength, in that posture.

@@ -1,0 +1,73 @@
+//! What can be asked of a single joint?
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+
+#[derive(Debug, Parser)]
+#[command(
+    after_help = "Examples:\n  contrapposto figures --out out\n  contrapposto figures --only 7,8 --json --out out\n  \
+    contrapposto figures --curve measured --out measured"
+)]
+pub(crate) struct FiguresArgs {
+    /// Folder for the pictures; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Only these figures: 1, 7, 8, 9, 10, 11, 12, 13, 14.
+    #[arg(long, value_delimiter = ',', value_name = "N,N")]
+    pub(crate) only: Vec<u8>,
+    /// Elbow curve: mid-range stiffness 0 as the paper assumes, or the measured 0.4 N m/rad.
+    #[arg(long, value_enum, default_value_t = ElbowCurve::Neutral)]
+    pub(crate) curve: ElbowCurve,
+    /// Print cases and goals as JSON instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The named elbow curve of all figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ElbowCurve {
+    /// `elbow_neutral`: mid-range stiffness 0.
+    Neutral,
+    /// `elbow_flexion`: the measured 0.4 N m/rad.
+    Measured,
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    after_help = "Example (one line):\n  echo '{\"passive\": {\"lower\": {\"torque_nm\": 12.67, \"rate_per_rad\": 19.92, \
+    \"angle_deg\": 0}, \"upper\": {\"torque_nm\": 9.324, \"rate_per_rad\": 3.811, \"angle_deg\": 150}, \
+    \"stiffness_nm_per_rad\": 0.4, \"neutral_deg\": 73}, \"range_deg\": [0, 150], \"angle_deg\": 20, \"external_nm\": -2.7, \
+    \"external_slope_nm_per_rad\": 0.9, \"strategy\": \"active\", \"minimum_decrease_ratio\": 0.9, \"tolerance_nm\": 0.05}' \
+    | contrapposto minimize"
+)]
+pub(crate) struct MinimizeArgs {
+    /// File of JSON lines; standard input when left out or `-`.
+    pub(crate) file: Option<PathBuf>,
+    /// Follow the printed Tables 1 and 2 to the letter; outcome `none` where they have no answer.
+    #[arg(long)]
+    pub(crate) literal: bool,
+    /// Print JSON lines (the default and only form; accepted so that scripts may say it).
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    after_help = "Examples:\n  contrapposto passive elbow_flex_r --out out\n  contrapposto passive hip_flexion --json\n  \
+    contrapposto passive --list"
+)]
+pub(crate) struct PassiveArgs {
+    /// A coordinate of the built-in adult (`elbow_flex_r`) or a built-in curve (`elbow_neutral`).
+    #[arg(required_unless_present = "list")]
+    pub(crate) coordinate: Option<String>,
+    /// List the built-in curves by coordinate, with status and source.
+    #[arg(long, conflicts_with_all = ["coordinate", "out"])]
+    pub(crate) list: bool,
+    /// Folder for the picture (default: this folder); with --json nothing is drawn unless it is given.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print the numbers as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}

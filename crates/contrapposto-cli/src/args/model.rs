@@ -1,0 +1,147 @@
+//! What can be asked of a model, and of a motion of it?
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use contrapposto_formats::body::BodyRoot;
+
+/// MODEL and what is laid over it.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ModelArgs {
+    /// Model file (.osim, .urdf, MJCF .xml), or the built-in adult: `adult`, `adult:female,1.65m,60kg`.
+    pub(crate) model: PathBuf,
+    /// Ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the model.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) overlay: Option<PathBuf>,
+    /// How a URDF or MJCF model's root is attached; as the file says when left out.
+    #[arg(long, value_enum)]
+    pub(crate) root: Option<RootChoice>,
+    /// Passive torque and strength that the file does not have: from the built-in library by name, or none.
+    #[arg(long, value_enum)]
+    pub(crate) passive: Option<PassiveFrom>,
+}
+
+/// How a root is attached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RootChoice {
+    /// Fixed to ground.
+    Fixed,
+    /// Free: columns root_tx .. root_qz, forces root_fx .. root_mz.
+    Free,
+}
+
+impl RootChoice {
+    pub(crate) fn body(self) -> BodyRoot {
+        match self {
+            Self::Fixed => BodyRoot::Fixed,
+            Self::Free => BodyRoot::Free,
+        }
+    }
+}
+
+/// Where passive torque comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PassiveFrom {
+    /// What the file (and overlay) do not have is taken from the built-in data, by standard names.
+    Library,
+    /// Only what the file (and overlay) have.
+    File,
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    after_help = "Examples:\n  contrapposto inspect subject.osim\n  contrapposto inspect adult:female,1.65m,60kg --json"
+)]
+pub(crate) struct InspectArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Print everything as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  contrapposto torques adult default --load \"hand_r 3kg\"\n  \
+    contrapposto torques subject.osim gait.mot --grf forces.mot --out torques.csv\n  \
+    contrapposto torques robot.urdf pose.csv --root free --gradient --json\n\n\
+    Torques act in the direction of their coordinate; external + passive + active = 0.")]
+pub(crate) struct TorquesArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Postures: .mot, .sto or .csv, one row a frame; or `default`.
+    pub(crate) postures: PathBuf,
+    #[command(flatten)]
+    pub(crate) under: LoadArgs,
+    /// Also d external_i / d q_j.
+    #[arg(long)]
+    pub(crate) gradient: bool,
+    /// Write the table to a file: .csv, .sto or .mot, or .json.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print JSON, in rad, m, N m, instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  contrapposto assess subject.osim lifting.mot --grf forces.mot --out out\n  \
+    contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
+    Each posture counts as held at rest, and loads change in a straight line from one to the next. Writes assess.json, \
+    report.html, torques.sto and fatigue.sto into DIR.")]
+pub(crate) struct AssessArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Recorded motion: .mot, .sto or .csv, one row a frame, with times.
+    pub(crate) motion: PathBuf,
+    #[command(flatten)]
+    pub(crate) under: LoadArgs,
+    /// Segments that carry the body in every frame; their forces are found, at least effort of the muscles.
+    #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", conflicts_with = "grf")]
+    pub(crate) support: Vec<String>,
+    /// Where a supporting segment touches, corners in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
+    #[arg(long, value_name = "PATCH", requires = "support")]
+    pub(crate) patch: Vec<String>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that fail first
+    /// their torques over angle and their course, each as SVG and PNG.
+    #[arg(long, requires = "out")]
+    pub(crate) figures: bool,
+    /// Print assess.json instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What pulls and pushes on a body in given postures, and how those are read.
+#[derive(Debug, clap::Args)]
+pub(crate) struct LoadArgs {
+    /// A held weight, at the segment's centre of mass unless told: "hand_r 3kg", "hand_r 3kg at 0,-0.08,0".
+    #[arg(long, value_name = "LOAD")]
+    pub(crate) load: Vec<String>,
+    /// A force (N) at a point of a segment (m): "hand_r 0,-20,0 at 0,-0.08,0 world" (or segment: its axes).
+    #[arg(long, value_name = "FORCE")]
+    pub(crate) force: Vec<String>,
+    /// Ground reaction forces as OpenSim writes them (ground_force_vx .. ground_torque_z), interpolated in time.
+    #[arg(long, value_name = "FILE.mot")]
+    pub(crate) grf: Option<PathBuf>,
+    /// Segments that the ground reactions act on, in the order of the file's columns; guessed by name when left out.
+    #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", requires = "grf")]
+    pub(crate) grf_on: Vec<String>,
+    /// Angles of the postures are degrees, whatever the file says.
+    #[arg(long, conflicts_with = "radians")]
+    pub(crate) degrees: bool,
+    /// Angles of the postures are radians, whatever the file says.
+    #[arg(long)]
+    pub(crate) radians: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Example:\n  contrapposto convert subject.osim subject.urdf\n\n\
+    The format is that of OUT's ending: .osim, .urdf, or .xml (MJCF). What the format cannot say is told.")]
+pub(crate) struct ConvertArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// File to write: .osim, .urdf, or .xml for MJCF.
+    pub(crate) out: PathBuf,
+}
