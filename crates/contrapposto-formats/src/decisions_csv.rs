@@ -6,6 +6,9 @@ use contrapposto::hybrid::{Carrier, Equilibrium, Outcome, Strategy};
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::simulation::{ReliefLog, ReliefRecord};
 
+/// Nearer to its goal than this it has got there, rad or m.
+const REACHED: f64 = 0.01;
+
 /// The whole file. Angles in degrees (slides in m), torques in N m (N), time in s.
 pub fn decisions_csv(model: &Model, log: &ReliefLog) -> String {
     let mut text = "time_s,end_s,coordinate,group,fatigue,strategy,case,outcome,start_deg,goal_deg,end_deg,active_nm,\
@@ -66,23 +69,34 @@ pub fn relief_sentence(model: &Model, record: &ReliefRecord) -> String {
     };
     let wish = match decision.outcome {
         Outcome::Stay => format!("stays at {}", shown(goal)),
-        Outcome::Active => format!("goes to where muscles work well, {}{kind}", shown(goal)),
-        Outcome::Passive => format!("goes to a rest at {}{kind}", shown(goal)),
-        Outcome::AtLimit => format!("goes to the end of its range, {}, where least is left to hold", shown(goal)),
+        Outcome::Active => format!("asks for where muscles work well, {}{kind}", shown(goal)),
+        Outcome::Passive => format!("asks for a rest at {}{kind}", shown(goal)),
+        Outcome::AtLimit => format!("asks for the end of its range, {}, where least is left to hold", shown(goal)),
         Outcome::None => "finds no answer in the printed tables".to_owned(),
     };
-    let mut sentence = format!(
-        "{tired}, {wish}: from {} to {}, active torque from {:.1} to {:.1} {unit}",
-        shown(record.value.0),
-        shown(record.value.1),
-        record.active.0,
-        record.active.1
-    );
+    let (from, to) = (shown(record.value.0), shown(record.value.1));
+    let way = if from == to { format!("at {to} throughout") } else { format!("from {from} to {to}") };
+    let mut sentence =
+        format!("{tired}, {wish}: {way}, active torque from {:.1} to {:.1} {unit}", record.active.0, record.active.1);
+    // Beyond its first goal it followed one that moved.
+    let left = |goal: f64| (goal - record.value.1) * (goal - record.value.0).signum();
+    let short = decision.goal.is_some_and(|goal| left(goal) > REACHED);
+    let mut reasons = vec![];
     if record.deferred > 0 {
-        let _ = write!(sentence, "; something more important stood against it in {} steps", record.deferred);
+        reasons.push(format!("supports, tasks or a more tired group stood against it in {} steps", record.deferred));
     }
     if record.taken_back > 0 {
-        let _ = write!(sentence, "; {} steps made things worse and were taken back", record.taken_back);
+        reasons.push(format!("{} steps made things worse and were taken back", record.taken_back));
+    }
+    match (short, reasons.is_empty()) {
+        (true, true) => sentence.push_str("; it had not got there when the answer changed or relief ended"),
+        (true, false) => {
+            let _ = write!(sentence, "; it got no farther: {}", reasons.join(", "));
+        }
+        (false, false) => {
+            let _ = write!(sentence, "; {}", reasons.join(", "));
+        }
+        (false, true) => {}
     }
     sentence
 }
@@ -103,4 +117,68 @@ fn strategy(strategy: Strategy) -> &'static str {
 fn quoted(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
     if plain.contains([',', '"']) { format!("\"{}\"", plain.replace('"', "\"\"")) } else { plain }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use contrapposto::hybrid::{Case, Decision};
+    use contrapposto::model::{Adult, Side, adult};
+    use contrapposto::passive::SlopeAngles;
+
+    use super::*;
+
+    /// Of a hip that asked for 102 deg from 10 deg and came to `end`, deg.
+    fn told(end: f64, deferred: u64, taken_back: u64) -> String {
+        let model = adult(&Adult::default()).unwrap();
+        let goal = Some(102f64.to_radians());
+        let decision = Decision {
+            case: Case::C32,
+            outcome: Outcome::Passive,
+            goal,
+            active_torque: -12.6,
+            active_torque_at_goal: goal,
+            decrease_ratio: None,
+            slope_angles: SlopeAngles { lower: None, upper: None },
+            interval: None,
+            equilibrium: Some(Equilibrium::Stable(Carrier::Ligaments)),
+            beyond_tables: false,
+        };
+        let record = ReliefRecord {
+            coordinate: model.coordinate("hip_flexion_r").unwrap(),
+            side: Side::Negative,
+            fatigue: 0.6,
+            strategy: Strategy::Passive,
+            decision: Some(decision),
+            time: (0.0, 4.0),
+            value: (10f64.to_radians(), end.to_radians()),
+            active: (-12.6, -18.2),
+            predicted: -8.5,
+            real: -5.6,
+            done: 36,
+            deferred,
+            taken_back,
+            idle: 0,
+        };
+        relief_sentence(&model, &record)
+    }
+
+    #[test]
+    fn a_relief_that_fell_short_says_why() {
+        let way = |end: &str| {
+            format!(
+                "hip_flexion_r, hip extension, tired to 0.60, asks for a rest at 102.0 deg, where ligaments hold it: from \
+                 10.0 deg to {end} deg, active torque from -12.6 to -18.2 N m"
+            )
+        };
+        assert_eq!(told(102.0, 0, 0), way("102.0"));
+        assert_eq!(told(26.0, 0, 0), way("26.0") + "; it had not got there when the answer changed or relief ended");
+        let stood = "supports, tasks or a more tired group stood against it in 8 steps";
+        assert_eq!(told(26.0, 8, 0), way("26.0") + "; it got no farther: " + stood);
+        let worse = "5 steps made things worse and were taken back";
+        assert_eq!(told(26.0, 8, 5), way("26.0") + "; it got no farther: " + stood + ", " + worse);
+        // A goal that moved away is followed beyond where it was.
+        assert_eq!(told(110.0, 0, 5), way("110.0") + "; " + worse);
+    }
 }

@@ -129,6 +129,29 @@ fn who_stands_ready_is_symmetric() {
     }
 }
 
+/// Nobody tires, nothing is asked: where effort is least the body stands still, and stays so.
+#[test]
+fn who_has_nothing_to_do_comes_to_rest() {
+    for (name, duration) in [("stand-ready.toml", "duration_s = 300"), ("overhead.toml", "duration_s = 240")] {
+        let text = text(name);
+        assert!(text.contains(duration), "{name}");
+        let scenario = scenario(&text.replace(duration, "duration_s = 20"));
+        let (mut before, mut moving, mut last) = (scenario.start.values().to_vec(), 0, 0);
+        let mut samples = 0;
+        run(&scenario, |sample| {
+            let far = before.iter().zip(sample.posture).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if far > 1e-9 {
+                (moving, last) = (moving + 1, samples);
+            }
+            samples += 1;
+            before.copy_from_slice(sample.posture);
+        })
+        .unwrap();
+        println!("{name}: {moving} of {samples} samples in motion, the last one {last}");
+        assert!(samples == 601 && last < 90, "{name}: {moving} samples in motion, the last one {last}");
+    }
+}
+
 #[test]
 fn left_and_right_are_mirror_images() {
     let short = text("stand-relaxed.toml").replace("duration_s = 120", "duration_s = 20");

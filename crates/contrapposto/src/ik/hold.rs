@@ -14,9 +14,9 @@ const DEPENDENT: f64 = 1e-10;
 
 /// The multipliers of all rows above a level. Keeps its space.
 #[derive(Clone, Debug)]
-pub(super) struct Hold {
+pub(crate) struct Hold {
     /// By row of the levels above; zero where a row does not hold.
-    pub(super) multipliers: Vec<f64>,
+    pub(crate) multipliers: Vec<f64>,
     /// Rows that hold, at the rates that can move, and which rows they are.
     rows: Vec<f64>,
     places: Vec<usize>,
@@ -27,7 +27,7 @@ pub(super) struct Hold {
 
 impl Hold {
     /// Space for so many `rows` above.
-    pub(super) fn new(rows: usize, unknowns: usize) -> Self {
+    pub(crate) fn new(rows: usize, unknowns: usize) -> Self {
         Self {
             multipliers: Vec::with_capacity(rows),
             rows: Vec::with_capacity(rows * unknowns),
@@ -39,11 +39,14 @@ impl Hold {
 
     /// Estimates the multipliers of `above` for a level with this `gradient`, `J^T r`. What was pressed on in the `last` step,
     /// and has no room now, holds.
-    pub(super) fn estimate(&mut self, problem: &Problem, above: &[Level], last: Multipliers<'_>, gradient: &[f64]) {
+    pub(crate) fn estimate(&mut self, problem: &Problem, above: &[Level], last: Multipliers<'_>, gradient: &[f64]) {
         let n = problem.unknowns();
-        let holds = |multiplier: f64, lower: f64, upper: f64| {
-            multiplier != 0.0 && (if multiplier > 0.0 { upper } else { -lower }) <= NO_ROOM
+        let holds = |multiplier: Option<&f64>, lower: f64, upper: f64| {
+            lower == upper
+                || multiplier.is_some_and(|m| *m != 0.0 && (if *m > 0.0 { upper } else { -lower }) <= NO_ROOM)
         };
+        // Of other rows it says nothing.
+        let same = last.rows.len() == above.iter().map(Level::rows).sum::<usize>();
         self.multipliers.clear();
         self.rows.clear();
         self.places.clear();
@@ -52,9 +55,9 @@ impl Hold {
                 let place = self.multipliers.len();
                 self.multipliers.push(0.0);
                 let (lower, upper) = (level.lower[i], level.upper[i]);
-                if lower == upper || last.rows.get(place).is_some_and(|m| holds(*m, lower, upper)) {
+                if holds(last.rows.get(place).filter(|_| same), lower, upper) {
                     self.places.push(place);
-                    let moves = |i: usize| !holds(last.bounds[i], problem.lower[i], problem.upper[i]);
+                    let moves = |i: usize| !holds(last.bounds.get(i), problem.lower[i], problem.upper[i]);
                     self.rows.extend(row.iter().enumerate().map(|(i, a)| if moves(i) { *a } else { 0.0 }));
                 }
             }
@@ -62,6 +65,15 @@ impl Hold {
         self.solve(n, gradient);
         for (place, multiplier) in self.places.iter().zip(&self.solution) {
             self.multipliers[*place] = *multiplier;
+        }
+    }
+
+    /// Takes those of the last step instead, where it had the same rows; else none.
+    pub(crate) fn keep(&mut self, last: Multipliers<'_>) {
+        if last.rows.len() == self.multipliers.len() {
+            self.multipliers.copy_from_slice(last.rows);
+        } else {
+            self.multipliers.fill(0.0);
         }
     }
 

@@ -8,7 +8,7 @@
 pub mod body;
 mod curvature;
 mod engine;
-mod hold;
+pub(crate) mod hold;
 mod symmetric;
 pub mod task;
 

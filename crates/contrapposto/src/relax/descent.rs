@@ -7,7 +7,7 @@
 //! is corrected with the factors at hand before it is judged (Fletcher 1982, "Second order corrections for non-differentiable
 //! optimization"), or feet that turn would keep steps short.
 
-use super::hessian::Hessian;
+use super::hessian::{Hessian, Sight};
 use super::quadratic::Quadratic;
 use super::site::{Ask, Site};
 use crate::contact::bounds;
@@ -93,7 +93,7 @@ impl Descent {
             let share = self.share(manner.pace);
             self.problem.unit = self.at.write(share, &mut self.problem);
             if steps > manner.plain {
-                self.hessian.bend(ask, &self.at, &self.multipliers, &mut self.problem);
+                self.hessian.bend(ask, &self.at.seen(ask), &self.multipliers, Sight::Fine, &mut self.problem.matrix);
             }
             self.bound(ask);
             let Some(needed) = self.problem.solve(shift) else { break };

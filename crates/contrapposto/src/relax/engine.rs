@@ -5,13 +5,15 @@
 //! back and the largest step shrinks (Nocedal & Wright 2006, "Numerical Optimization", ch. 18). `rows.rs` writes the problem of a
 //! step, `merit.rs` judges it, `down.rs` leaves the way down to [`super::valleys`].
 
+mod curvature;
 mod down;
 mod merit;
 mod rows;
 
+use curvature::Curvature;
 use nalgebra::Vector3;
 
-use super::curvature::Curvature;
+use super::hessian::Sight;
 use super::probe::Probe;
 use super::valleys::Valleys;
 use super::{Options, Reason, RelaxError, Relaxed, Step};
@@ -59,14 +61,12 @@ pub struct Engine<'a> {
     /// Place of the effort level among the goals.
     effort_goal: Option<usize>,
     price: f64,
-    /// Of the rows above the effort level, from the last step, and where those of each level begin.
-    multipliers: Vec<f64>,
-    starts: Vec<usize>,
     /// What the last step left of each level.
     unreached: Vec<f64>,
     curvature: Curvature,
     valleys: Valleys,
-    /// Rates that move.
+    /// All rates, and those that move.
+    rates: Vec<usize>,
     free: Vec<usize>,
     reach: f64,
     last: Posture,
@@ -143,11 +143,10 @@ impl<'a> Engine<'a> {
             effort: [f64::INFINITY; 2],
             effort_goal,
             price: 0.0,
-            multipliers: vec![],
-            starts: vec![],
             unreached: vec![],
             curvature: Curvature::new(model, unknowns),
             valleys: Valleys::new(model),
+            rates: (0..rates).collect(),
             free: vec![],
             reach: options.max_step,
             last: start.clone(),
@@ -159,6 +158,11 @@ impl<'a> Engine<'a> {
     /// Rates that do not move, besides those of locked coordinates.
     pub fn lock(&mut self, rate: usize) {
         self.locked[rate] = true;
+    }
+
+    /// It is to pass over dips in which there is little to be found ([`Sight::Coarse`]).
+    pub(super) fn scout(&mut self) {
+        self.curvature.sight = Sight::Coarse;
     }
 
     /// The goals, to move targets between steps. What is changed must still fit the model; effort must stay where it is.
@@ -233,7 +237,6 @@ impl<'a> Engine<'a> {
         self.errors.iter_mut().for_each(|errors| errors.fill(f64::INFINITY));
         self.effort = [f64::INFINITY; 2];
         self.price = 0.0;
-        self.multipliers.clear();
         self.unreached.clear();
         self.reach = self.options.max_step;
         *self.curvature.shift() = 0.0;

@@ -77,7 +77,8 @@ impl<'a> Finder<'a> {
             search.locked.iter().for_each(|&rate| engine.lock(rate));
             Ok::<_, SearchError>(engine)
         };
-        let engines = [engine(SCOUT.min(options.max_steps), &goals)?, engine(options.max_steps, &goals)?];
+        let mut engines = [engine(SCOUT.min(options.max_steps), &goals)?, engine(options.max_steps, &goals)?];
+        engines[0].scout();
         let approach = engine(SCOUT, &goals[..slot])?;
         Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], starts: 0, steps: 0 })
     }

@@ -1,9 +1,15 @@
-//! How does effort bend along posture and contact forces? The second derivative of the Lagrangian of a descent.
+//! How does effort bend along posture and contact forces? The second derivative of the Lagrangian of a least-effort posture.
 //!
-//! As in [`super::curvature`], with forces as unknowns of their own: `sum_i w_i tau_i''` is how the gradient matrix changes when
-//! the body moves along `w`, and its mixed part how the torques of each force change, since these too are gradients of a
-//! potential (the work of a force fixed in the ground). One difference gives both. Coupled laws, which have no potential, and
-//! strength that changes with the angle have closed forms of their own.
+//! `L = |e|^2/2 + sum y_r c_r` with the errors `c_r` of all rows above and their multipliers. Beside `J^T J` its second
+//! derivative has what the tasks above add (`sum y_r c_r''`, the gradient of external torque under pulls, see [`Task::pull`])
+//! and `sum_i w_i tau_i''` with `w_i = -e_i / S_i` for muscles and `w_r = y_r` for the root's equilibrium. External torque is the
+//! gradient of a potential, whose third derivatives are symmetric: so that sum is how the gradient matrix changes when the body
+//! moves along `w`, and its mixed part how the torques of each force change, since these too are gradients of a potential (the
+//! work of a force fixed in the ground). One difference gives both. Coupled laws, which have no potential, and strength that
+//! changes with the angle have closed forms of their own.
+//!
+//! Scouts that look for valleys are to pass over dips (an arm that balances overhead costs no muscle anything): they know of
+//! tasks, weight, loads and single joints' passive torque only ([`Sight::Coarse`]).
 //!
 //! Forces that cancel each other within one support do no work while it stays; their mixed part lies in the motions that turn
 //! the support. These are taken out of the mixed part, which changes the multipliers of the supports and nothing else: else the
@@ -11,8 +17,7 @@
 
 use nalgebra::Vector3;
 
-use super::quadratic::Quadratic;
-use super::site::{Ask, Site, columns};
+use super::site::{Ask, columns};
 use crate::ik::body::{Body, Needs};
 use crate::ik::task::{Task, share_of_strength};
 use crate::math::lexicographic::{add_scaled, dot};
@@ -27,6 +32,30 @@ const MOVE: f64 = 1e-5;
 const MOVE_JOINT: f64 = 1e-4;
 /// What is left of a row, relative to it, when it says nothing new.
 const NEW: f64 = 1e-6;
+
+/// What is known of the posture and the forces in which effort bends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen<'a> {
+    pub(super) body: &'a Body,
+    /// Loads of the scenario, then one a corner.
+    pub(super) loads: &'a [Load],
+    /// As [`crate::contact::ContactForces::columns`].
+    pub(super) columns: &'a [f64],
+    /// Errors of the effort level, and their rows over the unknowns.
+    pub(super) errors: &'a [f64],
+    pub(super) slopes: &'a [f64],
+    /// Rows of the supports' places over the unknowns.
+    pub(super) places: &'a [f64],
+}
+
+/// How much of that is to be seen?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sight {
+    /// All.
+    Fine,
+    /// Tasks, weight, loads and single joints.
+    Coarse,
+}
 
 /// Keeps its space.
 #[derive(Clone, Debug)]
@@ -65,26 +94,33 @@ impl Hessian {
         }
     }
 
-    /// Adds to the upper triangle of the problem's matrix what goes beyond first derivatives, with the multipliers of the rows.
-    pub(super) fn bend(&mut self, ask: &Ask<'_>, at: &Site, multipliers: &[f64], problem: &mut Quadratic) {
+    /// Adds to the upper triangle of `matrix` what goes beyond first derivatives, with the multipliers of the root's equilibrium
+    /// and of the tasks above effort.
+    pub(super) fn bend(&mut self, ask: &Ask<'_>, at: &Seen<'_>, multipliers: &[f64], sight: Sight, matrix: &mut [f64]) {
         self.weigh(ask, at, multipliers);
-        self.bend_of_tasks(ask, at, multipliers, problem);
-        self.bend_of_torques(ask, at, problem);
-        self.bend_of_passive(ask, at, problem);
-        self.bend_of_strength(ask, at, problem);
+        self.bend_of_tasks(ask, at, multipliers, matrix);
+        let moved = self.bend_of_torques(ask, at, matrix);
+        self.bend_of_passive(ask, at, matrix);
+        if sight == Sight::Fine {
+            if let Some(moved) = moved {
+                self.bend_of_forces(ask, at, moved, matrix);
+            }
+            self.bend_of_coupled(ask, at, matrix);
+            self.bend_of_strength(ask, at, matrix);
+        }
     }
 
-    fn weigh(&mut self, ask: &Ask<'_>, at: &Site, multipliers: &[f64]) {
+    fn weigh(&mut self, ask: &Ask<'_>, at: &Seen<'_>, multipliers: &[f64]) {
         self.weights.fill(0.0);
         for (rate, y) in ask.contact.root().iter().zip(multipliers) {
             self.weights[*rate] = y / ask.contact.weight();
         }
         for (coordinate, rate, error, _) in efforts(ask, at) {
-            self.weights[rate] = -error * share_of_strength(ask.model, &at.body, coordinate);
+            self.weights[rate] = -error * share_of_strength(ask.model, at.body, coordinate);
         }
     }
 
-    fn bend_of_tasks(&mut self, ask: &Ask<'_>, at: &Site, multipliers: &[f64], problem: &mut Quadratic) {
+    fn bend_of_tasks(&mut self, ask: &Ask<'_>, at: &Seen<'_>, multipliers: &[f64], matrix: &mut [f64]) {
         let Some(mut multipliers) = multipliers.get(ask.contact.root().len()..) else { return };
         self.loads.clear();
         for task in ask.goals().flat_map(|goal| &goal.tasks) {
@@ -97,27 +133,29 @@ impl Hessian {
             return;
         }
         self.pulls.gradient(&self.weightless, at.body.kinematics(), &mut self.gradient);
+        let n = ask.unknowns();
         for (i, a) in ask.free.iter().enumerate() {
             let row = self.gradient.row(*a);
             for (j, b) in ask.free.iter().enumerate().skip(i) {
-                problem.matrix[i * problem.n + j] += 0.5 * (row[*b] + self.gradient.get(*b, *a));
+                matrix[i * n + j] += 0.5 * (row[*b] + self.gradient.get(*b, *a));
             }
         }
     }
 
-    fn bend_of_torques(&mut self, ask: &Ask<'_>, at: &Site, problem: &mut Quadratic) {
-        let (model, n) = (ask.model, problem.n);
+    /// Gives how far along `w` the body has moved for it.
+    fn bend_of_torques(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) -> Option<f64> {
+        let (model, n) = (ask.model, ask.unknowns());
         let size = self.weights.iter().fold(0.0, |size: f64, w| size.max(w.abs()));
         if size.is_nan() || size <= 0.0 {
-            return;
+            return None;
         }
         let h = MOVE / size;
         self.step.iter_mut().zip(&self.weights).for_each(|(step, w)| *step = h * w);
-        self.moved.values_mut().copy_from_slice(at.posture.values());
+        self.moved.values_mut().copy_from_slice(at.body.posture().values());
         self.moved.displace(model, &self.step);
         let needs = Needs { torque: true, center_of_mass: false };
-        if self.body.update(model, &self.moved, &at.loads, needs).is_err() {
-            return;
+        if self.body.update(model, &self.moved, at.loads, needs).is_err() {
+            return None;
         }
         let share = 0.5 / h;
         let (before, after) = (at.body.gradient(), self.body.gradient());
@@ -125,15 +163,15 @@ impl Hessian {
             let (from, to) = (before.row(a), after.row(a));
             for (j, &b) in ask.free.iter().enumerate().skip(i) {
                 let other = after.get(b, a) - before.get(b, a);
-                problem.matrix[i * n + j] += share * (to[b] - from[b] + other);
+                matrix[i * n + j] += share * (to[b] - from[b] + other);
             }
         }
-        self.bend_of_forces(ask, at, h, problem);
+        Some(h)
     }
 
-    /// `sum_i w_i tau_p,i''`.
-    fn bend_of_passive(&mut self, ask: &Ask<'_>, at: &Site, problem: &mut Quadratic) {
-        let (model, values) = (ask.model, at.body.kinematics().values());
+    /// `sum_i w_i tau_p,i''` of joints whose passive torque depends on their own angle.
+    fn bend_of_passive(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) {
+        let (model, n, values) = (ask.model, ask.unknowns(), at.body.kinematics().values());
         for (i, &rate) in ask.free.iter().enumerate() {
             let Some(own) = model.rates()[rate].coordinate else { continue };
             let slope = |slope: &dyn Fn(f64) -> f64| {
@@ -144,8 +182,13 @@ impl Hessian {
                 Some(PassiveLaw::Sum(terms)) => slope(&|q| terms.iter().map(|term| term.torque_and_slope(q).1).sum()),
                 _ => 0.0,
             };
-            problem.matrix[i * problem.n + i] += self.weights[rate] * bend;
+            matrix[i * n + i] += self.weights[rate] * bend;
         }
+    }
+
+    /// The same of coupled laws.
+    fn bend_of_coupled(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) {
+        let (model, n, values) = (ask.model, ask.unknowns(), at.body.kinematics().values());
         for (own, coordinate) in model.coordinates().iter().enumerate() {
             let (Some(PassiveLaw::Coupled(law)), Some(rate)) = (&coordinate.passive, coordinate.rate) else { continue };
             if model.is_dependent(own) {
@@ -160,7 +203,7 @@ impl Hessian {
                     if let (Some(a), Some(b)) = (a, b)
                         && a <= b
                     {
-                        problem.matrix[a * problem.n + b] += self.weights[rate] * entry;
+                        matrix[a * n + b] += self.weights[rate] * entry;
                     }
                 }
             }
@@ -169,8 +212,8 @@ impl Hessian {
 
     /// Strength changes with the angle. With `e = tau_a / S` this adds `(J^T k + k^T J) e - e^2 S''/S` at the joint, where `J` is
     /// the row of `e` and `k = -S'/S`.
-    fn bend_of_strength(&mut self, ask: &Ask<'_>, at: &Site, problem: &mut Quadratic) {
-        let n = problem.n;
+    fn bend_of_strength(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) {
+        let n = ask.unknowns();
         for (coordinate, rate, error, row) in efforts(ask, at) {
             let (Some(own), Some(groups)) =
                 (ask.free.iter().position(|free| *free == rate), &ask.model.coordinates()[coordinate].groups)
@@ -182,24 +225,22 @@ impl Hessian {
             let (torque, slope) = strength.torque_and_slope(angle);
             let by = -error * slope / torque;
             for (other, entry) in row.iter().enumerate() {
-                problem.matrix[own.min(other) * n + own.max(other)] += by * entry;
+                matrix[own.min(other) * n + own.max(other)] += by * entry;
             }
-            problem.matrix[own * n + own] += by * row[own] - error * error * strength.curvature(angle) / torque;
+            matrix[own * n + own] += by * row[own] - error * error * strength.curvature(angle) / torque;
         }
     }
 
-    fn bend_of_forces(&mut self, ask: &Ask<'_>, at: &Site, h: f64, problem: &mut Quadratic) {
-        if at.forces.is_empty() {
+    fn bend_of_forces(&mut self, ask: &Ask<'_>, at: &Seen<'_>, h: f64, matrix: &mut [f64]) {
+        if at.columns.is_empty() {
             return;
         }
-        let (rates, n, k) = (ask.model.rates().len(), problem.n, ask.free.len());
+        let (rates, n, k) = (ask.model.rates().len(), ask.unknowns(), ask.free.len());
         columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
         self.basis.clear();
-        let first = ask.contact.root().len();
-        let places: usize = ask.places.tasks.iter().map(Task::rows).sum();
         self.mixed.resize(k, 0.0);
-        for row in first..first + places {
-            let row = &at.rows[row * n..row * n + k];
+        for row in at.places.chunks_exact(n) {
+            let row = &row[..k];
             self.mixed.copy_from_slice(row);
             remove(&mut self.mixed, &self.basis);
             let left = dot(&self.mixed, &self.mixed).sqrt();
@@ -211,14 +252,14 @@ impl Hessian {
             self.mixed.iter_mut().zip(ask.free).for_each(|(entry, rate)| *entry = (to[*rate] - from[*rate]) / h);
             remove(&mut self.mixed, &self.basis);
             for (i, entry) in self.mixed.iter().enumerate() {
-                problem.matrix[i * n + k + force] += entry;
+                matrix[i * n + k + force] += entry;
             }
         }
     }
 }
 
 /// Of every coordinate whose effort counts: its rate, its error and the row of that.
-fn efforts<'a>(ask: &'a Ask<'_>, at: &'a Site) -> impl Iterator<Item = (usize, usize, f64, &'a [f64])> {
+fn efforts<'a>(ask: &'a Ask<'_>, at: &Seen<'a>) -> impl Iterator<Item = (usize, usize, f64, &'a [f64])> {
     let effort =
         ask.effort.tasks.iter().map_while(|task| if let Task::Effort(effort) = task { Some(effort) } else { None });
     let rows = at.errors.iter().zip(at.slopes.chunks_exact(ask.unknowns()));
@@ -240,6 +281,8 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     use super::super::ground::{Ground, alike, moved};
+    use super::super::quadratic::Quadratic;
+    use super::super::site::Site;
     use super::*;
     use crate::ik::Goal;
 
@@ -275,7 +318,7 @@ mod tests {
                 (0..n * n).map(|e| direction[e / n] * upper(e / n, e % n) * direction[e % n]).sum()
             };
             let squares = along(&problem.matrix);
-            hessian.bend(ask, site, &multipliers, &mut problem);
+            hessian.bend(ask, &site.seen(ask), &multipliers, Sight::Fine, &mut problem.matrix);
             let exact = along(&problem.matrix);
 
             let equations = root + ask.goals().map(Goal::rows).sum::<usize>();

@@ -5,7 +5,6 @@
 //! should, then the goals in their order, of which one may be effort. After every step the contact forces are found anew for
 //! the posture reached ([`crate::contact`]), so that what is reported is in equilibrium exactly.
 
-mod curvature;
 mod descent;
 mod engine;
 mod equilibria;

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::hessian::Seen;
 use super::quadratic::Quadratic;
 use crate::contact::{ContactForces, Unknowns, friction_rows, share_row};
 use crate::ik::Goal;
@@ -128,6 +129,19 @@ impl Site {
         self.goal_rows(ask);
         self.force_rows(ask);
         Ok(())
+    }
+
+    /// What a second derivative needs of it.
+    pub(super) fn seen(&self, ask: &Ask<'_>) -> Seen<'_> {
+        let (n, root) = (ask.unknowns(), ask.contact.root().len());
+        Seen {
+            body: &self.body,
+            loads: &self.loads,
+            columns: &self.columns,
+            errors: &self.errors,
+            slopes: &self.slopes,
+            places: &self.rows[root * n..(root + ask.places.rows()) * n],
+        }
     }
 
     fn effort_rows(&mut self, ask: &Ask<'_>) {

@@ -43,11 +43,12 @@ impl Table {
         self.rows.resize(self.starts[levels], 0.0);
     }
 
-    /// Those of one level.
+    /// Those of one level; none where nothing was solved.
     pub(super) fn level(&self, k: usize) -> Multipliers<'_> {
+        let Some(starts) = self.starts.get(k..k + 2) else { return Multipliers { bounds: &[], rows: &[] } };
         Multipliers {
             bounds: &self.bounds[k * self.unknowns..(k + 1) * self.unknowns],
-            rows: &self.rows[self.starts[k]..self.starts[k + 1]],
+            rows: &self.rows[starts[0]..starts[1]],
         }
     }
 

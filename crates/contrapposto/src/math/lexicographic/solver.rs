@@ -128,6 +128,7 @@ impl Solver {
         self.came_to_an_end = false;
         self.bounds.clear();
         self.sides.clear();
+        self.table.starts.clear();
     }
 
     /// Solves from zero, with what was active in the last answer: for the next of a sequence of alike problems. The same
@@ -170,7 +171,8 @@ impl Solver {
         norm(self.residual(level))
     }
 
-    /// What the levels above and the bounds cost a level.
+    /// What the levels above and the bounds cost a level; nothing where nothing was solved since the start or
+    /// [`Solver::forget`].
     pub fn multipliers(&self, level: usize) -> Multipliers<'_> {
         self.table.level(level)
     }

@@ -2,8 +2,8 @@
 //!
 //! Merit is `|e|^2/2 + price sum |errors of the levels above|`, the price above every multiplier.
 
+use super::super::site::Ask;
 use super::{BEFORE, Engine};
-use crate::ik::task::{Task, share_of_strength};
 
 impl Engine<'_> {
     /// Merit of the present posture (0) or of the one before the last step (1).
@@ -39,45 +39,22 @@ impl Engine<'_> {
     /// Gives the effort level its second derivative.
     pub(super) fn bend(&mut self) {
         let Some(goal) = self.effort_goal else { return };
-        let k = BEFORE + goal;
-        let mut start = 0;
-        self.starts.clear();
-        for level in &self.problem.levels[..=k] {
-            self.starts.push(start);
-            start += level.rows();
-        }
-        if self.multipliers.len() != self.starts[k] {
-            self.multipliers.clear();
-            self.multipliers.resize(self.starts[k], 0.0);
-        }
-        let weights = self.curvature.weights();
-        weights.fill(0.0);
-        let root = self.contact.root();
-        for (rate, y) in root.iter().zip(&self.multipliers[self.starts[1] - root.len()..]) {
-            weights[*rate] = y / self.contact.weight();
-        }
-        for task in &self.goals[goal].tasks {
-            let Task::Effort(effort) = task else { continue };
-            for &coordinate in &effort.coordinates {
-                let Some(rate) = self.model.coordinates()[coordinate].rate else { continue };
-                let active = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]);
-                let share = share_of_strength(self.model, &self.body, coordinate);
-                weights[rate] = -active * share * share;
-            }
-        }
-        let (multipliers, starts) = (&self.multipliers, &self.starts);
-        let places = std::iter::once((&self.places, &multipliers[starts[1]..starts[2]]));
-        let goals = self.goals[..goal].iter().enumerate();
-        let goals = goals.map(|(i, goal)| (goal, &multipliers[starts[BEFORE + i]..starts[BEFORE + i + 1]]));
-        let goals = places.chain(goals);
-        self.curvature.bend(self.model, &self.body, &self.all_loads, goals, &mut self.problem, k);
+        let ask = Ask {
+            model: self.model,
+            places: &self.places,
+            above: &self.goals[..goal],
+            effort: &self.goals[goal],
+            loads: &self.loads,
+            free: &self.rates,
+            contact: &self.contact,
+        };
+        let last = self.solver.multipliers(BEFORE + goal);
+        self.curvature.bend(&ask, &self.body, &self.all_loads, &mut self.problem, last);
     }
 
     pub(super) fn raise_price(&mut self) {
         let Some(goal) = self.effort_goal else { return };
         let rows = self.solver.multipliers(BEFORE + goal).rows;
-        self.multipliers.clear();
-        self.multipliers.extend_from_slice(rows);
         let most = rows.iter().fold(0.0, |most: f64, m| most.max(m.abs()));
         self.price = (0.7 * self.price).max(1.5 * most);
     }
