@@ -35,6 +35,7 @@ mod factor;
 mod level;
 mod multipliers;
 mod problem;
+mod refine;
 mod solver;
 mod space;
 
