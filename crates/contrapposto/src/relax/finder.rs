@@ -17,6 +17,8 @@ use crate::posture::Posture;
 /// What a task may be farther away than in the best posture, in its units, and how far a support may slip, m and rad: of postures
 /// that have settled, and of those on their way.
 const YIELDED: [f64; 2] = [1e-5, 0.02];
+/// What supports may fall short of by the first steps, and by all of them, body weights (times 1 m).
+const ON_ITS_WAY: [f64; 2] = [1e-3, 1e-8];
 /// A goal nearer than this is none, rad or m.
 const NEAR: f64 = 0.01;
 /// The approach to tasks ends when nothing moves by more, rad or m.
@@ -138,7 +140,9 @@ impl<'a> Finder<'a> {
             return;
         };
         self.steps += relaxed.steps;
-        if let Some(missing) = engine.contact().missing(self.search.model, engine.body().kinematics()) {
+        let missing = engine.contact().missing(self.search.model, engine.body().kinematics());
+        let most = ON_ITS_WAY[which] * self.search.model.mass() * self.search.model.gravity().norm();
+        if let Some(missing) = missing.filter(|missing| missing.force.max(missing.moment) > most) {
             self.fell.push(missing);
             return;
         }
