@@ -21,7 +21,7 @@ mod linear;
 #[path = "lexicographic/oracle.rs"]
 mod oracle;
 
-use conditions::{Answer, Misses, RESIDUAL, misses, products, reference, residual, residual_of, spread};
+use conditions::{Answer, Misses, RESIDUAL, misses, products, reference, residual, residual_of};
 use contrapposto::math::lexicographic::{Level, Problem, Solver, Status};
 use double_double::Double;
 use generator::{Draw, Scaling, Wish, draw, empty_level, normal, random};
@@ -82,9 +82,6 @@ struct Tally {
     unclear: usize,
     /// where it says something else (too long by its tolerance, most often).
     decided: usize,
-    /// Of all those decided in 32 digits: residuals that the last digits of the rows leave open by more than the test allows,
-    /// compared to within that.
-    blurred: usize,
     /// Difference to Clarabel, or to another thing a test compares with.
     worst: f64,
     /// Difference to the residuals in 32 digits, where those decide.
@@ -102,7 +99,6 @@ impl Tally {
         self.unsolved += other.unsolved;
         self.unclear += other.unclear;
         self.decided += other.decided;
-        self.blurred += other.blurred;
         self.worst = self.worst.max(other.worst);
         self.worst_reference = self.worst_reference.max(other.worst_reference);
         self.misses.largest(&other.misses);
@@ -171,7 +167,6 @@ fn same_as_a_cascade_of_quadratic_programs() {
     }
     let tally = all_problems(20_000, |index, tally| one_problem(seed, index, tally));
     assert_eq!((tally.problems, tally.conflicting), (20_000, 10_000));
-    assert!(tally.blurred <= 2, "{} problems known to fewer digits than the test asks for", tally.blurred);
     tally.close();
 }
 
@@ -185,7 +180,7 @@ fn one_problem(seed: u64, index: usize, tally: &mut Tally) -> Result<(), String>
     let status = solver.solve(&problem).map_err(|e| e.to_string())?;
     let answer = Answer::of(&solver, draw.levels.len());
     if std::env::var("CONTRAPPOSTO_PROBLEM").is_ok() {
-        println!("{problem:?}\n{answer:?}\n{draw:?}");
+        println!("{problem:#?}\n{answer:#?}");
     }
     if status != Status::Solved {
         return Err(about(format!("{status:?}")));
@@ -221,17 +216,10 @@ fn one_problem(seed: u64, index: usize, tally: &mut Tally) -> Result<(), String>
                 }
                 let exact = reference(&draw, &answer).map_err(about)?;
                 let worst = largest(mine.iter().flatten().zip(exact.iter().flatten()).map(|(a, b)| a - b));
-                if worst <= SAME {
-                    tally.worst_reference = tally.worst_reference.max(worst);
-                } else {
-                    let spread = spread(&draw, &answer, &mut random(seed, index)).map_err(about)?;
-                    if worst > spread {
-                        let what =
-                            format!("{worst:.1e} from the residuals in 32 digits, which are known to {spread:.1e}");
-                        return Err(about(what));
-                    }
-                    tally.blurred += 1;
+                if worst > SAME {
+                    return Err(about(format!("{worst:.1e} from the residuals in 32 digits")));
                 }
+                tally.worst_reference = tally.worst_reference.max(worst);
             }
         }
     }

@@ -4,8 +4,6 @@
 use crate::double_double::{Double, dot, inner};
 use crate::generator::{Draw, Row, outside};
 use contrapposto::math::lexicographic::{Problem, Solver};
-use rand::RngExt;
-use rand_pcg::Pcg64;
 
 /// A residual above this, in rows of scale one, is one; below, its row counts as holding.
 pub const RESIDUAL: f64 = 1e-9;
@@ -23,16 +21,12 @@ const UNSEEN: f64 = 1e-13;
 /// As [`residual_of`], for problems with damped levels.
 const DAMPED: f64 = 1e-12;
 
-/// A multiplier below this, in rows of scale one and relative to the largest of its level where that is above one, does not
-/// press.
+/// A multiplier below this, in rows of scale one, does not press.
 const PRESSING: f64 = 1e-13;
 /// A multiplier above this, relative to the square of the level's least scale, locks its side for all levels below: to
 /// leave it would cost the level something, so what it presses with at levels below may have either sign (the multipliers
 /// of one side are positive in the lexicographic sense).
 const LOCKING: f64 = 1e-8;
-
-/// So many times the last digits are moved.
-const NUDGES: usize = 5;
 
 /// What a solver says.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,8 +120,6 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
         let (products, scale) = (products(problem, k, x), scales[k].iter().copied().fold(0.0, f64::max));
         let locking = LOCKING * scales[k].iter().copied().fold(f64::INFINITY, f64::min).powi(2);
         let (mut sum, mut size) = (vec![Double::ZERO; n], vec![0.0; n]);
-        // What rounding `x` alone makes of the sum.
-        let mut blur = vec![0.0; n];
         let mut add = |a: &[f64], factor: Double| {
             for (j, a) in a.iter().enumerate() {
                 let product = Double::from(*a) * factor;
@@ -141,9 +133,6 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
             add(a, residual);
             let size: f64 = a.iter().zip(x).map(|(a, x)| (a * x).abs()).sum();
             let side = [lower, upper].into_iter().filter(|s| s.is_finite()).fold(0.0, |m: f64, s| m.max(s.abs()));
-            for (blur, a) in blur.iter_mut().zip(a) {
-                *blur += 0.5 * f64::EPSILON * size * a.abs();
-            }
             let miss = (answer.residuals[k][i] - residual.value()).abs() / (size + side).max(f64::MIN_POSITIVE);
             misses.residual = misses.residual.max(miss);
         }
@@ -192,8 +181,7 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
         }
         // Relative to all that is summed, but to no less than a residual of one.
         let size = scale * scale + size.iter().copied().fold(0.0, f64::max);
-        let off = sum.iter().zip(&blur).map(|(sum, blur)| sum.value().abs() - blur);
-        let stationarity = off.fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
+        let stationarity = sum.iter().map(|s| s.value().abs()).fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
         let sign = signs.iter().copied().fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
         misses.stationarity = misses.stationarity.max(stationarity);
         misses.sign = misses.sign.max(sign);
@@ -210,8 +198,7 @@ struct Held<'a> {
 }
 
 /// The residuals (of rows before scaling) that follow from what the answer calls active. With the right signs of their
-/// multipliers they are the best there are, whatever `x` may say. What presses on a side that is not there is rounding
-/// ([`misses`] has seen to that).
+/// multipliers they are the best there are, whatever `x` may say.
 pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> {
     let n = draw.n;
     let units: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| if i == j { 1.0 } else { 0.0 }).collect()).collect();
@@ -224,21 +211,14 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
         let least_scale = rows.iter().map(|row| row.scale).fold(f64::INFINITY, f64::min);
         let locking = LOCKING * (least_scale / largest).powi(2);
         let (bounds, factors) = &answer.multipliers[k];
-        let scales = draw.levels[..k].iter().flatten().map(|row| row.scale);
-        let all = factors.iter().zip(scales).map(|(factor, scale)| factor * scale).chain(bounds.iter().copied());
-        let pressing = PRESSING * all.fold(1.0, |most: f64, factor| most.max(factor.abs() / (largest * largest)));
         let mut held = vec![];
         for (j, a) in units.iter().enumerate() {
             let multiplier = bounds[j] / (largest * largest);
             let fixed = draw.lower[j] == draw.upper[j];
-            if fixed || multiplier.abs() > pressing {
+            if fixed || multiplier.abs() > PRESSING {
                 let inequality = !fixed && bound_locks[j] == 0.0;
                 let upper = if inequality { multiplier > 0.0 } else { bound_locks[j] > 0.0 };
-                let side = if upper { draw.upper[j] } else { draw.lower[j] };
-                if side.is_infinite() {
-                    continue;
-                }
-                let value = Double::from(side);
+                let value = Double::from(if upper { draw.upper[j] } else { draw.lower[j] });
                 held.push(Held { a, value, multiplier, inequality });
                 if inequality && multiplier.abs() > locking {
                     bound_locks[j] = multiplier.signum();
@@ -254,29 +234,21 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
         for (((row, &known, short), factor), lock) in above.zip(factors).zip(&mut locks) {
             let multiplier = factor * row.scale / (largest * largest);
             let kept = row.equation() || short;
-            if kept || multiplier.abs() > pressing {
+            if kept || multiplier.abs() > PRESSING {
                 let inequality = !kept && *lock == 0.0;
                 let side = [known.value(), *lock, multiplier].into_iter().find(|side| *side != 0.0);
-                let side = if side > Some(0.0) { row.upper } else { row.lower };
-                if side.is_infinite() {
-                    continue;
-                }
-                let value = Double::from(side) + known;
+                let value = Double::from(if side > Some(0.0) { row.upper } else { row.lower }) + known;
                 held.push(Held { a: &row.a, value, multiplier, inequality });
                 if inequality && multiplier.abs() > locking {
                     *lock = multiplier.signum();
                 }
             }
         }
-        // The rows that are short of their side, by more than rounding `x` makes of them.
+        // The rows that are short of their side.
         let smallest = smallest(rows);
-        let is_short = |row: &Row, residual: f64| {
-            let size: f64 = row.a.iter().zip(&answer.x).map(|(a, x)| (a * x).abs()).sum();
-            row.equation() || residual.abs() > (smallest + f64::EPSILON * size) * row.scale
-        };
         let mut short = vec![];
         for (row, residual) in rows.iter().zip(&answer.residuals[k]) {
-            if is_short(row, *residual) {
+            if row.equation() || residual.abs() > smallest * row.scale {
                 let side = if *residual > 0.0 { row.upper } else { row.lower };
                 short.push((row.a.as_slice(), Double::from(side), row.scale / largest));
             }
@@ -284,38 +256,22 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
         let (found, wrong) = least(n, &held, &short);
         if wrong.iter().any(|wrong| *wrong) {
             // A row that pulls instead of pressing: does it matter?
-            let others: Vec<Held<'_>> =
+            let pressing: Vec<Held<'_>> =
                 held.into_iter().zip(&wrong).filter(|(_, wrong)| !**wrong).map(|(held, _)| held).collect();
-            let (better, _) = least(n, &others, &short);
+            let (better, _) = least(n, &pressing, &short);
             let change = found.iter().zip(&better).map(|(a, b)| (*a - *b).value().abs()).fold(0.0, f64::max);
             if change > 1e-9 {
                 return Err(format!("level {k}: without rows that pull, residuals change by {change:.1e}"));
             }
         }
         let mut found = found.into_iter();
-        let all = rows
-            .iter()
-            .zip(&answer.residuals[k])
-            .map(|(row, residual)| if is_short(row, *residual) { found.next().unwrap() } else { Double::ZERO });
+        let all = rows.iter().zip(&answer.residuals[k]).map(|(row, residual)| {
+            let short = row.equation() || residual.abs() > smallest * row.scale;
+            if short { found.next().unwrap() } else { Double::ZERO }
+        });
         known.push(all.collect());
     }
     Ok(known.iter().map(|level| level.iter().map(|r| r.value()).collect()).collect())
-}
-
-/// How far the residuals move when the last digit of every coefficient does: no solver can know them better.
-pub fn spread(draw: &Draw, answer: &Answer, rng: &mut Pcg64) -> Result<f64, String> {
-    let known = reference(draw, answer)?;
-    let mut most: f64 = 0.0;
-    for _ in 0..NUDGES {
-        let mut nudged = draw.clone();
-        for a in nudged.levels.iter_mut().flatten().flat_map(|row| &mut row.a) {
-            *a *= 1.0 + f64::EPSILON * f64::from(rng.random_range(-1..=1));
-        }
-        let other = reference(&nudged, answer)?;
-        let moved = known.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs());
-        most = moved.fold(most, f64::max);
-    }
-    Ok(most)
 }
 
 /// Least squares of `short` (row, side, weight) with `held` exactly held: residuals before weighting, and which of `held`

@@ -71,9 +71,7 @@ impl Solver {
             let value = self.value(problem, row, &self.x);
             let stands = (value - level.lower[i]).abs().min((value - level.upper[i]).abs()) <= 10.0 * rounding;
             let unseen = keeps && stands && rounding * self.norms[row] > nothing;
-            // What was more than rounding may no longer be where levels below have made the unknowns large.
-            let keeps = residual.abs() > rounding || (self.keeps[row] && residual != 0.0);
-            if keeps || level.lower[i] == level.upper[i] || unseen {
+            if residual.abs() > rounding || level.lower[i] == level.upper[i] || unseen {
                 self.roles[row] = Role::Fixed;
             }
         }

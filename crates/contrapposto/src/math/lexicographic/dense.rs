@@ -83,35 +83,6 @@ pub(super) fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64
     }
 }
 
-/// The sum and what rounding took from it (Knuth).
-#[inline]
-fn sum_and_rest(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
-}
-
-/// `a . b` and the terms, as if summed in twice the digits (Ogita, Rump & Oishi 2005).
-pub(super) fn dot_twice(a: &[f64], b: &[f64], terms: [f64; 2]) -> f64 {
-    let (mut sum, mut low) = sum_and_rest(terms[0], terms[1]);
-    for (a, b) in a.iter().zip(b) {
-        let product = a * b;
-        let (next, rest) = sum_and_rest(sum, product);
-        (sum, low) = (next, low + (rest + a.mul_add(*b, -product)));
-    }
-    sum + low
-}
-
-/// `y += s x`, the digits that do not fit into `y` into `low`.
-pub(super) fn add_scaled_twice(y: &mut [f64], low: &mut [f64], s: f64, x: &[f64]) {
-    for ((y, low), x) in y.iter_mut().zip(low).zip(x) {
-        let product = s * x;
-        let (sum, rest) = sum_and_rest(*y, product);
-        *y = sum;
-        *low += rest + s.mul_add(*x, -product);
-    }
-}
-
 /// Length of a vector.
 #[inline]
 pub(super) fn norm(a: &[f64]) -> f64 {
@@ -222,41 +193,6 @@ impl LeastSquares {
         residual.clear();
         residual.resize(m, 0.0);
         for (i, value) in order.iter().zip(left_over) {
-            residual[*i] = *value;
-        }
-    }
-
-    /// For the matrix `T` of the last solution: `y` and residual `T y + off` such that `T^T residual = -pull`.
-    pub(super) fn correct(&mut self, off: &[f64], pull: &[f64], y: &mut [f64]) {
-        let (m, n, rank) = (self.rows, self.columns, self.diagonal.len());
-        let Self { matrix, places, vector, order, diagonal, scale: scales, residual, .. } = self;
-        vector.clear();
-        vector.extend(order.iter().map(|&i| off[i]));
-        let reflect = |r: usize, column: &mut [f64]| {
-            let v = &matrix[places[r] * m + r..(places[r] + 1) * m];
-            let s = scales[r] * dot(v, &column[r..]);
-            add_scaled(&mut column[r..], -s, v);
-        };
-        for r in 0..rank {
-            reflect(r, vector);
-        }
-        // R^T h = -pull, R y = h - Q1^T off; the residual is Q (h, Q2^T off).
-        residual.clear();
-        residual.resize(m, 0.0);
-        for r in 0..rank {
-            let above = &matrix[places[r] * m..places[r] * m + r];
-            residual[r] = -(pull[places[r]] + dot(above, &residual[..r])) / diagonal[r];
-        }
-        y[..n].fill(0.0);
-        for r in (0..rank).rev() {
-            let rest: f64 = places[r + 1..rank].iter().map(|&j| matrix[j * m + r] * y[j]).sum();
-            y[places[r]] = (residual[r] - vector[r] - rest) / diagonal[r];
-        }
-        vector[..rank].copy_from_slice(&residual[..rank]);
-        for r in (0..rank).rev() {
-            reflect(r, vector);
-        }
-        for (i, value) in order.iter().zip(vector) {
             residual[*i] = *value;
         }
     }

@@ -34,7 +34,6 @@ impl Solver {
     /// to an end.
     pub(super) fn diagonal_level(&mut self, problem: &Problem, k: usize) -> Option<bool> {
         let weight = self.asks_single_unknowns(problem, k)?;
-        self.refined = false;
         let mut arrived = false;
         let mut fresh = true;
         loop {

@@ -142,12 +142,12 @@ impl Factor {
         self.entries.push(entry);
     }
 
-    /// `y` with `L y = c` for as many rows from `from` on as `c` has right-hand sides; entries before `from` count as zero.
+    /// `y` with `L y = c` for the rows `from..`, whose right-hand sides are `c`; entries before `from` count as zero.
     pub(super) fn solve_lower(&self, from: usize, c: &[f64], y: &mut [f64]) {
         let w = self.free.len();
-        for (r, right) in (from..).zip(c) {
+        for r in from..self.len() {
             let row = &self.lower[r * w..r * w + r];
-            y[r - from] = (right - dot(&row[from..], &y[..r - from])) / self.diagonal[r];
+            y[r - from] = (c[r - from] - dot(&row[from..], &y[..r - from])) / self.diagonal[r];
         }
     }
 

@@ -3,26 +3,39 @@
 use super::dense::{add_scaled, dot, norm};
 use super::factor::Entry;
 use super::problem::Problem;
-use super::solver::{INDEPENDENT, MULTIPLIER, NEEDED, ROUNDING, Role, Side, Solver, coefficients};
+use super::solver::{INDEPENDENT, MULTIPLIER, NEEDED, ROUNDING, Role, Side, Solver};
 
 /// The last digits of a value, as a share of its rounding.
-pub(super) const DIGITS: f64 = 1e-3;
+const DIGITS: f64 = 1e-3;
 
 impl Solver {
     /// Minimises level `k` and fixes what it reached. `false` if it did not come to an end.
     pub(super) fn level(&mut self, problem: &Problem, k: usize) -> bool {
+        let damped = problem.levels[k].damping > 0.0;
         self.choose_soft_rows(problem, k);
-        loop {
+        'active_set: loop {
             let base = self.factor.len();
             self.factorise_level(problem, k);
-            let block = self.approach(problem, k, base).or_else(|| self.refine(problem, k, base));
-            if let Some((entry, side)) = block {
-                if !self.may_change() {
+            for attempt in 0..4 {
+                self.solve_level(problem, k, base);
+                if attempt == 3 || !self.level_moves(base, damped) {
+                    break;
+                }
+                self.level_step(base, damped);
+                let (share, block) = self.first_block(problem, k);
+                self.advance(problem, share);
+                let Some((entry, side)) = block else {
+                    if self.is_where_expected(problem) {
+                        break;
+                    }
+                    continue;
+                };
+                if !self.may_change() || !share.is_finite() {
                     return false;
                 }
                 self.factor.truncate(base);
                 self.activate(problem, k, entry, side);
-                continue;
+                continue 'active_set;
             }
             let Some(entry) = self.weigh(problem, k, base) else { break };
             if !self.may_change() {
@@ -36,28 +49,6 @@ impl Solver {
         }
         self.fix(k);
         true
-    }
-
-    /// Goes to the best point that what is active allows. Answers what is in the way.
-    fn approach(&mut self, problem: &Problem, k: usize, base: usize) -> Option<(Entry, Side)> {
-        let damped = problem.levels[k].damping > 0.0;
-        self.refined = false;
-        for attempt in 0..4 {
-            self.solve_level(problem, k, base);
-            if attempt == 3 || !self.level_moves(base, damped) {
-                break;
-            }
-            self.level_step(base, damped);
-            let (share, block) = self.first_block(problem, k);
-            self.advance(problem, share);
-            if block.is_some() {
-                return block;
-            }
-            if self.is_where_expected(problem) {
-                break;
-            }
-        }
-        None
     }
 
     /// What blocked a step of level `k` becomes active.
@@ -113,7 +104,7 @@ impl Solver {
     }
 
     /// The value that a soft row aims at.
-    pub(super) fn aim(&self, problem: &Problem, row: usize) -> f64 {
+    fn aim(&self, problem: &Problem, row: usize) -> f64 {
         let (k, i) = self.place(row);
         if self.sides[row] == Side::Lower { problem.levels[k].lower[i] } else { problem.levels[k].upper[i] }
     }
@@ -273,8 +264,7 @@ impl Solver {
                     Side::Lower => *kept,
                     Side::Both | Side::None => continue,
                 };
-            let roundings = if self.refined { 10.0 * DIGITS } else { 10.0 };
-            let zero = if self.is_weary() { nothing } else { self.zero(row, roundings) };
+            let zero = if self.is_weary() { nothing } else { self.zero(row) };
             if wrong > zero && found.is_none_or(|(most, _)| wrong > most) {
                 found = Some((wrong, row));
             }
@@ -282,10 +272,10 @@ impl Solver {
         found.map(|(_, row)| row)
     }
 
-    /// What counts as zero in the pull of a soft row: beside heavy rows a light one still counts when it keeps more than so
-    /// many of its own roundings.
-    fn zero(&self, row: usize, roundings: f64) -> f64 {
-        (MULTIPLIER * self.size).min(roundings * self.rounding(row) * self.norms[row])
+    /// What counts as zero in the pull of a soft row: beside heavy rows a light one still counts when it keeps more than its
+    /// own rounding.
+    fn zero(&self, row: usize) -> f64 {
+        (MULTIPLIER * self.size).min(10.0 * self.rounding(row) * self.norms[row])
     }
 
     /// Multipliers of everything above. Answers an active bound or row that the level would rather leave.
@@ -313,10 +303,13 @@ impl Solver {
                 return Some(Entry::Row(row));
             }
             // What is turned is in the factor and beside it; the whole gradient is only asked where unknowns are left out.
-            self.pull_above(base);
-            if self.factor.width() < n {
-                for (kept, &row) in self.kept.iter().zip(&self.soft) {
-                    add_scaled(&mut self.gradient, *kept, coefficients(problem, &self.offsets, row));
+            let (rank, c, left_out) = (self.factor.len() - base, self.factor.padded(), self.factor.width() < n);
+            for (s, (kept, &row)) in self.kept.iter().zip(&self.soft).enumerate() {
+                let turned = if s < rank { self.factor.lower_row(base + s) } else { &self.turned[s * c..s * c + base] };
+                add_scaled(&mut self.work[..base], *kept, &turned[..base]);
+                if left_out {
+                    let i = row - self.offsets[k];
+                    add_scaled(&mut self.gradient, *kept, &level.matrix[i * n..(i + 1) * n]);
                 }
             }
         }
@@ -325,21 +318,6 @@ impl Solver {
             add_scaled(&mut self.gradient, square, &self.x);
         }
         self.multiply(problem, k, base, self.size, !damped)
-    }
-
-    /// A soft row, turned, as far as what is above reaches.
-    pub(super) fn turned_above(&self, s: usize, base: usize) -> &[f64] {
-        let (rank, c) = (self.factor.len() - base, self.factor.padded());
-        if s < rank { &self.factor.lower_row(base + s)[..base] } else { &self.turned[s * c..s * c + base] }
-    }
-
-    /// Adds how the soft rows pull at what is above to `work`.
-    pub(super) fn pull_above(&mut self, base: usize) {
-        let mut work = std::mem::take(&mut self.work);
-        for (s, kept) in self.kept.iter().enumerate() {
-            add_scaled(&mut work[..base], *kept, self.turned_above(s, base));
-        }
-        self.work = work;
     }
 
     /// Multipliers of the first `base` entries and of the bounds, into the table, for the gradient in `work` (turned) and
@@ -354,8 +332,6 @@ impl Solver {
         hold: bool,
     ) -> Option<Entry> {
         let n = problem.unknowns();
-        // Refined, multipliers are known to more digits.
-        let nothing = if self.refined && !self.is_weary() { DIGITS * MULTIPLIER * size } else { MULTIPLIER * size };
         let (bounds, rows) = self.table.level_mut(k);
         bounds.fill(0.0);
         rows.fill(0.0);
@@ -373,7 +349,9 @@ impl Solver {
                     if !left_out {
                         continue;
                     }
-                    add_scaled(&mut self.gradient, multiplier, coefficients(problem, &self.offsets, row));
+                    let j = self.offsets.partition_point(|&start| start <= row) - 1;
+                    let i = row - self.offsets[j];
+                    add_scaled(&mut self.gradient, multiplier, &problem.levels[j].matrix[i * n..(i + 1) * n]);
                 }
             }
         }
@@ -383,6 +361,7 @@ impl Solver {
                 *bound = -self.gradient[i];
             }
         }
+        let nothing = MULTIPLIER * size;
         let mut worst: Option<(f64, Entry)> = None;
         let mut consider = |multiplier: f64, norm: f64, side: Side, entry: Entry| {
             let wrong = match side {
@@ -410,7 +389,7 @@ impl Solver {
             return Some(entry);
         }
         if hold {
-            let needed = NEEDED * MULTIPLIER * size;
+            let needed = NEEDED * nothing;
             for (held, bound) in self.held.iter_mut().zip(bounds.iter()) {
                 *held |= bound.abs() > needed;
             }
@@ -431,11 +410,9 @@ impl Solver {
             self.factor.entries.iter().filter(|e| matches!(e, Entry::Row(row) if *row >= self.offsets[k])).count();
         for s in 0..self.soft.len() {
             let row = self.soft[s];
-            self.residuals[row] = self.kept[s];
-            let needed = self.kept[s].abs() * self.norms[row] > self.zero(row, 10.0);
-            self.keeps[row] = self.size > 0.0 && needed;
-            let fixed = self.sides[row] == Side::Both || self.keeps[row];
-            self.roles[row] = if fixed { Role::Fixed } else { Role::Active };
+            let needed = self.kept[s].abs() * self.norms[row] > self.zero(row);
+            self.roles[row] =
+                if self.sides[row] == Side::Both || (self.size > 0.0 && needed) { Role::Fixed } else { Role::Active };
             if s >= rank {
                 self.lay_aside(row);
             }

@@ -35,7 +35,6 @@ mod factor;
 mod level;
 mod multipliers;
 mod problem;
-mod refine;
 mod solver;
 mod space;
 

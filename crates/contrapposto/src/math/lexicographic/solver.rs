@@ -78,8 +78,6 @@ pub struct Solver {
     pub(super) length: f64,
     /// What is left of each row.
     pub(super) residuals: Vec<f64>,
-    /// Rows that pull at what is above with what is left of them.
-    pub(super) keeps: Vec<bool>,
     /// Is the last answer an answer?
     pub(super) came_to_an_end: bool,
     pub(super) factor: Factor,
@@ -93,16 +91,12 @@ pub struct Solver {
     pub(super) right: Vec<f64>,
     /// What the best step leaves of each soft row.
     pub(super) kept: Vec<f64>,
-    /// Are `kept` and the multipliers known to more digits?
-    pub(super) refined: bool,
     /// How strongly the soft rows pull, all together.
     pub(super) size: f64,
     pub(super) y: Vec<f64>,
     pub(super) step: Vec<f64>,
     pub(super) gradient: Vec<f64>,
     pub(super) work: Vec<f64>,
-    /// A step of what is above, turned.
-    pub(super) above: Vec<f64>,
     /// `x` turned, for a damped level.
     pub(super) turned_x: Vec<f64>,
     pub(super) entries: Vec<Entry>,
@@ -281,8 +275,6 @@ impl Solver {
         self.length = norm(&self.x);
         self.held.clear();
         self.held.resize(n, false);
-        self.keeps.clear();
-        self.keeps.resize(rows, false);
         self.roles.clear();
         self.roles.resize(rows, Role::Out);
         self.table.reset(n, &self.offsets);
@@ -469,15 +461,10 @@ impl Solver {
 
 /// `a . x` of a row that may have a single unknown.
 pub(super) fn value(problem: &Problem, offsets: &[usize], single: Option<usize>, row: usize, x: &[f64]) -> f64 {
-    let a = coefficients(problem, offsets, row);
-    single.map_or_else(|| dot(a, x), |c| a[c] * x[c])
-}
-
-/// The coefficients of a row, counted through all levels.
-pub(super) fn coefficients<'a>(problem: &'a Problem, offsets: &[usize], row: usize) -> &'a [f64] {
     let k = offsets.partition_point(|&start| start <= row) - 1;
-    let (i, n) = (row - offsets[k], problem.unknowns());
-    &problem.levels[k].matrix[i * n..(i + 1) * n]
+    let i = row - offsets[k];
+    let a = &problem.levels[k].matrix[i * x.len()..(i + 1) * x.len()];
+    single.map_or_else(|| dot(a, x), |c| a[c] * x[c])
 }
 
 /// The place of the only entry that is not zero.
