@@ -99,7 +99,8 @@ impl Valleys {
         steps += self.search(&limbs, ask, count)?;
         let mut last = self.descent.go(ask, &self.posture, &self.forces, &self.multipliers, &LAST)?;
         steps += last.steps;
-        if limbs.alone && (last.violation > ROUGH || last.effort > near.effort) {
+        let moved = self.posture != self.near;
+        if limbs.alone && moved && (last.violation > ROUGH || last.effort > near.effort) {
             // What the limbs gained cost the rest more.
             last = self.descent.go(ask, &self.near, &self.forces, &self.multipliers, &LAST)?;
             steps += last.steps;
