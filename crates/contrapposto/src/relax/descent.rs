@@ -3,8 +3,9 @@
 //! Sequential quadratic programming on posture and contact forces together, with the second derivative of the Lagrangian
 //! ([`super::hessian`]): `min |e|^2/2` while the root is in equilibrium, supports stay, goals above effort are reached. A step
 //! counts if it lowers `|e|^2/2 + price sum |what does not hold|`; the shift of the second derivative follows the ratio of
-//! what was gained and foreseen (Nielsen 1999, "Damping parameter in Marquardt's method"). What bends away from a long step
-//! is corrected with the factors at hand before it is judged (Fletcher 1982, "Second order corrections for non-differentiable
+//! what was gained and foreseen (Nielsen 1999, "Damping parameter in Marquardt's method"). Where effort bends down along what is
+//! free, the shift that makes the matrix positive also keeps steps short; as long as they keep what they foresaw, each may be
+//! twice as long as the one before. What bends away from a long step is corrected with the factors at hand before it is judged (Fletcher 1982, "Second order corrections for non-differentiable
 //! optimization"), or feet that turn would keep steps short.
 
 use super::hessian::{Hessian, Sight};
@@ -46,7 +47,7 @@ pub(super) struct Bottom {
 const LEAST: f64 = 1e-4;
 /// No rate changes by more any longer, rad or m.
 const STILL: f64 = 1e-10;
-/// A corrected step is tried when less of what was foreseen came true.
+/// A corrected step is tried when less of what was foreseen came true, a longer one next when more did.
 const AGREES: f64 = 0.7;
 
 /// Posture and forces on their way down. Keeps its space.
@@ -87,6 +88,7 @@ impl Descent {
         self.begin(ask, start, forces)?;
         self.multipliers.extend_from_slice(multipliers);
         let (mut shift, mut raise, mut price, mut reach) = (0f64, 2f64, 0f64, manner.reach);
+        let mut stretch = 1f64;
         let (mut steps, mut settled, mut little) = (0, false, 0);
         while steps < manner.steps && !settled {
             steps += 1;
@@ -99,12 +101,21 @@ impl Descent {
             let Some(needed) = self.problem.solve(shift) else { break };
             let rates = ask.free.len();
             let largest = self.problem.step[..rates].iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-            let length = (reach / largest).min(1.0);
             let most = self.problem.multipliers.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
             price = (0.7 * price).max(1.5 * most);
             let violation = self.at.violation();
             let slope = dot(&self.problem.slope, &self.problem.step);
-            let foreseen = length * (price * share * violation - slope - 0.5 * length * self.problem.bend());
+            let bend = self.problem.bend();
+            let foresee = |length: f64| {
+                let held = 1.0 - (1.0 - length * share).abs();
+                price * held * violation - length * (slope + 0.5 * length * bend)
+            };
+            let mut length = (reach / largest).min(1.0);
+            if stretch > 1.0 {
+                let long = (reach / largest).min(stretch).min(self.problem.room());
+                length = if foresee(long) > foresee(length) { long } else { length };
+            }
+            let foreseen = foresee(length);
             if foreseen <= 0.0 && largest > STILL {
                 // What is held was not the right choice: again, with a shorter step and a fresh choice.
                 self.problem.forget();
@@ -116,6 +127,7 @@ impl Descent {
             let after = self.try_step(ask, length, share, price, (before, foreseen))?;
             let gained = before - after;
             let noise = gained.abs() <= 1e-11 * before;
+            let forced = needed > shift;
             let ratio = if foreseen > 0.0 { gained / foreseen } else { -1.0 };
             if ratio > 1e-4 || noise {
                 std::mem::swap(&mut self.at, &mut self.next);
@@ -127,6 +139,9 @@ impl Descent {
                     shift = 0.0;
                 }
                 (raise, reach) = (2.0, (2.0 * reach).min(manner.reach));
+                stretch = if forced && ratio > AGREES { 2.0 * length.max(1.0) } else { 1.0 };
+            } else if length > 1.0 {
+                stretch = 1.0;
             } else {
                 shift = (raise * needed).max(LEAST);
                 raise *= 2.0;

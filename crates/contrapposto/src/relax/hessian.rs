@@ -116,7 +116,7 @@ impl Hessian {
             self.weights[*rate] = y / ask.contact.weight();
         }
         for (coordinate, rate, error, _) in efforts(ask, at) {
-            self.weights[rate] = -error * share_of_strength(ask.model, at.body, coordinate);
+            self.weights[rate] = -error * share_of_strength(ask.model, at.body, coordinate, error);
         }
     }
 

@@ -19,6 +19,7 @@ mod probe;
 mod quadratic;
 mod site;
 mod stability;
+mod symmetric;
 mod valleys;
 
 pub use engine::Engine;

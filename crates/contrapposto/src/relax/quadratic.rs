@@ -8,6 +8,7 @@
 //! The guess is put right a few times only. Where most unknowns lie at bounds it may still be wrong then (one in ten of small
 //! random problems): bounds hold, rows may be missed, and a descent, which judges every step by what comes of it, goes on.
 
+use super::symmetric::{add_times, back, eliminate};
 use crate::math::lexicographic::{add_scaled, add_squares, dot};
 
 /// Weight of held rows in `M`, against the largest diagonal entry.
@@ -48,7 +49,7 @@ pub(super) struct Quadratic {
     /// The answer, and the multipliers of the rows.
     pub(super) step: Vec<f64>,
     pub(super) multipliers: Vec<f64>,
-    /// `H` with the squares of equations added, whole, the weight of each, and `g` with their pulls.
+    /// `H` with the squares of equations added, upper triangle, the weight of each, and `g` with their pulls.
     stiff: Vec<f64>,
     weights: Vec<f64>,
     pull: Vec<f64>,
@@ -60,7 +61,7 @@ pub(super) struct Quadratic {
     /// `[R V z]` over `[. S -]`, see [`Quadratic::factorise`].
     factor: Vec<f64>,
     table: Vec<f64>,
-    /// `H d`.
+    /// `H d`, or `M d` of what is held.
     bent: Vec<f64>,
     answer: Vec<f64>,
 }
@@ -79,7 +80,6 @@ impl Quadratic {
         self.kept.resize(m, 0);
         self.step.resize(n, 0.0);
         self.bent.resize(n, 0.0);
-        self.mirror();
         self.stiffen();
         for round in 0..ROUNDS {
             self.choose();
@@ -101,7 +101,10 @@ impl Quadratic {
         for (d, (least, most)) in self.step.iter_mut().zip(self.least.iter().zip(&self.most)) {
             *d = d.clamp(*least, *most);
         }
-        self.multiply();
+        self.bent.fill(0.0);
+        for (j, d) in self.step.iter().enumerate() {
+            add_times(&self.matrix, j, *d, &mut self.bent);
+        }
         let finite = self.step.iter().chain(&self.multipliers).all(|number| number.is_finite());
         finite.then_some(shift)
     }
@@ -127,19 +130,24 @@ impl Quadratic {
         self.lower[row] == self.upper[row] || self.kept[row] != 0
     }
 
+    /// How often the answer can be taken before a bound or a row's limit is met, other than those it stays at; at least once.
+    pub(super) fn room(&self) -> f64 {
+        let limit = |least: f64, most: f64, d: f64| match d {
+            d if d > NOTHING => most / d,
+            d if d < -NOTHING => least / d,
+            _ => f64::INFINITY,
+        };
+        let bounds = self.step.iter().zip(self.least.iter().zip(&self.most));
+        let room = bounds.fold(f64::INFINITY, |room, (d, (least, most))| room.min(limit(*least, *most, *d)));
+        let rows = self.rows.chunks_exact(self.n).zip(self.lower.iter().zip(&self.upper));
+        let rows = rows.filter(|(_, (lower, upper))| lower != upper);
+        let room = rows.fold(room, |room, (row, (l, u))| room.min(limit(*l, *u, dot(row, &self.step))));
+        room.max(1.0)
+    }
+
     /// `d^T H d` of the answer.
     pub(super) fn bend(&self) -> f64 {
         dot(&self.bent, &self.step)
-    }
-
-    /// The lower triangle from the upper one.
-    fn mirror(&mut self) {
-        let n = self.n;
-        for i in 1..n {
-            for j in 0..i {
-                self.matrix[i * n + j] = self.matrix[j * n + i];
-            }
-        }
     }
 
     /// What serves every guess: equations are always held.
@@ -159,11 +167,6 @@ impl Quadratic {
         }
         let (lower, upper, weights) = (&self.lower, &self.upper, &self.weights);
         add_squares(&mut self.stiff, n, &self.rows, |r| if lower[r] == upper[r] { weights[r] } else { 0.0 });
-        for i in 1..n {
-            for j in 0..i {
-                self.stiff[i * n + j] = self.stiff[j * n + i];
-            }
-        }
     }
 
     /// What is free, what is held.
@@ -196,14 +199,19 @@ impl Quadratic {
         let w = k + q + 1;
         self.factor.resize((k + q) * w, 0.0);
         let all = k == n;
+        self.bent.fill(0.0);
+        for (j, held) in self.held.iter().enumerate() {
+            if *held != 0 {
+                add_times(&self.stiff, j, self.step[j], &mut self.bent);
+            }
+        }
         for (a, &i) in self.free.iter().enumerate() {
             let (from, to) = (&self.stiff[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
-            let mut pull = self.pull[i];
+            let pull = self.pull[i] + self.bent[i];
             if all {
                 to[a..k].copy_from_slice(&from[a..]);
             } else {
                 to[a..k].iter_mut().zip(&self.free[a..]).for_each(|(to, j)| *to = from[*j]);
-                pull += dot(from, &self.step);
             }
             for (to, row) in to[k..].iter_mut().zip(&self.on) {
                 *to = self.rows[row * n + i];
@@ -300,23 +308,17 @@ impl Quadratic {
         }
     }
 
-    fn multiply(&mut self) {
-        for (bent, row) in self.bent.iter_mut().zip(self.matrix.chunks_exact(self.n)) {
-            *bent = dot(row, &self.step);
-        }
-    }
-
     /// Adds what is violated, lets go what pulls; `true` if anything changed.
     fn put_right(&mut self, let_go: bool) -> bool {
         let n = self.n;
         let mut changed = false;
-        if let_go && self.free.len() < n {
-            self.multiply();
+        if let_go {
             for i in 0..n {
                 if self.held[i] == 0 {
                     continue;
                 }
-                let mut pull = self.slope[i] + self.bent[i];
+                let above: f64 = (0..i).map(|j| self.matrix[j * n + i] * self.step[j]).sum();
+                let mut pull = self.slope[i] + above + dot(&self.matrix[i * n + i..(i + 1) * n], &self.step[i..]);
                 for &row in &self.on {
                     pull += self.multipliers[row] * self.rows[row * n + i];
                 }
@@ -354,65 +356,6 @@ impl Quadratic {
             self.kept[row] = side;
         }
         changed
-    }
-}
-
-/// Eliminates rows `from..to` of a matrix of rows of width `w` from all rows below, upper triangle only, four at a time; each
-/// becomes that of a Cholesky factor. `false` where the matrix is not positive.
-fn eliminate(matrix: &mut [f64], w: usize, from: usize, to: usize) -> bool {
-    let mut p = from;
-    while p < to {
-        let size = (to - p).min(4);
-        let (upper, lower) = matrix.split_at_mut((p + size) * w);
-        for c in p..p + size {
-            let (done, rest) = upper.split_at_mut(c * w);
-            let row = &mut rest[..w];
-            for by in p..c {
-                let by = &done[by * w..(by + 1) * w];
-                let factor = by[c];
-                add_scaled(&mut row[c..], -factor, &by[c..]);
-            }
-            if !(row[c] > 0.0 && row[c].is_finite()) {
-                return false;
-            }
-            let over = 1.0 / row[c].sqrt();
-            row[c..].iter_mut().for_each(|entry| *entry *= over);
-        }
-        let rows = &upper[p * w..];
-        if size == 4 {
-            let (a, rest) = rows.split_at(w);
-            let (b, rest) = rest.split_at(w);
-            let (c, d) = rest.split_at(w);
-            for (i, target) in lower.chunks_exact_mut(w).enumerate() {
-                let i = p + 4 + i;
-                let (fa, fb, fc, fd) = (a[i], b[i], c[i], d[i]);
-                if fa == 0.0 && fb == 0.0 && fc == 0.0 && fd == 0.0 {
-                    continue;
-                }
-                let sources = a[i..].iter().zip(&b[i..]).zip(c[i..].iter().zip(&d[i..]));
-                for (entry, ((a, b), (c, d))) in target[i..].iter_mut().zip(sources) {
-                    *entry -= (fa * a + fb * b) + (fc * c + fd * d);
-                }
-            }
-        } else {
-            for (i, target) in lower.chunks_exact_mut(w).enumerate() {
-                let i = p + size + i;
-                for row in rows.chunks_exact(w) {
-                    add_scaled(&mut target[i..], -row[i], &row[i..]);
-                }
-            }
-        }
-        p += size;
-    }
-    true
-}
-
-/// `R^-1 b` with the factor in the first columns of rows of width `w`.
-fn back(factor: &[f64], w: usize, b: &mut [f64]) {
-    let k = b.len();
-    for i in (0..k).rev() {
-        let row = &factor[i * w..i * w + k];
-        b[i] = (b[i] - dot(&row[i + 1..], &b[i + 1..])) / row[i];
     }
 }
 
@@ -533,8 +476,9 @@ mod tests {
             compared += 1;
             let n = problem.n;
             let value = |d: &[f64]| {
+                let upper = |i: usize, j: usize| problem.matrix[i.min(j) * n + i.max(j)];
                 dot(&problem.slope, d)
-                    + 0.5 * (0..n).map(|i| d[i] * dot(&problem.matrix[i * n..(i + 1) * n], d)).sum::<f64>()
+                    + 0.5 * (0..n * n).map(|e| d[e / n] * upper(e / n, e % n) * d[e % n]).sum::<f64>()
             };
             let missing = problem.rows.chunks_exact(n).enumerate().fold(0.0, |most: f64, (r, row)| {
                 let value = dot(row, &problem.step);
@@ -548,6 +492,33 @@ mod tests {
         }
         println!("seed {SEED}: {compared} problems, off by {worst:.1e} at most, rows missed by {off:.1e}");
         assert!(compared > 550 && worst < 1e-6 && off < 1e-9, "{compared} {worst} {off}");
+    }
+
+    /// With limits moved away from where the answer met them: taken as often as there is room, it meets one and passes none.
+    #[test]
+    fn a_step_with_room_meets_a_limit() {
+        let mut random = Pcg64Mcg::new(SEED.into());
+        let mut longer = 0;
+        for _ in 0..200 {
+            let mut problem = random_problem(&mut random, false);
+            problem.solve(0.0).unwrap();
+            for limits in [&mut problem.least, &mut problem.most, &mut problem.lower, &mut problem.upper] {
+                limits.iter_mut().for_each(|limit| *limit *= 3.0);
+            }
+            let room = problem.room();
+            longer += usize::from(room > 1.0);
+            let n = problem.n;
+            let bounds =
+                problem.step.iter().zip(problem.least.iter().zip(&problem.most)).map(|(d, (l, u))| (*d, *l, *u));
+            let rows = problem.rows.chunks_exact(n).zip(problem.lower.iter().zip(&problem.upper));
+            let rows = rows
+                .map(|(row, (l, u))| (dot(row, &problem.step), *l, *u))
+                .filter(|(_, l, u)| *l <= 0.0 && *u >= 0.0 && l != u);
+            let passed: Vec<f64> = bounds.chain(rows).map(|(d, l, u)| (l - room * d).max(room * d - u)).collect();
+            let most = passed.iter().fold(f64::NEG_INFINITY, |most, by| most.max(*by));
+            assert!(room == 1.0 || most.abs() < 1e-9, "seed {SEED}: {most:e} at {room} times the step");
+        }
+        assert!(longer > 100, "{longer}");
     }
 
     #[test]

@@ -158,7 +158,8 @@ impl Site {
                 self.slopes.resize(start + self.forces.len(), 0.0);
                 if let (Task::Effort(effort), false) = (task, self.forces.is_empty()) {
                     let to = &mut self.slopes[start..];
-                    fill_forces(ask.model, &self.body, &self.columns, effort.coordinates[i], to);
+                    let (coordinate, error) = (effort.coordinates[i], -self.narrow.upper[i]);
+                    fill_forces(ask.model, &self.body, &self.columns, coordinate, error, to);
                 }
             }
         }
@@ -257,10 +258,10 @@ pub(super) fn columns(ask: &Ask<'_>, body: &Body, jacobian: &mut [f64], columns:
     }
 }
 
-/// What contact forces do to the effort of a coordinate.
-pub(super) fn fill_forces(model: &Model, body: &Body, columns: &[f64], coordinate: usize, row: &mut [f64]) {
+/// What contact forces do to the effort of a coordinate, now `error`.
+pub(super) fn fill_forces(model: &Model, body: &Body, columns: &[f64], coordinate: usize, error: f64, row: &mut [f64]) {
     let Some(rate) = model.coordinates()[coordinate].rate else { return };
-    let share = share_of_strength(model, body, coordinate);
+    let share = share_of_strength(model, body, coordinate, error);
     for (entry, column) in row.iter_mut().zip(columns.chunks_exact(model.rates().len())) {
         *entry = -column[rate] * share;
     }

@@ -41,8 +41,9 @@ impl Effort {
             let passive = passive_row(model, body, coordinate, rate, row);
             let active = -(external(model, body, coordinate) + passive);
             let (strength, slope) = strength(model, body, coordinate, active);
+            let share = -1.0 / strength;
             for (entry, external) in row.iter_mut().zip(body.gradient().row(rate)) {
-                *entry = -(*entry + external) / strength;
+                *entry = share * (*entry + external);
             }
             row[rate] -= active * slope / (strength * strength);
             equation(level, active / strength);
@@ -81,9 +82,10 @@ fn active(model: &Model, body: &Body, coordinate: usize) -> f64 {
     -(external(model, body, coordinate) + passive(model, body, coordinate, [1.0, 0.0], None))
 }
 
-/// What a torque on a coordinate of 1 N m takes from its effort: one over the strength of the group that works.
-pub(crate) fn share_of_strength(model: &Model, body: &Body, coordinate: usize) -> f64 {
-    1.0 / strength(model, body, coordinate, active(model, body, coordinate)).0
+/// What a torque on a coordinate of 1 N m takes from its effort: one over the strength of the group that works where effort is
+/// `error`.
+pub(crate) fn share_of_strength(model: &Model, body: &Body, coordinate: usize, error: f64) -> f64 {
+    1.0 / strength(model, body, coordinate, error).0
 }
 
 /// Adds the derivatives of a leading coordinate's passive torque, followers folded in, to `row`, one entry a rate. Gives the torque.

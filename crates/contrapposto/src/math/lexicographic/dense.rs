@@ -37,7 +37,8 @@ pub(crate) fn add_square(matrix: &mut [f64], row: &[f64], weight: f64) {
     }
 }
 
-/// `matrix += sum_r weight_r row_r^T row_r` on and above the diagonal; rows of width `n`, one after the other.
+/// `matrix += sum_r weight_r row_r^T row_r` on and above the diagonal; rows of width `n`, one after the other, zeros at the end
+/// of neighbours left out.
 pub(crate) fn add_squares(matrix: &mut [f64], n: usize, rows: &[f64], weight: impl Fn(usize) -> f64) {
     for (block, rows) in rows.chunks(4 * n).enumerate() {
         let mut parts: [&[f64]; 4] = [&rows[..n]; 4];
@@ -45,8 +46,10 @@ pub(crate) fn add_squares(matrix: &mut [f64], n: usize, rows: &[f64], weight: im
         for (r, row) in rows.chunks_exact(n).enumerate() {
             (parts[r], weights[r]) = (row, weight(4 * block + r));
         }
-        let [a, b, c, d] = parts;
-        for (i, to) in matrix.chunks_exact_mut(n).enumerate() {
+        let end =
+            parts.iter().filter_map(|row| row.iter().rposition(|entry| *entry != 0.0)).max().map_or(0, |last| last + 1);
+        let [a, b, c, d] = parts.map(|row| &row[..end]);
+        for (i, to) in matrix.chunks_exact_mut(n).take(end).enumerate() {
             let by = [weights[0] * a[i], weights[1] * b[i], weights[2] * c[i], weights[3] * d[i]];
             if by == [0.0; 4] {
                 continue;

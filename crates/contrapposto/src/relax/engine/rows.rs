@@ -31,7 +31,8 @@ impl Engine<'_> {
                 widen(&self.narrow, &mut self.problem.levels[level], &mut self.row, |row, i| {
                     if let Some(effort) = effort {
                         let (coordinate, columns) = (effort.coordinates[i], self.contact.columns());
-                        fill_forces(self.model, &self.body, columns, coordinate, &mut row[rates..]);
+                        let error = -self.narrow.upper[i];
+                        fill_forces(self.model, &self.body, columns, coordinate, error, &mut row[rates..]);
                     }
                 });
             }
