@@ -62,7 +62,8 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
     let progress = progress_bar(scenario.run.duration);
     let mut number = run.snapshot().samples;
     let mut saved = (Instant::now(), number);
-    while !INTERRUPTED.load(Ordering::Relaxed) {
+    // The start is always shown.
+    while number == 0 || !INTERRUPTED.load(Ordering::Relaxed) {
         let Some(sample) = run.next_sample().map_err(failed)? else { break };
         recording.take(number, &sample);
         number += 1;
