@@ -638,6 +638,35 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
     assert!(contents(&out) == contents(&unbroken), "a resumed run differs from an unbroken one");
 }
 
+/// Who is pushed over ends the job, and everything says when and why; what came before is there.
+#[test]
+fn a_fall_ends_the_job_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let push = "[[event]]\nat_s = 1\nload = [{ segment = \"torso\", force_n = [300, 0, 0] }]\n";
+    let text = shortened(&scenarios().join("stand-ready.toml")) + push;
+    let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folder.path()).stdin(text.as_str()).run();
+    assert!(
+        run.code == 1 && run.stderr.contains("what happened at 1 s") && run.stderr.contains("m beyond the supports"),
+        "{}",
+        run.stderr
+    );
+    let summary: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!((&summary["stopped"], &summary["partial"]), (&Value::from("fell"), &Value::from(false)));
+    assert_eq!(summary["fell"]["at_s"], 1.0);
+    assert!(run.stderr.contains(summary["fell"]["why"].as_str().unwrap()));
+    assert_table(&Table::read(&folder.path().join("trajectory.csv")), &summary);
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains("nothing held the body any more"));
+    assert!(!folder.path().join("snapshot.json").exists());
+    // A comparison has nothing to show then.
+    let fallen = folder.path().join("fallen.toml");
+    std::fs::write(&fallen, text).unwrap();
+    let out = folder.path().join("compared");
+    let ready = scenarios().join("poses/reach-shelf.toml");
+    let run = contrapposto(["compare"]).arg(&ready).arg(&fallen).arg("--out").arg(&out).run();
+    assert!(run.code == 1 && run.stderr.contains("what happened at 1 s"), "{} {}", run.code, run.stderr);
+}
+
 /// However early Ctrl-C comes, whoever hears it shows the start, from which the run goes on.
 #[cfg(unix)]
 #[test]

@@ -247,6 +247,29 @@ fn a_heavy_tool_is_put_down_for_the_group_that_is_weakest_for_it() {
     assert_eq!(failed[0].1, weakest.unwrap().1);
 }
 
+/// A wish that leads over the edge of the feet: the body leans as far as they hold it, to the last digit, and is not refused.
+#[test]
+fn who_would_lean_too_far_stands_at_the_edge() {
+    for target in ["-1", "-0.3", "1"] {
+        let scenario = scenario(&format!(
+            "format = 1\n[model]\nadult = {{ sex = \"female\", stature_m = 1.65, mass_kg = 60 }}\n[[support]]\nsegment = \
+             \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n[[task]]\nkind = \"center_of_mass\"\ntarget_m = [{target}, 1, 0]\n\
+             [[task]]\nkind = \"effort\"\n[strategy]\nkind = \"passive\"\n[run]\nduration_s = 2\n"
+        ));
+        let weight = scenario.model.mass() * scenario.model.gravity().norm();
+        let root = ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"];
+        let root = root.map(|name| scenario.model.coordinate(name).unwrap());
+        let mut center = 0.0;
+        let summary = run(&scenario, |sample| {
+            assert!(root.iter().all(|&i| sample.external[i].abs() < 1e-8 * weight), "{target}, {} s", sample.time);
+            center = sample.standing.unwrap().center_of_mass.x;
+        });
+        summary.unwrap_or_else(|error| panic!("{target}: {error}"));
+        println!("{target}: centre of mass at {center:.3} m");
+        assert!(if target == "1" { center > 0.05 } else { center < -0.03 }, "{target}: {center}");
+    }
+}
+
 /// How far the centre of pressure of a support lies outside of its patch, m: in sixteen directions along its plane no corner may
 /// lie behind it.
 fn outside_the_patch(model: &Model, posture: &[f64], support: &Support, contact: &Contact) -> f64 {
