@@ -76,6 +76,9 @@ fn carry_out(path: &Path, letter: char) -> Result<Stance, Fail> {
         last = Some(frame_of(&sample));
     }
     progress.finish_and_clear();
+    if let Some(fall) = run.summary().fall {
+        return Err(Fail::job(&file, fall));
+    }
     let Some(frame) = last else { return Err(Fail::job(&file, "the run has no sample")) };
     Ok(Stance {
         letter,

@@ -62,7 +62,8 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
     let progress = progress_bar(scenario.run.duration);
     let mut number = run.snapshot().samples;
     let mut saved = (Instant::now(), number);
-    while !INTERRUPTED.load(Ordering::Relaxed) {
+    // The start is always shown.
+    while number == 0 || !INTERRUPTED.load(Ordering::Relaxed) {
         let Some(sample) = run.next_sample().map_err(failed)? else { break };
         recording.take(number, &sample);
         number += 1;
@@ -85,14 +86,15 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
         folder.remove(SNAPSHOT)?;
     }
     print(&if json { json_text } else { report(scenario, &summary, &folder) })?;
-    match partial {
-        true => Err(Fail::Job(format!(
+    match summary.fall {
+        Some(fall) => Err(Fail::Job(format!("{fall}; what came before is in {}", out.display()))),
+        None if partial => Err(Fail::Job(format!(
             "interrupted at {:.2} of {} s: what is done is in {}; the same command with --resume goes on",
             summary.end_time,
             scenario.run.duration,
             out.display()
         ))),
-        false => Ok(()),
+        None => Ok(()),
     }
 }
 
@@ -217,6 +219,7 @@ fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) -> String {
         StopReason::Settled => "settled",
         StopReason::Duration => "ran its whole duration",
         StopReason::Interrupted => "interrupted",
+        StopReason::Fell => "fell",
     };
     let picture = if scenario.is_whole() { "postures.svg" } else { "torque-balance.svg" };
     let standing =

@@ -199,6 +199,20 @@ fn assert_numbers(value: &Value, key: &str) {
     }
 }
 
+/// Nothing is left on the root of a body on its supports: 1e-8 of the lightest one's weight, and of that times 1 m.
+fn assert_root_is_held(table: &Table, path: &Path) {
+    for slide in ["pelvis_tx", "pelvis_ty", "pelvis_tz"] {
+        let worst =
+            table.numbers(&format!("{slide}.external_n")).into_iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+        assert!(worst < 5e-6, "{}: {slide} {worst} N", path.display());
+    }
+    for hinge in ["pelvis_tilt", "pelvis_list", "pelvis_rotation"] {
+        let worst =
+            table.numbers(&format!("{hinge}.external_nm")).into_iter().fold(0.0, |most: f64, m| most.max(m.abs()));
+        assert!(worst < 5e-6, "{}: {hinge} {worst} N m", path.display());
+    }
+}
+
 #[test]
 fn every_scenario_runs() {
     for path in paths() {
@@ -218,7 +232,11 @@ fn every_scenario_runs() {
             summary["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
         named.sort_unstable();
         assert_eq!(named, expected);
-        assert_table(&Table::read(&folder.path().join("trajectory.csv")), &summary);
+        let table = Table::read(&folder.path().join("trajectory.csv"));
+        assert_table(&table, &summary);
+        if expected == FILES_OF_A_BODY {
+            assert_root_is_held(&table, &path);
+        }
         for (name, bytes) in &files {
             match name.rsplit_once('.').unwrap().1 {
                 "svg" => support::assert_svg(bytes),
@@ -618,6 +636,61 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
     std::fs::write(out.join("snapshot.json"), &snapshot).unwrap();
     assert_eq!(simulate(&scenario, &out, &["--resume"]).code, 0);
     assert!(contents(&out) == contents(&unbroken), "a resumed run differs from an unbroken one");
+}
+
+/// Who is pushed over ends the job, and everything says when and why; what came before is there.
+#[test]
+fn a_fall_ends_the_job_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let push = "[[event]]\nat_s = 1\nload = [{ segment = \"torso\", force_n = [300, 0, 0] }]\n";
+    let text = shortened(&scenarios().join("stand-ready.toml")) + push;
+    let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folder.path()).stdin(text.as_str()).run();
+    assert!(
+        run.code == 1 && run.stderr.contains("what happened at 1 s") && run.stderr.contains("m beyond the supports"),
+        "{}",
+        run.stderr
+    );
+    let summary: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!((&summary["stopped"], &summary["partial"]), (&Value::from("fell"), &Value::from(false)));
+    assert_eq!(summary["fell"]["at_s"], 1.0);
+    assert!(run.stderr.contains(summary["fell"]["why"].as_str().unwrap()));
+    assert_table(&Table::read(&folder.path().join("trajectory.csv")), &summary);
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains("nothing held the body any more"));
+    assert!(!folder.path().join("snapshot.json").exists());
+    // A comparison has nothing to show then.
+    let fallen = folder.path().join("fallen.toml");
+    std::fs::write(&fallen, text).unwrap();
+    let out = folder.path().join("compared");
+    let ready = scenarios().join("poses/reach-shelf.toml");
+    let run = contrapposto(["compare"]).arg(&ready).arg(&fallen).arg("--out").arg(&out).run();
+    assert!(run.code == 1 && run.stderr.contains("what happened at 1 s"), "{} {}", run.code, run.stderr);
+}
+
+/// However early Ctrl-C comes, whoever hears it shows the start, from which the run goes on.
+#[cfg(unix)]
+#[test]
+fn interrupted_at_once_it_shows_the_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("stand-relaxed.toml");
+    let mut heard = 0;
+    for moment in [0.01, 0.03, 0.1, 0.3] {
+        let out = folder.path().join(moment.to_string());
+        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).spawn();
+        std::thread::sleep(Duration::from_secs_f64(moment));
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let output = child.wait_with_output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        // Before it listens, the signal ends it as any program; a quick machine was done before.
+        let (None | Some(0)) = output.status.code() else {
+            heard += 1;
+            assert!(output.status.code() == Some(1) && error.contains("interrupted at"), "{error}");
+            assert!(out.join("summary.json").is_file() && out.join("snapshot.json").is_file());
+            continue;
+        };
+    }
+    println!("heard {heard} times");
+    assert!(heard > 0);
 }
 
 /// Ground reaction and motion of a run, given to `torques`, give back its torques and leave nothing at the root.

@@ -57,7 +57,7 @@ pub fn relief_sentence(model: &Model, record: &ReliefRecord) -> String {
     let tired = format!("{}, {}, tired to {:.2}", coordinate.name, group(coordinate, record), record.fatigue);
     let Some(decision) = record.decision else {
         return format!(
-            "{tired}: nothing more important lets it move, or what it tried cost more than it gave; it waits"
+            "{tired}: what is more important holds it fast, or what it tried cost more than it gave; it waits"
         );
     };
     let goal = decision.goal.unwrap_or(record.value.0);

@@ -15,8 +15,11 @@ pub struct SummaryText {
     pub title: String,
     /// Name of the body.
     pub model: String,
-    /// `duration`, `settled` or `interrupted`.
+    /// `duration`, `settled`, `interrupted` or `fell`.
     pub stopped: &'static str,
+    /// What threw the body off balance, if something did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fell: Option<FallText>,
     /// It was interrupted: what is here goes up to `end_s` only.
     pub partial: bool,
     /// Time of the last sample, s.
@@ -36,6 +39,19 @@ pub struct SummaryText {
     pub coordinates: BTreeMap<String, CoordinateText>,
     /// Files beside this one.
     pub files: Vec<String>,
+}
+
+/// The end of a body that nothing holds any more.
+#[derive(Clone, Debug, Serialize)]
+pub struct FallText {
+    /// When, s.
+    pub at_s: f64,
+    /// The force that supports do not give, N.
+    pub missing_n: f64,
+    /// The moment that they do not give, N m.
+    pub missing_nm: f64,
+    /// A sentence.
+    pub why: String,
 }
 
 /// A muscle group that gave up.
@@ -159,6 +175,12 @@ impl SummaryText {
             model: model.name().to_owned(),
             failed_first: failed.min_by(|a, b| a.at_s.total_cmp(&b.at_s)),
             stopped: summary.reason.word(),
+            fell: summary.fall.map(|fall| FallText {
+                at_s: fall.time,
+                missing_n: fall.missing.force,
+                missing_nm: fall.missing.moment,
+                why: fall.to_string(),
+            }),
             partial: summary.reason == StopReason::Interrupted,
             end_s: summary.end_time,
             samples: summary.samples,

@@ -274,6 +274,10 @@ fn a_whole_body_is_read() {
         assert_eq!(strategy(&scenario.strategies, name), start, "{name}");
         assert_eq!(strategy(scenario.events[0].strategies.as_ref().unwrap(), name), later, "{name}");
     }
+    let other = WHOLE.replace("\nof = {", "\nby_region = {");
+    assert!(
+        other != WHOLE && read_scenario("x.toml", other.as_bytes(), None).unwrap().strategies == scenario.strategies
+    );
     // Events stand in the order of time; `task` counts the tasks of the file, of which two share a priority.
     let times: Vec<f64> = scenario.events.iter().map(|event| event.time).collect();
     assert_eq!(times, [0.05, 0.1]);

@@ -4,11 +4,13 @@
 
 use std::path::{Path, PathBuf};
 
+use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{Scenario, Summary, run};
+use contrapposto::simulation::{Contact, Scenario, Summary, run};
 use contrapposto_formats::read_scenario;
+use nalgebra::Vector3;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
@@ -245,6 +247,47 @@ fn a_heavy_tool_is_put_down_for_the_group_that_is_weakest_for_it() {
     assert_eq!(failed[0].1, weakest.unwrap().1);
 }
 
+/// A wish that leads over the edge of the feet: the body leans as far as they hold it, to the last digit, and is not refused.
+#[test]
+fn who_would_lean_too_far_stands_at_the_edge() {
+    for target in ["-1", "-0.3", "1"] {
+        let scenario = scenario(&format!(
+            "format = 1\n[model]\nadult = {{ sex = \"female\", stature_m = 1.65, mass_kg = 60 }}\n[[support]]\nsegment = \
+             \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n[[task]]\nkind = \"center_of_mass\"\ntarget_m = [{target}, 1, 0]\n\
+             [[task]]\nkind = \"effort\"\n[strategy]\nkind = \"passive\"\n[run]\nduration_s = 2\n"
+        ));
+        let weight = scenario.model.mass() * scenario.model.gravity().norm();
+        let root = ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"];
+        let root = root.map(|name| scenario.model.coordinate(name).unwrap());
+        let mut center = 0.0;
+        let summary = run(&scenario, |sample| {
+            assert!(root.iter().all(|&i| sample.external[i].abs() < 1e-8 * weight), "{target}, {} s", sample.time);
+            center = sample.standing.unwrap().center_of_mass.x;
+        });
+        summary.unwrap_or_else(|error| panic!("{target}: {error}"));
+        println!("{target}: centre of mass at {center:.3} m");
+        assert!(if target == "1" { center > 0.05 } else { center < -0.03 }, "{target}: {center}");
+    }
+}
+
+/// How far the centre of pressure of a support lies outside of its patch, m: in sixteen directions along its plane no corner may
+/// lie behind it.
+fn outside_the_patch(model: &Model, posture: &[f64], support: &Support, contact: &Contact) -> f64 {
+    let Some(center) = contact.center_of_pressure else { return 0.0 };
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(posture.to_vec())).unwrap();
+    let corners: Vec<_> =
+        support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner) - center).collect();
+    let along =
+        support.normal.cross(&if support.normal.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() }).normalize();
+    let across = support.normal.cross(&along);
+    let farthest = |angle: f64| {
+        let direction = angle.cos() * along + angle.sin() * across;
+        corners.iter().map(|corner| corner.dot(&direction)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    (0..16).map(|i| -farthest(f64::from(i) * std::f64::consts::TAU / 16.0)).fold(0.0, f64::max)
+}
+
 /// In every sample of every scenario: forces on the root are zero, torques add up, feet stay, ground only pushes, within its
 /// friction and inside the patch.
 #[test]
@@ -264,6 +307,7 @@ fn every_sample_is_in_equilibrium() {
         let roots = ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"];
         let root = roots.map(|name| model.coordinates().iter().position(|c| c.name == name).unwrap());
         let (mut force, mut moment, mut slip, mut beyond) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let mut outside = 0.0_f64;
         let mut samples = 0;
         run(&scenario, |sample| {
             samples += 1;
@@ -283,6 +327,7 @@ fn every_sample_is_in_equilibrium() {
                 let normal = contact.force.dot(&support.normal);
                 let along = (contact.force - normal * support.normal).norm();
                 beyond = beyond.max(-normal / weight).max((along - support.friction * normal) / weight);
+                outside = outside.max(outside_the_patch(model, sample.posture, support, contact));
             }
         })
         .unwrap();
@@ -293,5 +338,6 @@ fn every_sample_is_in_equilibrium() {
         assert!(force < 1e-8 && moment < 1e-8, "{name}");
         assert!(slip < 1e-3, "{name}"); // m, while it moves
         assert!(beyond < 1e-9, "{name}: {beyond}");
+        assert!(outside < 1e-6, "{name}: {outside} m");
     }
 }

@@ -463,6 +463,16 @@ fn beyond(point: [f64; 2], corners: &[[f64; 2]]) -> [f64; 2] {
     least
 }
 
+/// Nothing under the feet at all: the whole weight is missing, and the reason is not friction.
+#[test]
+fn without_supports_the_weight_is_missing() {
+    let model = adult(&Adult::default()).unwrap();
+    let start = model.default_posture();
+    let mut stand = Stand::new(model, vec![], vec![]);
+    stand.update(&start);
+    assert_eq!(stand.condition(), Condition::NoSupport);
+}
+
 /// Feet at different heights share no plane: no distance is given.
 #[test]
 fn without_a_common_plane_no_distance_is_given() {

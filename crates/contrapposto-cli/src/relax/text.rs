@@ -232,7 +232,7 @@ pub(super) fn report(text: &RelaxText) -> String {
     for (i, posture) in text.postures.iter().enumerate() {
         let _ = write!(out, "\nposture {}:\n{}", i + 1, posture.words());
     }
-    let _ = write!(out, "\n{} starts", text.starts);
+    let _ = write!(out, "\n{} start{}", text.starts, if text.starts == 1 { "" } else { "s" });
     for (count, what) in [(text.fell, "fell"), (text.left_out, "left out, tasks or supports not kept as well as here")]
     {
         if count > 0 {

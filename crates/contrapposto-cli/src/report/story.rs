@@ -133,13 +133,15 @@ impl Story<'_> {
             StopReason::Settled => "nothing moved any more",
             StopReason::Duration => "its whole duration",
             StopReason::Interrupted => "it was interrupted",
+            StopReason::Fell => "nothing held the body any more",
         };
+        let why = summary.fall.map_or(String::new(), |fall| format!(" {}.", sentence(&fall.to_string())));
         let told = film.events.len() as u64;
         let more = match film.happened - told {
             0 => String::new(),
             more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", film.happened),
         };
-        format!("The run ended after {:.0} s: {how}.{more}", summary.end_time)
+        format!("The run ended after {:.0} s: {how}.{why}{more}", summary.end_time)
     }
 
     fn figures(&self, standing: Option<(f64, f64)>) -> Vec<Figure> {

@@ -279,8 +279,8 @@ pub struct StrategyText {
     /// `R_min`: share of the torque that an active solution must remove, 0 to 1; 0.9 when left out.
     #[serde(default = "default_ratio")]
     pub minimum_decrease_ratio: f64,
-    /// Other strategies for regions (`spine`, `neck`, `arms`, `legs`) or coordinates.
-    #[serde(default)]
+    /// Other strategies for regions (`spine`, `neck`, `arms`, `legs`) or coordinates; `by_region` is the same.
+    #[serde(default, alias = "by_region")]
     pub of: BTreeMap<String, StrategyKindText>,
 }
 

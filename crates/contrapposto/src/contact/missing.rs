@@ -37,6 +37,8 @@ pub struct Missing {
 /// What keeps supports from holding a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
+    /// There is none.
+    NoSupport,
     /// Weight and loads act outside of what is between the supports: so far and in this direction beyond the nearest point of
     /// it, ground axes, m. Only known where all supports push on one plane.
     Beyond(Vector3<f64>),
@@ -60,6 +62,7 @@ impl fmt::Display for Missing {
                 }
                 write!(f, "{} (ground axes, m); ", parts.join(", "))?;
             }
+            Condition::NoSupport => f.write_str("there are none, and its root is free to fall; ")?,
             Condition::Friction => f.write_str("they slip, and with more friction they would hold it; ")?,
             Condition::Other => {}
         }
@@ -72,6 +75,7 @@ impl ContactForces {
     pub fn missing(&self, model: &Model, kinematics: &Kinematics) -> Option<Missing> {
         let Balance::Short { force, moment } = self.balance() else { return None };
         let condition = match self.beyond(model, kinematics) {
+            _ if self.supports().is_empty() => Condition::NoSupport,
             Some(lean) => Condition::Beyond(lean),
             None if self.holds_without_slipping() => Condition::Friction,
             None => Condition::Other,

@@ -22,4 +22,4 @@ pub use scenario::{
     Event, ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables, TaskSettings,
 };
 pub use step::Simulation;
-pub use summary::{CoordinateSummary, StopReason, Summary};
+pub use summary::{CoordinateSummary, Fall, StopReason, Summary};

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::relief_log::ReliefLog;
 use super::state::State;
-use super::{CoordinateSummary, Sample, Scenario, ScenarioError, Simulation, Standing, StopReason, Summary};
+use super::{CoordinateSummary, Fall, Sample, Scenario, ScenarioError, Simulation, Standing, StopReason, Summary};
 
 /// So many steps lie between the moments at which a run can be left and taken up again.
 const BETWEEN_MARKS: u64 = 900;
@@ -31,6 +31,7 @@ pub struct Run<'a> {
     /// Samples in all.
     samples: u64,
     reason: Option<StopReason>,
+    fall: Option<Fall>,
     /// In the last sample.
     standing: Option<Standing>,
     stop_when_settled: bool,
@@ -77,6 +78,7 @@ impl<'a> Run<'a> {
             so_far: start,
             samples: steps + 1,
             reason: None,
+            fall: None,
             standing: None,
             stop_when_settled: scenario.run.stop_when_settled,
         }
@@ -85,7 +87,7 @@ impl<'a> Run<'a> {
     /// The next sample; `None` at the end.
     ///
     /// # Errors
-    /// None for a scenario that was checked.
+    /// For a scenario that was checked only [`ScenarioError::Falls`], by an event at its very start.
     pub fn next_sample(&mut self) -> Result<Option<Sample<'_>>, ScenarioError> {
         if self.reason.is_none() && self.so_far.samples >= self.samples {
             self.reason = Some(StopReason::Duration);
@@ -97,7 +99,13 @@ impl<'a> Run<'a> {
             self.so_far.state = self.simulation.state();
             self.mark.clone_from(&self.so_far);
         }
-        let sample = self.simulation.step()?;
+        let sample = match self.simulation.step() {
+            Err(ScenarioError::Falls(fall)) if self.so_far.samples > 0 => {
+                (self.reason, self.fall) = (Some(StopReason::Fell), Some(fall));
+                return Ok(None);
+            }
+            stepped => stepped?,
+        };
         self.so_far.samples += 1;
         self.so_far.end_time = sample.time;
         for (i, summary) in self.so_far.coordinates.iter_mut().enumerate() {
@@ -123,6 +131,7 @@ impl<'a> Run<'a> {
     pub fn summary(&self) -> Summary {
         Summary {
             reason: self.reason.unwrap_or(StopReason::Interrupted),
+            fall: self.fall,
             end_time: self.so_far.end_time,
             samples: self.so_far.samples,
             coordinates: self.so_far.coordinates.clone(),

@@ -1,5 +1,6 @@
 //! What is the experiment? Body, start, loads, strategy and thresholds, all checked before the first step.
 
+use super::Fall;
 use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
@@ -131,6 +132,9 @@ pub enum ScenarioError {
     /// No posture was found near the start in which the supports hold the body.
     #[error("the supports cannot hold the body near the start: {0}")]
     CannotStand(Missing),
+    /// An event has thrown the body off balance; nothing near holds it.
+    #[error("{0}")]
+    Falls(Fall),
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
     Relax(#[from] RelaxError),

@@ -3,7 +3,7 @@
 use super::sample::{Contact, Relief, Sample, Standing};
 use super::state::State;
 use super::whole::Whole;
-use super::{Event, Scenario, ScenarioError, Tables};
+use super::{Event, Fall, Scenario, ScenarioError, Tables};
 use crate::constraint::{HalfSpace, relief_step};
 use crate::contact::Balance;
 use crate::hybrid::{Problem, Strategy, minimise, minimise_literal};
@@ -91,13 +91,11 @@ impl<'a> Simulation<'a> {
             return Err(ScenarioError::Snapshot);
         }
         let events = state.next_event;
-        let strategies = state.strategies.clone();
-        let groups = state.groups.clone();
-        let mut simulation = Self::with(scenario, whole, state);
+        let mut simulation = Self::with(scenario, whole, state.clone());
         for event in &scenario.events[..events] {
             simulation.happen(event)?;
         }
-        (simulation.state.strategies, simulation.state.groups) = (strategies, groups);
+        simulation.state = state;
         Ok(simulation)
     }
 
@@ -135,7 +133,7 @@ impl<'a> Simulation<'a> {
     /// Torques, fatigue, hysteresis, minimisation, constraint, record, motion: once.
     ///
     /// # Errors
-    /// None for a scenario that was checked; the posture never leaves its ranges.
+    /// For a scenario that was checked only [`ScenarioError::Falls`]; the posture never leaves its ranges.
     pub fn step(&mut self) -> Result<Sample<'_>, ScenarioError> {
         let time = self.state.steps as f64 * self.scenario.run.step;
         self.events(time)?;
@@ -162,21 +160,42 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// What changes now.
+    /// What changes now. Falls if it throws the body off balance.
     fn events(&mut self, time: f64) -> Result<(), ScenarioError> {
         let scenario = self.scenario;
+        let mut happened = false;
         while let Some(event) = scenario.events.get(self.state.next_event).filter(|event| event.time <= time + 1e-9) {
             self.state.next_event += 1;
             self.happen(event)?;
+            happened = true;
         }
-        Ok(())
+        let Some(whole) = self.whole.as_mut().filter(|_| happened) else { return Ok(()) };
+        let missing = whole.catch(&self.scenario.model, &mut self.state.posture)?;
+        missing.map_or(Ok(()), |missing| Err(ScenarioError::Falls(Fall { time, missing })))
     }
 
     fn happen(&mut self, event: &Event) -> Result<(), ScenarioError> {
-        if let Some(strategies) = &event.strategies {
-            self.state.strategies.clone_from(strategies);
-            // A new wish is a new recovery.
-            self.state.groups.iter_mut().flatten().for_each(|group| (group.accepted, group.led) = (None, None));
+        let elsewhere = event.loads.is_some() || !event.tasks.is_empty();
+        let wishes = event.strategies.as_ref().unwrap_or(&self.state.strategies).clone();
+        for (i, &wish) in wishes.iter().enumerate() {
+            let wished = wish != self.state.strategies[i];
+            // A new wish is a new recovery, and with another load or target what was too dear may pay.
+            for group in &mut self.state.groups[i] {
+                if wished {
+                    (group.accepted, group.led) = (None, None);
+                }
+                if wished || elsewhere {
+                    group.taken_back = 0;
+                }
+            }
+            if wished || elsewhere {
+                self.state.requests[i].followed = None;
+            }
+        }
+        self.state.strategies = wishes;
+        if elsewhere {
+            // What effort was before does not say whether the next step is worth it.
+            self.state.effort = f64::INFINITY;
         }
         if let Some(loads) = &event.loads {
             self.loads.clone_from(loads);

@@ -1,8 +1,11 @@
 //! How did a run end, and what happened on the way?
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use super::{ReliefLog, Sample, Standing};
+use crate::contact::Missing;
 use crate::hybrid::{Case, Decision};
 use crate::model::Side;
 
@@ -18,15 +21,34 @@ pub enum StopReason {
     Settled,
     /// It was left before its end.
     Interrupted,
+    /// An event has thrown the body off balance: [`Summary::fall`].
+    Fell,
+}
+
+/// The end of a body that an event has thrown off balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fall {
+    /// When, s.
+    pub time: f64,
+    /// What the supports did not give, in the posture in which the event met the body.
+    pub missing: Missing,
+}
+
+impl fmt::Display for Fall {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { time, missing } = self;
+        write!(f, "what happened at {time} s throws the body off balance, and no posture near holds it: {missing}")
+    }
 }
 
 impl StopReason {
-    /// `duration`, `settled` or `interrupted`.
+    /// `duration`, `settled`, `interrupted` or `fell`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Duration => "duration",
             Self::Settled => "settled",
             Self::Interrupted => "interrupted",
+            Self::Fell => "fell",
         }
     }
 }
@@ -59,6 +81,8 @@ pub struct CoordinateSummary {
 pub struct Summary {
     /// Why it stopped.
     pub reason: StopReason,
+    /// Why nothing holds the body any more, if that is so.
+    pub fall: Option<Fall>,
     /// Time of the last sample, s.
     pub end_time: f64,
     /// Number of samples.

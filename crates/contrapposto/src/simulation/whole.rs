@@ -5,7 +5,7 @@
 //! decided by fatigue, and of equals by the order of the model.
 
 use crate::constraint::HalfSpace;
-use crate::contact::ContactForces;
+use crate::contact::{Balance, ContactForces, Missing};
 use crate::ik::Goal;
 use crate::model::Model;
 use crate::posture::Posture;
@@ -27,6 +27,8 @@ const SOON: u32 = 30;
 const CALM: u32 = u32::MAX;
 /// A slope is computed anew when some coordinate has moved so far, rad or m.
 const MOVED: f64 = 0.005;
+/// Whoever is thrown off balance by an event has so many steps to find it again.
+const CATCHES: usize = 300;
 /// A half-space that is missed by more was not kept, rad or m.
 const MISSED: f64 = 1e-6;
 
@@ -72,9 +74,6 @@ impl<'a> Whole<'a> {
         let mut first = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut first);
         let start = first.solve(&scenario.start)?;
-        if let Some(missing) = first.contact().missing(model, first.body().kinematics()) {
-            return Err(ScenarioError::CannotStand(missing));
-        }
         let reliefs = std::iter::repeat_n(Goal::default(), MOST);
         let goals: Vec<Goal> = above.iter().map(goal).chain(reliefs).chain(below.iter().map(goal)).collect();
         let mut places = vec![0; scenario.tasks.len()];
@@ -84,7 +83,7 @@ impl<'a> Whole<'a> {
         // Supports stay where they were at the scenario's start, not where the first solution left them.
         let mut engine = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut engine);
-        let whole = Self {
+        let mut whole = Self {
             engine,
             above: above.len(),
             places,
@@ -94,7 +93,15 @@ impl<'a> Whole<'a> {
             asked: vec![],
             deferred: vec![],
         };
-        Ok((whole, start.posture))
+        // What stands at the very edge of its supports may be off balance by a hair.
+        let mut posture = start.posture;
+        match whole.catch(model, &mut posture)? {
+            Some(missing) => Err(ScenarioError::CannotStand(missing)),
+            None => {
+                whole.forget();
+                Ok((whole, posture))
+            }
+        }
     }
 
     /// Moves by one step toward the reliefs (the most tired first) and the tasks. Coordinates whose relief was not kept go to
@@ -148,6 +155,27 @@ impl<'a> Whole<'a> {
     pub(super) fn take_back(&mut self, posture: &mut Posture) -> Result<(), ScenarioError> {
         posture.values_mut().copy_from_slice(self.before.values());
         self.see(posture)
+    }
+
+    /// After an event: moves until the supports hold the body again, all at once, as a body does that meets a load it saw coming.
+    /// Where no such posture is found `posture` stays, and what is missing there is told.
+    pub(super) fn catch(&mut self, model: &Model, posture: &mut Posture) -> Result<Option<Missing>, ScenarioError> {
+        self.see(posture)?;
+        let missing = self.contact().missing(model, self.engine.body().kinematics());
+        if missing.is_none() {
+            return Ok(None);
+        }
+        self.before.values_mut().copy_from_slice(posture.values());
+        for _ in 0..CATCHES {
+            self.engine.step(posture)?;
+            self.see(posture)?;
+            if self.contact().balance() == Balance::Held {
+                self.wake();
+                return Ok(None);
+            }
+        }
+        self.take_back(posture)?;
+        Ok(missing)
     }
 
     /// Slope of a coordinate's external torque along the motion that everything above relief allows; `None` where it is held

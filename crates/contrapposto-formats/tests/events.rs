@@ -1,0 +1,216 @@
+//! What changes during a run: strategies, loads, targets. And whatever happens, a run is left and taken up again, or done by
+//! many threads, to the same bits.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::path::Path;
+
+use contrapposto::model::Model;
+use contrapposto::simulation::{Fall, Run, Sample, Scenario, Snapshot, StopReason, Summary};
+use contrapposto_formats::read_scenario;
+
+fn scenario(text: &str) -> Scenario {
+    read_scenario("scenario.toml", text.as_bytes(), None)
+        .unwrap_or_else(|error| panic!("{:?}", miette::Report::new(error)))
+}
+
+fn of_the_repository(name: &str) -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name)).unwrap()
+}
+
+/// A scenario of the repository with another duration and something that happens.
+fn with(name: &str, seconds: f64, events: &str) -> String {
+    let text = of_the_repository(name);
+    let (head, tail) = text.split_once("duration_s").unwrap();
+    let rest = tail.split_once('\n').map_or("", |(_, rest)| rest);
+    format!("{head}duration_s = {seconds}\n{rest}\n{events}")
+}
+
+fn followed(scenario: &Scenario, mut see: impl FnMut(&Sample)) -> Summary {
+    let mut run = Run::new(scenario).unwrap();
+    while let Some(sample) = run.next_sample().unwrap() {
+        see(&sample);
+    }
+    run.summary()
+}
+
+fn at(model: &Model, name: &str) -> usize {
+    model.coordinate(name).unwrap()
+}
+
+/// Largest force and moment left on the root, over body weight (times 1.5 m).
+fn imbalance(model: &Model, sample: &Sample) -> f64 {
+    let weight = model.mass() * model.gravity().norm();
+    let roots = ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"];
+    let left = roots
+        .iter()
+        .enumerate()
+        .map(|(i, name)| sample.external[at(model, name)].abs() / (weight * if i < 3 { 1.0 } else { 1.5 }));
+    left.fold(0.0, f64::max)
+}
+
+/// Ready until the fifth second, then relaxed, in all of the body, a part of it, or one joint.
+#[test]
+fn a_strategy_that_changes_leads_elsewhere_from_then_on() {
+    for (wish, slouches) in [
+        ("strategy = \"passive\"", true),
+        ("strategy_of = { legs = \"passive\" }", true),
+        ("strategy_of = { hip_adduction_r = \"passive\" }", true),
+        ("strategy_of = { arms = \"passive\", spine = \"passive\", hip_adduction_l = \"passive\" }", false),
+    ] {
+        let text = with("stand-relaxed.toml", 15.0, &format!("[[event]]\nat_s = 5\n{wish}\n"));
+        let scenario = scenario(&text.replace("kind = \"passive\"", "kind = \"active\""));
+        let list = at(&scenario.model, "pelvis_list");
+        let (mut before, mut after) = (0.0_f64, 0.0);
+        followed(&scenario, |sample| {
+            if sample.time < 5.0 {
+                before = before.max(sample.posture[list].to_degrees().abs());
+            }
+            after = sample.posture[list].to_degrees();
+        });
+        println!("{wish}: pelvis list {before:.1} deg at most before, {after:.1} deg at the end");
+        assert!(before < 10.0, "{wish}");
+        assert_eq!(after < -10.0, slouches, "{wish}");
+    }
+}
+
+/// A weight at arm's length that pulls the body over its toes unless it leans back at once, then none: every sample is held.
+#[test]
+fn a_load_is_picked_up_and_put_down() {
+    let load = "load = [{ segment = \"hand_r\", mass_kg = 60 }]";
+    let events = format!("[[event]]\nat_s = 2\n{load}\n[[event]]\nat_s = 6\nload = []\n");
+    let text = with("hold-tool.toml", 8.0, &events);
+    let scenario = scenario(&text.replace("mass_kg = 3", "mass_kg = 0"));
+    let model = &scenario.model;
+    let gravity = model.gravity().norm();
+    let mut carried = vec![];
+    let summary = followed(&scenario, |sample| {
+        assert!(imbalance(model, sample) < 1e-8, "{} s: {}", sample.time, imbalance(model, sample));
+        let up: f64 = sample.standing.unwrap().contacts.iter().map(|contact| contact.force.y).sum();
+        carried.push((sample.time, up / gravity - model.mass()));
+    });
+    assert_eq!((summary.reason, summary.fall), (StopReason::Duration, None));
+    for (time, more) in carried {
+        let load = if (2.0..6.0).contains(&(time + 1e-9)) { 60.0 } else { 0.0 };
+        assert!((more - load).abs() < 1e-7, "{time} s: {more} kg more than the body weighs");
+    }
+}
+
+/// Nobody stands against a push of three hundred newtons: the run ends in the last posture that was held, and says why.
+#[test]
+fn who_is_pushed_over_ends_the_run_and_says_why() {
+    let push = "[[event]]\nat_s = 2\nload = [{ segment = \"torso\", force_n = [300, 0, 0] }]\n";
+    let scenario = scenario(&with("stand-ready.toml", 5.0, push));
+    let mut last = 0.0;
+    let summary = followed(&scenario, |sample| {
+        assert!(imbalance(&scenario.model, sample) < 1e-8, "{} s", sample.time);
+        last = sample.time;
+    });
+    let Fall { time, missing } = summary.fall.unwrap();
+    println!("last held at {last} s; {}", summary.fall.unwrap());
+    assert_eq!(summary.reason, StopReason::Fell);
+    assert!(last < time && (time - 2.0).abs() < 1e-9 && summary.end_time == last);
+    assert!(missing.force > 1.0 && missing.moment > 1.0);
+    // At the very start there is nothing before it to show.
+    let scenario = Scenario {
+        events: scenario
+            .events
+            .iter()
+            .cloned()
+            .map(|event| contrapposto::simulation::Event { time: 0.0, ..event })
+            .collect(),
+        ..scenario
+    };
+    let error = Run::new(&scenario).unwrap().next_sample().unwrap_err();
+    assert!(error.to_string().contains("off balance"), "{error}");
+}
+
+/// The tool is wanted elsewhere: the hand is there within two seconds, and left nothing behind.
+#[test]
+fn a_target_is_moved_and_the_hand_follows() {
+    let scenario =
+        scenario(&with("hold-tool.toml", 6.0, "[[event]]\nat_s = 2\ntask = 1\ntarget_m = [0.35, 1.2, 0.1]\n"));
+    followed(&scenario, |sample| {
+        let off = sample.standing.unwrap().errors[0];
+        let there = sample.time < 2.0 - 1e-9 || sample.time > 4.0;
+        assert!(!there || off < 1e-4, "{} s: {off} m", sample.time);
+        assert!(imbalance(&scenario.model, sample) < 1e-8);
+    });
+}
+
+/// What a run shows, to the bit.
+fn bits(samples: &mut Vec<u64>, sample: &Sample) {
+    let parts = [sample.posture, sample.external, sample.passive, sample.load];
+    samples.extend(parts.into_iter().flatten().chain(sample.fatigue.iter().flatten()).map(|v| v.to_bits()));
+    samples.extend(sample.standing.iter().flat_map(|s| s.contacts.iter().map(|c| c.force.y.to_bits())));
+}
+
+/// Tired muscles, a load, a new wish and a new target; taken up again between any of them.
+const MUCH: &str = "[[event]]\nat_s = 10\nload = [{ segment = \"hand_r\", mass_kg = 6 }]\n\
+    [[event]]\nat_s = 32\nstrategy = \"passive\"\n[[event]]\nat_s = 50\ntask = 1\ntarget_m = [0.35, 1.15, 0.1]\n\
+    [[event]]\nat_s = 58\nstrategy_of = { spine = \"active\" }\nload = []\n\
+    [fatigue]\ncritical_level = 0.1\nrecovery_level = 0.05\n";
+
+#[test]
+fn from_every_mark_the_run_goes_on_to_the_same_bits() {
+    let scenario = scenario(&with("hold-tool.toml", 70.0, MUCH));
+    let mut run = Run::new(&scenario).unwrap();
+    let (mut all, mut starts, mut marks) = (vec![], vec![], Vec::<Snapshot>::new());
+    loop {
+        starts.push(all.len());
+        let Some(sample) = run.next_sample().unwrap() else { break };
+        bits(&mut all, &sample);
+        if marks.last() != Some(run.snapshot()) {
+            marks.push(run.snapshot().clone());
+        }
+    }
+    println!(
+        "{} samples, {} reliefs, marks at {:?}",
+        starts.len() - 1,
+        run.summary().reliefs.count,
+        marks.iter().map(|m| m.samples).collect::<Vec<_>>()
+    );
+    assert!(marks.len() == 3 && run.summary().reliefs.count > 5);
+    for mark in marks {
+        let from = starts[mark.samples as usize];
+        let mut again = Run::resume(&scenario, mark).unwrap();
+        let mut rest = vec![];
+        while let Some(sample) = again.next_sample().unwrap() {
+            bits(&mut rest, &sample);
+        }
+        assert!(rest == all[from..]);
+        assert_eq!(again.summary(), run.summary());
+    }
+}
+
+/// Eight at once disturb each other as little as one by one.
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let texts =
+        [with("hold-tool.toml", 12.0, MUCH), with("stand-relaxed.toml", 12.0, ""), with("crouch.toml", 12.0, "")];
+    let scenarios = texts.map(|text| scenario(&text));
+    let one = |scenario: &Scenario| {
+        let mut samples = vec![];
+        followed(scenario, |sample| bits(&mut samples, sample));
+        samples
+    };
+    let alone = scenarios.each_ref().map(one);
+    for threads in [2, 3, 8_usize] {
+        std::thread::scope(|scope| {
+            let running: Vec<_> = (0..threads)
+                .map(|i| {
+                    (
+                        i % 3,
+                        scope.spawn({
+                            let scenario = &scenarios[i % 3];
+                            move || one(scenario)
+                        }),
+                    )
+                })
+                .collect();
+            for (i, thread) in running {
+                assert!(thread.join().unwrap() == alone[i], "{threads} threads, scenario {i}");
+            }
+        });
+    }
+}
