@@ -9,7 +9,7 @@
 
 use super::dense::add_scaled;
 use super::problem::Problem;
-use super::solver::{MULTIPLIER, NEEDED, Role, Side, Solver};
+use super::solver::{MULTIPLIER, Role, Side, Solver};
 
 impl Solver {
     /// Do the conditions of all levels hold at the last answer? Damped levels have more to them: `false` for those.
@@ -60,7 +60,7 @@ impl Solver {
         size = if keeps { size } else { 0.0 };
         // Multipliers were judged by what the least squares left, which is the residual up to rounding: with some room.
         let nothing = 2.0 * MULTIPLIER * size;
-        let needed = 0.5 * NEEDED * MULTIPLIER * size;
+        let needed = 0.5 * MULTIPLIER * size;
         for i in 0..level.rows() {
             let row = self.offsets[k] + i;
             let (residual, rounding) = (self.residuals[row], self.rounding(row));
