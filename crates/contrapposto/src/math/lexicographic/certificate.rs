@@ -11,6 +11,9 @@ use super::dense::add_scaled;
 use super::problem::Problem;
 use super::solver::{MULTIPLIER, Role, Side, Solver};
 
+/// The last digits of a sum, as a share of it.
+const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
+
 impl Solver {
     /// Do the conditions of all levels hold at the last answer? Damped levels have more to them: `false` for those.
     pub(super) fn is_still_best(&mut self, problem: &Problem) -> bool {
@@ -69,9 +72,11 @@ impl Solver {
             }
             // Beside light rows that keep a residual, a heavy one may keep what is below its rounding.
             let value = self.value(problem, row, &self.x);
-            let stands = (value - level.lower[i]).abs().min((value - level.upper[i]).abs()) <= 10.0 * rounding;
-            let unseen = keeps && stands && rounding * self.norms[row] > nothing;
-            if residual.abs() > rounding || level.lower[i] == level.upper[i] || unseen {
+            let off = (value - level.lower[i]).abs().min((value - level.upper[i]).abs());
+            let unseen = keeps && off <= 10.0 * rounding && rounding * self.norms[row] > nothing;
+            // Beside heavy rows that keep a residual, a light one is only as near to its side as their last digits let it.
+            let light = keeps && off > 10.0 * rounding && off * self.norms[row] <= LAST_DIGITS * size;
+            if residual.abs() > rounding || level.lower[i] == level.upper[i] || unseen || light {
                 self.roles[row] = Role::Fixed;
             }
         }
