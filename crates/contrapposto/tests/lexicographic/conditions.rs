@@ -4,6 +4,8 @@
 use crate::double_double::{Double, dot, inner};
 use crate::generator::{Draw, Row, outside};
 use contrapposto::math::lexicographic::{Problem, Solver};
+use rand::RngExt;
+use rand_pcg::Pcg64;
 
 /// A residual above this, in rows of scale one, is one; below, its row counts as holding.
 pub const RESIDUAL: f64 = 1e-9;
@@ -23,10 +25,20 @@ const DAMPED: f64 = 1e-12;
 
 /// A multiplier below this, in rows of scale one, does not press.
 const PRESSING: f64 = 1e-13;
-/// A multiplier above this, relative to the square of the level's least scale, locks its side for all levels below: to
+/// A multiplier above this, relative to the square of the level's least scale and to what the level keeps, locks its side for all levels below: to
 /// leave it would cost the level something, so what it presses with at levels below may have either sign (the multipliers
 /// of one side are positive in the lexicographic sense).
 const LOCKING: f64 = 1e-8;
+
+/// From which multiplier on a level locks sides, in rows of these scales: multipliers are as much smaller than one as what
+/// it keeps, in rows of scale one, but rounding is not.
+fn locking(residuals: &[f64], scales: impl Iterator<Item = f64> + Clone) -> f64 {
+    let kept = residuals.iter().zip(scales.clone()).map(|(r, scale)| r.abs() / scale).fold(0.0, f64::max);
+    LOCKING * kept.clamp(1e-6, 1.0) * scales.fold(f64::INFINITY, f64::min).powi(2)
+}
+
+/// So many times the last digits are moved.
+const NUDGES: usize = 5;
 
 /// What a solver says.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,8 +130,10 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
     let mut locked_bounds = vec![false; n];
     for (k, level) in problem.levels.iter().enumerate() {
         let (products, scale) = (products(problem, k, x), scales[k].iter().copied().fold(0.0, f64::max));
-        let locking = LOCKING * scales[k].iter().copied().fold(f64::INFINITY, f64::min).powi(2);
+        let locking = locking(&answer.residuals[k], scales[k].iter().copied());
         let (mut sum, mut size) = (vec![Double::ZERO; n], vec![0.0; n]);
+        // What the last digit of `x` alone makes of the sum: no answer in doubles is nearer.
+        let mut blur = vec![0.0; n];
         let mut add = |a: &[f64], factor: Double| {
             for (j, a) in a.iter().enumerate() {
                 let product = Double::from(*a) * factor;
@@ -133,6 +147,9 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
             add(a, residual);
             let size: f64 = a.iter().zip(x).map(|(a, x)| (a * x).abs()).sum();
             let side = [lower, upper].into_iter().filter(|s| s.is_finite()).fold(0.0, |m: f64, s| m.max(s.abs()));
+            for (blur, a) in blur.iter_mut().zip(a) {
+                *blur += 0.5 * f64::EPSILON * size * a.abs();
+            }
             let miss = (answer.residuals[k][i] - residual.value()).abs() / (size + side).max(f64::MIN_POSITIVE);
             misses.residual = misses.residual.max(miss);
         }
@@ -181,7 +198,8 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
         }
         // Relative to all that is summed, but to no less than a residual of one.
         let size = scale * scale + size.iter().copied().fold(0.0, f64::max);
-        let stationarity = sum.iter().map(|s| s.value().abs()).fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
+        let off = sum.iter().zip(&blur).map(|(sum, blur)| sum.value().abs() - blur);
+        let stationarity = off.fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
         let sign = signs.iter().copied().fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
         misses.stationarity = misses.stationarity.max(stationarity);
         misses.sign = misses.sign.max(sign);
@@ -208,17 +226,23 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
     let mut bound_locks = vec![0.0; n];
     for (k, rows) in draw.levels.iter().enumerate() {
         let largest = rows.iter().map(|row| row.scale).fold(0.0, f64::max);
-        let least_scale = rows.iter().map(|row| row.scale).fold(f64::INFINITY, f64::min);
-        let locking = LOCKING * (least_scale / largest).powi(2);
+        let locking = locking(&answer.residuals[k], rows.iter().map(|row| row.scale)) / (largest * largest);
         let (bounds, factors) = &answer.multipliers[k];
+        let scales = draw.levels[..k].iter().flatten().map(|row| row.scale);
+        let all = factors.iter().zip(scales).map(|(factor, scale)| factor * scale).chain(bounds.iter().copied());
+        let pressing = PRESSING * all.fold(1.0, |most: f64, factor| most.max(factor.abs() / (largest * largest)));
         let mut held = vec![];
         for (j, a) in units.iter().enumerate() {
             let multiplier = bounds[j] / (largest * largest);
             let fixed = draw.lower[j] == draw.upper[j];
-            if fixed || multiplier.abs() > PRESSING {
+            if fixed || multiplier.abs() > pressing {
                 let inequality = !fixed && bound_locks[j] == 0.0;
                 let upper = if inequality { multiplier > 0.0 } else { bound_locks[j] > 0.0 };
-                let value = Double::from(if upper { draw.upper[j] } else { draw.lower[j] });
+                let side = if upper { draw.upper[j] } else { draw.lower[j] };
+                if side.is_infinite() {
+                    continue;
+                }
+                let value = Double::from(side);
                 held.push(Held { a, value, multiplier, inequality });
                 if inequality && multiplier.abs() > locking {
                     bound_locks[j] = multiplier.signum();
@@ -234,10 +258,14 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
         for (((row, &known, short), factor), lock) in above.zip(factors).zip(&mut locks) {
             let multiplier = factor * row.scale / (largest * largest);
             let kept = row.equation() || short;
-            if kept || multiplier.abs() > PRESSING {
+            if kept || multiplier.abs() > pressing {
                 let inequality = !kept && *lock == 0.0;
                 let side = [known.value(), *lock, multiplier].into_iter().find(|side| *side != 0.0);
-                let value = Double::from(if side > Some(0.0) { row.upper } else { row.lower }) + known;
+                let side = if side > Some(0.0) { row.upper } else { row.lower };
+                if side.is_infinite() {
+                    continue;
+                }
+                let value = Double::from(side) + known;
                 held.push(Held { a: &row.a, value, multiplier, inequality });
                 if inequality && multiplier.abs() > locking {
                     *lock = multiplier.signum();
@@ -256,9 +284,9 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
         let (found, wrong) = least(n, &held, &short);
         if wrong.iter().any(|wrong| *wrong) {
             // A row that pulls instead of pressing: does it matter?
-            let pressing: Vec<Held<'_>> =
+            let others: Vec<Held<'_>> =
                 held.into_iter().zip(&wrong).filter(|(_, wrong)| !**wrong).map(|(held, _)| held).collect();
-            let (better, _) = least(n, &pressing, &short);
+            let (better, _) = least(n, &others, &short);
             let change = found.iter().zip(&better).map(|(a, b)| (*a - *b).value().abs()).fold(0.0, f64::max);
             if change > 1e-9 {
                 return Err(format!("level {k}: without rows that pull, residuals change by {change:.1e}"));
@@ -272,6 +300,22 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
         known.push(all.collect());
     }
     Ok(known.iter().map(|level| level.iter().map(|r| r.value()).collect()).collect())
+}
+
+/// How far the residuals move when the last digit of every coefficient does: no solver can know them better.
+pub fn spread(draw: &Draw, answer: &Answer, rng: &mut Pcg64) -> Result<f64, String> {
+    let known = reference(draw, answer)?;
+    let mut most: f64 = 0.0;
+    for _ in 0..NUDGES {
+        let mut nudged = draw.clone();
+        for a in nudged.levels.iter_mut().flatten().flat_map(|row| &mut row.a) {
+            *a *= 1.0 + f64::EPSILON * f64::from(rng.random_range(-1..=1));
+        }
+        let other = reference(&nudged, answer)?;
+        let moved = known.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| (a - b).abs());
+        most = moved.fold(most, f64::max);
+    }
+    Ok(most)
 }
 
 /// Least squares of `short` (row, side, weight) with `held` exactly held: residuals before weighting, and which of `held`

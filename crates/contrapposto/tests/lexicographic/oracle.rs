@@ -117,7 +117,11 @@ impl<'a> Cascade<'a> {
     /// All that holds for a step `y`, equations first.
     fn lines(&self, rows: &[Row]) -> Vec<Line> {
         let mut lines = vec![];
-        let direction = |a: &[f64]| self.free.tr_mul(&DVector::from_column_slice(a));
+        // What does not move must not move by the rounding in its direction either, however far along it.
+        let direction = |a: &[f64]| {
+            let direction = self.free.tr_mul(&DVector::from_column_slice(a));
+            if direction.norm() > STILL { direction } else { 0.0 * direction }
+        };
         for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.equation()) {
             let room = row.upper - row.dot(&self.x);
             lines.push(Line { direction: direction(&row.a), sign: 1.0, residual: Some(i), room, equation: true });

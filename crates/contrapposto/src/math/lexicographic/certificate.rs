@@ -9,7 +9,10 @@
 
 use super::dense::add_scaled;
 use super::problem::Problem;
-use super::solver::{MULTIPLIER, NEEDED, Role, Side, Solver};
+use super::solver::{MULTIPLIER, Role, Side, Solver};
+
+/// The last digits of a sum, as a share of it.
+const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
 
 impl Solver {
     /// Do the conditions of all levels hold at the last answer? Damped levels have more to them: `false` for those.
@@ -60,7 +63,7 @@ impl Solver {
         size = if keeps { size } else { 0.0 };
         // Multipliers were judged by what the least squares left, which is the residual up to rounding: with some room.
         let nothing = 2.0 * MULTIPLIER * size;
-        let needed = 0.5 * NEEDED * MULTIPLIER * size;
+        let needed = 0.5 * MULTIPLIER * size;
         for i in 0..level.rows() {
             let row = self.offsets[k] + i;
             let (residual, rounding) = (self.residuals[row], self.rounding(row));
@@ -69,9 +72,11 @@ impl Solver {
             }
             // Beside light rows that keep a residual, a heavy one may keep what is below its rounding.
             let value = self.value(problem, row, &self.x);
-            let stands = (value - level.lower[i]).abs().min((value - level.upper[i]).abs()) <= 10.0 * rounding;
-            let unseen = keeps && stands && rounding * self.norms[row] > nothing;
-            if residual.abs() > rounding || level.lower[i] == level.upper[i] || unseen {
+            let off = (value - level.lower[i]).abs().min((value - level.upper[i]).abs());
+            let unseen = keeps && off <= 10.0 * rounding && rounding * self.norms[row] > nothing;
+            // Beside heavy rows that keep a residual, a light one is only as near to its side as their last digits let it.
+            let light = keeps && off > 10.0 * rounding && off * self.norms[row] <= LAST_DIGITS * size;
+            if residual.abs() > rounding || level.lower[i] == level.upper[i] || unseen || light {
                 self.roles[row] = Role::Fixed;
             }
         }

@@ -3,7 +3,7 @@
 use super::dense::{add_scaled, dot, norm};
 use super::factor::Entry;
 use super::problem::Problem;
-use super::solver::{INDEPENDENT, MULTIPLIER, NEEDED, ROUNDING, Role, Side, Solver};
+use super::solver::{INDEPENDENT, MULTIPLIER, ROUNDING, Role, Side, Solver};
 
 /// The last digits of a value, as a share of its rounding.
 const DIGITS: f64 = 1e-3;
@@ -228,20 +228,22 @@ impl Solver {
         }
     }
 
-    /// Would the step change any row by more than rounding, or what is only damped?
+    /// Would the step change any row by as much as [`Solver::is_where_expected`] notices (of a damped level by more than
+    /// rounding), or what is only damped?
     fn level_moves(&self, base: usize, damped: bool) -> bool {
         let c = self.factor.padded();
         let rank = self.factor.len() - base;
         if damped && norm(&self.turned_x[base + rank..self.factor.width()]) > ROUNDING * self.length {
             return true;
         }
+        let share = if damped { 1.0 } else { 0.1 };
         self.soft.iter().enumerate().any(|(s, &row)| {
             let change = if s < rank {
                 dot(&self.factor.lower_row(base + s)[base..], &self.y[..s]) + self.factor.diagonal(base + s) * self.y[s]
             } else {
                 dot(&self.turned[s * c + base..s * c + base + rank], &self.y[..rank])
             };
-            change.abs() > self.rounding(row)
+            change.abs() > share * self.rounding(row)
         })
     }
 
@@ -278,6 +280,19 @@ impl Solver {
         (MULTIPLIER * self.size).min(10.0 * self.rounding(row) * self.norms[row])
     }
 
+    /// A row that only what is above can move, and that holds up to rounding, keeps nothing: rounding above made what it is
+    /// off, and presses on nothing.
+    fn forget_what_cannot_move(&mut self, base: usize) {
+        let (rank, c) = (self.factor.len() - base, self.factor.padded());
+        for s in rank..self.soft.len() {
+            let row = self.soft[s];
+            let own = &self.turned[s * c + base..s * c + base + rank];
+            if self.kept[s].abs() <= self.rounding(row) && norm(own) <= INDEPENDENT * self.norms[row] {
+                self.kept[s] = 0.0;
+            }
+        }
+    }
+
     /// Multipliers of everything above. Answers an active bound or row that the level would rather leave.
     fn weigh(&mut self, problem: &Problem, k: usize, base: usize) -> Option<Entry> {
         let n = problem.unknowns();
@@ -286,6 +301,7 @@ impl Solver {
         self.gradient.fill(0.0);
         let damped = level.damping > 0.0;
         let square = level.damping * level.damping;
+        self.forget_what_cannot_move(base);
         let parts = self.kept.iter().zip(&self.soft);
         self.size = parts.clone().map(|(kept, &row)| kept.abs() * self.norms[row]).sum();
         // A row of zeros keeps what nothing can change.
@@ -389,13 +405,12 @@ impl Solver {
             return Some(entry);
         }
         if hold {
-            let needed = NEEDED * nothing;
             for (held, bound) in self.held.iter_mut().zip(bounds.iter()) {
-                *held |= bound.abs() > needed;
+                *held |= bound.abs() > nothing;
             }
             for entry in &self.factor.entries[..base] {
                 if let Entry::Row(row) = *entry
-                    && rows[row].abs() * self.norms[row] > needed
+                    && rows[row].abs() * self.norms[row] > nothing
                 {
                     self.roles[row] = Role::Fixed;
                 }

@@ -49,10 +49,8 @@ pub(super) enum Role {
 pub(super) const INDEPENDENT: f64 = 1e-10;
 /// Relative size of what counts as rounding in the value of a row.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Relative size of a multiplier that counts as zero.
+/// Relative size of a multiplier that counts as zero: what presses with more is needed for good.
 pub(super) const MULTIPLIER: f64 = 1e-11;
-/// A multiplier so many times above what counts as zero belongs to what is needed for good.
-pub(super) const NEEDED: f64 = 1e3;
 /// Rows shorter than this count as zero.
 const NOTHING: f64 = 1e-60;
 
