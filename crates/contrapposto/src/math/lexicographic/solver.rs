@@ -80,6 +80,8 @@ pub struct Solver {
     pub(super) residuals: Vec<f64>,
     /// Is the last answer an answer?
     pub(super) came_to_an_end: bool,
+    /// The unknowns in the order of the factor's columns.
+    pub(super) order: Vec<usize>,
     pub(super) factor: Factor,
     /// Fixed rows that say nothing new beside those in the factor.
     pub(super) dependents: Vec<usize>,
@@ -272,6 +274,7 @@ impl Solver {
         reset(&mut self.work, n.next_multiple_of(8));
         reset(&mut self.residuals, rows);
         self.measure(problem);
+        self.arrange(problem);
         self.length = norm(&self.x);
         self.held.clear();
         self.held.resize(n, false);
@@ -279,9 +282,32 @@ impl Solver {
         self.roles.resize(rows, Role::Out);
         self.table.reset(n, &self.offsets);
         self.dependents.clear();
-        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
+        self.factor.reset(&self.order, |i| self.bounds[i] != Side::None);
         self.changes = 0;
         self.limit = 100 + 10 * (n + rows);
+    }
+
+    /// The unknowns in the order in which the levels touch them.
+    fn arrange(&mut self, problem: &Problem) {
+        let n = problem.unknowns();
+        self.order.clear();
+        self.order.extend(0..n);
+        let mut touched = 0;
+        for level in &problem.levels {
+            self.gradient.fill(0.0);
+            for row in level.matrix.chunks_exact(n.max(1)) {
+                self.gradient.iter_mut().zip(row).for_each(|(sum, a)| *sum += a.abs());
+            }
+            for c in touched..n {
+                if self.gradient[self.order[c]] > 0.0 {
+                    self.order.swap(touched, c);
+                    touched += 1;
+                }
+            }
+            if touched == n {
+                break;
+            }
+        }
     }
 
     /// Sizes of all rows.
@@ -388,7 +414,7 @@ impl Solver {
         for role in self.roles.iter_mut().filter(|role| **role == Role::Dependent) {
             *role = Role::Out;
         }
-        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
+        self.factor.reset(&self.order, |i| self.bounds[i] != Side::None);
         for e in 0..self.entries.len() {
             let Entry::Row(row) = self.entries[e] else { continue };
             if self.roles[row] != Role::Out && !self.activate_row(problem, row) {
