@@ -83,6 +83,24 @@ pub(super) fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64
     }
 }
 
+/// Length of a vector, and how many entries are not zero.
+pub(super) fn norm_and_count(a: &[f64]) -> (f64, u64) {
+    let (mut squares, mut counts) = ([0.0; 8], [0; 8]);
+    let (eights, rest) = a.as_chunks::<8>();
+    for x in eights {
+        for i in 0..8 {
+            squares[i] += x[i] * x[i];
+            counts[i] += u64::from(x[i] != 0.0);
+        }
+    }
+    let (mut square, mut count) = (squares.iter().sum::<f64>(), counts.iter().sum());
+    for x in rest {
+        square += x * x;
+        count += u64::from(*x != 0.0);
+    }
+    (square.sqrt(), count)
+}
+
 /// Length of a vector.
 #[inline]
 pub(super) fn norm(a: &[f64]) -> f64 {

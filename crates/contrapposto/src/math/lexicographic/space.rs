@@ -14,6 +14,7 @@ impl Solver {
         Self {
             x: Vec::with_capacity(n),
             offsets: Vec::with_capacity(levels + 1),
+            places: Vec::with_capacity(all),
             bounds: Vec::with_capacity(n),
             held: Vec::with_capacity(n),
             sides: Vec::with_capacity(all),
