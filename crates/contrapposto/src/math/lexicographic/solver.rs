@@ -452,14 +452,16 @@ impl Solver {
                 found = (share, Some((entry, side)));
             }
         };
-        for (i, &speed) in self.step.iter().enumerate() {
-            if self.bounds[i] != Side::None || speed.abs() <= 1e-14 * length {
+        let limits = problem.lower.iter().zip(&problem.upper);
+        for (i, ((&speed, &x), (&lower, &upper))) in self.step.iter().zip(&self.x).zip(limits).enumerate() {
+            let end = x + speed;
+            if (lower <= end && end <= upper) || self.bounds[i] != Side::None || speed.abs() <= 1e-14 * length {
                 continue;
             }
             if speed > 0.0 {
-                meet(problem.upper[i] - self.x[i], speed, Entry::Bound(i), Side::Upper);
+                meet(upper - x, speed, Entry::Bound(i), Side::Upper);
             } else {
-                meet(problem.lower[i] - self.x[i], speed, Entry::Bound(i), Side::Lower);
+                meet(lower - x, speed, Entry::Bound(i), Side::Lower);
             }
         }
         for j in 0..=k {
@@ -486,10 +488,12 @@ impl Solver {
 
     /// `x += share step`, bounds kept exactly.
     pub(super) fn advance(&mut self, problem: &Problem, share: f64) {
-        for i in 0..self.x.len() {
-            if self.bounds[i] == Side::None {
-                self.x[i] = (self.x[i] + share * self.step[i]).max(problem.lower[i]).min(problem.upper[i]);
-            }
+        // What stands at a bound has no step.
+        let limits = problem.lower.iter().zip(&problem.upper);
+        for ((x, step), (lower, upper)) in self.x.iter_mut().zip(&self.step).zip(limits) {
+            let end = *x + share * step;
+            let end = if end < *lower { *lower } else { end };
+            *x = if end > *upper { *upper } else { end };
         }
         self.length = norm(&self.x);
     }
