@@ -133,20 +133,20 @@ impl Factor {
 
     /// Adds a turned row, `Q^T` times it: its part beyond [`Factor::len`] must not vanish.
     pub(super) fn append(&mut self, t: &[f64], entry: Entry) {
-        let r = self.len();
-        let w = self.free.len();
-        let length = norm(&t[r..w]);
+        let (r, w, c) = (self.len(), self.width(), self.padded());
+        let first = r / 8 * 8;
+        let last = t[first..c].as_chunks::<8>().0.iter().rposition(|eight| *eight != [0.0; 8]);
+        let end = first + 8 * (last.unwrap_or(0) + 1);
+        let length = norm(&t[r..end.min(w)]);
         let beta = if t[r] > 0.0 { -length } else { length };
         self.lower.extend_from_slice(&t[..w]);
         let start = self.vectors.len();
-        self.vectors.extend_from_slice(&t[..self.padded()]);
+        self.vectors.extend_from_slice(&t[..c]);
         self.vectors[start..start + r].fill(0.0);
         self.vectors[start + r] = t[r] - beta;
-        let c = self.padded();
-        let last = self.vectors[start..].as_chunks::<8>().0.iter().rposition(|eight| *eight != [0.0; 8]);
-        self.ends.push(last.map_or(0, |last| 8 * (last + 1)));
-        let (before, own) = self.vectors[start.saturating_sub(c)..].split_at(start.min(c));
-        self.cross.push(if r == 0 { 0.0 } else { dot(before, own) });
+        let (before, own) = self.vectors.split_at(start);
+        self.cross.push(if r == 0 { 0.0 } else { dot(&before[start - c + first..start - c + end], &own[first..end]) });
+        self.ends.push(end);
         self.diagonal.push(beta);
         self.scale.push(-1.0 / (beta * (t[r] - beta)));
         self.entries.push(entry);
