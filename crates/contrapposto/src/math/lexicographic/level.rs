@@ -25,7 +25,6 @@ impl Solver {
                 let (share, block) = self.first_block(problem, k);
                 self.advance(problem, share);
                 let Some((entry, side)) = block else {
-                    self.advance_turned(base, damped);
                     if self.is_where_expected(problem) {
                         break;
                     }
@@ -35,7 +34,6 @@ impl Solver {
                     return false;
                 }
                 self.factor.truncate(base);
-                self.is_turned = false;
                 self.activate(problem, k, entry, side);
                 continue 'active_set;
             }
@@ -44,7 +42,6 @@ impl Solver {
                 return false;
             }
             self.factor.truncate(base);
-            self.is_turned = false;
             match entry {
                 Entry::Row(row) if self.roles[row] == Role::Soft => self.let_go(problem, row),
                 _ => self.leave(problem, entry),
@@ -192,7 +189,7 @@ impl Solver {
                     self.least.set(s, &self.turned[s * c + base..s * c + base + rank], self.right[s]);
                 }
             }
-            if level.damping > 0.0 && !self.is_turned {
+            if level.damping > 0.0 {
                 self.turned_x.resize(c, 0.0);
                 self.factor.gather(&self.x, &mut self.turned_x);
                 self.factor.turn(&mut self.turned_x, 0, base + rank);
@@ -204,18 +201,6 @@ impl Solver {
             self.least.solve(&mut self.y);
             self.kept.clear();
             self.kept.extend(self.least.residual()[..rows].iter().map(|r| -r));
-        }
-    }
-
-    /// What a whole step makes of `x` turned. A damped level leaves nothing beyond its rows, and what the next levels turn
-    /// there stays nothing.
-    fn advance_turned(&mut self, base: usize, damped: bool) {
-        self.is_turned |= damped;
-        if self.is_turned {
-            for (x, y) in self.turned_x[base..self.factor.len()].iter_mut().zip(&self.y) {
-                *x += y;
-            }
-            self.turned_x[self.factor.len()..].fill(0.0);
         }
     }
 

@@ -101,9 +101,8 @@ pub struct Solver {
     pub(super) step: Vec<f64>,
     pub(super) gradient: Vec<f64>,
     pub(super) work: Vec<f64>,
-    /// `x` turned, for a damped level, and whether it is known to be that of now, with nothing beyond the factor's rows.
+    /// `x` turned, for a damped level.
     pub(super) turned_x: Vec<f64>,
-    pub(super) is_turned: bool,
     pub(super) entries: Vec<Entry>,
     pub(super) least: LeastSquares,
     pub(super) diagonal: Diagonal,
@@ -286,8 +285,6 @@ impl Solver {
         self.table.reset(n, &self.offsets);
         self.dependents.clear();
         self.factor.reset(&self.order, |i| self.bounds[i] != Side::None);
-        reset(&mut self.turned_x, self.factor.padded());
-        self.is_turned = self.factor.free.iter().all(|&i| self.x[i] == 0.0);
         self.changes = 0;
         self.limit = 100 + 10 * (n + rows);
     }
