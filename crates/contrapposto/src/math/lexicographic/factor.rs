@@ -1,8 +1,8 @@
 //! Which directions are still free? Rows that are fixed or active, as `C = L Q1^T`: `L` lower triangular, `Q` a product of
 //! Householder reflections, one a row. What is left of `Q` spans the null space of all rows so far.
 //!
-//! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others). Columns stand in the order
-//! in which rows touch them: where the first rows know few unknowns, as those of two feet do, their vectors end early.
+//! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others). Where the
+//! first level knows few unknowns, as two placed feet do, these come first, and its vectors end early.
 
 use super::dense::{add_scaled, add_scaled_pair, dot, dot_pair, norm};
 

@@ -289,27 +289,18 @@ impl Solver {
         self.limit = 100 + 10 * (n + rows);
     }
 
-    /// The unknowns in the order in which the levels touch them.
+    /// Where the first level touches less than half of the unknowns, these come first.
     fn arrange(&mut self, problem: &Problem) {
         let n = problem.unknowns();
-        self.order.clear();
-        self.order.extend(0..n);
-        let mut touched = 0;
-        for level in &problem.levels {
-            self.gradient.fill(0.0);
-            for row in level.matrix.chunks_exact(n.max(1)) {
-                self.gradient.iter_mut().zip(row).for_each(|(sum, a)| *sum += a.abs());
-            }
-            for c in touched..n {
-                if self.gradient[self.order[c]] > 0.0 {
-                    self.order.swap(touched, c);
-                    touched += 1;
-                }
-            }
-            if touched == n {
-                break;
-            }
+        self.gradient.fill(0.0);
+        for row in problem.levels.first().map_or(&[][..], |level| &level.matrix).chunks_exact(n.max(1)) {
+            self.gradient.iter_mut().zip(row).for_each(|(sum, a)| *sum += a.abs());
         }
+        let touched = |i: &usize| self.gradient[*i] > 0.0;
+        let few = 2 * (0..n).filter(touched).count() < n;
+        self.order.clear();
+        self.order.extend((0..n).filter(|i| few && touched(i)));
+        self.order.extend((0..n).filter(|i| !(few && touched(i))));
     }
 
     /// Sizes of all rows, in one look at each, and whether the problem has a meaning.
@@ -452,16 +443,14 @@ impl Solver {
                 found = (share, Some((entry, side)));
             }
         };
-        let limits = problem.lower.iter().zip(&problem.upper);
-        for (i, ((&speed, &x), (&lower, &upper))) in self.step.iter().zip(&self.x).zip(limits).enumerate() {
-            let end = x + speed;
-            if (lower <= end && end <= upper) || self.bounds[i] != Side::None || speed.abs() <= 1e-14 * length {
+        for (i, &speed) in self.step.iter().enumerate() {
+            if self.bounds[i] != Side::None || speed.abs() <= 1e-14 * length {
                 continue;
             }
             if speed > 0.0 {
-                meet(upper - x, speed, Entry::Bound(i), Side::Upper);
+                meet(problem.upper[i] - self.x[i], speed, Entry::Bound(i), Side::Upper);
             } else {
-                meet(lower - x, speed, Entry::Bound(i), Side::Lower);
+                meet(problem.lower[i] - self.x[i], speed, Entry::Bound(i), Side::Lower);
             }
         }
         for j in 0..=k {
