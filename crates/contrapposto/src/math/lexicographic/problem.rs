@@ -113,7 +113,7 @@ impl Problem {
     pub fn check(&self) -> Result<(), ProblemError> {
         self.check_limits()?;
         for (k, level) in self.levels.iter().enumerate() {
-            if let Some(&value) = level.matrix.iter().find(|a| !(a.abs() <= LARGEST)) {
+            if let Some(&value) = level.matrix.iter().find(|a| a.is_nan() || a.abs() > LARGEST) {
                 let what = format!("coefficient of level {k}");
                 return Err(ProblemError::Number { what, value, accepted: "finite and at most 1e60 in size" });
             }
