@@ -289,7 +289,7 @@ impl Solver {
         self.limit = 100 + 10 * (n + rows);
     }
 
-    /// Where the first level touches less than half of the unknowns, these come first.
+    /// Where the first level touches less than half of many unknowns, these come first; few make short vectors anyway.
     fn arrange(&mut self, problem: &Problem) {
         let n = problem.unknowns();
         self.gradient.fill(0.0);
@@ -297,7 +297,7 @@ impl Solver {
             self.gradient.iter_mut().zip(row).for_each(|(sum, a)| *sum += a.abs());
         }
         let touched = |i: &usize| self.gradient[*i] > 0.0;
-        let few = 2 * (0..n).filter(touched).count() < n;
+        let few = n >= 32 && 2 * (0..n).filter(touched).count() < n;
         self.order.clear();
         self.order.extend((0..n).filter(|i| few && touched(i)));
         self.order.extend((0..n).filter(|i| !(few && touched(i))));
