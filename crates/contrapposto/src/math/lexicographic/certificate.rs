@@ -37,7 +37,6 @@ impl Solver {
         if !(0..self.x.len()).all(stands) {
             return false;
         }
-        self.measure(problem);
         self.held.fill(false);
         self.roles.fill(Role::Active);
         (0..problem.levels.len()).all(|k| self.level_is_still_best(problem, k))

@@ -11,7 +11,13 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
         }
     }
     let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
-    ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7])) + rest
+    sum(sums) + rest
+}
+
+/// What eight partial sums make.
+#[inline]
+fn sum(s: [f64; 8]) -> f64 {
+    ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]))
 }
 
 /// `y += s x`.
@@ -72,7 +78,6 @@ pub(super) fn dot_pair(a: &[f64], b: &[f64], t: &[f64]) -> (f64, f64) {
             right[i] += b[i] * t[i];
         }
     }
-    let sum = |s: [f64; 8]| ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
     (sum(left), sum(right))
 }
 
@@ -84,6 +89,24 @@ pub(super) fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64
             t[i] += p * a[i] + q * b[i];
         }
     }
+}
+
+/// Length of a vector, and how many entries are not zero.
+pub(super) fn norm_and_count(a: &[f64]) -> (f64, u64) {
+    let (mut squares, mut counts) = ([0.0; 8], [0; 8]);
+    let (eights, rest) = a.as_chunks::<8>();
+    for x in eights {
+        for i in 0..8 {
+            squares[i] += x[i] * x[i];
+            counts[i] += u64::from(x[i] != 0.0);
+        }
+    }
+    let (mut square, mut count) = (0.0, counts.iter().sum());
+    for x in rest {
+        square += x * x;
+        count += u64::from(*x != 0.0);
+    }
+    ((sum(squares) + square).sqrt(), count)
 }
 
 /// Length of a vector.

@@ -137,8 +137,8 @@ impl Solver {
                 columns[e] = match *entry {
                     Entry::Bound(other) => f64::from(other == i),
                     Entry::Row(row) => {
-                        let j = self.offsets.partition_point(|&start| start <= row) - 1;
-                        problem.levels[j].matrix[(row - self.offsets[j]) * n + i]
+                        let (j, place) = self.places[row];
+                        problem.levels[j].matrix[place * n + i]
                     }
                 };
             }
@@ -179,7 +179,7 @@ impl Solver {
             columns.clear();
             columns.extend(self.factor.entries.iter().map(|entry| match *entry {
                 Entry::Bound(i) => self.gradient[i],
-                Entry::Row(row) => value(problem, &self.offsets, self.single[row], row, &self.gradient),
+                Entry::Row(row) => value(problem, self.places[row], self.single[row], &self.gradient),
             }));
             self.y.resize(base.max(self.y.len()), 0.0);
             self.factor.solve_lower(0, columns, &mut self.y);

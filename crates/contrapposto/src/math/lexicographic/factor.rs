@@ -1,7 +1,8 @@
 //! Which directions are still free? Rows that are fixed or active, as `C = L Q1^T`: `L` lower triangular, `Q` a product of
 //! Householder reflections, one a row. What is left of `Q` spans the null space of all rows so far.
 //!
-//! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others).
+//! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others). Where the
+//! first level knows few unknowns, as two placed feet do, these come first, and its vectors end early.
 
 use super::dense::{add_scaled, add_scaled_pair, dot, dot_pair, norm};
 
@@ -17,8 +18,9 @@ pub(super) enum Entry {
 /// See the module's text.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
-    /// Unknowns that are not left out.
+    /// Unknowns that are not left out, and those that are.
     pub(super) free: Vec<usize>,
+    pub(super) left_out: Vec<usize>,
     /// What each row stands for.
     pub(super) entries: Vec<Entry>,
     /// `L[r][..r]`, one row after the other, as long as `free`.
@@ -26,6 +28,8 @@ pub(super) struct Factor {
     /// The reflections' vectors, [`Factor::padded`] long: zero before place `r` and behind `free`, so that sums may run over
     /// whole eights.
     pub(super) vectors: Vec<f64>,
+    /// Where they end, in whole eights: only zeros from there on.
+    pub(super) ends: Vec<usize>,
     pub(super) diagonal: Vec<f64>,
     pub(super) scale: Vec<f64>,
     /// Product of each vector with the one before.
@@ -33,10 +37,12 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// No rows; the unknowns marked in `fixed` are left out.
-    pub(super) fn reset(&mut self, fixed: impl Iterator<Item = bool>) {
+    /// No rows; the unknowns of `order` that are `fixed` are left out.
+    pub(super) fn reset(&mut self, order: &[usize], fixed: impl Fn(usize) -> bool) {
         self.free.clear();
-        self.free.extend(fixed.enumerate().filter(|(_, fixed)| !fixed).map(|(i, _)| i));
+        self.free.extend(order.iter().filter(|&&i| !fixed(i)));
+        self.left_out.clear();
+        self.left_out.extend(order.iter().filter(|&&i| fixed(i)));
         self.truncate(0);
     }
 
@@ -60,6 +66,7 @@ impl Factor {
         self.entries.truncate(len);
         self.lower.truncate(len * self.free.len());
         self.vectors.truncate(len * self.padded());
+        self.ends.truncate(len);
         self.diagonal.truncate(len);
         self.scale.truncate(len);
         self.cross.truncate(len);
@@ -76,19 +83,20 @@ impl Factor {
     /// `t -= scale (v . t) v` with the vector of row `r`.
     #[inline]
     fn reflect(&self, r: usize, t: &mut [f64]) {
-        let c = self.padded();
-        let first = r / 8 * 8;
-        let (v, t) = (&self.vectors[r * c + first..(r + 1) * c], &mut t[first..c]);
+        let start = r * self.padded();
+        let (first, end) = (r / 8 * 8, self.ends[r]);
+        let (v, t) = (&self.vectors[start + first..start + end], &mut t[first..end]);
         let s = self.scale[r] * dot(v, t);
         add_scaled(t, -s, v);
     }
 
-    /// The vectors of rows `r - 1` and `r` and what they are applied to, from the eight where the first begins.
+    /// The vectors of rows `r - 1` and `r` and what they are applied to, from the eight where the first begins to where both end.
     #[inline]
     fn pair<'a>(&'a self, r: usize, t: &'a mut [f64]) -> (&'a [f64], &'a [f64], &'a mut [f64]) {
         let c = self.padded();
-        let first = (r - 1) / 8 * 8;
-        (&self.vectors[(r - 1) * c + first..r * c], &self.vectors[r * c + first..(r + 1) * c], &mut t[first..c])
+        let (first, end) = ((r - 1) / 8 * 8, self.ends[r - 1].max(self.ends[r]));
+        let vector = |r: usize| &self.vectors[r * c + first..r * c + end];
+        (vector(r - 1), vector(r), &mut t[first..end])
     }
 
     /// Applies the reflections of rows `from..to` to `t`: `Q^T t`, as far as they go. Two at a time, which reads `t` once.
@@ -125,18 +133,20 @@ impl Factor {
 
     /// Adds a turned row, `Q^T` times it: its part beyond [`Factor::len`] must not vanish.
     pub(super) fn append(&mut self, t: &[f64], entry: Entry) {
-        let r = self.len();
-        let w = self.free.len();
-        let length = norm(&t[r..w]);
+        let (r, w, c) = (self.len(), self.width(), self.padded());
+        let first = r / 8 * 8;
+        let last = t[first..c].as_chunks::<8>().0.iter().rposition(|eight| *eight != [0.0; 8]);
+        let end = first + 8 * (last.unwrap_or(0) + 1);
+        let length = norm(&t[r..end.min(w)]);
         let beta = if t[r] > 0.0 { -length } else { length };
         self.lower.extend_from_slice(&t[..w]);
         let start = self.vectors.len();
-        self.vectors.extend_from_slice(&t[..self.padded()]);
+        self.vectors.extend_from_slice(&t[..c]);
         self.vectors[start..start + r].fill(0.0);
         self.vectors[start + r] = t[r] - beta;
-        let c = self.padded();
-        let (before, own) = self.vectors[start.saturating_sub(c)..].split_at(start.min(c));
-        self.cross.push(if r == 0 { 0.0 } else { dot(before, own) });
+        let (before, own) = self.vectors.split_at(start);
+        self.cross.push(if r == 0 { 0.0 } else { dot(&before[start - c + first..start - c + end], &own[first..end]) });
+        self.ends.push(end);
         self.diagonal.push(beta);
         self.scale.push(-1.0 / (beta * (t[r] - beta)));
         self.entries.push(entry);

@@ -371,11 +371,8 @@ impl Solver {
                 }
             }
         }
-        let mut free = self.factor.free.iter().peekable();
-        for (i, bound) in bounds.iter_mut().enumerate() {
-            if free.next_if_eq(&&i).is_none() {
-                *bound = -self.gradient[i];
-            }
+        for &i in &self.factor.left_out {
+            bounds[i] = -self.gradient[i];
         }
         let nothing = MULTIPLIER * size;
         let mut worst: Option<(f64, Entry)> = None;

@@ -103,7 +103,7 @@ pub enum ProblemError {
 }
 
 /// Coefficients and finite limits must be at most this in size: squares and products of what is accepted stay finite.
-const LARGEST: f64 = 1e60;
+pub(super) const LARGEST: f64 = 1e60;
 
 impl Problem {
     /// Do all lengths fit and all numbers have a meaning?
@@ -111,6 +111,18 @@ impl Problem {
     /// # Errors
     /// [`ProblemError`] names the first thing that does not.
     pub fn check(&self) -> Result<(), ProblemError> {
+        self.check_limits()?;
+        for (k, level) in self.levels.iter().enumerate() {
+            if let Some(&value) = level.matrix.iter().find(|a| a.is_nan() || a.abs() > LARGEST) {
+                let what = format!("coefficient of level {k}");
+                return Err(ProblemError::Number { what, value, accepted: "finite and at most 1e60 in size" });
+            }
+        }
+        Ok(())
+    }
+
+    /// The check of everything but the coefficients.
+    pub(super) fn check_limits(&self) -> Result<(), ProblemError> {
         let n = self.unknowns();
         check_limits(&self.lower, &self.upper, n, &|| "bound of an unknown".to_owned())?;
         for (k, level) in self.levels.iter().enumerate() {
@@ -119,13 +131,6 @@ impl Problem {
                 return Err(ProblemError::Length { what: format!("matrix of level {k}"), given, needed });
             }
             check_limits(&level.lower, &level.upper, level.rows(), &|| format!("limit of a row of level {k}"))?;
-            // Sixteen at a time without a branch: this runs for every problem.
-            let fits = |a: &[f64]| a.iter().fold(true, |fits, a| fits & (a.abs() <= LARGEST));
-            let wrong = level.matrix.chunks(16).find(|part| !fits(part));
-            if let Some(&value) = wrong.and_then(|part| part.iter().find(|a| !fits(&[**a]))) {
-                let what = format!("coefficient of level {k}");
-                return Err(ProblemError::Number { what, value, accepted: "finite and at most 1e60 in size" });
-            }
             if !(0.0..=LARGEST).contains(&level.damping) {
                 let what = format!("damping of level {k}");
                 return Err(ProblemError::Number { what, value: level.damping, accepted: "between 0 and 1e60" });

@@ -1,10 +1,10 @@
 //! Down the levels: what is fixed, what is active, what is still free.
 
-use super::dense::{LeastSquares, dot, norm};
+use super::dense::{LeastSquares, dot, norm, norm_and_count};
 use super::diagonal::Diagonal;
 use super::factor::{Entry, Factor};
 use super::multipliers::{Multipliers, Table};
-use super::problem::{Problem, ProblemError};
+use super::problem::{LARGEST, Problem, ProblemError};
 
 /// How it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +61,8 @@ pub struct Solver {
     pub(super) x: Vec<f64>,
     /// Where the rows of each level begin; one more at the end.
     pub(super) offsets: Vec<usize>,
+    /// Level of each row, and its place there.
+    pub(super) places: Vec<(usize, usize)>,
     pub(super) bounds: Vec<Side>,
     /// Bounds that a level above needs: they are not left again.
     pub(super) held: Vec<bool>,
@@ -78,6 +80,8 @@ pub struct Solver {
     pub(super) residuals: Vec<f64>,
     /// Is the last answer an answer?
     pub(super) came_to_an_end: bool,
+    /// The unknowns in the order of the factor's columns.
+    pub(super) order: Vec<usize>,
     pub(super) factor: Factor,
     /// Fixed rows that say nothing new beside those in the factor.
     pub(super) dependents: Vec<usize>,
@@ -115,7 +119,7 @@ impl Solver {
     /// # Errors
     /// [`ProblemError`] for lengths that do not fit and numbers without meaning.
     pub fn solve(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
-        problem.check()?;
+        self.measure(problem)?;
         self.forget();
         Ok(self.run(problem))
     }
@@ -135,7 +139,7 @@ impl Solver {
     /// # Errors
     /// As [`Solver::solve`].
     pub fn solve_next(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
-        problem.check()?;
+        self.measure(problem)?;
         self.x.clear();
         Ok(self.run(problem))
     }
@@ -146,7 +150,7 @@ impl Solver {
     /// # Errors
     /// As [`Solver::solve`].
     pub fn solve_again(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
-        problem.check()?;
+        self.measure(problem)?;
         if self.is_still_best(problem) {
             self.changes = 0;
             return Ok(self.report(problem));
@@ -232,12 +236,13 @@ impl Solver {
             self.x.resize(n, 0.0);
         }
         self.offsets.clear();
-        let mut rows = 0;
+        self.places.clear();
         self.offsets.push(0);
-        for level in &problem.levels {
-            rows += level.rows();
-            self.offsets.push(rows);
+        for (k, level) in problem.levels.iter().enumerate() {
+            self.places.extend((0..level.rows()).map(|i| (k, i)));
+            self.offsets.push(self.places.len());
         }
+        let rows = self.places.len();
         if self.bounds.len() != n {
             self.bounds.clear();
             self.bounds.resize(n, Side::None);
@@ -269,7 +274,7 @@ impl Solver {
         }
         reset(&mut self.work, n.next_multiple_of(8));
         reset(&mut self.residuals, rows);
-        self.measure(problem);
+        self.arrange(problem);
         self.length = norm(&self.x);
         self.held.clear();
         self.held.resize(n, false);
@@ -277,27 +282,50 @@ impl Solver {
         self.roles.resize(rows, Role::Out);
         self.table.reset(n, &self.offsets);
         self.dependents.clear();
-        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
+        self.factor.reset(&self.order, |i| self.bounds[i] != Side::None);
         self.changes = 0;
         self.limit = 100 + 10 * (n + rows);
     }
 
-    /// Sizes of all rows.
-    pub(super) fn measure(&mut self, problem: &Problem) {
+    /// Where the first level touches less than half of many unknowns, these come first; few make short vectors anyway.
+    fn arrange(&mut self, problem: &Problem) {
+        let n = problem.unknowns();
+        self.gradient.fill(0.0);
+        for row in problem.levels.first().map_or(&[][..], |level| &level.matrix).chunks_exact(n.max(1)) {
+            self.gradient.iter_mut().zip(row).for_each(|(sum, a)| *sum += a.abs());
+        }
+        let touched = |i: &usize| self.gradient[*i] > 0.0;
+        let few = n >= 32 && 2 * (0..n).filter(touched).count() < n;
+        self.order.clear();
+        self.order.extend((0..n).filter(|i| few && touched(i)));
+        self.order.extend((0..n).filter(|i| !(few && touched(i))));
+    }
+
+    /// Sizes of all rows, in one look at each, and whether the problem has a meaning.
+    fn measure(&mut self, problem: &Problem) -> Result<(), ProblemError> {
+        problem.check_limits()?;
         let n = problem.unknowns();
         self.norms.clear();
         self.limits.clear();
         self.single.clear();
         let finite = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
+        let mut fits = true;
         for level in &problem.levels {
             for i in 0..level.rows() {
                 let row = &level.matrix[i * n..(i + 1) * n];
-                let single = only_unknown(row);
-                self.norms.push(single.map_or_else(|| norm(row), |c| row[c].abs()));
+                let (norm, count) = norm_and_count(row);
+                // Most often the unknown behind that of the row before.
+                let next = self.single.last().copied().flatten().map_or(0, |c| c + 1);
+                let only = |c: &usize| row.get(*c).is_some_and(|a| *a != 0.0);
+                let single = if count == 1 { [next].into_iter().chain(0..n).find(only) } else { None };
+                self.norms.push(single.map_or(norm, |c| row[c].abs()));
                 self.single.push(single);
                 self.limits.push(finite(level.lower[i]).max(finite(level.upper[i])));
+                fits &= norm <= LARGEST;
             }
         }
+        // Coefficients that are too large, or no numbers, show in the lengths.
+        if fits { Ok(()) } else { problem.check() }
     }
 
     /// One more change of the active set; `false` when there were too many.
@@ -313,8 +341,7 @@ impl Solver {
 
     /// Level and row within it.
     pub(super) fn place(&self, row: usize) -> (usize, usize) {
-        let k = self.offsets.partition_point(|&start| start <= row) - 1;
-        (k, row - self.offsets[k])
+        self.places[row]
     }
 
     /// Rounding to be expected in the value of a row.
@@ -324,7 +351,7 @@ impl Solver {
 
     /// `a . x` of a row.
     pub(super) fn value(&self, problem: &Problem, row: usize, x: &[f64]) -> f64 {
-        value(problem, &self.offsets, self.single[row], row, x)
+        value(problem, self.places[row], self.single[row], x)
     }
 
     /// What is left of a row, computed from the problem.
@@ -386,7 +413,7 @@ impl Solver {
         for role in self.roles.iter_mut().filter(|role| **role == Role::Dependent) {
             *role = Role::Out;
         }
-        self.factor.reset(self.bounds.iter().map(|side| *side != Side::None));
+        self.factor.reset(&self.order, |i| self.bounds[i] != Side::None);
         for e in 0..self.entries.len() {
             let Entry::Row(row) = self.entries[e] else { continue };
             if self.roles[row] != Role::Out && !self.activate_row(problem, row) {
@@ -448,25 +475,19 @@ impl Solver {
 
     /// `x += share step`, bounds kept exactly.
     pub(super) fn advance(&mut self, problem: &Problem, share: f64) {
-        for i in 0..self.x.len() {
-            if self.bounds[i] == Side::None {
-                self.x[i] = (self.x[i] + share * self.step[i]).max(problem.lower[i]).min(problem.upper[i]);
-            }
+        // What stands at a bound has no step.
+        let limits = problem.lower.iter().zip(&problem.upper);
+        for ((x, step), (lower, upper)) in self.x.iter_mut().zip(&self.step).zip(limits) {
+            let end = *x + share * step;
+            let end = if end < *lower { *lower } else { end };
+            *x = if end > *upper { *upper } else { end };
         }
         self.length = norm(&self.x);
     }
 }
 
-/// `a . x` of a row that may have a single unknown.
-pub(super) fn value(problem: &Problem, offsets: &[usize], single: Option<usize>, row: usize, x: &[f64]) -> f64 {
-    let k = offsets.partition_point(|&start| start <= row) - 1;
-    let i = row - offsets[k];
+/// `a . x` of row `i` of level `k`, which may have a single unknown.
+pub(super) fn value(problem: &Problem, (k, i): (usize, usize), single: Option<usize>, x: &[f64]) -> f64 {
     let a = &problem.levels[k].matrix[i * x.len()..(i + 1) * x.len()];
     single.map_or_else(|| dot(a, x), |c| a[c] * x[c])
-}
-
-/// The place of the only entry that is not zero.
-fn only_unknown(row: &[f64]) -> Option<usize> {
-    let first = row.iter().position(|a| *a != 0.0)?;
-    row[first + 1..].iter().all(|a| *a == 0.0).then_some(first)
 }

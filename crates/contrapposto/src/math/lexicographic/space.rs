@@ -14,6 +14,7 @@ impl Solver {
         Self {
             x: Vec::with_capacity(n),
             offsets: Vec::with_capacity(levels + 1),
+            places: Vec::with_capacity(all),
             bounds: Vec::with_capacity(n),
             held: Vec::with_capacity(n),
             sides: Vec::with_capacity(all),
@@ -22,6 +23,7 @@ impl Solver {
             single: Vec::with_capacity(all),
             limits: Vec::with_capacity(all),
             residuals: Vec::with_capacity(all),
+            order: Vec::with_capacity(n),
             factor: Factor::with_capacity(n),
             dependents: Vec::with_capacity(all),
             table: Table::with_capacity(unknowns, levels, all),
@@ -47,9 +49,11 @@ impl Factor {
     fn with_capacity(n: usize) -> Self {
         Self {
             free: Vec::with_capacity(n),
+            left_out: Vec::with_capacity(n),
             entries: Vec::with_capacity(n),
             lower: Vec::with_capacity(n * n),
             vectors: Vec::with_capacity(n * n),
+            ends: Vec::with_capacity(n),
             diagonal: Vec::with_capacity(n),
             scale: Vec::with_capacity(n),
             cross: Vec::with_capacity(n),
