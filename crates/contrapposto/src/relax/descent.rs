@@ -26,6 +26,8 @@ pub(super) struct Manner {
     pub(super) plain: usize,
     /// Largest change of any rate in one step.
     pub(super) reach: f64,
+    /// Steps lengthen where effort bends down.
+    pub(super) longer: bool,
     pub(super) steps: usize,
     /// It ends when a step is foreseen to gain less than this share of the merit.
     pub(super) gain: f64,
@@ -139,7 +141,7 @@ impl Descent {
                     shift = 0.0;
                 }
                 (raise, reach) = (2.0, (2.0 * reach).min(manner.reach));
-                stretch = if forced && ratio > AGREES { 2.0 * length.max(1.0) } else { 1.0 };
+                stretch = if manner.longer && forced && ratio > AGREES { 2.0 * length.max(1.0) } else { 1.0 };
             } else if length > 1.0 {
                 stretch = 1.0;
             } else {

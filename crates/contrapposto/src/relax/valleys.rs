@@ -13,17 +13,17 @@ use crate::model::Model;
 use crate::posture::Posture;
 
 /// The way to the nearest valley.
-const NEAR: Manner = Manner { pace: 0.15, plain: 0, reach: 0.3, steps: 100, gain: 1e-3 };
-/// The way down from aside, where goals are still near.
-const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.3, steps: 20, gain: 0.03 };
+const NEAR: Manner = Manner { pace: 0.15, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-3 };
+/// The way down from aside, where goals are still near; whoever must go far there does not end low.
+const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.3, longer: false, steps: 20, gain: 0.03 };
 /// Another way to a valley whose goals are far.
-const AGAIN: Manner = Manner { steps: 100, gain: 1e-3, ..ASIDE };
+const AGAIN: Manner = Manner { longer: true, steps: 100, gain: 1e-3, ..ASIDE };
 /// The way down from a posture put together from parts.
 const MIXED: Manner = Manner { plain: 0, ..ASIDE };
 /// The way to the bottom of a posture that hardly moves any more: a step that gains a millionth is not worth a move.
-const SINK: Manner = Manner { pace: 0.4, plain: 0, reach: 0.1, steps: 40, gain: 1e-6 };
+const SINK: Manner = Manner { pace: 0.4, plain: 0, reach: 0.1, longer: true, steps: 40, gain: 1e-6 };
 /// The way to the very bottom.
-const LAST: Manner = Manner { pace: 0.4, plain: 0, reach: 0.3, steps: 100, gain: 1e-13 };
+const LAST: Manner = Manner { pace: 0.4, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-13 };
 /// How far aside, as a share of the range of each coordinate.
 const FAR: f64 = 0.7;
 /// Share of the coordinates that go aside, neighbours in the model's order.
