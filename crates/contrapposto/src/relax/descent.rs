@@ -2,11 +2,11 @@
 //!
 //! Sequential quadratic programming on posture and contact forces together, with the second derivative of the Lagrangian
 //! ([`super::hessian`]): `min |e|^2/2` while the root is in equilibrium, supports stay, goals above effort are reached. A step
-//! counts if it lowers `|e|^2/2 + price sum |what does not hold|`; the shift of the second derivative follows the ratio of
-//! what was gained and foreseen (Nielsen 1999, "Damping parameter in Marquardt's method"). Where effort bends down along what is
-//! free, the shift that makes the matrix positive also keeps steps short; as long as they keep what they foresaw, each may be
-//! twice as long as the one before. What bends away from a long step is corrected with the factors at hand before it is judged (Fletcher 1982, "Second order corrections for non-differentiable
-//! optimization"), or feet that turn would keep steps short.
+//! counts if it lowers `|e|^2/2 + price sum |what does not hold|`; the shift of the second derivative follows the ratio of what
+//! was gained and foreseen (Nielsen 1999, "Damping parameter in Marquardt's method"). Where effort bends down along what is free,
+//! the shift that makes the matrix positive also keeps steps short; as long as they keep what they foresaw, each may be twice as
+//! long as the one before. What bends away from a long step is corrected with the factors at hand before it is judged (Fletcher
+//! 1982, "Second order corrections for non-differentiable optimization"), or feet that turn would keep steps short.
 
 use super::hessian::{Hessian, Sight};
 use super::quadratic::Quadratic;

@@ -25,9 +25,9 @@ const DAMPED: f64 = 1e-12;
 
 /// A multiplier below this, in rows of scale one, does not press.
 const PRESSING: f64 = 1e-13;
-/// A multiplier above this, relative to the square of the level's least scale and to what the level keeps, locks its side for all levels below: to
-/// leave it would cost the level something, so what it presses with at levels below may have either sign (the multipliers
-/// of one side are positive in the lexicographic sense).
+/// A multiplier above this, relative to the square of the level's least scale and to what the level keeps, locks its side for
+/// all levels below: to leave it would cost the level something, so what it presses with at levels below may have either sign
+/// (the multipliers of one side are positive in the lexicographic sense).
 const LOCKING: f64 = 1e-8;
 
 /// From which multiplier on a level locks sides, in rows of these scales: multipliers are as much smaller than one as what
