@@ -25,9 +25,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. [`ik`] finds
-//! postures from goals in strict priority; in [`simulation`] relief still moves each coordinate on its own, and supports and
-//! contact come with later versions (see CHANGELOG.md).
+//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. [`ik`] finds postures from goals
+//! in strict priority, [`relax`] those of least effort on their supports, [`simulation`] moves a body that tires.
+
+// Unit tests share bodies with the tests outside, which know this crate by its name.
+#[cfg(test)]
+extern crate self as contrapposto;
 
 pub mod constraint;
 pub mod contact;

@@ -10,8 +10,6 @@
 //! The sum of second derivatives needs nothing new: pull at every point with the force `r_i` (or `lambda_i`), and how the
 //! generalised forces change with the posture is that matrix. It is the gradient of external torque (Eqs. 7, 8).
 
-use nalgebra::Vector3;
-
 use super::Goal;
 use super::body::Body;
 use super::hold::Hold;
@@ -33,8 +31,6 @@ const SOFT: f64 = 1e-3;
 /// Second derivatives of the goals, and who needs them. Keeps its space.
 #[derive(Clone, Debug)]
 pub(super) struct Curvature {
-    /// The body without weight.
-    weightless: Model,
     pulls: ExternalTorque,
     gradient: Gradient,
     loads: Vec<Load>,
@@ -62,7 +58,6 @@ impl Curvature {
         // A task pulls at two places at most, or at all segments.
         let tasks: usize = goals.iter().map(|goal| goal.tasks.len()).sum();
         Self {
-            weightless: model.clone().with_gravity(Vector3::zeros()),
             pulls: ExternalTorque::new(model),
             gradient: Gradient::new(model),
             loads: Vec::with_capacity(tasks * (2 + model.segments().len())),
@@ -81,7 +76,15 @@ impl Curvature {
     }
 
     /// Replaces the rows of level `k` by those of its second derivative.
-    pub(super) fn bend(&mut self, goals: &[Goal], body: &Body, problem: &mut Problem, solver: &Solver, k: usize) {
+    pub(super) fn bend(
+        &mut self,
+        model: &Model,
+        goals: &[Goal],
+        body: &Body,
+        problem: &mut Problem,
+        solver: &Solver,
+        k: usize,
+    ) {
         let n = problem.unknowns();
         std::mem::swap(&mut self.level, &mut problem.levels[k]);
         self.residual.clear();
@@ -94,7 +97,7 @@ impl Curvature {
         }
         let last = solver.multipliers(k);
         self.hold.estimate(problem, &problem.levels[..k], last, &self.slope);
-        self.second_derivative(goals, body, k);
+        self.second_derivative(model, goals, body, k);
         for row in self.level.matrix.chunks_exact(n) {
             add_square(&mut self.matrix, row, 1.0);
         }
@@ -125,13 +128,13 @@ impl Curvature {
     }
 
     /// `sum r_i r_i'' + sum lambda_i r_i''` into `matrix`.
-    fn second_derivative(&mut self, goals: &[Goal], body: &Body, k: usize) {
+    fn second_derivative(&mut self, model: &Model, goals: &[Goal], body: &Body, k: usize) {
         self.loads.clear();
         let mut multipliers = &self.hold.multipliers[..];
         for goal in &goals[..k] {
             for task in &goal.tasks {
                 let (own, rest) = multipliers.split_at(task.rows().min(multipliers.len()));
-                task.pull(&self.weightless, own, &mut self.loads);
+                task.pull(model, own, &mut self.loads);
                 multipliers = rest;
             }
             multipliers = &multipliers[goal.half_spaces.len().min(multipliers.len())..];
@@ -139,14 +142,14 @@ impl Curvature {
         let mut residual = &self.residual[..];
         for task in &goals[k].tasks {
             let (own, rest) = residual.split_at(task.rows().min(residual.len()));
-            task.pull(&self.weightless, own, &mut self.loads);
+            task.pull(model, own, &mut self.loads);
             residual = rest;
         }
         let n = self.slope.len();
         self.matrix.fill(0.0);
         // Loads beyond what the model accepts (errors of 1e9) leave the matrix without them.
-        if self.pulls.update(&self.weightless, body.kinematics(), &self.loads).is_ok() {
-            self.pulls.gradient(&self.weightless, body.kinematics(), &mut self.gradient);
+        if self.pulls.update_weightless(model, body.kinematics(), &self.loads).is_ok() {
+            self.pulls.gradient(model, body.kinematics(), &mut self.gradient);
             for i in 0..n {
                 for j in 0..n {
                     self.matrix[i * n + j] = 0.5 * (self.gradient.get(i, j) + self.gradient.get(j, i));
@@ -300,7 +303,7 @@ mod tests {
             let h = 1e-3;
             let (a, c, b) = (along(-h), along(h), along(0.0));
             let numeric = (a - 2.0 * b + c) / (h * h);
-            curvature.second_derivative(&goals, &body, 0);
+            curvature.second_derivative(&model, &goals, &body, 0);
             let exact: f64 = (0..n)
                 .map(|i| (0..n).map(|j| direction[i] * curvature.matrix[i * n + j] * direction[j]).sum::<f64>())
                 .sum();

@@ -252,7 +252,7 @@ impl<'a> Engine<'a> {
         self.choose_bent();
         self.damp();
         if let Some(k) = self.bent {
-            self.curvature.bend(&self.goals, &self.body, &mut self.problem, &self.solver, k);
+            self.curvature.bend(self.model, &self.goals, &self.body, &mut self.problem, &self.solver, k);
         }
         self.hold_levels_below();
         self.last.values_mut().copy_from_slice(posture.values());

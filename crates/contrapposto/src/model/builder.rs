@@ -246,12 +246,7 @@ impl ModelBuilder {
     pub fn build(mut self) -> Model {
         let model = &mut self.model;
         model.order_couplings();
-        let plain = |m: &Mobility| matches!(m.drive, Drive::Coordinate(_));
-        let in_order = model.elements.iter().enumerate().all(|(i, rate)| *rate == Some(i));
-        model.direct = model.couplings.is_empty()
-            && in_order
-            && model.rates.len() == model.elements.len()
-            && model.mobilities.iter().all(plain);
+        model.set_direct();
         self.model
     }
 }
@@ -296,8 +291,18 @@ impl Model {
         }
     }
 
+    /// Does torque need no folding?
+    pub(crate) fn set_direct(&mut self) {
+        let plain = |m: &Mobility| matches!(m.drive, Drive::Coordinate(_));
+        let in_order = self.elements.iter().enumerate().all(|(i, rate)| *rate == Some(i));
+        self.direct = self.couplings.is_empty()
+            && in_order
+            && self.rates.len() == self.elements.len()
+            && self.mobilities.iter().all(plain);
+    }
+
     /// Lists the hinges and balls between a new mobility and the root.
-    fn add_ancestors(&mut self, parent: Option<usize>) {
+    pub(crate) fn add_ancestors(&mut self, parent: Option<usize>) {
         let mut next = parent;
         while let Some(p) = next {
             let near = &self.mobilities[p];

@@ -15,8 +15,6 @@
 //! the support. These are taken out of the mixed part, which changes the multipliers of the supports and nothing else: else the
 //! matrix would bend down where no step may go.
 
-use nalgebra::Vector3;
-
 use super::site::{Ask, columns};
 use crate::ik::body::{Body, Needs};
 use crate::ik::task::{Task, share_of_strength};
@@ -60,7 +58,6 @@ pub(super) enum Sight {
 /// Keeps its space.
 #[derive(Clone, Debug)]
 pub(super) struct Hessian {
-    weightless: Model,
     pulls: ExternalTorque,
     gradient: Gradient,
     loads: Vec<Load>,
@@ -79,7 +76,6 @@ impl Hessian {
     pub(super) fn new(model: &Model) -> Self {
         let n = model.rates().len();
         Self {
-            weightless: model.clone().with_gravity(Vector3::zeros()),
             pulls: ExternalTorque::new(model),
             gradient: Gradient::new(model),
             loads: vec![],
@@ -125,26 +121,20 @@ impl Hessian {
         self.loads.clear();
         for task in ask.goals().flat_map(|goal| &goal.tasks) {
             let Some((own, rest)) = multipliers.split_at_checked(task.rows()) else { return };
-            task.pull(&self.weightless, own, &mut self.loads);
+            task.pull(ask.model, own, &mut self.loads);
             multipliers = rest;
         }
         // Loads beyond what the model accepts leave the matrix without them.
-        if self.pulls.update(&self.weightless, at.body.kinematics(), &self.loads).is_err() {
+        if self.pulls.update_weightless(ask.model, at.body.kinematics(), &self.loads).is_err() {
             return;
         }
-        self.pulls.gradient(&self.weightless, at.body.kinematics(), &mut self.gradient);
-        let n = ask.unknowns();
-        for (i, a) in ask.free.iter().enumerate() {
-            let row = self.gradient.row(*a);
-            for (j, b) in ask.free.iter().enumerate().skip(i) {
-                matrix[i * n + j] += 0.5 * (row[*b] + self.gradient.get(*b, *a));
-            }
-        }
+        self.pulls.gradient(ask.model, at.body.kinematics(), &mut self.gradient);
+        add_gradient(ask, 1.0, &self.gradient, None, matrix);
     }
 
     /// Gives how far along `w` the body has moved for it.
     fn bend_of_torques(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) -> Option<f64> {
-        let (model, n) = (ask.model, ask.unknowns());
+        let model = ask.model;
         let size = self.weights.iter().fold(0.0, |size: f64, w| size.max(w.abs()));
         if size.is_nan() || size <= 0.0 {
             return None;
@@ -157,15 +147,7 @@ impl Hessian {
         if self.body.update(model, &self.moved, at.loads, needs).is_err() {
             return None;
         }
-        let share = 0.5 / h;
-        let (before, after) = (at.body.gradient(), self.body.gradient());
-        for (i, &a) in ask.free.iter().enumerate() {
-            let (from, to) = (before.row(a), after.row(a));
-            for (j, &b) in ask.free.iter().enumerate().skip(i) {
-                let other = after.get(b, a) - before.get(b, a);
-                matrix[i * n + j] += share * (to[b] - from[b] + other);
-            }
-        }
+        add_gradient(ask, 1.0 / h, self.body.gradient(), Some(at.body.gradient()), matrix);
         Some(h)
     }
 
@@ -215,19 +197,19 @@ impl Hessian {
     fn bend_of_strength(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) {
         let n = ask.unknowns();
         for (coordinate, rate, error, row) in efforts(ask, at) {
-            let (Some(own), Some(groups)) =
-                (ask.free.iter().position(|free| *free == rate), &ask.model.coordinates()[coordinate].groups)
-            else {
-                continue;
-            };
-            let angle = at.body.kinematics().values()[coordinate];
+            let Some(groups) = &ask.model.coordinates()[coordinate].groups else { continue };
             let strength = &groups[Side::of(error).index()].strength;
-            let (torque, slope) = strength.torque_and_slope(angle);
+            let angle = at.body.kinematics().values()[coordinate];
+            let ((torque, slope), curvature) = (strength.torque_and_slope(angle), strength.curvature(angle));
+            if slope == 0.0 && curvature == 0.0 {
+                continue;
+            }
+            let Some(own) = ask.free.iter().position(|free| *free == rate) else { continue };
             let by = -error * slope / torque;
             for (other, entry) in row.iter().enumerate() {
                 matrix[own.min(other) * n + own.max(other)] += by * entry;
             }
-            matrix[own * n + own] += by * row[own] - error * error * strength.curvature(angle) / torque;
+            matrix[own * n + own] += by * row[own] - error * error * curvature / torque;
         }
     }
 
@@ -254,6 +236,23 @@ impl Hessian {
             for (i, entry) in self.mixed.iter().enumerate() {
                 matrix[i * n + k + force] += entry;
             }
+        }
+    }
+}
+
+/// Adds `share` times the symmetric part of a gradient, less that of another one.
+fn add_gradient(ask: &Ask<'_>, share: f64, of: &Gradient, less: Option<&Gradient>, matrix: &mut [f64]) {
+    let n = ask.unknowns();
+    let symmetric = of.is_symmetric() && less.is_none_or(Gradient::is_symmetric);
+    for (i, &a) in ask.free.iter().enumerate() {
+        let (row, rest) = (of.row(a), less.map(|less| less.row(a)));
+        let to = &mut matrix[i * n + i..i * n + ask.free.len()];
+        for (entry, &b) in to.iter_mut().zip(&ask.free[i..]) {
+            let mut sum = row[b] - rest.map_or(0.0, |rest| rest[b]);
+            if !symmetric {
+                sum = 0.5 * (sum + of.get(b, a) - less.map_or(0.0, |less| less.get(b, a)));
+            }
+            *entry += share * sum;
         }
     }
 }

@@ -1,29 +1,51 @@
 //! Which parts of a body can be brought to rest by themselves?
 //!
 //! What moves no support, of a standing body all above the pelvis, has torques of its own that do not depend on the forces
-//! below: it can look for its valleys as a small problem, while supports and their forces stay. What hangs on that and is no
-//! goal's concern, the free arm and the head of somebody who reaches, rests by itself as well: of two postures each such part is
-//! taken from the one where it works less.
+//! below: it can look for its valleys as a small problem, on a body of which all the rest is welded, while supports and their
+//! forces stay. What hangs on that and is no goal's concern, the free arm and the head of somebody who reaches, rests by itself
+//! as well: of two postures each such part is taken from the one where it works less.
 
 use super::site::{Ask, Site};
+use super::weld::weld;
 use crate::contact::ContactForces;
 use crate::ik::Goal;
+use crate::ik::body::BodyError;
 use crate::ik::task::{Effort, Task};
+use crate::kinematics::Kinematics;
+use crate::model::Model;
 use crate::posture::Posture;
 
 /// What moves no support, and the parts of it. Everything, where nothing does without moving a support.
 #[derive(Debug)]
 pub(super) struct Limbs {
+    /// The body with the rest of it welded.
+    pub(super) model: Model,
     rates: Vec<usize>,
     effort: Goal,
     still: Goal,
+    above: Vec<Goal>,
     contact: ContactForces,
-    /// Is there more to the body?
-    pub(super) alone: bool,
+    /// What is there that can move by itself?
+    pub(super) own: Own,
+}
+
+/// How much of a body moves without moving a support?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Own {
+    /// Nothing that has muscles.
+    Nothing,
+    /// Limbs.
+    Some,
+    /// Everything that may move: there are no supports. What may not is welded.
+    All,
 }
 
 impl Limbs {
-    pub(super) fn of(ask: &Ask<'_>) -> Self {
+    /// Of a body in `posture`.
+    ///
+    /// # Errors
+    /// [`BodyError`] when the posture is none of the model's.
+    pub(super) fn of(ask: &Ask<'_>, posture: &Posture) -> Result<Self, BodyError> {
         let model = ask.model;
         let mut holds = vec![false; model.rates().len()];
         for support in ask.contact.supports() {
@@ -33,24 +55,50 @@ impl Limbs {
                 carrier = model.mobilities[mobility].parent;
             }
         }
-        let rates: Vec<usize> = ask.free.iter().copied().filter(|rate| !holds[*rate]).collect();
-        let moves = |c: &usize| model.coordinates()[*c].rate.is_some_and(|rate| rates.contains(&rate));
-        let coordinates: Vec<usize> = ask.efforts().filter(moves).collect();
-        Self {
-            alone: !coordinates.is_empty() && rates.len() < ask.free.len(),
-            effort: Task::Effort(Effort { coordinates }).into(),
-            rates,
-            still: Goal::default(),
-            contact: ContactForces::of_a_limb(model),
+        let rate = |c: &usize| model.coordinates()[*c].rate;
+        let coordinates: Vec<usize> = ask.efforts().filter(|c| rate(c).is_some_and(|rate| !holds[rate])).collect();
+        let free = || ask.free.iter().filter(|rate| !holds[**rate]);
+        let own = match free().count() {
+            0 => Own::Nothing,
+            _ if coordinates.is_empty() => Own::Nothing,
+            count if count < ask.free.len() => Own::Some,
+            _ if ask.contact.supports().is_empty() => Own::All,
+            _ => Own::Nothing,
+        };
+        let mut moves = vec![false; model.rates().len()];
+        free().copied().chain(coordinates.iter().filter_map(rate)).for_each(|rate| moves[rate] = true);
+        let mut kinematics = Kinematics::new(model);
+        kinematics.update(model, posture)?;
+        let (welded, places) = weld(model, &kinematics, &moves);
+        let mut above = ask.above.to_vec();
+        for task in above.iter_mut().flat_map(|goal| &mut goal.tasks) {
+            if let Task::Posture(task) = task {
+                let mut place = places.iter();
+                task.weights.retain(|_| place.next().is_some_and(Option::is_some));
+            }
         }
+        Ok(Self {
+            own,
+            rates: free().filter_map(|rate| places[*rate]).collect(),
+            contact: ContactForces::of_a_limb(&welded),
+            model: welded,
+            effort: Task::Effort(Effort { coordinates }).into(),
+            still: Goal::default(),
+            above,
+        })
     }
 
     /// What is asked of them by themselves.
     pub(super) fn ask<'b>(&'b self, ask: &Ask<'b>) -> Ask<'b> {
-        if !self.alone {
-            return *ask;
+        Ask {
+            model: &self.model,
+            places: &self.still,
+            above: &self.above,
+            effort: &self.effort,
+            free: &self.rates,
+            contact: &self.contact,
+            ..*ask
         }
-        Ask { places: &self.still, effort: &self.effort, free: &self.rates, contact: &self.contact, ..*ask }
     }
 }
 
@@ -153,8 +201,8 @@ mod tests {
         let ground = Ground::new();
         let mut worst = 0f64;
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 20, |_, ask, whole| {
-            let limbs = Limbs::of(ask);
-            assert!(limbs.alone && limbs.rates.len() > 10);
+            let limbs = Limbs::of(ask, &whole.posture).unwrap();
+            assert!(limbs.own == Own::Some && limbs.rates.len() > 10);
             let part = limbs.ask(ask);
             let site = seen(&part, &whole.posture);
             assert!(!site.errors.is_empty() && site.rows.len() == 3 * part.unknowns());
@@ -179,7 +227,7 @@ mod tests {
         let ground = Ground::new();
         let mut taken = [0, 0];
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 20, |random, ask, whole| {
-            let limbs = Limbs::of(ask);
+            let limbs = Limbs::of(ask, &whole.posture).unwrap();
             let part = limbs.ask(ask);
             let site = seen(&part, &whole.posture);
             let parts = Parts::of(&part, &site);

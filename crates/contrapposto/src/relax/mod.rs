@@ -21,6 +21,7 @@ mod site;
 mod stability;
 mod symmetric;
 mod valleys;
+mod weld;
 
 pub use engine::Engine;
 pub use equilibria::{

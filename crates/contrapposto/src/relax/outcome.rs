@@ -26,7 +26,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { max_step: 0.3, max_steps: 200, still: 1e-9, gain: 1e-9, guarded: true, valleys: 14 }
+        Self { max_step: 0.3, max_steps: 200, still: 1e-9, gain: 1e-9, guarded: true, valleys: 12 }
     }
 }
 

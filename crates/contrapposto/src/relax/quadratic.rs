@@ -8,7 +8,7 @@
 //! The guess is put right a few times only. Where most unknowns lie at bounds it may still be wrong then (one in ten of small
 //! random problems): bounds hold, rows may be missed, and a descent, which judges every step by what comes of it, goes on.
 
-use super::symmetric::{add_times, back, eliminate};
+use super::symmetric::{add_times, back, eliminate, four, width};
 use crate::math::lexicographic::{add_scaled, add_squares, dot};
 
 /// Weight of held rows in `M`, against the largest diagonal entry.
@@ -112,7 +112,7 @@ impl Quadratic {
     /// The least change of the last answer, measured by `M`, that changes the rows that are held by `change`.
     pub(super) fn correct(&mut self, change: impl Fn(usize) -> f64, correction: &mut [f64]) {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = k + q + 1;
+        let w = width(k + q + 1);
         self.answer.clear();
         self.answer.extend(self.on.iter().map(|row| change(*row)));
         self.solve_schur();
@@ -196,7 +196,7 @@ impl Quadratic {
     /// `[M A^T -g; 0 0 c]` over what is free and held.
     fn fill(&mut self) {
         let (n, k, q) = (self.n, self.free.len(), self.on.len());
-        let w = k + q + 1;
+        let w = width(k + q + 1);
         self.factor.resize((k + q) * w, 0.0);
         let all = k == n;
         self.bent.fill(0.0);
@@ -208,6 +208,7 @@ impl Quadratic {
         for (a, &i) in self.free.iter().enumerate() {
             let (from, to) = (&self.stiff[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
             let pull = self.pull[i] + self.bent[i];
+            to[four(a)..a].fill(0.0);
             if all {
                 to[a..k].copy_from_slice(&from[a..]);
             } else {
@@ -217,6 +218,7 @@ impl Quadratic {
                 *to = self.rows[row * n + i];
             }
             to[k + q] = -pull;
+            to[k + q + 1..].fill(0.0);
         }
         for (r, &row) in self.on.iter().enumerate() {
             let from = &self.rows[row * n..(row + 1) * n];
@@ -242,7 +244,7 @@ impl Quadratic {
     /// `M = R^T R`, `V = R^-T A^T`, `z = R^-T(-g)`, and `S = V^T V` by a second factorisation.
     fn factorise(&mut self, shift: f64) -> bool {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = k + q + 1;
+        let w = width(k + q + 1);
         let (mut posture, mut forces) = (0f64, 0f64);
         for (a, &i) in self.free.iter().enumerate() {
             let size = self.factor[a * w + a].abs();
@@ -268,7 +270,7 @@ impl Quadratic {
     /// Step and multipliers from the factors.
     fn answer(&mut self) {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = k + q + 1;
+        let w = width(k + q + 1);
         self.answer.clear();
         self.answer.extend((k..k + q).map(|r| self.factor[r * w + k + q]));
         let base = k * w + k;
@@ -294,7 +296,7 @@ impl Quadratic {
     /// `S^-1` of what stands in `answer`.
     fn solve_schur(&mut self) {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = k + q + 1;
+        let w = width(k + q + 1);
         let line = |i: usize| (k + i) * w + k;
         for i in 0..q {
             self.answer[i] /= self.factor[line(i) + i];

@@ -1,6 +1,6 @@
 //! Symmetric matrices by their upper triangles, row after row.
 
-use crate::math::lexicographic::{add_scaled, dot};
+use crate::math::lexicographic::{add_fours, add_scaled, add_scaled_fours, dot};
 
 /// Adds `by` times column `j` of a symmetric matrix, of which the upper triangle is read.
 pub(super) fn add_times(matrix: &[f64], j: usize, by: f64, to: &mut [f64]) {
@@ -10,48 +10,52 @@ pub(super) fn add_times(matrix: &[f64], j: usize, by: f64, to: &mut [f64]) {
     above.iter_mut().zip(matrix[j..].iter().step_by(n)).for_each(|(to, entry)| *to += by * entry);
 }
 
-/// Eliminates rows `from..to` of a matrix of rows of width `w` from all rows below, upper triangle only, four at a time; each
-/// becomes that of a Cholesky factor. `false` where the matrix is not positive.
+/// Rows are as wide as a whole number of fours, which are added at once.
+pub(super) fn width(count: usize) -> usize {
+    count.next_multiple_of(4)
+}
+
+/// Where the four of an entry begins. What then lies below the diagonal is written, but never read.
+pub(super) fn four(i: usize) -> usize {
+    i - i % 4
+}
+
+/// Eliminates rows `from..to` of a matrix of rows of a [`width`] `w` from all rows below, upper triangle only, four at a time;
+/// each becomes that of a Cholesky factor. `false` where the matrix is not positive.
 pub(super) fn eliminate(matrix: &mut [f64], w: usize, from: usize, to: usize) -> bool {
+    let (matrix, w) = (matrix.as_chunks_mut::<4>().0, w / 4);
     let mut p = from;
     while p < to {
         let size = (to - p).min(4);
         let (upper, lower) = matrix.split_at_mut((p + size) * w);
-        for c in p..p + size {
-            let (done, rest) = upper.split_at_mut(c * w);
-            let row = &mut rest[..w];
-            for by in p..c {
-                let by = &done[by * w..(by + 1) * w];
-                let factor = by[c];
-                add_scaled(&mut row[c..], -factor, &by[c..]);
+        let pivots = &mut upper[p * w..];
+        for c in 0..size {
+            let (done, rest) = pivots.split_at_mut(c * w);
+            let (start, lane) = ((p + c) / 4, (p + c) % 4);
+            let row = &mut rest[start..w];
+            for by in done.chunks_exact(w) {
+                let by = &by[start..];
+                add_scaled_fours(row, -by[0][lane], by);
             }
-            if !(row[c] > 0.0 && row[c].is_finite()) {
+            let pivot = row[0][lane];
+            if !(pivot > 0.0 && pivot.is_finite()) {
                 return false;
             }
-            let over = 1.0 / row[c].sqrt();
-            row[c..].iter_mut().for_each(|entry| *entry *= over);
+            let over = 1.0 / pivot.sqrt();
+            row.as_flattened_mut().iter_mut().for_each(|entry| *entry *= over);
         }
-        let rows = &upper[p * w..];
-        if size == 4 {
-            let (a, rest) = rows.split_at(w);
-            let (b, rest) = rest.split_at(w);
-            let (c, d) = rest.split_at(w);
-            for (i, target) in lower.chunks_exact_mut(w).enumerate() {
-                let i = p + 4 + i;
-                let (fa, fb, fc, fd) = (a[i], b[i], c[i], d[i]);
-                if fa == 0.0 && fb == 0.0 && fc == 0.0 && fd == 0.0 {
-                    continue;
+        for (i, target) in (p + size..).zip(lower.chunks_exact_mut(w)) {
+            let (start, lane) = (i / 4, i % 4);
+            let target = &mut target[start..];
+            if size == 4 {
+                let rows = [0, 1, 2, 3].map(|r| &pivots[r * w + start..(r + 1) * w]);
+                let by = rows.map(|row| -row[0][lane]);
+                if by != [0.0; 4] {
+                    add_fours(target, by, rows);
                 }
-                let sources = a[i..].iter().zip(&b[i..]).zip(c[i..].iter().zip(&d[i..]));
-                for (entry, ((a, b), (c, d))) in target[i..].iter_mut().zip(sources) {
-                    *entry -= (fa * a + fb * b) + (fc * c + fd * d);
-                }
-            }
-        } else {
-            for (i, target) in lower.chunks_exact_mut(w).enumerate() {
-                let i = p + size + i;
-                for row in rows.chunks_exact(w) {
-                    add_scaled(&mut target[i..], -row[i], &row[i..]);
+            } else {
+                for row in pivots.chunks_exact(w) {
+                    add_scaled_fours(target, -row[start][lane], &row[start..]);
                 }
             }
         }

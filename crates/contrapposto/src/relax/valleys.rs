@@ -6,7 +6,7 @@
 //! come from a fixed sequence of numbers: the same problem has the same answer.
 
 use super::descent::{Bottom, Descent, Manner};
-use super::limbs::{Limbs, Parts};
+use super::limbs::{Limbs, Own, Parts};
 use super::site::Ask;
 use crate::ik::body::BodyError;
 use crate::model::Model;
@@ -15,11 +15,11 @@ use crate::posture::Posture;
 /// The way to the nearest valley.
 const NEAR: Manner = Manner { pace: 0.15, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-3 };
 /// The way down from aside, where goals are still near; whoever must go far there does not end low.
-const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.3, longer: false, steps: 20, gain: 0.03 };
+const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.6, longer: false, steps: 20, gain: 0.05 };
 /// Another way to a valley whose goals are far.
-const AGAIN: Manner = Manner { longer: true, steps: 100, gain: 1e-3, ..ASIDE };
+const AGAIN: Manner = Manner { reach: 0.3, longer: true, steps: 100, gain: 1e-3, ..ASIDE };
 /// The way down from a posture put together from parts.
-const MIXED: Manner = Manner { plain: 0, ..ASIDE };
+const MIXED: Manner = Manner { plain: 0, reach: 0.3, ..ASIDE };
 /// The way to the bottom of a posture that hardly moves any more: a step that gains a millionth is not worth a move.
 const SINK: Manner = Manner { pace: 0.4, plain: 0, reach: 0.1, longer: true, steps: 40, gain: 1e-6 };
 /// The way to the very bottom.
@@ -40,27 +40,35 @@ const EXACT: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(super) struct Valleys {
     descent: Descent,
+    lowest: Place,
+    /// The bottom of the nearest valley.
+    near: Posture,
+    look: Look,
+}
+
+/// A posture with its forces, and the multipliers of what must hold there.
+#[derive(Clone, Debug)]
+struct Place {
     posture: Posture,
     forces: Vec<f64>,
     multipliers: Vec<f64>,
-    aside: Posture,
-    aside_forces: Vec<f64>,
+}
+
+/// Looks for other valleys.
+#[derive(Clone, Debug)]
+struct Look {
+    aside: Place,
     wish: Vec<f64>,
-    /// The bottom of the nearest valley.
-    near: Posture,
 }
 
 impl Valleys {
     pub(super) fn new(model: &Model) -> Self {
+        let place = Place { posture: model.default_posture(), forces: vec![], multipliers: vec![] };
         Self {
             descent: Descent::new(model),
-            posture: model.default_posture(),
-            forces: vec![],
-            multipliers: vec![],
-            aside: model.default_posture(),
-            aside_forces: vec![],
+            lowest: place.clone(),
             near: model.default_posture(),
-            wish: vec![],
+            look: Look { aside: place, wish: vec![] },
         }
     }
 
@@ -72,92 +80,66 @@ impl Valleys {
         posture: &mut Posture,
         count: usize,
     ) -> Result<Option<Bottom>, BodyError> {
-        let limbs = Limbs::of(ask);
-        self.forces.clear();
-        self.forces.extend_from_slice(ask.contact.forces());
-        self.posture.values_mut().copy_from_slice(posture.values());
+        let limbs = Limbs::of(ask, posture)?;
+        if limbs.own == Own::All && limbs.model.rates().len() < ask.model.rates().len() {
+            return Self::new(&limbs.model).find(&limbs.ask(ask), posture, count);
+        }
+        let (descent, lowest) = (&mut self.descent, &mut self.lowest);
+        lowest.forces.clear();
+        lowest.forces.extend_from_slice(ask.contact.forces());
+        lowest.posture.values_mut().copy_from_slice(posture.values());
         let mut steps = 0;
-        if limbs.alone {
+        if limbs.own == Own::Some {
             // First what limbs can do by themselves: the rest of the body has less to do then.
-            let bottom = self.descent.go(&limbs.ask(ask), &self.posture, &[], &[], &NEAR)?;
+            let mut descent = Descent::new(&limbs.model);
+            let bottom = descent.go(&limbs.ask(ask), posture, &[], &[], &NEAR)?;
             steps += bottom.steps;
             if bottom.violation <= ROUGH {
-                self.posture.values_mut().copy_from_slice(self.descent.at.posture.values());
+                lowest.keep_posture(&descent);
             }
         }
-        let mut near = self.descent.go(ask, &self.posture, &self.forces, &[], &NEAR)?;
+        let mut near = descent.go(ask, &lowest.posture, &lowest.forces, &[], &NEAR)?;
         steps += near.steps;
         if near.violation > ROUGH {
-            near = self.descent.go(ask, &self.posture, &self.forces, &[], &AGAIN)?;
+            near = descent.go(ask, &lowest.posture, &lowest.forces, &[], &AGAIN)?;
             steps += near.steps;
         }
         if near.violation > ROUGH {
             return Ok(None);
         }
-        self.keep(false);
-        self.near.values_mut().copy_from_slice(self.posture.values());
-        steps += self.search(&limbs, ask, count)?;
-        let mut last = self.descent.go(ask, &self.posture, &self.forces, &self.multipliers, &LAST)?;
+        lowest.keep(descent);
+        self.near.values_mut().copy_from_slice(lowest.posture.values());
+        if limbs.own == Own::Some {
+            // The rest may have moved.
+            let limbs = Limbs::of(ask, &lowest.posture)?;
+            let mut alone = Place { forces: vec![], ..lowest.clone() };
+            steps += self.look.search(&limbs.ask(ask), &mut Descent::new(&limbs.model), &mut alone, count)?;
+            lowest.posture = alone.posture;
+        } else {
+            steps += self.look.search(ask, descent, lowest, count)?;
+        }
+        let mut last = descent.go(ask, &lowest.posture, &lowest.forces, &lowest.multipliers, &LAST)?;
         steps += last.steps;
-        let moved = self.posture != self.near;
-        if limbs.alone && moved && (last.violation > ROUGH || last.effort > near.effort) {
+        let moved = lowest.posture != self.near;
+        if limbs.own == Own::Some && moved && (last.violation > ROUGH || last.effort > near.effort) {
             // What the limbs gained cost the rest more.
-            last = self.descent.go(ask, &self.near, &self.forces, &self.multipliers, &LAST)?;
+            last = descent.go(ask, &self.near, &lowest.forces, &lowest.multipliers, &LAST)?;
             steps += last.steps;
         }
         if last.violation > ROUGH {
             return Ok(None);
         }
-        posture.values_mut().copy_from_slice(self.descent.at.posture.values());
+        posture.values_mut().copy_from_slice(descent.at.posture.values());
         Ok(Some(Bottom { steps, settled: last.settled && last.violation <= EXACT, ..last }))
-    }
-
-    /// Moves the limbs of `posture` to the lowest of so many valleys and returns the number of steps that took.
-    fn search(&mut self, limbs: &Limbs, ask: &Ask<'_>, count: usize) -> Result<usize, BodyError> {
-        let ask = limbs.ask(ask);
-        let forces = if limbs.alone { vec![] } else { self.forces.clone() };
-        self.descent.begin(&ask, &self.posture, &forces)?;
-        let parts = Parts::of(&ask, &self.descent.at);
-        let mut efforts = parts.efforts(&self.descent.at.errors);
-        let (mut best, mut steps, mut random) = (self.descent.at.effort, 0, 0);
-        for _ in 1..count {
-            self.wish(&ask, &mut random);
-            if self.descent.aside(&ask, &self.posture, &forces, &self.wish).is_err() {
-                continue;
-            }
-            self.set_aside();
-            let Ok(bottom) = self.descent.go(&ask, &self.aside, &self.aside_forces, &[], &ASIDE) else { continue };
-            steps += bottom.steps;
-            if bottom.violation > ROUGH {
-                continue;
-            }
-            let found = parts.efforts(&self.descent.at.errors);
-            let mixed: f64 = efforts.iter().zip(&found).map(|(a, b)| a.min(*b)).sum();
-            self.aside.values_mut().copy_from_slice(self.posture.values());
-            parts.mix(&ask, &mut self.aside, &efforts, &self.descent.at.posture, &found);
-            self.aside_forces.clone_from(&self.descent.at.forces);
-            if bottom.effort < best * (1.0 - LOWER) {
-                (best, efforts) = (bottom.effort, found);
-                self.keep(limbs.alone);
-            }
-            if mixed < best * (1.0 - LOWER) {
-                let Ok(bottom) = self.descent.go(&ask, &self.aside, &self.aside_forces, &[], &MIXED) else { continue };
-                steps += bottom.steps;
-                if bottom.violation <= ROUGH && bottom.effort < best * (1.0 - LOWER) {
-                    (best, efforts) = (bottom.effort, parts.efforts(&self.descent.at.errors));
-                    self.keep(limbs.alone);
-                }
-            }
-        }
-        Ok(steps)
     }
 
     /// Moves `posture` to the bottom of its own valley, and says whether it did: not if that lies farther away than `most` in any
     /// coordinate, or something that must hold does not.
     pub(super) fn sink(&mut self, ask: &Ask<'_>, posture: &mut Posture, most: f64) -> Result<bool, BodyError> {
-        self.forces.clear();
-        self.forces.extend_from_slice(ask.contact.forces());
-        let bottom = self.descent.go(ask, posture, &self.forces, &[], &SINK)?;
+        let forces = &mut self.lowest.forces;
+        forces.clear();
+        forces.extend_from_slice(ask.contact.forces());
+        let bottom = self.descent.go(ask, posture, forces, &[], &SINK)?;
         let end = &self.descent.at.posture;
         let near = end.values().iter().zip(posture.values()).all(|(a, b)| (a - b).abs() <= most);
         let there = bottom.settled && bottom.violation <= EXACT && near;
@@ -166,20 +148,66 @@ impl Valleys {
         }
         Ok(there)
     }
+}
 
-    /// Where the descent is now is the lowest place so far; limbs by themselves know no forces.
-    fn keep(&mut self, limbs: bool) {
-        self.posture.values_mut().copy_from_slice(self.descent.at.posture.values());
-        if !limbs {
-            self.forces.clone_from(&self.descent.at.forces);
-            self.multipliers.clone_from(&self.descent.multipliers);
-        }
+impl Place {
+    /// It is where the descent is now.
+    fn keep(&mut self, descent: &Descent) {
+        self.keep_posture(descent);
+        self.forces.clone_from(&descent.at.forces);
+        self.multipliers.clone_from(&descent.multipliers);
     }
 
-    /// The next descent begins where this one is.
-    fn set_aside(&mut self) {
-        self.aside.values_mut().copy_from_slice(self.descent.at.posture.values());
-        self.aside_forces.clone_from(&self.descent.at.forces);
+    fn keep_posture(&mut self, descent: &Descent) {
+        self.posture.values_mut().copy_from_slice(descent.at.posture.values());
+    }
+}
+
+impl Look {
+    /// Moves `lowest` to the lowest of so many valleys and returns the number of steps that took.
+    fn search(
+        &mut self,
+        ask: &Ask<'_>,
+        descent: &mut Descent,
+        lowest: &mut Place,
+        count: usize,
+    ) -> Result<usize, BodyError> {
+        descent.begin(ask, &lowest.posture, &lowest.forces)?;
+        let parts = Parts::of(ask, &descent.at);
+        let mut efforts = parts.efforts(&descent.at.errors);
+        let (mut best, mut steps, mut random) = (descent.at.effort, 0, 0);
+        for _ in 1..count {
+            self.wish(ask, &mut random);
+            if descent.aside(ask, &lowest.posture, &lowest.forces, &self.wish).is_err() {
+                continue;
+            }
+            self.aside.keep(descent);
+            let Ok(bottom) = descent.go(ask, &self.aside.posture, &self.aside.forces, &[], &ASIDE) else { continue };
+            steps += bottom.steps;
+            if bottom.violation > ROUGH {
+                continue;
+            }
+            let found = parts.efforts(&descent.at.errors);
+            let mixed: f64 = efforts.iter().zip(&found).map(|(a, b)| a.min(*b)).sum();
+            self.aside.posture.values_mut().copy_from_slice(lowest.posture.values());
+            parts.mix(ask, &mut self.aside.posture, &efforts, &descent.at.posture, &found);
+            self.aside.forces.clone_from(&descent.at.forces);
+            if bottom.effort < best * (1.0 - LOWER) {
+                (best, efforts) = (bottom.effort, found);
+                lowest.keep(descent);
+            }
+            if mixed < best * (1.0 - LOWER) {
+                let Ok(bottom) = descent.go(ask, &self.aside.posture, &self.aside.forces, &[], &MIXED) else {
+                    continue;
+                };
+                steps += bottom.steps;
+                if bottom.violation <= ROUGH && bottom.effort < best * (1.0 - LOWER) {
+                    (best, efforts) = (bottom.effort, parts.efforts(&descent.at.errors));
+                    lowest.keep(descent);
+                }
+            }
+        }
+        Ok(steps)
     }
 
     /// A direction for every unknown: numbers from -1 to 1, times how far each coordinate of a part of the body may go.

@@ -31,10 +31,13 @@ struct Pull {
     /// Body-fixed wrench: force, and moment about the ground origin.
     body_force: Vector3<f64>,
     body_moment: Vector3<f64>,
+    /// There are any.
+    any: bool,
 }
 
 impl Pull {
     fn add(&mut self, other: &Self) {
+        self.any = true;
         self.force += other.force;
         self.virial += other.virial;
         self.couple += other.couple;
@@ -54,7 +57,6 @@ pub struct ExternalTorque {
     pub(super) elements: Vec<f64>,
     center_of_mass: CenterOfMass,
     pulls: Vec<Pull>,
-    pulled: bool,
     /// Some load is a couple or fixed in a segment.
     twisted: bool,
     /// `v_d` of the module's text, by elementary rate: gravity and world-fixed forces.
@@ -70,7 +72,6 @@ impl ExternalTorque {
             elements: vec![0.0; model.elements.len()],
             center_of_mass: CenterOfMass::new(model),
             pulls: vec![Pull::default(); model.mobilities.len()],
-            pulled: false,
             twisted: false,
             bends: vec![Vector3::zeros(); model.elements.len()],
         }
@@ -81,38 +82,64 @@ impl ExternalTorque {
     /// # Errors
     /// [`LoadError`] when a load does not fit the model; nothing is changed then.
     pub fn update(&mut self, model: &Model, kinematics: &Kinematics, loads: &[Load]) -> Result<(), LoadError> {
+        self.pull(model, kinematics, loads)?;
+        self.center_of_mass.gather(model, kinematics);
+        for i in (0..model.mobilities.len()).rev() {
+            let carried = self.center_of_mass.carry(model, i);
+            self.torques_of_weight(model, kinematics, i, carried);
+            self.torques_of_loads(model, kinematics, i);
+        }
+        self.fold(model, kinematics);
+        Ok(())
+    }
+
+    /// Computes `loads` alone, as if the body had no weight; where its centre of mass is stays unknown. Does not allocate.
+    ///
+    /// # Errors
+    /// As [`ExternalTorque::update`].
+    pub(crate) fn update_weightless(
+        &mut self,
+        model: &Model,
+        kinematics: &Kinematics,
+        loads: &[Load],
+    ) -> Result<(), LoadError> {
+        self.pull(model, kinematics, loads)?;
+        self.elements.fill(0.0);
+        self.bends.fill(Vector3::zeros());
+        for i in (0..model.mobilities.len()).rev() {
+            self.torques_of_loads(model, kinematics, i);
+        }
+        self.fold(model, kinematics);
+        Ok(())
+    }
+
+    /// What pulls at each mobility itself.
+    fn pull(&mut self, model: &Model, kinematics: &Kinematics, loads: &[Load]) -> Result<(), LoadError> {
         for load in loads {
             load.check(model)?;
         }
-        self.center_of_mass.gather(model, kinematics);
-        if self.pulled {
-            self.pulls.fill(Pull::default());
-        }
-        self.pulled = !loads.is_empty();
+        self.pulls.iter_mut().filter(|pull| pull.any).for_each(|pull| *pull = Pull::default());
         self.twisted = false;
         for load in loads {
             self.add_load(model, kinematics, load);
         }
-        for i in (0..model.mobilities.len()).rev() {
-            let carried = self.center_of_mass.carry(model, i);
-            if let (true, Some(parent)) = (self.pulled, model.mobilities[i].parent) {
-                let pull = self.pulls[i];
-                self.pulls[parent].add(&pull);
-            }
-            self.torques_of(model, kinematics, i, carried);
-        }
+        Ok(())
+    }
+
+    /// Torques of elementary motions become torques of rates.
+    fn fold(&mut self, model: &Model, kinematics: &Kinematics) {
         if model.direct {
             self.torques.copy_from_slice(&self.elements);
         } else {
             kinematics.fold_elements(model, &self.elements, &mut self.raw);
             kinematics.fold_couplings(model, &self.raw, &mut self.torques);
         }
-        Ok(())
     }
 
     fn add_load(&mut self, model: &Model, kinematics: &Kinematics, load: &Load) {
         let Some(mobility) = model.segments[load.segment].mobility else { return };
         let pull = &mut self.pulls[mobility];
+        pull.any = true;
         let point = kinematics.station(model, load.segment, load.point);
         let mut world = |force: Vector3<f64>| {
             pull.force += force;
@@ -138,15 +165,14 @@ impl ExternalTorque {
         }
     }
 
-    /// Torques and `v_d` of one mobility, whose carried sums are complete.
-    fn torques_of(&mut self, model: &Model, kinematics: &Kinematics, i: usize, carried: Carried) {
+    /// Torques and `v_d` that weight gives one mobility, whose carried sums are complete.
+    fn torques_of_weight(&mut self, model: &Model, kinematics: &Kinematics, i: usize, carried: Carried) {
         let mobility = &model.mobilities[i];
         let gravity = model.gravity;
         let Carried { mass, first_moment } = carried;
         let point = kinematics.origins[i];
         let lever = first_moment - mass * point;
         let along = lever.dot(&gravity);
-        let elements = mobility.rate..mobility.rate + mobility.motion.rates();
         if let Motion::Slide(_) = mobility.motion {
             let axis = kinematics.axes[mobility.rate];
             let force = mass * gravity;
@@ -154,14 +180,23 @@ impl ExternalTorque {
             self.bends[mobility.rate] = axis.cross(&force);
         } else {
             let moment = lever.cross(&gravity);
-            for element in elements.clone() {
+            for element in mobility.rate..mobility.rate + mobility.motion.rates() {
                 let axis = kinematics.axes[element];
                 self.elements[element] = axis.dot(&moment);
                 self.bends[element] = lever * gravity.dot(&axis) - along * axis;
             }
         }
-        if !self.pulled {
+    }
+
+    /// Adds what loads give to torques and `v_d` of one mobility, and hands them on to its parent.
+    fn torques_of_loads(&mut self, model: &Model, kinematics: &Kinematics, i: usize) {
+        if !self.pulls[i].any {
             return;
+        }
+        let mobility = &model.mobilities[i];
+        if let Some(parent) = mobility.parent {
+            let (near, far) = self.pulls.split_at_mut(i);
+            near[parent].add(&far[0]);
         }
         let pull = &self.pulls[i];
         if let Motion::Slide(_) = mobility.motion {
@@ -170,9 +205,10 @@ impl ExternalTorque {
             self.bends[mobility.rate] += axis.cross(&pull.force);
             return;
         }
+        let point = kinematics.origins[i];
         let virial = pull.virial - point * pull.force.transpose();
         let moment = axial(&virial) + pull.couple + (pull.body_moment - point.cross(&pull.body_force));
-        for element in elements {
+        for element in mobility.rate..mobility.rate + mobility.motion.rates() {
             let axis = kinematics.axes[element];
             self.elements[element] += axis.dot(&moment);
             self.bends[element] += virial * axis - virial.trace() * axis;
@@ -207,7 +243,7 @@ impl ExternalTorque {
     pub fn gradient(&self, model: &Model, kinematics: &Kinematics, gradient: &mut Gradient) {
         assert_eq!(gradient.size(), model.rates.len(), "gradient was made for another model");
         let n = model.elements.len();
-        let matrix = gradient.begin(self.twisted);
+        let matrix = gradient.begin(model, self.twisted);
         for (far, range) in model.mobilities.iter().zip(model.ancestor_starts.windows(2)) {
             let nearer = &model.ancestors[range[0]..range[1]];
             let elements = far.rate..far.rate + far.motion.rates();

@@ -20,6 +20,7 @@ pub struct Gradient {
     carried: Vec<f64>,
     /// Entries that plain weights and forces leave at zero may hold something.
     dirty: bool,
+    symmetric: bool,
 }
 
 impl Gradient {
@@ -27,7 +28,7 @@ impl Gradient {
     pub fn new(model: &Model) -> Self {
         let (n, m) = (model.rates.len(), model.elements.len());
         let elements = vec![0.0; if model.direct { 0 } else { m * m }];
-        Self { n, entries: vec![0.0; n * n], elements, carried: vec![0.0; n], dirty: false }
+        Self { n, entries: vec![0.0; n * n], elements, carried: vec![0.0; n], dirty: false, symmetric: true }
     }
 
     /// Number of rows and columns.
@@ -45,14 +46,21 @@ impl Gradient {
         &self.entries[row * self.n..(row + 1) * self.n]
     }
 
+    /// Is it its own mirror image? That of plain weights and forces is, which have a potential, where no ball turns about axes
+    /// that turn with it.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
     /// The matrix of elementary motions. Entries of pairs on different branches, and of slides nearer the root, are zero; what
     /// couples and body-fixed forces (`twisted`) wrote there is cleared, the rest is overwritten every time.
-    pub(super) fn begin(&mut self, twisted: bool) -> &mut [f64] {
+    pub(super) fn begin(&mut self, model: &Model, twisted: bool) -> &mut [f64] {
         let matrix = if self.elements.is_empty() { &mut self.entries } else { &mut self.elements };
         if self.dirty {
             matrix.fill(0.0);
         }
         self.dirty = twisted;
+        self.symmetric = !twisted && model.balls.is_empty();
         matrix
     }
 

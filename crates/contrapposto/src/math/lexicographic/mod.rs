@@ -38,7 +38,7 @@ mod problem;
 mod solver;
 mod space;
 
-pub(crate) use dense::{add_scaled, add_square, add_squares, dot};
+pub(crate) use dense::{add_fours, add_scaled, add_scaled_fours, add_square, add_squares, dot};
 pub use multipliers::Multipliers;
 pub use problem::{Level, Problem, ProblemError};
 pub use solver::{Solver, Status};
