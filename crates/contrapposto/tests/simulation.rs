@@ -5,8 +5,10 @@
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::{Adult, adult, data};
-use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, run};
-use contrapposto::statics::Load;
+use contrapposto::simulation::{
+    Event, ReliefSettings, RunSettings, Scenario, StopReason, StrategySettings, Tables, run,
+};
+use contrapposto::statics::{Load, LoadKind};
 
 /// The reference man's right arm, elbow free, `load` kg in the hand, an elbow curve that can carry it.
 fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
@@ -96,4 +98,28 @@ fn the_same_scenario_gives_the_same_bits() {
         (bits, summary)
     };
     assert!(record() == record(), "two runs differ");
+}
+
+/// Who waits for something to happen is not done when nothing moves any more.
+#[test]
+fn a_settled_run_waits_for_what_is_to_come() {
+    let (mut scenario, _) = loaded_elbow(10.0, 600.0);
+    scenario.start_fatigue.fill([0.7; 2]);
+    scenario.run.stop_when_settled = true;
+    let alone = run(&scenario, |_| {}).unwrap();
+    assert_eq!(alone.reason, StopReason::Settled);
+    let time = alone.end_time + 5.0;
+    let heavier = vec![Load { kind: LoadKind::Weight(11.0), ..scenario.loads[0] }];
+    scenario.events = vec![Event { time, loads: Some(heavier), ..Event::default() }];
+    let mut at_the_event = None;
+    let summary = run(&scenario, |sample| {
+        if sample.time + 1e-9 >= time {
+            at_the_event.get_or_insert(sample.external.to_vec());
+        } else if sample.time == alone.end_time {
+            assert!(sample.settled);
+        }
+    })
+    .unwrap();
+    println!("settled at {:.2} s; with something to come at {:.2} s", alone.end_time, summary.end_time);
+    assert!(summary.end_time >= time && at_the_event.is_some());
 }

@@ -49,8 +49,20 @@ pub struct RunSettings {
     pub duration: f64,
     /// Time step, s, positive.
     pub step: f64,
-    /// End as soon as relief no longer moves anything.
+    /// End as soon as relief no longer moves anything and no event is to come.
     pub stop_when_settled: bool,
+}
+
+impl RunSettings {
+    /// Steps after the first sample; rounding does not lose the last one of a whole number of them.
+    pub fn steps(&self) -> u64 {
+        (self.duration / self.step + 1e-9).floor() as u64
+    }
+
+    /// Time of the last sample, s.
+    pub fn end(&self) -> f64 {
+        self.steps() as f64 * self.step
+    }
 }
 
 /// What the body should do besides finding relief.
