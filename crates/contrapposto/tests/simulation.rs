@@ -6,7 +6,7 @@ use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::{Adult, adult, data};
 use contrapposto::simulation::{
-    Event, ReliefSettings, RunSettings, Scenario, StopReason, StrategySettings, Tables, run,
+    Event, ReliefSettings, RunSettings, Sample, Scenario, StopReason, StrategySettings, Tables, run,
 };
 use contrapposto::statics::{Load, LoadKind};
 
@@ -122,4 +122,46 @@ fn a_settled_run_waits_for_what_is_to_come() {
     .unwrap();
     println!("settled at {:.2} s; with something to come at {:.2} s", alone.end_time, summary.end_time);
     assert!(summary.end_time >= time && at_the_event.is_some());
+}
+
+/// Where nothing moves, a coarse time step tires as a fine one does, under loads that come and go.
+#[test]
+fn fatigue_does_not_depend_on_the_time_step() {
+    let (mut scenario, elbow) = loaded_elbow(4.0, 600.0);
+    scenario.free.fill(false);
+    scenario.hysteresis = Hysteresis { critical_level: 1.0, recovery_level: 0.0 };
+    let load = |kilograms| Some(vec![Load { kind: LoadKind::Weight(kilograms), ..scenario.loads[0] }]);
+    let loads = [load(1.0), load(7.0), Some(vec![]), load(3.0)];
+    scenario.events = (60..)
+        .step_by(60)
+        .zip(loads)
+        .map(|(at, loads)| Event { time: f64::from(at), loads, ..Event::default() })
+        .collect();
+    let integral = data::library().endurance("freylaw_avin_2010_elbow").unwrap().0;
+    for law in [None, Some(integral)] {
+        if let Some(law) = law {
+            scenario.model = scenario.model.with_fatigue(elbow, &law);
+        }
+        let mut course = |step: f64| {
+            scenario.run.step = step;
+            let mut levels = vec![];
+            let note = |sample: &Sample| {
+                let minutes = sample.time / 60.0;
+                if (minutes - minutes.round()).abs() < 1e-9 {
+                    levels.extend(sample.fatigue[elbow]);
+                }
+            };
+            run(&scenario, note).unwrap();
+            levels
+        };
+        let fine = course(0.005);
+        assert!(fine.len() == 22 && fine.iter().any(|level| *level > 0.4) && fine.iter().all(|level| *level < 0.99));
+        for step in [1.0 / 30.0, 0.1, 1.0, 10.0, 60.0] {
+            let course = course(step);
+            assert_eq!(course.len(), fine.len());
+            let worst = course.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            println!("steps of {step:.3} s: fatigue is another one by {worst:.1e} at most");
+            assert!(worst < 1e-9);
+        }
+    }
 }

@@ -47,7 +47,7 @@ pub struct ReliefSettings {
 pub struct RunSettings {
     /// Simulated time, s, not negative.
     pub duration: f64,
-    /// Time step, s, positive.
+    /// Time step, s, positive. Loads count as constant from one sample to the next.
     pub step: f64,
     /// End as soon as relief no longer moves anything and no event is to come.
     pub stop_when_settled: bool,
