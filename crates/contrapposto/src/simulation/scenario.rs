@@ -9,7 +9,7 @@ use crate::ik::task::{Task, TaskError};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::relax::RelaxError;
-use crate::statics::{Load, LoadError};
+use crate::statics::{Load, LoadError, PassiveTorqueError};
 
 /// Which reading of Tables 1 and 2 decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,6 +147,9 @@ pub enum ScenarioError {
     /// An event has thrown the body off balance; nothing near holds it.
     #[error("{0}")]
     Falls(Fall),
+    /// A passive law gives no torque in a posture.
+    #[error(transparent)]
+    Passive(#[from] PassiveTorqueError),
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
     Relax(#[from] RelaxError),
