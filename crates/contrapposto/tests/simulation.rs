@@ -122,6 +122,13 @@ fn a_settled_run_waits_for_what_is_to_come() {
     .unwrap();
     println!("settled at {:.2} s; with something to come at {:.2} s", alone.end_time, summary.end_time);
     assert!(summary.end_time >= time && at_the_event.is_some());
+    // The earliest comes first, and each has a time.
+    let at = |time: f64| Event { time, ..scenario.events[0].clone() };
+    for times in [[1.0, 0.5], [f64::NAN, 1.0], [1.0, f64::INFINITY], [-1.0, 0.0]] {
+        let scenario = Scenario { events: times.map(at).to_vec(), ..scenario.clone() };
+        let error = run(&scenario, |_| {}).unwrap_err().to_string();
+        assert!(error.starts_with("time of an event (s) is "), "{error}");
+    }
 }
 
 /// Where nothing moves, a coarse time step tires as a fine one does, under loads that come and go.

@@ -218,8 +218,11 @@ impl Scenario {
         setting(self.free.len() as f64 == count, "number of free flags", self.free.len() as f64, "one a coordinate")?;
         let given = self.strategies.len() as f64;
         setting(given == 0.0 || given == count, "number of strategies", given, "none, or one a coordinate")?;
+        let mut before = 0.0;
         for event in &self.events {
-            setting(event.time >= 0.0 && event.time.is_finite(), "time of an event (s)", event.time, "not negative")?;
+            let accepted = "finite, not negative, and not before the event before it";
+            setting(event.time >= before && event.time.is_finite(), "time of an event (s)", event.time, accepted)?;
+            before = event.time;
             event.loads.iter().flatten().try_for_each(|load| load.check(&self.model))?;
             let given = event.strategies.as_ref().map_or(count, |list| list.len() as f64);
             setting(given == count, "number of strategies", given, "none, or one a coordinate")?;
