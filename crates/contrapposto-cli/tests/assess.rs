@@ -109,7 +109,7 @@ fn standing(model: &Model, supports: &[Support]) -> (String, String) {
         }
         kinematics.update(model, &posture).unwrap();
         external.update(model, &kinematics, &[]).unwrap();
-        passive.update(model, &kinematics);
+        passive.update(model, &kinematics).unwrap();
         let balance = contact.update(model, &kinematics, external.torques(), passive.torques());
         assert_eq!(balance, Balance::Held, "at {time} s");
         write!(ground, "{time}").unwrap();

@@ -719,6 +719,48 @@ fn ground_reaction_and_motion_give_back_the_torques() {
     assert!(worst < 1e-9, "{worst}");
 }
 
+/// How many runs must have been killed: a few, or as many as `CONTRAPPOSTO_KILLS` says. Five hundred of each kind:
+///
+/// ```text
+/// CONTRAPPOSTO_KILLS=500 cargo test -p contrapposto-cli --test simulate kill -- --nocapture
+/// ```
+fn kills() -> u32 {
+    std::env::var("CONTRAPPOSTO_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(12)
+}
+
+/// Starts run after run and kills each at a moment of its own until enough were killed before they were done. `seconds`: what a
+/// whole run takes. `start` gets the number of the run; `look` sees what each left behind, and whether it was done.
+fn killed_over_and_over(
+    mut seconds: f64,
+    start: impl Fn(u32) -> support::Call,
+    mut look: impl FnMut(u32, bool),
+) -> u32 {
+    let (mut killed, mut runs) = (0, 0);
+    while killed < kills() {
+        let mut child = start(runs).spawn();
+        // Golden-ratio steps over a little more than a whole run, most of them near its end, where files appear.
+        let share = (f64::from(runs) * 0.618_034).fract();
+        let moment = if runs.is_multiple_of(3) { share } else { 0.7 + 0.5 * share };
+        std::thread::sleep(Duration::from_secs_f64(seconds * moment));
+        let _ = child.kill();
+        let done = child.wait().unwrap().success();
+        look(runs, done);
+        killed += u32::from(!done);
+        // Machines are busy at times.
+        seconds *= if done { 0.93 } else { 1.03 };
+        runs += 1;
+        assert!(runs < 20 * kills() + 100, "{killed} of {runs} runs were killed in time");
+    }
+    runs
+}
+
+/// Files that have a name.
+fn named(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files = contents(folder);
+    files.retain(|(name, _)| !name.starts_with(".contrapposto-"));
+    files
+}
+
 /// Killed at any moment, a named file is whole: the old one or the new one.
 #[test]
 fn a_kill_leaves_no_half_written_file() {
@@ -734,33 +776,68 @@ fn a_kill_leaves_no_half_written_file() {
     assert!(whole_one != whole_two);
     let out = folder.path().join("out");
     std::fs::create_dir(&out).unwrap();
-    let kills = 32;
-    let (mut whole, mut killed) = (0, 0);
-    for i in 0..kills {
-        let scenario = if i % 2 == 0 { &one } else { &two };
-        let mut child = contrapposto(["simulate"]).arg(scenario).arg("--out").arg(&out).spawn();
-        // Golden-ratio steps over a little more than a whole run, most of them near its end, where files appear.
-        let share = (f64::from(i) * 0.618_034).fract();
-        let moment = if i % 3 == 0 { share } else { 0.7 + 0.5 * share };
-        std::thread::sleep(Duration::from_secs_f64(full * moment));
-        let _ = child.kill();
-        killed += u32::from(!child.wait().unwrap().success());
-        for (name, bytes) in contents(&out) {
-            if name.starts_with(".contrapposto-") {
-                continue; // has no name yet
-            }
+    let mut whole = 0;
+    let start = |run: u32| {
+        let scenario = if run.is_multiple_of(2) { &one } else { &two };
+        contrapposto(["simulate"]).arg(scenario).arg("--out").arg(&out)
+    };
+    let runs = killed_over_and_over(full, start, |run, _| {
+        for (name, bytes) in named(&out) {
             let at = FILES.iter().position(|file| *file == name).unwrap_or_else(|| panic!("stray {name}"));
-            assert!(bytes == whole_one[at].1 || bytes == whole_two[at].1, "{name} is torn, kill {i}");
+            assert!(bytes == whole_one[at].1 || bytes == whole_two[at].1, "{name} is torn, run {run}");
             whole += 1;
         }
-    }
-    println!("{kills} runs, {killed} killed in time, {whole} named files seen, all whole; a run takes {full:.2} s");
-    // How many depends on how busy the machine is.
-    assert!(killed > 0);
+    });
+    println!("{runs} runs, {} killed in time, {whole} named files seen, all whole; a run takes {full:.2} s", kills());
     // Running again finishes as if nothing had happened.
     assert_eq!(simulate(&one, &out, &[]).code, 0);
-    let named: Vec<_> = contents(&out).into_iter().filter(|(name, _)| !name.starts_with('.')).collect();
-    assert!(named == whole_one);
+    assert!(named(&out) == whole_one);
+}
+
+/// Killed at any moment while it goes on from where it was left, a run can be taken up again, to the bytes of an unbroken one.
+#[cfg(unix)]
+#[test]
+fn a_killed_run_is_taken_up_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("stand-relaxed.toml");
+    let (unbroken, out) = (folder.path().join("unbroken"), folder.path().join("out"));
+    let full = simulate(&scenario, &unbroken, &[]).seconds;
+    let unbroken = contents(&unbroken);
+    let left = out.join("snapshot.json");
+    for wait in (1..20).cycle().map(|k| 0.05 * f64::from(k) * full).take(100) {
+        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).spawn();
+        std::thread::sleep(Duration::from_secs_f64(wait));
+        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let _ = child.wait_with_output().unwrap();
+        // Left on its way, not at its very start.
+        let snapshot = std::fs::read_to_string(&left).unwrap_or_default();
+        if snapshot.contains("\"samples\":") && !snapshot.contains("\"samples\":0") {
+            break;
+        }
+    }
+    let (snapshot, partial) = (std::fs::read(&left).unwrap(), named(&out));
+    let rest = simulate(&scenario, &out, &["--resume"]).seconds;
+    std::fs::write(&left, &snapshot).unwrap();
+    let start = |_| contrapposto(["simulate", "--resume"]).arg(&scenario).arg("--out").arg(&out);
+    let (mut finished, mut taken_up) = (0, 0);
+    let runs = killed_over_and_over(rest, start, |run, done| {
+        for (name, bytes) in named(&out) {
+            let is = |files: &[(String, Vec<u8>)]| files.contains(&(name.clone(), bytes.clone()));
+            assert!(is(&partial) || is(&unbroken), "{name} is torn, run {run}");
+        }
+        if done {
+            finished += 1;
+            assert!(named(&out) == unbroken, "run {run} came to something else");
+        } else {
+            taken_up += 1;
+        }
+        if !left.is_file() {
+            std::fs::write(&left, &snapshot).unwrap();
+        }
+    });
+    println!("{runs} runs, {taken_up} killed in time, {finished} came to the end; one takes {rest:.2} s");
+    assert_eq!(simulate(&scenario, &out, &["--resume"]).code, 0);
+    assert!(named(&out) == unbroken, "a killed run, taken up again, differs from an unbroken one");
 }
 
 #[test]

@@ -1,12 +1,11 @@
-//! What changes during a run: strategies, loads, targets. And whatever happens, a run is left and taken up again, or done by
-//! many threads, to the same bits.
+//! What changes during a run: strategies, loads, targets.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
 
 use contrapposto::model::Model;
-use contrapposto::simulation::{Fall, Run, Sample, Scenario, Snapshot, StopReason, Summary};
+use contrapposto::simulation::{Fall, Run, Sample, Scenario, StopReason, Summary};
 use contrapposto_formats::read_scenario;
 
 fn scenario(text: &str) -> Scenario {
@@ -136,81 +135,4 @@ fn a_target_is_moved_and_the_hand_follows() {
         assert!(!there || off < 1e-4, "{} s: {off} m", sample.time);
         assert!(imbalance(&scenario.model, sample) < 1e-8);
     });
-}
-
-/// What a run shows, to the bit.
-fn bits(samples: &mut Vec<u64>, sample: &Sample) {
-    let parts = [sample.posture, sample.external, sample.passive, sample.load];
-    samples.extend(parts.into_iter().flatten().chain(sample.fatigue.iter().flatten()).map(|v| v.to_bits()));
-    samples.extend(sample.standing.iter().flat_map(|s| s.contacts.iter().map(|c| c.force.y.to_bits())));
-}
-
-/// Tired muscles, a load, a new wish and a new target; taken up again between any of them.
-const MUCH: &str = "[[event]]\nat_s = 10\nload = [{ segment = \"hand_r\", mass_kg = 6 }]\n\
-    [[event]]\nat_s = 32\nstrategy = \"passive\"\n[[event]]\nat_s = 50\ntask = 1\ntarget_m = [0.35, 1.15, 0.1]\n\
-    [[event]]\nat_s = 58\nstrategy_of = { spine = \"active\" }\nload = []\n\
-    [fatigue]\ncritical_level = 0.1\nrecovery_level = 0.05\n";
-
-#[test]
-fn from_every_mark_the_run_goes_on_to_the_same_bits() {
-    let scenario = scenario(&with("hold-tool.toml", 70.0, MUCH));
-    let mut run = Run::new(&scenario).unwrap();
-    let (mut all, mut starts, mut marks) = (vec![], vec![], Vec::<Snapshot>::new());
-    loop {
-        starts.push(all.len());
-        let Some(sample) = run.next_sample().unwrap() else { break };
-        bits(&mut all, &sample);
-        if marks.last() != Some(run.snapshot()) {
-            marks.push(run.snapshot().clone());
-        }
-    }
-    println!(
-        "{} samples, {} reliefs, marks at {:?}",
-        starts.len() - 1,
-        run.summary().reliefs.count,
-        marks.iter().map(|m| m.samples).collect::<Vec<_>>()
-    );
-    assert!(marks.len() == 3 && run.summary().reliefs.count > 5);
-    for mark in marks {
-        let from = starts[mark.samples as usize];
-        let mut again = Run::resume(&scenario, mark).unwrap();
-        let mut rest = vec![];
-        while let Some(sample) = again.next_sample().unwrap() {
-            bits(&mut rest, &sample);
-        }
-        assert!(rest == all[from..]);
-        assert_eq!(again.summary(), run.summary());
-    }
-}
-
-/// Eight at once disturb each other as little as one by one.
-#[test]
-fn any_number_of_threads_gives_the_same_bits() {
-    let texts =
-        [with("hold-tool.toml", 12.0, MUCH), with("stand-relaxed.toml", 12.0, ""), with("crouch.toml", 12.0, "")];
-    let scenarios = texts.map(|text| scenario(&text));
-    let one = |scenario: &Scenario| {
-        let mut samples = vec![];
-        followed(scenario, |sample| bits(&mut samples, sample));
-        samples
-    };
-    let alone = scenarios.each_ref().map(one);
-    for threads in [2, 3, 8_usize] {
-        std::thread::scope(|scope| {
-            let running: Vec<_> = (0..threads)
-                .map(|i| {
-                    (
-                        i % 3,
-                        scope.spawn({
-                            let scenario = &scenarios[i % 3];
-                            move || one(scenario)
-                        }),
-                    )
-                })
-                .collect();
-            for (i, thread) in running {
-                assert!(thread.join().unwrap() == alone[i], "{threads} threads, scenario {i}");
-            }
-        });
-    }
 }

@@ -301,6 +301,28 @@ fn events_follow_one_another() {
     assert_eq!((look.target.x, point.target.x), (1.0, 0.3));
 }
 
+/// An event at the very end happens; one after the last whole step does not, and is refused.
+#[test]
+fn an_event_is_not_passed_over() {
+    let at = |time: &str, run: &str| {
+        let text = WHOLE.replace("at_s = 0.1\n", &format!("at_s = {time}\n"));
+        read_whole(&text.replace("duration_s = 0.2\nstep_s = 0.05", run)).map_err(|error| complaint(&error))
+    };
+    let scenario = at("0.2", "duration_s = 0.2\nstep_s = 0.05").unwrap();
+    let (mut weight, mut end) = (0.0, 0.0);
+    run(&scenario, |sample| {
+        weight = sample.standing.unwrap().contacts.iter().map(|contact| contact.force.y).sum();
+        end = sample.time;
+    })
+    .unwrap();
+    let gravity = scenario.model.gravity().norm();
+    assert!((weight - gravity * (scenario.model.mass() + 3.0) - 5.0).abs() < 1e-6, "{weight} N at {end} s");
+    // A thirtieth three hundred times is ten seconds.
+    assert!(at("10", "duration_s = 10").is_ok());
+    let text = at("9.99", "duration_s = 10\nstep_s = 0.3").unwrap_err();
+    assert!(text.contains("it is at 9.99 s, the last step of the run at 9.9 s"), "{text}");
+}
+
 /// What replaces a line of the whole body's scenario; where the complaint points, and a part of it.
 #[test]
 fn mistakes_are_refused_where_they_stand() {
@@ -339,6 +361,14 @@ fn mistakes_are_refused_where_they_stand() {
             "did you mean `passive`|there are: active, passive",
         ),
         ("at_s = 0.1", "at_s = -0.1", "column 8", "must not be negative"),
+        (
+            "at_s = 0.1",
+            "at_s = 0.21",
+            "column 8",
+            "event 1 would never happen: it is at 0.21 s, the last step of the run at 0.2 s",
+        ),
+        ("at_s = 0.05", "at_s = 1e300", "column 8", "event 2 would never happen: it is at 1e300 s"),
+        ("at_s = 0.1", "at_s = nan", "column 8", "`nan` is not a finite number"),
         ("at_s = 0.1", "", "column 1", "`at_s` is missing"),
         ("strategy = \"active\"", "strategy = \"ready\"", "column 12", "unknown value `ready`"),
         ("strategy_of = { arms", "strategy_of = { armes", "column 17", "did you mean `arms`"),

@@ -156,6 +156,10 @@ fn what_is_not_in_order_is_refused() {
     let try_it = |motion: &[(f64, Posture)]| assess(&model, motion, |_, _, _| {}, &AssessSettings::default(), |_| {});
     assert!(matches!(try_it(&[at(0.0), at(2e5)]), Err(AssessError::TooLong(_))));
     assert!(matches!(try_it(&[at(1.0), at(2.0), at(1.5)]), Err(AssessError::Order { index: 2, .. })));
+    assert!(matches!(try_it(&[at(f64::NAN), at(2.0)]), Err(AssessError::Order { index: 0, .. })));
+    for none in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(matches!(try_it(&[at(1.0), at(none), at(2.0)]), Err(AssessError::Order { index: 1, .. })));
+    }
     assert!(matches!(try_it(&[at(0.0), (1.0, Posture::new(vec![0.0]))]), Err(AssessError::Posture { index: 1, .. })));
     assert_eq!(try_it(&[]).unwrap().groups.iter().filter(|group| group.peak_load.value > 0.0).count(), 0);
 }

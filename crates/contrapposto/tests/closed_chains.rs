@@ -32,7 +32,7 @@ impl Scale<'_> {
     fn weigh(&mut self, posture: &Posture, rate: usize) -> Option<f64> {
         self.kinematics.update(self.model, posture).unwrap();
         self.external.update(self.model, &self.kinematics, self.loads).unwrap();
-        self.passive.update(self.model, &self.kinematics);
+        self.passive.update(self.model, &self.kinematics).unwrap();
         let (external, passive) = (self.external.torques(), self.passive.torques());
         let balance = self.contact.update(self.model, &self.kinematics, external, passive);
         let torque = external[rate] + passive[rate] + self.contact.torques()[rate];

@@ -61,7 +61,7 @@ impl Stand {
     fn update(&mut self, posture: &Posture) -> Balance {
         self.kinematics.update(&self.model, posture).unwrap();
         self.external.update(&self.model, &self.kinematics, &self.loads).unwrap();
-        self.passive.update(&self.model, &self.kinematics);
+        self.passive.update(&self.model, &self.kinematics).unwrap();
         self.contact.update(&self.model, &self.kinematics, self.external.torques(), self.passive.torques())
     }
 

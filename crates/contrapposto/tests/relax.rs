@@ -96,7 +96,7 @@ fn imbalance(standing: &Standing, engine: &Engine<'_>, posture: &Posture) -> f64
     let mut body = Body::new(model);
     body.update(model, posture, &loads, Needs { torque: true, center_of_mass: true }).unwrap();
     let mut passive = PassiveTorque::new(model);
-    passive.update(model, body.kinematics());
+    passive.update(model, body.kinematics()).unwrap();
     let weight = model.mass() * 9.81;
     let residual = |&rate: &usize| {
         let size = if model.rates()[rate].rotational { weight * 1.65 } else { weight };

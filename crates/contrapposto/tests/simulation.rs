@@ -5,8 +5,10 @@
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::{Adult, adult, data};
-use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, run};
-use contrapposto::statics::Load;
+use contrapposto::simulation::{
+    Event, ReliefSettings, RunSettings, Sample, Scenario, StopReason, StrategySettings, Tables, run,
+};
+use contrapposto::statics::{Load, LoadKind};
 
 /// The reference man's right arm, elbow free, `load` kg in the hand, an elbow curve that can carry it.
 fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
@@ -96,4 +98,77 @@ fn the_same_scenario_gives_the_same_bits() {
         (bits, summary)
     };
     assert!(record() == record(), "two runs differ");
+}
+
+/// Who waits for something to happen is not done when nothing moves any more.
+#[test]
+fn a_settled_run_waits_for_what_is_to_come() {
+    let (mut scenario, _) = loaded_elbow(10.0, 600.0);
+    scenario.start_fatigue.fill([0.7; 2]);
+    scenario.run.stop_when_settled = true;
+    let alone = run(&scenario, |_| {}).unwrap();
+    assert_eq!(alone.reason, StopReason::Settled);
+    let time = alone.end_time + 5.0;
+    let heavier = vec![Load { kind: LoadKind::Weight(11.0), ..scenario.loads[0] }];
+    scenario.events = vec![Event { time, loads: Some(heavier), ..Event::default() }];
+    let mut at_the_event = None;
+    let summary = run(&scenario, |sample| {
+        if sample.time + 1e-9 >= time {
+            at_the_event.get_or_insert(sample.external.to_vec());
+        } else if sample.time == alone.end_time {
+            assert!(sample.settled);
+        }
+    })
+    .unwrap();
+    println!("settled at {:.2} s; with something to come at {:.2} s", alone.end_time, summary.end_time);
+    assert!(summary.end_time >= time && at_the_event.is_some());
+    // The earliest comes first, and each has a time.
+    let at = |time: f64| Event { time, ..scenario.events[0].clone() };
+    for times in [[1.0, 0.5], [f64::NAN, 1.0], [1.0, f64::INFINITY], [-1.0, 0.0]] {
+        let scenario = Scenario { events: times.map(at).to_vec(), ..scenario.clone() };
+        let error = run(&scenario, |_| {}).unwrap_err().to_string();
+        assert!(error.starts_with("time of an event (s) is "), "{error}");
+    }
+}
+
+/// Where nothing moves, a coarse time step tires as a fine one does, under loads that come and go.
+#[test]
+fn fatigue_does_not_depend_on_the_time_step() {
+    let (mut scenario, elbow) = loaded_elbow(4.0, 600.0);
+    scenario.free.fill(false);
+    scenario.hysteresis = Hysteresis { critical_level: 1.0, recovery_level: 0.0 };
+    let load = |kilograms| Some(vec![Load { kind: LoadKind::Weight(kilograms), ..scenario.loads[0] }]);
+    let loads = [load(1.0), load(7.0), Some(vec![]), load(3.0)];
+    scenario.events = (60..)
+        .step_by(60)
+        .zip(loads)
+        .map(|(at, loads)| Event { time: f64::from(at), loads, ..Event::default() })
+        .collect();
+    let integral = data::library().endurance("freylaw_avin_2010_elbow").unwrap().0;
+    for law in [None, Some(integral)] {
+        if let Some(law) = law {
+            scenario.model = scenario.model.with_fatigue(elbow, &law);
+        }
+        let mut course = |step: f64| {
+            scenario.run.step = step;
+            let mut levels = vec![];
+            let note = |sample: &Sample| {
+                let minutes = sample.time / 60.0;
+                if (minutes - minutes.round()).abs() < 1e-9 {
+                    levels.extend(sample.fatigue[elbow]);
+                }
+            };
+            run(&scenario, note).unwrap();
+            levels
+        };
+        let fine = course(0.005);
+        assert!(fine.len() == 22 && fine.iter().any(|level| *level > 0.4) && fine.iter().all(|level| *level < 0.99));
+        for step in [1.0 / 30.0, 0.1, 1.0, 10.0, 60.0] {
+            let course = course(step);
+            assert_eq!(course.len(), fine.len());
+            let worst = course.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            println!("steps of {step:.3} s: fatigue is another one by {worst:.1e} at most");
+            assert!(worst < 1e-9);
+        }
+    }
 }

@@ -173,7 +173,7 @@ fn stiffness_is_the_central_difference_of_torque() {
                         moved.displace(&model, &step);
                         kinematics.update(&model, &moved).unwrap();
                         external.update(&model, kinematics, &loads).unwrap();
-                        passive.update(&model, kinematics);
+                        passive.update(&model, kinematics).unwrap();
                         for (part, torques) in numeric.iter_mut().zip([passive.torques(), external.torques()]) {
                             part.iter_mut().zip(torques).for_each(|(sum, torque)| *sum -= sign * torque / (2.0 * h));
                         }
@@ -221,7 +221,7 @@ fn standing(model: &Model, posture: &Posture, supports: &[Support]) -> (Body, Ve
     let mut body = Body::new(model);
     body.update(model, posture, &[], NEEDS).unwrap();
     let mut passive = PassiveTorque::new(model);
-    passive.update(model, body.kinematics());
+    passive.update(model, body.kinematics()).unwrap();
     let mut contact = ContactForces::new(model, supports.to_vec()).unwrap();
     let balance = contact.update(model, body.kinematics(), body.external_torque().torques(), passive.torques());
     assert_eq!(balance, Balance::Held);

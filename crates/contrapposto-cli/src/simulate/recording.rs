@@ -46,7 +46,7 @@ pub(crate) struct Row<'a> {
 impl Recording {
     pub(crate) fn new(scenario: &Scenario) -> Self {
         let coordinates = scenario.model.coordinates().len();
-        let samples = (scenario.run.duration / scenario.run.step).floor() + 1.0;
+        let samples = (scenario.run.steps() + 1) as f64;
         let rows = (MOST_VALUES / coordinates.max(1) as f64).max(1.0);
         Self {
             every: (samples / rows).ceil().max(1.0) as u64,

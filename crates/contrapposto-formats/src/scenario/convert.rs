@@ -93,7 +93,22 @@ pub(super) fn scenario(at: &Located, text: &ScenarioText, model: Option<Model>) 
         run: RunSettings { duration: run.duration_s, step: run.step_s, stop_when_settled: run.stop_when_settled },
     };
     scenario.check().map_err(|error| at.error(&place(&error), told(&error, text, run), None))?;
+    check_events_happen(at, text, &scenario.run)?;
     Ok(scenario)
+}
+
+/// An event after the last step of the run would be passed over in silence.
+fn check_events_happen(at: &Located, text: &ScenarioText, run: &RunSettings) -> Result<(), InputError> {
+    for (i, event) in text.event.iter().enumerate() {
+        if event.at_s > run.end() + 1e-9 {
+            let (time, end) = (shown(event.at_s), shown((run.end() * 1e9).round() / 1e9));
+            let message =
+                format!("event {} would never happen: it is at {time} s, the last step of the run at {end} s", i + 1);
+            let help = Some("lengthen `duration_s` of [run], or leave the event out".to_owned());
+            return Err(at.error(&["event", &i.to_string(), "at_s"], message, help));
+        }
+    }
+    Ok(())
 }
 
 /// Format and title, which every scenario has.

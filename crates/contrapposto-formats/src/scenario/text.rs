@@ -59,7 +59,7 @@ pub struct ScenarioText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EventText {
-    /// When, s.
+    /// When, s; before the run ends.
     pub at_s: f64,
     /// Strategy of the whole body from then on.
     pub strategy: Option<StrategyKindText>,
@@ -380,7 +380,7 @@ pub struct RunText {
     /// Time step, s; a thirtieth when left out.
     #[serde(default = "default_step")]
     pub step_s: f64,
-    /// End as soon as relief no longer moves anything.
+    /// End as soon as relief no longer moves anything and no event is to come.
     #[serde(default)]
     pub stop_when_settled: bool,
 }

@@ -141,10 +141,11 @@ impl ContactForces {
         self.hard_levels(external, passive);
         for _ in 0..SIGNS {
             self.effort_level(model, kinematics, external, passive);
-            // Every number was checked with the supports and the model.
             if !matches!(self.solver.solve_next(&self.problem), Ok(Status::Solved | Status::Infeasible { .. })) {
                 self.solver.forget();
-                let _ = self.solver.solve(&self.problem);
+                if self.solver.solve(&self.problem).is_err() {
+                    return self.give_up();
+                }
             }
             self.forces.copy_from_slice(self.solver.solution());
             self.sum();
@@ -154,6 +155,15 @@ impl ContactForces {
         }
         self.balance = self.judge();
         self.write_loads();
+        self.balance
+    }
+
+    /// Given torques that are no numbers, or too large: nothing holds.
+    fn give_up(&mut self) -> Balance {
+        self.forces.fill(0.0);
+        self.sum();
+        self.write_loads();
+        self.balance = Balance::Short { force: f64::INFINITY, moment: f64::INFINITY };
         self.balance
     }
 

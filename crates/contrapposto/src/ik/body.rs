@@ -3,7 +3,7 @@
 use crate::kinematics::{CenterOfMass, Kinematics};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
-use crate::statics::{ExternalTorque, Gradient, Load, LoadError};
+use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorqueError};
 
 /// What must be computed beyond frames and axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +32,9 @@ pub enum BodyError {
     /// A load does not fit the model.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// A passive law gives no torque in the posture.
+    #[error(transparent)]
+    Passive(#[from] PassiveTorqueError),
 }
 
 /// A model in a posture. Depends on posture and loads; filled by [`Body::update`].

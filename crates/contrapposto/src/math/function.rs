@@ -139,6 +139,17 @@ impl Function {
         }
     }
 
+    /// The numbers that it was made of.
+    pub fn numbers(&self) -> Vec<f64> {
+        match self {
+            Self::Constant(value) => vec![*value],
+            Self::Linear { slope, intercept } => vec![*slope, *intercept],
+            Self::Polynomial(coefficients) => coefficients.clone(),
+            Self::Sine { amplitude, omega, phase, offset } => vec![*amplitude, *omega, *phase, *offset],
+            Self::Spline(spline) | Self::NaturalSpline(spline) => spline.points().flat_map(|(x, y)| [x, y]).collect(),
+        }
+    }
+
     /// Whether it gives back what it is given.
     #[must_use]
     pub fn is_identity(&self) -> bool {

@@ -144,6 +144,9 @@ impl ModelBuilder {
             }
             check_coordinate(coordinate)?;
         }
+        if let JointKind::Driven(motions) = &spec.kind {
+            motions.iter().try_for_each(|(_, drive)| check_drive(&spec.joint, drive))?;
+        }
 
         let (mut mobility, mut rest) = match parent {
             None => (None, spec.in_parent),
@@ -238,6 +241,7 @@ impl ModelBuilder {
         if std::iter::successors(Some(i), |&c| leader(c)).any(|c| c == d) {
             return refuse("it would follow itself");
         }
+        check_size(dependent, "number of the function it follows", &function.numbers())?;
         self.model.couplings.push(Coupling { dependent: d, independent: i, function });
         Ok(())
     }
@@ -357,6 +361,14 @@ fn check_segment(spec: &SegmentSpec, motions: &[Motion]) -> Result<(), ModelErro
         }
     }
     Ok(())
+}
+
+fn check_drive(joint: &str, drive: &Drive) -> Result<(), ModelError> {
+    match drive {
+        Drive::Coordinate(_) => Ok(()),
+        Drive::Function(function, _) => check_size(joint, "number of a function of the joint", &function.numbers()),
+        Drive::Fixed(value) => check_size(joint, "fixed angle or distance (rad or m)", &[*value]),
+    }
 }
 
 fn check_size(name: &str, what: &'static str, values: &[f64]) -> Result<(), ModelError> {

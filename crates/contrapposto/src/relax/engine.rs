@@ -291,7 +291,7 @@ impl<'a> Engine<'a> {
     /// Computes everything that depends on the posture, contact forces included.
     ///
     /// # Errors
-    /// [`RelaxError::Body`] when the posture does not fit the model.
+    /// [`RelaxError::Body`] when the posture does not fit the model, or a passive law gives no torque in it.
     pub fn see(&mut self, posture: &Posture) -> Result<(), RelaxError> {
         if self.seen && self.body.posture() == posture {
             return Ok(());
@@ -299,7 +299,7 @@ impl<'a> Engine<'a> {
         self.seen = false;
         self.kinematics.update(self.model, posture).map_err(BodyError::from)?;
         self.external.update(self.model, &self.kinematics, &self.loads).map_err(BodyError::from)?;
-        self.passive.update(self.model, &self.kinematics);
+        self.passive.update(self.model, &self.kinematics).map_err(BodyError::from)?;
         self.contact.update(self.model, &self.kinematics, self.external.torques(), self.passive.torques());
         self.all_loads[self.loads.len()..].copy_from_slice(self.contact.loads());
         let needs = Needs { torque: true, center_of_mass: true };

@@ -5,7 +5,7 @@ use super::equilibria::{
 };
 use super::mirror::Mirror;
 use super::stability::stability;
-use super::{Engine, Options, Relaxed};
+use super::{Engine, Options, RelaxError, Relaxed};
 use crate::constraint::HalfSpace;
 use crate::contact::{Condition, Missing};
 use crate::hybrid::{Problem, Strategy, minimise};
@@ -58,6 +58,8 @@ pub(super) struct Finder<'a> {
     found: Vec<Found>,
     /// What is missing where the body fell.
     fell: Vec<Missing>,
+    /// Why the first posture that has no numbers was refused.
+    refused: Option<RelaxError>,
     starts: usize,
     steps: usize,
 }
@@ -82,7 +84,7 @@ impl<'a> Finder<'a> {
         let mut engines = [engine(SCOUT.min(options.max_steps), &goals)?, engine(options.max_steps, &goals)?];
         engines[0].scout();
         let approach = engine(SCOUT, &goals[..slot])?;
-        Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], starts: 0, steps: 0 })
+        Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], refused: None, starts: 0, steps: 0 })
     }
 
     /// All starts, a few steps each.
@@ -134,10 +136,13 @@ impl<'a> Finder<'a> {
         let engine = &mut self.engines[which];
         engine.goals_mut()[self.slot].half_spaces.clear();
         self.starts += 1;
-        // Everything was checked when the engine was made: only a posture beyond all numbers is refused.
-        let Ok(mut relaxed) = engine.solve(from) else {
-            self.fell.push(ALL);
-            return;
+        let mut relaxed = match engine.solve(from) {
+            Ok(relaxed) => relaxed,
+            Err(error) => {
+                self.fell.push(ALL);
+                self.refused.get_or_insert(error);
+                return;
+            }
         };
         self.steps += relaxed.steps;
         let missing = engine.contact().missing(self.search.model, engine.body().kinematics());
@@ -314,8 +319,10 @@ impl<'a> Finder<'a> {
     pub(super) fn finish(mut self) -> Result<Equilibria, SearchError> {
         if self.found.is_empty() {
             let size = |missing: &Missing| missing.force.hypot(missing.moment);
-            let least = self.fell.into_iter().min_by(|a, b| size(a).total_cmp(&size(b)));
-            return Err(SearchError::CannotStand(least.unwrap_or(ALL)));
+            let seen = self.fell.into_iter().filter(|missing| size(missing).is_finite());
+            let least = seen.min_by(|a, b| size(a).total_cmp(&size(b)));
+            let refused = self.refused.map(SearchError::Relax);
+            return Err(least.map(SearchError::CannotStand).or(refused).unwrap_or(SearchError::CannotStand(ALL)));
         }
         let mut counted = self.counted(YIELDED[0]);
         if counted.is_empty() {

@@ -118,7 +118,7 @@ impl Site {
         let needs = ask.goals().flat_map(|goal| &goal.tasks).fold(needs, |needs, task| needs.with(task.needs()));
         self.body.update(model, &self.posture, &self.loads, needs)?;
         if !contact.root().is_empty() {
-            self.passive.update(model, self.body.kinematics());
+            self.passive.update(model, self.body.kinematics())?;
         }
         columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
         self.effort_rows(ask);

@@ -186,8 +186,8 @@ pub enum AssessError {
         /// N m.
         torque: f64,
     },
-    /// Times fall.
-    #[error("instant {index} is at {time} s, before the one before it")]
+    /// Times fall, or are none.
+    #[error("instant {index} is at {time} s; times must be finite and not fall")]
     Order {
         /// Number of the instant.
         index: usize,
@@ -229,7 +229,7 @@ pub fn assess(
     let mut centers: Vec<Vector3<f64>> = vec![];
     let mut before: Option<f64> = None;
     for (index, (time, posture)) in motion.iter().enumerate() {
-        if before.is_some_and(|before| *time < before) {
+        if !time.is_finite() || before.is_some_and(|before| *time < before) {
             return Err(AssessError::Order { index, time: *time });
         }
         statics.see(index, *time, posture, &mut loads)?;

@@ -35,6 +35,8 @@ pub struct Run<'a> {
     /// In the last sample.
     standing: Option<Standing>,
     stop_when_settled: bool,
+    /// When the last event happens, s.
+    last_event: f64,
 }
 
 impl<'a> Run<'a> {
@@ -70,17 +72,16 @@ impl<'a> Run<'a> {
     }
 
     fn with(scenario: &Scenario, simulation: Simulation<'a>, start: Snapshot) -> Self {
-        // A whole number of steps that rounding must not lose.
-        let steps = (scenario.run.duration / scenario.run.step + 1e-9).floor() as u64;
         Self {
             simulation,
             mark: start.clone(),
             so_far: start,
-            samples: steps + 1,
+            samples: scenario.run.steps() + 1,
             reason: None,
             fall: None,
             standing: None,
             stop_when_settled: scenario.run.stop_when_settled,
+            last_event: scenario.events.last().map_or(0.0, |event| event.time),
         }
     }
 
@@ -116,7 +117,7 @@ impl<'a> Run<'a> {
             self.so_far.effort_at_start.get_or_insert(standing.effort);
             self.standing.get_or_insert_default().clone_from(standing);
         }
-        if sample.settled && self.stop_when_settled {
+        if sample.settled && self.stop_when_settled && sample.time + 1e-9 >= self.last_event {
             self.reason = Some(StopReason::Settled);
         }
         Ok(Some(sample))

@@ -9,7 +9,7 @@ use crate::ik::task::{Task, TaskError};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::relax::RelaxError;
-use crate::statics::{Load, LoadError};
+use crate::statics::{Load, LoadError, PassiveTorqueError};
 
 /// Which reading of Tables 1 and 2 decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,10 +47,22 @@ pub struct ReliefSettings {
 pub struct RunSettings {
     /// Simulated time, s, not negative.
     pub duration: f64,
-    /// Time step, s, positive.
+    /// Time step, s, positive. Loads count as constant from one sample to the next.
     pub step: f64,
-    /// End as soon as relief no longer moves anything.
+    /// End as soon as relief no longer moves anything and no event is to come.
     pub stop_when_settled: bool,
+}
+
+impl RunSettings {
+    /// Steps after the first sample; rounding does not lose the last one of a whole number of them.
+    pub fn steps(&self) -> u64 {
+        (self.duration / self.step + 1e-9).floor() as u64
+    }
+
+    /// Time of the last sample, s.
+    pub fn end(&self) -> f64 {
+        self.steps() as f64 * self.step
+    }
 }
 
 /// What the body should do besides finding relief.
@@ -135,6 +147,9 @@ pub enum ScenarioError {
     /// An event has thrown the body off balance; nothing near holds it.
     #[error("{0}")]
     Falls(Fall),
+    /// A passive law gives no torque in a posture.
+    #[error(transparent)]
+    Passive(#[from] PassiveTorqueError),
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
     Relax(#[from] RelaxError),
@@ -203,8 +218,11 @@ impl Scenario {
         setting(self.free.len() as f64 == count, "number of free flags", self.free.len() as f64, "one a coordinate")?;
         let given = self.strategies.len() as f64;
         setting(given == 0.0 || given == count, "number of strategies", given, "none, or one a coordinate")?;
+        let mut before = 0.0;
         for event in &self.events {
-            setting(event.time >= 0.0 && event.time.is_finite(), "time of an event (s)", event.time, "not negative")?;
+            let accepted = "finite, not negative, and not before the event before it";
+            setting(event.time >= before && event.time.is_finite(), "time of an event (s)", event.time, accepted)?;
+            before = event.time;
             event.loads.iter().flatten().try_for_each(|load| load.check(&self.model))?;
             let given = event.strategies.as_ref().map_or(count, |list| list.len() as f64);
             setting(given == count, "number of strategies", given, "none, or one a coordinate")?;

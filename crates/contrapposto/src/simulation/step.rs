@@ -133,7 +133,8 @@ impl<'a> Simulation<'a> {
     /// Torques, fatigue, hysteresis, minimisation, constraint, record, motion: once.
     ///
     /// # Errors
-    /// For a scenario that was checked only [`ScenarioError::Falls`]; the posture never leaves its ranges.
+    /// For a scenario that was checked only [`ScenarioError::Falls`], and [`ScenarioError::Passive`] where a model file's own law
+    /// gives no torque; the posture never leaves its ranges.
     pub fn step(&mut self) -> Result<Sample<'_>, ScenarioError> {
         let time = self.state.steps as f64 * self.scenario.run.step;
         self.events(time)?;
@@ -220,7 +221,7 @@ impl<'a> Simulation<'a> {
         self.carry_out();
         self.kinematics.update(model, &self.state.posture)?;
         self.external_torque.update(model, &self.kinematics, &self.loads)?;
-        self.passive_torque.update(model, &self.kinematics);
+        self.passive_torque.update(model, &self.kinematics)?;
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             let torques = |rate: usize| (self.external_torque.torques()[rate], self.passive_torque.torques()[rate]);
             (self.external[i], self.passive[i]) = coordinate.rate.map_or((0.0, 0.0), torques);

@@ -11,4 +11,4 @@ mod passive_torque;
 pub use external::ExternalTorque;
 pub use fold::Gradient;
 pub use load::{FixedIn, Load, LoadError, LoadKind};
-pub use passive_torque::PassiveTorque;
+pub use passive_torque::{PassiveTorque, PassiveTorqueError};

@@ -91,7 +91,7 @@ pub enum ProblemError {
         needed: usize,
     },
     /// A number without meaning.
-    #[error("{what} is {value}; it must be {accepted}")]
+    #[error("{what} is {value:e}; it must be {accepted}")]
     Number {
         /// Which number.
         what: String,

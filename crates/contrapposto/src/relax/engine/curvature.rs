@@ -136,6 +136,9 @@ impl Curvature {
             |range: std::ops::Range<usize>| range.fold(0.0, |most: f64, i| most.max(self.matrix[i * m + i].abs()));
         let (posture, forces) = (largest(0..n), largest(n..m));
         let most = 10.0 * posture.max(1e-12);
+        if !most.is_finite() {
+            return; // first derivatives alone
+        }
         loop {
             self.factor.copy_from_slice(&self.matrix);
             for i in 0..n {

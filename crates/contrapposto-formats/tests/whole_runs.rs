@@ -1,0 +1,205 @@
+//! Every scenario of the repository from its start to its end: is every sample in equilibrium, and does the run come out the
+//! same to the bit when it is taken up again at any mark, by any number of threads?
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use contrapposto::contact::Support;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Model, adult};
+use contrapposto::posture::Posture;
+use contrapposto::simulation::{Contact, Run, Sample, Scenario, Snapshot, Summary, run};
+use contrapposto_formats::{osim, read_scenario, scenario_model};
+use nalgebra::Vector3;
+
+/// Tired muscles, a load, a new wish and a new target; taken up again between any of them.
+const MUCH: &str = "[[event]]\nat_s = 10\nload = [{ segment = \"hand_r\", mass_kg = 6 }]\n\
+    [[event]]\nat_s = 32\nstrategy = \"passive\"\n[[event]]\nat_s = 50\ntask = 1\ntarget_m = [0.35, 1.15, 0.1]\n\
+    [[event]]\nat_s = 58\nstrategy_of = { spine = \"active\" }\nload = []\n\
+    [fatigue]\ncritical_level = 0.1\nrecovery_level = 0.05\n";
+
+/// All of them by name, and one in which much happens.
+fn scenarios() -> Vec<(String, Scenario)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let mut paths: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.is_file());
+    paths.sort();
+    let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
+    let mut texts: Vec<_> = paths.iter().map(|path| (name(path), std::fs::read_to_string(path).unwrap())).collect();
+    let hold = &texts.iter().find(|(name, _)| name == "hold-tool.toml").unwrap().1;
+    let much = hold.replace("duration_s = 480", "duration_s = 70") + "\n" + MUCH;
+    texts.push(("hold-tool.toml, in which much happens".to_owned(), much));
+    let read = |(name, text): (String, String)| {
+        let file = scenario_model(&name, text.as_bytes()).unwrap();
+        let model = file.map(|file| {
+            let bytes = std::fs::read(folder.join(&file.file)).unwrap();
+            with_strength(osim::read(&bytes, &file.file).unwrap().model().unwrap().model)
+        });
+        let scenario = read_scenario(&name, text.as_bytes(), model);
+        let scenario = scenario.unwrap_or_else(|error| panic!("{:?}", miette::Report::new(error)));
+        (name, scenario)
+    };
+    texts.into_iter().map(read).collect()
+}
+
+/// A model file knows no strength: the built-in adult's, by name.
+fn with_strength(model: Model) -> Model {
+    let adult = adult(&Adult::default()).unwrap();
+    let known = |model: Model, i: usize| {
+        let twin = adult.coordinate(&model.coordinates()[i].name).map(|twin| &adult.coordinates()[twin]);
+        let groups = twin.and_then(|twin| twin.groups.clone());
+        groups.map_or(model.clone(), |groups| model.with_groups(i, groups))
+    };
+    (0..model.coordinates().len()).fold(model, known)
+}
+
+/// How far the centre of pressure of a support lies outside of its patch, m: in sixteen directions along its plane no corner may
+/// lie behind it.
+fn outside_the_patch(model: &Model, posture: &[f64], support: &Support, contact: &Contact) -> f64 {
+    let Some(center) = contact.center_of_pressure else { return 0.0 };
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(posture.to_vec())).unwrap();
+    let corners: Vec<_> =
+        support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner) - center).collect();
+    let along =
+        support.normal.cross(&if support.normal.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() }).normalize();
+    let across = support.normal.cross(&along);
+    let farthest = |angle: f64| {
+        let direction = angle.cos() * along + angle.sin() * across;
+        corners.iter().map(|corner| corner.dot(&direction)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    (0..16).map(|i| -farthest(f64::from(i) * std::f64::consts::TAU / 16.0)).fold(0.0, f64::max)
+}
+
+/// In every sample of every scenario: forces on the root are zero, torques add up, feet stay, ground only pushes, within its
+/// friction and inside the patch.
+#[test]
+fn every_sample_is_in_equilibrium() {
+    for (name, scenario) in scenarios() {
+        if scenario.supports.is_empty() {
+            continue;
+        }
+        let model = &scenario.model;
+        let weight = model.mass() * model.gravity().norm();
+        // Every adult is taller than this.
+        let stature = 1.5;
+        let roots = ["pelvis_tx", "pelvis_ty", "pelvis_tz", "pelvis_tilt", "pelvis_list", "pelvis_rotation"];
+        let root = roots.map(|name| model.coordinates().iter().position(|c| c.name == name).unwrap());
+        let (mut force, mut moment, mut slip, mut beyond) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let mut outside = 0.0_f64;
+        let mut samples = 0;
+        run(&scenario, |sample| {
+            samples += 1;
+            let standing = sample.standing.unwrap();
+            for (i, &coordinate) in root.iter().enumerate() {
+                let left = sample.external[coordinate].abs();
+                if i < 3 { force = force.max(left / weight) } else { moment = moment.max(left / (weight * stature)) }
+            }
+            slip = slip.max(standing.slip);
+            for i in 0..sample.posture.len() {
+                assert_eq!(sample.external[i] + sample.passive[i] + sample.active[i], 0.0);
+                let range = model.coordinates()[i].range;
+                assert!((range.0..=range.1).contains(&sample.posture[i]), "{}", model.coordinates()[i].name);
+                assert!(sample.fatigue[i].iter().all(|level| (0.0..=1.0).contains(level)));
+            }
+            for (support, contact) in scenario.supports.iter().zip(&standing.contacts) {
+                let normal = contact.force.dot(&support.normal);
+                let along = (contact.force - normal * support.normal).norm();
+                beyond = beyond.max(-normal / weight).max((along - support.friction * normal) / weight);
+                outside = outside.max(outside_the_patch(model, sample.posture, support, contact));
+            }
+        })
+        .unwrap();
+        println!(
+            "{name}: {samples} samples, root {force:.1e} of weight, {moment:.1e} of weight x stature, slip {slip:.1e} m, \
+             pull or sliding {beyond:.1e} of weight, pressure {outside:.1e} m outside"
+        );
+        assert!(force < 1e-8 && moment < 1e-8, "{name}");
+        assert!(slip < 1e-3, "{name}"); // m, while it moves
+        assert!(beyond < 1e-9, "{name}: {beyond}");
+        assert!(outside < 1e-6, "{name}: {outside} m");
+    }
+}
+
+/// What a sample shows, to the bit.
+fn digest(sample: &Sample) -> u64 {
+    let mut hash = 0;
+    let parts = [sample.posture, sample.external, sample.passive, sample.active, sample.load];
+    let contacts =
+        sample.standing.iter().flat_map(|s| s.contacts.iter().flat_map(|c| [c.force.x, c.force.y, c.force.z]));
+    for value in parts.into_iter().flatten().chain(sample.fatigue.iter().flatten()).copied().chain(contacts) {
+        hash = (hash ^ value.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    }
+    hash
+}
+
+/// A run from start to end: what each sample shows, the marks at which it can be taken up again, and what it comes to.
+struct Course {
+    shown: Vec<u64>,
+    marks: Vec<Snapshot>,
+    summary: Summary,
+}
+
+impl Course {
+    fn of(scenario: &Scenario) -> Self {
+        let mut run = Run::new(scenario).unwrap();
+        let (mut shown, mut marks) = (vec![], vec![run.snapshot().clone()]);
+        while let Some(sample) = run.next_sample().unwrap() {
+            shown.push(digest(&sample));
+            if marks.last().is_some_and(|mark| mark.samples < run.snapshot().samples) {
+                marks.push(run.snapshot().clone());
+            }
+        }
+        Self { shown, marks, summary: run.summary() }
+    }
+
+    /// From a mark the run comes to the next one, or to the end, in the same way and to the same state: what holds for every
+    /// mark holds from each of them to the end.
+    fn is_repeated_from(&self, mark: usize, scenario: &Scenario) {
+        let first = self.marks[mark].samples as usize;
+        let next = self.marks.get(mark + 1);
+        // A mark is set by the sample after it.
+        let last = next.map_or(self.shown.len(), |next| next.samples as usize + 1);
+        let mut again = Run::resume(scenario, self.marks[mark].clone()).unwrap();
+        for (i, &shown) in self.shown.iter().enumerate().take(last).skip(first) {
+            let sample = again.next_sample().unwrap().unwrap();
+            assert!(digest(&sample) == shown, "{}: sample {i} from mark {mark} is another one", scenario.title);
+        }
+        match next {
+            Some(next) => assert!(again.snapshot() == next, "{}: mark {mark} leads elsewhere", scenario.title),
+            None => {
+                assert!(again.next_sample().unwrap().is_none());
+                assert_eq!(again.summary(), self.summary);
+            }
+        }
+    }
+}
+
+/// Alone from start to end, then from every mark to the next one: every third mark by two threads, every third by three, by
+/// eight.
+#[test]
+fn every_run_is_the_same_from_every_mark_and_for_any_number_of_threads() {
+    let scenarios: Vec<Scenario> = scenarios().into_iter().map(|(_, scenario)| scenario).collect();
+    let courses: Vec<Course> = scenarios.iter().map(Course::of).collect();
+    for (scenario, course) in scenarios.iter().zip(&courses) {
+        println!("{}: {} samples, {} marks", scenario.title, course.shown.len(), course.marks.len());
+        assert!(course.marks.len() >= 3 || !scenario.is_whole(), "no share for each number of threads");
+    }
+    for (share, threads) in [2, 3, 8].into_iter().enumerate() {
+        let mut pieces = vec![];
+        for (scenario, course) in scenarios.iter().zip(&courses) {
+            let marks = (0..course.marks.len()).filter(|mark| course.marks.len() < 3 || mark % 3 == share);
+            pieces.extend(marks.map(|mark| (course, mark, scenario)));
+        }
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some((course, mark, scenario)) = pieces.get(next.fetch_add(1, Ordering::Relaxed)) {
+                course.is_repeated_from(*mark, scenario);
+            }
+        };
+        std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
+        println!("{threads} threads: {} pieces the same", pieces.len());
+    }
+}

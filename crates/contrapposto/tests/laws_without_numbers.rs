@@ -1,0 +1,132 @@
+//! Passive laws of strangers that are no number somewhere, or too large to calculate with: whatever the body is asked to do, the
+//! answer is finite or a complaint that names the joint or the row, and it comes.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto::contact::{Balance, ContactForces, Support};
+use contrapposto::fatigue::Hysteresis;
+use contrapposto::hybrid::Strategy;
+use contrapposto::ik::Goal;
+use contrapposto::ik::task::{Effort, Task};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::math::expression::Expression;
+use contrapposto::model::{Adult, Model, adult};
+use contrapposto::passive::{PassiveLaw, Term};
+use contrapposto::relax::{Options, Search, equilibria};
+use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, run};
+use contrapposto::statics::{ExternalTorque, PassiveTorque};
+use nalgebra::Vector3;
+
+const LAWS: [&str; 8] = ["1/q", "q^0.5", "(q - 0.05)^-1", "1e308*q", "1e200*q", "exp(1e6*q)", "1e60", "-log(q)"];
+
+/// With a law of its own at the joint that bends the trunk sideways, at its default 0.
+fn model(law: &str) -> Model {
+    let model = adult(&Adult::default()).unwrap();
+    let bending = model.coordinate("lumbar_bending").unwrap();
+    let law = PassiveLaw::Sum(vec![Term::Expression(Expression::parse(law).unwrap())]);
+    model.with_passive_law(bending, Some(law))
+}
+
+fn feet(model: &Model) -> Vec<Support> {
+    let foot = |name: &str| {
+        let segment = model.segment(name).unwrap();
+        let corners = model.segments()[segment].patch.clone();
+        Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+    };
+    vec![foot("calcn_r"), foot("calcn_l")]
+}
+
+fn effort(model: &Model) -> Goal {
+    Goal::from(Task::Effort(Effort::whole(model)))
+}
+
+/// One second of it, on its feet or as if its root were held.
+fn scenario(model: Model, on_its_feet: bool) -> Scenario {
+    let n = model.coordinates().len();
+    Scenario {
+        title: "a law of its own".into(),
+        start: model.default_posture(),
+        free: vec![on_its_feet; n],
+        loads: vec![],
+        supports: if on_its_feet { feet(&model) } else { vec![] },
+        tasks: if on_its_feet { vec![TaskSettings { goal: effort(&model), above_relief: false }] } else { vec![] },
+        events: vec![],
+        strategies: vec![],
+        strategy: StrategySettings { kind: Strategy::Passive, minimum_decrease_ratio: 0.9 },
+        relief: ReliefSettings { step_gain: 0.3, max_step: 0.01, torque_tolerance: 0.5, tables: Tables::Total },
+        hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
+        start_fatigue: vec![[0.7; 2]; n],
+        run: RunSettings { duration: 1.0, step: 1.0 / 30.0, stop_when_settled: false },
+        model,
+    }
+}
+
+/// Names what is not a number.
+fn names_it(complaint: &str) -> bool {
+    println!("    {complaint}");
+    complaint.starts_with("the passive torque of `lumbar_bending` at ")
+        || complaint.starts_with("the goals have no finite rows in this posture: ")
+}
+
+#[test]
+fn a_run_is_finite_or_refused_by_name() {
+    for law in LAWS {
+        for on_its_feet in [true, false] {
+            println!("{law}, on its feet: {on_its_feet}");
+            let scenario = scenario(model(law), on_its_feet);
+            let mut samples = 0;
+            let ended = run(&scenario, |sample| {
+                samples += 1;
+                let parts = [sample.posture, sample.external, sample.passive, sample.active, sample.load];
+                assert!(parts.into_iter().flatten().chain(sample.fatigue.iter().flatten()).all(|v| v.is_finite()));
+            });
+            match ended {
+                Ok(_) => println!("    {samples} samples"),
+                Err(error) => assert!(names_it(&error.to_string()), "{error}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_search_is_finite_or_refused_by_name() {
+    for law in LAWS {
+        println!("{law}");
+        let model = model(law);
+        let (start, supports, goals) = (model.default_posture(), feet(&model), [effort(&model)]);
+        let search =
+            Search { model: &model, start: &start, supports: &supports, goals: &goals, loads: &[], locked: &[] };
+        match equilibria(&search, Options { max_steps: 60, ..Options::default() }) {
+            Ok(found) => {
+                let best = &found.postures[0];
+                println!("    effort {:.3}", best.relaxed.effort);
+                let numbers = best.torques.iter().flatten().chain(best.relaxed.posture.values());
+                assert!(best.relaxed.effort.is_finite() && numbers.into_iter().all(|v| v.is_finite()));
+            }
+            Err(error) => assert!(names_it(&error.to_string()), "{error}"),
+        }
+    }
+}
+
+#[test]
+fn contact_forces_of_no_torques_hold_nothing() {
+    let model = adult(&Adult::default()).unwrap();
+    let kinematics = Kinematics::new(&model);
+    let mut external = ExternalTorque::new(&model);
+    external.update(&model, &kinematics, &[]).unwrap();
+    let mut passive = PassiveTorque::new(&model);
+    passive.update(&model, &kinematics).unwrap();
+    let mut contact = ContactForces::new(&model, feet(&model)).unwrap();
+    let good = contact.update(&model, &kinematics, external.torques(), passive.torques());
+    assert_eq!(good, Balance::Held);
+    let before = contact.forces().to_vec();
+    for bad in [f64::NAN, f64::INFINITY, -1e300] {
+        let torques = vec![bad; passive.torques().len()];
+        let balance = contact.update(&model, &kinematics, external.torques(), &torques);
+        assert_eq!(balance, Balance::Short { force: f64::INFINITY, moment: f64::INFINITY }, "{bad}");
+        assert!(contact.forces().iter().all(|force| *force == 0.0), "{bad}");
+        contact.forget();
+        assert_eq!(contact.update(&model, &kinematics, external.torques(), passive.torques()), good);
+        assert_eq!(contact.forces(), before, "{bad}");
+    }
+}
