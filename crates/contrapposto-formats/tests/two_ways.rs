@@ -226,6 +226,7 @@ fn torque_and_gradient_two_ways() {
             let (at, loads) = (posture(&model, &mut rng), loads(&body, &mut rng));
             let expected = virtual_work(&body, &model, &of_the_file(&body, &model, at.values()), &loads);
             let torques = statics.torques(&at, &loads).to_vec();
+            assert!(torques.iter().chain(&expected).all(|torque| torque.is_finite()), "{name}");
             let size = largest(&expected);
             let error = torques.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             work = work.max(error / size);
@@ -256,6 +257,7 @@ fn torque_and_gradient_two_ways() {
             for rate in (0..n).filter(|&rate| leads(rate)) {
                 let h = 1e-4;
                 let fall = (energy(&moved(rate, -h)) - energy(&moved(rate, h))) / (2.0 * h);
+                assert!(fall.is_finite(), "{name}");
                 slope = slope.max((fall - steady_torques[rate]).abs() / steady_size);
                 let mut differences = |h: f64| -> Vec<f64> {
                     let up = statics.torques(&moved(rate, h), &loads).to_vec();
@@ -265,6 +267,7 @@ fn torque_and_gradient_two_ways() {
                 let [near, two, one] = [1e-5, 1e-2, 5e-3].map(&mut differences);
                 for row in (0..n).filter(|&row| leads(row)) {
                     let exact = gradient.get(row, rate);
+                    assert!([exact, near[row], two[row], one[row]].iter().all(|x| x.is_finite()), "{name}");
                     most = most.max(exact.abs());
                     pairs = pairs.max((exact - near[row]).abs() / size.max(most));
                     coarse += (exact - two[row]).powi(2);

@@ -236,6 +236,7 @@ fn the_error_stays_within_its_bound_whatever_the_load_does() {
                 }
                 state = law.advance(state, load, step);
                 fine = heun(&law, fine, load, step);
+                assert!(state.active.is_finite() && state.fatigued.is_finite() && fine.iter().all(|x| x.is_finite()));
                 active = active.max((state.active - fine[0]).abs());
                 fatigued = fatigued.max((state.fatigued - fine[1]).abs());
             }

@@ -59,7 +59,7 @@ pub struct ScenarioText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EventText {
-    /// When, s; before the run ends.
+    /// When, s; by the last step of the run.
     pub at_s: f64,
     /// Strategy of the whole body from then on.
     pub strategy: Option<StrategyKindText>,

@@ -299,7 +299,8 @@ impl Model {
     pub(crate) fn set_direct(&mut self) {
         let plain = |m: &Mobility| matches!(m.drive, Drive::Coordinate(_));
         let in_order = self.elements.iter().enumerate().all(|(i, rate)| *rate == Some(i));
-        self.direct = self.couplings.is_empty()
+        let idle = |coupling: &Coupling| self.coordinates[coupling.dependent].rate.is_none();
+        self.direct = self.couplings.iter().all(idle)
             && in_order
             && self.rates.len() == self.elements.len()
             && self.mobilities.iter().all(plain);

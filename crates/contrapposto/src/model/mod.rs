@@ -228,7 +228,7 @@ impl Model {
         self
     }
 
-    /// Rates that move a mobility: none if it is fixed, three of a ball, that of its leader if it follows.
+    /// Rates that move a mobility: none if it is fixed, three of a ball; its own where a coordinate follows another one.
     pub(crate) fn rates_of(&self, mobility: usize) -> impl Iterator<Item = usize> {
         let end = self.mobilities.get(mobility + 1).map_or(self.elements.len(), |next| next.rate);
         self.elements[self.mobilities[mobility].rate..end].iter().flatten().copied()

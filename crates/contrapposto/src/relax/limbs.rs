@@ -15,7 +15,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
 
-/// What moves no support, and the parts of it. Everything, where nothing does without moving a support.
+/// What moves no support, and what is asked of it.
 #[derive(Debug)]
 pub(super) struct Limbs {
     /// The body with the rest of it welded.
@@ -25,15 +25,12 @@ pub(super) struct Limbs {
     still: Goal,
     above: Vec<Goal>,
     contact: ContactForces,
-    /// What is there that can move by itself?
     pub(super) own: Own,
 }
 
 /// How much of a body moves without moving a support?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Own {
-    /// Nothing that has muscles.
-    Nothing,
     /// Limbs.
     Some,
     /// Everything that may move: there are no supports. What may not is welded.
@@ -41,11 +38,11 @@ pub(super) enum Own {
 }
 
 impl Limbs {
-    /// Of a body in `posture`.
+    /// Of a body in `posture`; `None` where nothing that has muscles moves without moving a support.
     ///
     /// # Errors
     /// [`BodyError`] when the posture is none of the model's.
-    pub(super) fn of(ask: &Ask<'_>, posture: &Posture) -> Result<Self, BodyError> {
+    pub(super) fn of(ask: &Ask<'_>, posture: &Posture) -> Result<Option<Self>, BodyError> {
         let model = ask.model;
         let mut holds = vec![false; model.rates().len()];
         for support in ask.contact.supports() {
@@ -56,14 +53,21 @@ impl Limbs {
             }
         }
         let rate = |c: &usize| model.coordinates()[*c].rate;
+        // Who leads a joint that holds a support holds it, too.
+        for coupling in model.couplings().iter().rev() {
+            if let (Some(leader), Some(follower)) = (rate(&coupling.independent), rate(&coupling.dependent)) {
+                holds[leader] |= holds[follower];
+            }
+        }
         let coordinates: Vec<usize> = ask.efforts().filter(|c| rate(c).is_some_and(|rate| !holds[rate])).collect();
         let free = || ask.free.iter().filter(|rate| !holds[**rate]);
+        let rooted = ask.free.iter().any(|rate| ask.contact.root().contains(rate));
         let own = match free().count() {
-            0 => Own::Nothing,
-            _ if coordinates.is_empty() => Own::Nothing,
+            0 => return Ok(None),
+            _ if coordinates.is_empty() => return Ok(None),
             count if count < ask.free.len() => Own::Some,
-            _ if ask.contact.supports().is_empty() => Own::All,
-            _ => Own::Nothing,
+            _ if ask.contact.supports().is_empty() && !rooted => Own::All,
+            _ => return Ok(None),
         };
         let mut moves = vec![false; model.rates().len()];
         free().copied().chain(coordinates.iter().filter_map(rate)).for_each(|rate| moves[rate] = true);
@@ -77,7 +81,7 @@ impl Limbs {
                 task.weights.retain(|_| place.next().is_some_and(Option::is_some));
             }
         }
-        Ok(Self {
+        Ok(Some(Self {
             own,
             rates: free().filter_map(|rate| places[*rate]).collect(),
             contact: ContactForces::of_a_limb(&welded),
@@ -85,7 +89,7 @@ impl Limbs {
             effort: Task::Effort(Effort { coordinates }).into(),
             still: Goal::default(),
             above,
-        })
+        }))
     }
 
     /// What is asked of them by themselves.
@@ -201,7 +205,7 @@ mod tests {
         let ground = Ground::new();
         let mut worst = 0f64;
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 20, |_, ask, whole| {
-            let limbs = Limbs::of(ask, &whole.posture).unwrap();
+            let limbs = Limbs::of(ask, &whole.posture).unwrap().unwrap();
             assert!(limbs.own == Own::Some && limbs.rates.len() > 10);
             let part = limbs.ask(ask);
             let site = seen(&part, &whole.posture);
@@ -213,6 +217,7 @@ mod tests {
                 let forces = &row[ask.free.len()..];
                 let Some(own) = of_limb(c) else { continue };
                 assert!(forces.iter().all(|entry| *entry == 0.0), "{}", ask.model.coordinates()[c].name);
+                assert!(error.is_finite() && site.errors[own].is_finite());
                 worst = worst.max((site.errors[own] - error).abs() / (1.0 + error.abs()));
             }
         });
@@ -227,7 +232,7 @@ mod tests {
         let ground = Ground::new();
         let mut taken = [0, 0];
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 20, |random, ask, whole| {
-            let limbs = Limbs::of(ask, &whole.posture).unwrap();
+            let limbs = Limbs::of(ask, &whole.posture).unwrap().unwrap();
             let part = limbs.ask(ask);
             let site = seen(&part, &whole.posture);
             let parts = Parts::of(&part, &site);

@@ -15,13 +15,13 @@ pub(super) fn width(count: usize) -> usize {
     count.next_multiple_of(4)
 }
 
-/// Where the four of an entry begins. What then lies below the diagonal is written, but never read.
+/// Where the four of an entry begins. What then lies below the diagonal is written, but never counts.
 pub(super) fn four(i: usize) -> usize {
     i - i % 4
 }
 
 /// Eliminates rows `from..to` of a matrix of rows of a [`width`] `w` from all rows below, upper triangle only, four at a time;
-/// each becomes that of a Cholesky factor. `false` where the matrix is not positive.
+/// each becomes a row of a Cholesky factor. `false` where the matrix is not positive.
 pub(super) fn eliminate(matrix: &mut [f64], w: usize, from: usize, to: usize) -> bool {
     let (matrix, w) = (matrix.as_chunks_mut::<4>().0, w / 4);
     let mut p = from;

@@ -36,7 +36,7 @@ const LOWER: f64 = 1e-3;
 const ROUGH: f64 = 1e-3;
 const EXACT: f64 = 1e-9;
 
-/// A descent, and the lowest place so far. Keeps its space.
+/// A descent, and the lowest place so far. Keeps its space, but for what welded bodies need.
 #[derive(Clone, Debug)]
 pub(super) struct Valleys {
     descent: Descent,
@@ -81,7 +81,8 @@ impl Valleys {
         count: usize,
     ) -> Result<Option<Bottom>, BodyError> {
         let limbs = Limbs::of(ask, posture)?;
-        if limbs.own == Own::All && limbs.model.rates().len() < ask.model.rates().len() {
+        let fewer = |limbs: &&Limbs| limbs.model.rates().len() < ask.model.rates().len();
+        if let Some(limbs) = limbs.as_ref().filter(|limbs| limbs.own == Own::All).filter(fewer) {
             return Self::new(&limbs.model).find(&limbs.ask(ask), posture, count);
         }
         let (descent, lowest) = (&mut self.descent, &mut self.lowest);
@@ -89,7 +90,8 @@ impl Valleys {
         lowest.forces.extend_from_slice(ask.contact.forces());
         lowest.posture.values_mut().copy_from_slice(posture.values());
         let mut steps = 0;
-        if limbs.own == Own::Some {
+        let limbs = limbs.filter(|limbs| limbs.own == Own::Some);
+        if let Some(limbs) = &limbs {
             // First what limbs can do by themselves: the rest of the body has less to do then.
             let mut descent = Descent::new(&limbs.model);
             let bottom = descent.go(&limbs.ask(ask), posture, &[], &[], &NEAR)?;
@@ -109,9 +111,9 @@ impl Valleys {
         }
         lowest.keep(descent);
         self.near.values_mut().copy_from_slice(lowest.posture.values());
-        if limbs.own == Own::Some {
-            // The rest may have moved.
-            let limbs = Limbs::of(ask, &lowest.posture)?;
+        let alone = limbs.is_some();
+        // The rest may have moved.
+        if let (true, Some(limbs)) = (alone, Limbs::of(ask, &lowest.posture)?) {
             let mut alone = Place { forces: vec![], ..lowest.clone() };
             steps += self.look.search(&limbs.ask(ask), &mut Descent::new(&limbs.model), &mut alone, count)?;
             lowest.posture = alone.posture;
@@ -121,7 +123,7 @@ impl Valleys {
         let mut last = descent.go(ask, &lowest.posture, &lowest.forces, &lowest.multipliers, &LAST)?;
         steps += last.steps;
         let moved = lowest.posture != self.near;
-        if limbs.own == Own::Some && moved && (last.violation > ROUGH || last.effort > near.effort) {
+        if alone && moved && (last.violation > ROUGH || last.effort > near.effort) {
             // What the limbs gained cost the rest more.
             last = descent.go(ask, &self.near, &lowest.forces, &lowest.multipliers, &LAST)?;
             steps += last.steps;

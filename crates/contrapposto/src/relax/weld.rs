@@ -47,7 +47,7 @@ pub(super) fn weld(body: &Model, kinematics: &Kinematics, moves: &[bool]) -> (Mo
 
     // For each old mobility: the new one that it is now or is fixed to, and its moved frame there.
     let mut now: Vec<(Option<usize>, Matrix3<f64>, Vector3<f64>)> = vec![];
-    let mut kept = vec![];
+    let mut kept: Vec<usize> = vec![];
     for (i, old) in body.mobilities.iter().enumerate() {
         let (parent, rotation, translation) = match old.parent.map(|p| now[p]) {
             Some((parent, rotation, origin)) => (parent, rotation * old.rotation, rotation * old.translation + origin),
@@ -65,20 +65,14 @@ pub(super) fn weld(body: &Model, kinematics: &Kinematics, moves: &[bool]) -> (Mo
             continue;
         }
         let (rotation, origin) = (kinematics.rotations[i], kinematics.origins[i]);
-        let (rotation, origin) = match parent {
+        let (rotation, origin, mass, moment) = match parent {
             Some(parent) => {
-                let carrier: usize = kept[parent];
-                let back = kinematics.rotations[carrier].transpose();
-                (back * rotation, back * (origin - kinematics.origins[carrier]))
+                let (carrier, near) = (&mut model.mobilities[parent], kept[parent]);
+                let back = kinematics.rotations[near].transpose();
+                let origin = back * (origin - kinematics.origins[near]);
+                (back * rotation, origin, &mut carrier.mass, &mut carrier.first_moment)
             }
-            None => (rotation, origin),
-        };
-        let (mass, moment) = match parent {
-            Some(parent) => {
-                let carrier = &mut model.mobilities[parent];
-                (&mut carrier.mass, &mut carrier.first_moment)
-            }
-            None => (&mut model.fixed.0, &mut model.fixed.1),
+            None => (rotation, origin, &mut model.fixed.0, &mut model.fixed.1),
         };
         *mass += old.mass;
         *moment += rotation * old.first_moment + old.mass * origin;
@@ -115,6 +109,10 @@ mod tests {
         torque.update(model, &kinematics, loads).unwrap();
         let mut gradient = Gradient::new(model);
         torque.gradient(model, &kinematics, &mut gradient);
+        for (i, j) in (0..gradient.size().pow(2)).map(|k| (k / gradient.size(), k % gradient.size())) {
+            let off = (gradient.get(i, j) - gradient.get(j, i)).abs();
+            assert!(!gradient.is_symmetric() || off <= 1e-9 * (1.0 + gradient.get(i, j).abs()), "{off}");
+        }
         let mut center = CenterOfMass::new(model);
         center.update(model, &kinematics);
         let mut places: Vec<f64> = center.position().iter().flatten().copied().collect();
@@ -162,7 +160,10 @@ mod tests {
             whole.displace(&model, &step);
             part.displace(&welded, &short);
             let (whole, part) = (look(&model, &whole, &loads), look(&welded, &part, &loads));
-            let mut compare = |a: f64, b: f64| worst = worst.max((a - b).abs() / (1.0 + a.abs()));
+            let mut compare = |a: f64, b: f64| {
+                assert!(a.is_finite() && b.is_finite(), "{a} {b}");
+                worst = worst.max((a - b).abs() / (1.0 + a.abs()));
+            };
             assert_eq!(whole.0.len(), part.0.len());
             whole.0.iter().zip(&part.0).for_each(|(a, b)| compare(*a, *b));
             for (i, place) in places.iter().enumerate() {

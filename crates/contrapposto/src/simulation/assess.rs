@@ -186,7 +186,7 @@ pub enum AssessError {
         /// N m.
         torque: f64,
     },
-    /// Times fall, or are none.
+    /// Times fall, or are no numbers.
     #[error("instant {index} is at {time} s; times must be finite and not fall")]
     Order {
         /// Number of the instant.

@@ -9,7 +9,7 @@ const LARGEST: f64 = 1e50;
 /// A law of a file that gives no torque to calculate with in a posture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the passive torque of `{coordinate}` at {value:.6} (rad or m) is {torque:e}; it must be finite and at most {LARGEST:e} in size"
+    "the passive torque of `{coordinate}` at {value:.6} (rad or m) is {torque:e} N m (or N); it must be finite and at most {LARGEST:e} in size"
 )]
 pub struct PassiveTorqueError {
     /// Name of the coordinate.
