@@ -329,3 +329,21 @@ fn what_may_not_move_is_left_out_without_loss() {
     }
     assert!((found.effort - again.effort).abs() < 1e-6 * found.effort && found.effort < 1.0001 * steps.effort);
 }
+
+/// A free body that nothing holds is not brought to rest by turning it over, a stiff joint that counts as no effort or not:
+/// looking for valleys changes nothing.
+#[test]
+fn a_free_root_without_supports_stays() {
+    let standing = Standing::new(None, None);
+    let arm = standing.model.coordinate("arm_flex_l").unwrap();
+    let mut effort = Effort::whole(&standing.model);
+    effort.coordinates.retain(|c| *c != arm);
+    let solve = |valleys: usize| {
+        let options = Options { valleys, max_steps: 0, ..OPTIONS };
+        let goals = vec![Task::Effort(effort.clone()).into()];
+        let mut engine = Engine::new(&standing.model, &standing.start, vec![], goals, &[], options).unwrap();
+        standing.model.coordinates()[arm].rate.into_iter().for_each(|rate| engine.lock(rate));
+        engine.solve(&standing.start).unwrap().posture
+    };
+    assert_eq!(solve(4), solve(0));
+}

@@ -6,7 +6,7 @@
 //! come from a fixed sequence of numbers: the same problem has the same answer.
 
 use super::descent::{Bottom, Descent, Manner};
-use super::limbs::{Limbs, Own, Parts};
+use super::limbs::{Limbs, Parts};
 use super::site::Ask;
 use crate::ik::body::BodyError;
 use crate::model::Model;
@@ -80,17 +80,18 @@ impl Valleys {
         posture: &mut Posture,
         count: usize,
     ) -> Result<Option<Bottom>, BodyError> {
-        let limbs = Limbs::of(ask, posture)?;
-        let fewer = |limbs: &&Limbs| limbs.model.rates().len() < ask.model.rates().len();
-        if let Some(limbs) = limbs.as_ref().filter(|limbs| limbs.own == Own::All).filter(fewer) {
-            return Self::new(&limbs.model).find(&limbs.ask(ask), posture, count);
+        let mut limbs = Limbs::of(ask, posture)?;
+        if ask.contact.supports().is_empty() {
+            let welded = limbs.take().filter(|limbs| limbs.model.rates().len() < ask.model.rates().len());
+            if let Some(limbs) = welded {
+                return Self::new(&limbs.model).find(&limbs.ask(ask), posture, count);
+            }
         }
         let (descent, lowest) = (&mut self.descent, &mut self.lowest);
         lowest.forces.clear();
         lowest.forces.extend_from_slice(ask.contact.forces());
         lowest.posture.values_mut().copy_from_slice(posture.values());
         let mut steps = 0;
-        let limbs = limbs.filter(|limbs| limbs.own == Own::Some);
         if let Some(limbs) = &limbs {
             // First what limbs can do by themselves: the rest of the body has less to do then.
             let mut descent = Descent::new(&limbs.model);
@@ -111,9 +112,10 @@ impl Valleys {
         }
         lowest.keep(descent);
         self.near.values_mut().copy_from_slice(lowest.posture.values());
-        let alone = limbs.is_some();
-        // The rest may have moved.
-        if let (true, Some(limbs)) = (alone, Limbs::of(ask, &lowest.posture)?) {
+        if limbs.is_some() {
+            limbs = Limbs::of(ask, &lowest.posture)?; // the rest may have moved
+        }
+        if let Some(limbs) = &limbs {
             let mut alone = Place { forces: vec![], ..lowest.clone() };
             steps += self.look.search(&limbs.ask(ask), &mut Descent::new(&limbs.model), &mut alone, count)?;
             lowest.posture = alone.posture;
@@ -123,7 +125,7 @@ impl Valleys {
         let mut last = descent.go(ask, &lowest.posture, &lowest.forces, &lowest.multipliers, &LAST)?;
         steps += last.steps;
         let moved = lowest.posture != self.near;
-        if alone && moved && (last.violation > ROUGH || last.effort > near.effort) {
+        if limbs.is_some() && moved && (last.violation > ROUGH || last.effort > near.effort) {
             // What the limbs gained cost the rest more.
             last = descent.go(ask, &self.near, &lowest.forces, &lowest.multipliers, &LAST)?;
             steps += last.steps;

@@ -1,7 +1,7 @@
 //! Sums over rows, in a fixed order that does not depend on the machine, and a small least-squares solve.
 //!
 //! Four numbers at a time, by name: left to itself the compiler gathers numbers of several rounds of such a loop first, which
-//! takes two to four times as long.
+//! takes up to three times as long.
 
 use wide::f64x4;
 
