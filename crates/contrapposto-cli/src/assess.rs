@@ -4,9 +4,10 @@ mod text;
 
 use std::path::Path;
 
+use contrapposto::assessment::assess as assessed;
+use contrapposto::assessment::{AssessSettings, Assessment, Instant};
 use contrapposto::contact::Support;
 use contrapposto::model::{CoordinateKind, Model, Side};
-use contrapposto::simulation::{AssessSettings, Assessment, Instant, assess as assessed};
 use contrapposto_formats::motion::write_sto;
 use nalgebra::Vector3;
 

@@ -6,8 +6,8 @@ mod text;
 use std::path::Path;
 
 use contrapposto::contact::Support;
-use contrapposto::ik::Engine;
 use contrapposto::model::Model;
+use contrapposto::posture_solver::inverse_kinematics::Engine;
 use contrapposto::simulation::{Run, Sample};
 use contrapposto_formats::{MOST_BYTES, read_pose, read_scenario, scenario_runs};
 use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
@@ -94,7 +94,8 @@ fn carry_out(path: &Path, letter: char) -> Result<Stance, Fail> {
 
 fn posed(file: &str, bytes: &[u8], model: Option<Model>, letter: char) -> Result<Stance, Fail> {
     let scenario = read_pose(file, bytes, model)?;
-    let refused = |error: contrapposto::ik::GoalError| Fail::Refused(format!("{file}: {error}"));
+    let refused =
+        |error: contrapposto::posture_solver::inverse_kinematics::GoalError| Fail::Refused(format!("{file}: {error}"));
     let mut engine =
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));

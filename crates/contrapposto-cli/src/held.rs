@@ -1,9 +1,9 @@
 //! What does a posture that is held still ask of the muscles? External, passive and active torque, contact forces of least effort.
 
+use contrapposto::assessment::{AssessSettings, assess};
 use contrapposto::contact::Support;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{AssessSettings, assess};
 use contrapposto::statics::Load;
 
 use crate::fail::Fail;

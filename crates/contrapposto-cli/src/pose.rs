@@ -4,8 +4,8 @@ pub(crate) mod drawing;
 
 use std::path::{Path, PathBuf};
 
-use contrapposto::ik::{Engine, Pose, Reason};
 use contrapposto::model::Model;
+use contrapposto::posture_solver::inverse_kinematics::{Engine, Pose, Reason};
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::{MOST_BYTES, ModelFile, PoseLevelText, PoseScenario, PoseText, read_pose, scenario_model};
@@ -32,7 +32,8 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
         tell("note", &format!("{} is for `simulate` and has no part in a pose", list.join(", ")));
     }
-    let refused = |error: contrapposto::ik::GoalError| Fail::Refused(format!("{name}: {error}"));
+    let refused =
+        |error: contrapposto::posture_solver::inverse_kinematics::GoalError| Fail::Refused(format!("{name}: {error}"));
     let mut engine =
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));

@@ -5,8 +5,9 @@ mod text;
 use std::fmt::Write;
 use std::path::Path;
 
+use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
 use contrapposto::model::CoordinateKind;
-use contrapposto::relax::{Equilibria, Options, Search, SearchError, equilibria};
+use contrapposto::posture_solver::Options;
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::{MOST_BYTES, RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};

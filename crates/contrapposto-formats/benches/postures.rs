@@ -9,7 +9,7 @@ mod peer;
 
 use std::time::Instant;
 
-use contrapposto::ik::{Engine, Options};
+use contrapposto::posture_solver::inverse_kinematics::{Engine, Options};
 use peer::{Peer, target};
 
 /// Runs of each target.

@@ -12,7 +12,7 @@ mod effort;
 use std::path::Path;
 use std::time::Instant;
 
-use contrapposto::relax::Options;
+use contrapposto::posture_solver::Options;
 
 /// Solves of each target; the median time counts.
 const REPEATS: usize = 5;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use contrapposto::ik::task::Task;
-use contrapposto::ik::{Pose, Reason};
 use contrapposto::kinematics::Kinematics;
+use contrapposto::posture_solver::inverse_kinematics::{Pose, Reason};
+use contrapposto::tasks::Task;
 use serde::Serialize;
 
 use crate::scenario::PoseScenario;
@@ -69,9 +69,10 @@ impl PoseText {
                 }));
             }
         }
-        let hold = |(goal, reached): (&contrapposto::ik::Goal, &contrapposto::ik::Reached)| {
-            !goal.hard || reached.length <= scenario.options.reached
-        };
+        let hold = |(goal, reached): (
+            &contrapposto::tasks::PriorityLevel,
+            &contrapposto::posture_solver::inverse_kinematics::Reached,
+        )| { !goal.hard || reached.length <= scenario.options.reached };
         let mut kinematics = Kinematics::new(model);
         let center = kinematics.update(model, &pose.posture).ok().and_then(|()| kinematics.center_of_mass(model));
         let names = || model.coordinates().iter().map(|c| c.name.clone());

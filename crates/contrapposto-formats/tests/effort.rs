@@ -11,7 +11,7 @@ mod problem;
 
 use std::path::PathBuf;
 
-use contrapposto::relax::{Options, Reason};
+use contrapposto::posture_solver::{Options, Reason};
 
 /// How many of the stored targets are no worse.
 fn no_worse(name: &str, standing: bool) -> usize {

@@ -9,10 +9,10 @@ use std::path::Path;
 
 use common::complaint;
 use common::toml::hammer_toml;
-use contrapposto::ik::task::{Goal, Task};
-use contrapposto::ik::{Engine, Options};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
+use contrapposto::posture_solver::inverse_kinematics::{Engine, Options};
+use contrapposto::tasks::{CenterOfMassGoal, Task};
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::{InputError, PoseScenario, read_pose, read_scenario, scenario_model, scenario_schema};
 
@@ -176,7 +176,7 @@ fn defaults_are_those_of_the_page() {
     let Task::CenterOfMass(center) = task("kind = \"center_of_mass\"\ntarget = \"start\"\naxes = \"xz\"\n") else {
         panic!()
     };
-    let Goal::At { target, axes } = center.goal else { panic!() };
+    let CenterOfMassGoal::At { target, axes } = center.goal else { panic!() };
     assert_eq!((Some(target), axes), (Kinematics::new(&model).center_of_mass(&model), [true, false, true]));
     let Task::Posture(posture) = task("kind = \"posture\"\ncoordinates = [\"elbow_flex_r\"]\n") else { panic!() };
     assert_eq!(posture.weights.iter().sum::<f64>(), 1.0);
@@ -198,14 +198,14 @@ fn degrees_turn_about_x_then_y_then_z() {
 fn polygons_are_horizontal() {
     let lines = "kind = \"center_of_mass\"\npolygon_m = [[-0.1, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.1, 0.2]]\n";
     let Task::CenterOfMass(center) = task(lines) else { panic!() };
-    let Goal::Inside { polygon, margin } = center.goal else { panic!() };
+    let CenterOfMassGoal::Inside { polygon, margin } = center.goal else { panic!() };
     assert_eq!((polygon.len(), margin), (4, 0.0));
     let inside = |x, y, z| polygon.iter().all(|edge| edge.excess(&nalgebra::Vector3::new(x, y, z)) <= 0.0);
     assert!(inside(0.19, 1.0, 0.19) && !inside(0.21, 1.0, 0.0) && !inside(0.0, 1.0, -0.21));
     // From the joints of both feet: ankle to ball.
     let scenario = good(&format!("{TWO_FEET}[[task]]\nkind = \"center_of_mass\"\n"));
     let Task::CenterOfMass(center) = &scenario.goals[1].tasks[0] else { panic!() };
-    let Goal::Inside { polygon, .. } = &center.goal else { panic!() };
+    let CenterOfMassGoal::Inside { polygon, .. } = &center.goal else { panic!() };
     for (name, share) in [("calcn_r", 0.999), ("toes_l", 0.999), ("calcn_r", 1.001), ("toes_l", 1.001)] {
         let at = at_default(&scenario.model, name).translation.vector;
         let middle = ["calcn_r", "calcn_l", "toes_r", "toes_l"]

@@ -6,10 +6,10 @@
 #[path = "common/peer.rs"]
 mod peer;
 
-use contrapposto::ik::task::{self, Task};
-use contrapposto::ik::{Engine, Options, Reason};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture::Posture;
+use contrapposto::posture_solver::inverse_kinematics::{Engine, Options, Reason};
+use contrapposto::tasks::{self, Task};
 use nalgebra::Vector3;
 use peer::{Peer, target};
 use rand::{RngExt, SeedableRng};
@@ -106,7 +106,7 @@ fn reachable(peer: &Peer, rng: &mut Pcg64) -> (Vector3<f64>, Posture) {
         // Feet and centre of mass as asked, and everything else as near to the wish as that allows.
         let mut goals = peer.goals(Vector3::zeros());
         goals.drain(2..4);
-        let Some([Task::Posture(task::Posture { target, .. })]) = goals.last_mut().map(|goal| &mut goal.tasks[..])
+        let Some([Task::Posture(tasks::Posture { target, .. })]) = goals.last_mut().map(|goal| &mut goal.tasks[..])
         else {
             panic!("the last goal is a posture");
         };

@@ -10,8 +10,8 @@ use std::path::Path;
 use common::complaint;
 use common::toml::{ODD, hammer_toml, numbers};
 use contrapposto::hybrid::Strategy;
-use contrapposto::ik::task::Task;
 use contrapposto::simulation::{Sample, Scenario, ScenarioError, run};
+use contrapposto::tasks::Task;
 use contrapposto_formats::{InputError, TableRow, csv_header, csv_row, read_scenario};
 
 /// Every scenario of the repository that moves single joints over time, and one with every table such a scenario may have.

@@ -25,24 +25,27 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. [`ik`] finds postures from goals
-//! in strict priority, [`relax`] those of least effort on their supports, [`simulation`] moves a body that tires.
+//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. [`posture_solver`] finds postures
+//! from tasks in strict priority, [`equilibria`] those of least effort on their supports, [`simulation`] moves a body that tires.
 
 // Unit tests share bodies with the tests outside, which know this crate by its name.
 #[cfg(test)]
 extern crate self as contrapposto;
 
+pub mod assessment;
 pub mod constraint;
 pub mod contact;
+mod effort;
+pub mod equilibria;
 pub mod fatigue;
 pub mod hybrid;
-pub mod ik;
 pub mod kinematics;
 pub mod math;
 pub mod model;
 pub mod passive;
 pub mod posture;
-pub mod relax;
+pub mod posture_solver;
 pub mod simulation;
 pub mod statics;
 pub mod strength;
+pub mod tasks;

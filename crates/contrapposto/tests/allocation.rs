@@ -4,13 +4,14 @@
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
-use contrapposto::ik::task::{CenterOfMass, Distance, Goal as Place, LookAt, Placement, Point, Posture, Task};
-use contrapposto::ik::{Engine, Goal, Options};
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::math::lexicographic::{Level, Problem, Solver, Status};
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture;
+use contrapposto::posture_solver::inverse_kinematics::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal as Place, Distance, LookAt, Placement, Point, Posture, Task};
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -147,7 +148,7 @@ fn solver_allocates_nothing() {
 }
 
 /// Goals of most kinds that `there` fulfils, and what is left as at the start.
-fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> Vec<Goal> {
+fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> Vec<PriorityLevel> {
     let mut at = Kinematics::new(model);
     at.update(model, there).unwrap();
     let segment = |name| model.segment(name).unwrap();
@@ -155,14 +156,14 @@ fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> V
     let point = V::new(0.0, -0.08, 0.0);
     let (a, b) = (at.station(model, right, point), at.station(model, left, V::zeros()));
     vec![
-        Goal {
+        PriorityLevel {
             tasks: vec![Task::Placement(Placement {
                 segment: foot,
                 point: V::zeros(),
                 target: at.placement(model, foot),
             })],
             hard: true,
-            ..Goal::default()
+            ..PriorityLevel::default()
         },
         Task::CenterOfMass(CenterOfMass {
             goal: Place::At { target: at.center_of_mass(model).unwrap(), axes: [true, false, true] },
@@ -183,7 +184,7 @@ fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> V
 
 /// Steps from afresh, over and over, of which only the very first may allocate. What is left of the hand's error, and how far
 /// the body has moved.
-fn steps(what: &str, model: &Model, goals: Vec<Goal>, steps: usize) -> (f64, f64) {
+fn steps(what: &str, model: &Model, goals: Vec<PriorityLevel>, steps: usize) -> (f64, f64) {
     let start = model.default_posture();
     let mut engine = Engine::new(model, goals, &loads(model), Options::default()).unwrap();
     let mut posture = start.clone();

@@ -3,11 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
+use contrapposto::assessment::{AssessError, AssessSettings, Assessment, GroupAssessment, PeakKind, assess};
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{AssessError, AssessSettings, Assessment, GroupAssessment, PeakKind, assess};
 use contrapposto::statics::Load;
 use nalgebra::Vector3;
 

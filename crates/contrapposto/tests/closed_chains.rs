@@ -4,13 +4,13 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, ContactForces, Support};
-use contrapposto::ik::Goal;
-use contrapposto::ik::task::{Point, Task};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture::Posture;
-use contrapposto::relax::{Engine, Options};
+use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, Load, PassiveTorque};
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::{Point, Task};
 use nalgebra::{DMatrix, DVector, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -87,7 +87,7 @@ fn the_slope_is_that_of_the_motion_which_feet_and_goals_allow() {
         let point = Vector3::new(0.0, -0.05, 0.02);
         let task = Point { segment: hand, point, target: kinematics.station(&model, hand, point), axes: [true; 3] };
         let above = usize::from(k % 2 == 1);
-        let goals: Vec<Goal> = (0..above).map(|_| Task::Point(task).into()).collect();
+        let goals: Vec<PriorityLevel> = (0..above).map(|_| Task::Point(task).into()).collect();
         let rows = rows(&model, &kinematics, &feet, goals.first().map(|_| &task));
         let projection = DMatrix::identity(n, n) - rows.clone().pseudo_inverse(1e-10).unwrap() * &rows;
         let mut engine = Engine::new(&model, &posture, feet.clone(), goals, &loads, Options::default()).unwrap();

@@ -4,17 +4,18 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, ContactForces, Support};
+use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
-use contrapposto::ik::Goal;
-use contrapposto::ik::task::{Effort, Task};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::expression::Expression;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::passive::{PassiveLaw, Term};
-use contrapposto::relax::{Options, Search, equilibria};
+use contrapposto::posture_solver::Options;
 use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, run};
 use contrapposto::statics::{ExternalTorque, PassiveTorque};
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::{Effort, Task};
 use nalgebra::Vector3;
 
 const LAWS: [&str; 8] = ["1/q", "q^0.5", "(q - 0.05)^-1", "1e308*q", "1e200*q", "exp(1e6*q)", "1e60", "-log(q)"];
@@ -36,8 +37,8 @@ fn feet(model: &Model) -> Vec<Support> {
     vec![foot("calcn_r"), foot("calcn_l")]
 }
 
-fn effort(model: &Model) -> Goal {
-    Goal::from(Task::Effort(Effort::whole(model)))
+fn effort(model: &Model) -> PriorityLevel {
+    PriorityLevel::from(Task::Effort(Effort::whole(model)))
 }
 
 /// One second of it, on its feet or as if its root were held.

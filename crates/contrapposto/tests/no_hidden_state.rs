@@ -6,22 +6,22 @@
 
 mod support;
 
+use contrapposto::assessment::{AssessSettings, assess};
 use contrapposto::constraint::{HalfSpace, relief_step};
 use contrapposto::contact::{ContactForces, Support};
+use contrapposto::equilibria::{Search, equilibria, stability};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::{Problem, Strategy, minimise, minimise_literal};
-use contrapposto::ik;
-use contrapposto::ik::Goal;
-use contrapposto::ik::body::{Body, Needs};
-use contrapposto::ik::task::{Effort, Point, Task};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture::Posture;
-use contrapposto::relax::{self, Search, equilibria, stability};
-use contrapposto::simulation::{
-    AssessSettings, ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, assess, run,
-};
+use contrapposto::posture_solver;
+use contrapposto::posture_solver::inverse_kinematics as ik;
+use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, run};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind, PassiveTorque};
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::body::{Body, Needs};
+use contrapposto::tasks::{Effort, Point, Task};
 use nalgebra::Vector3;
 use rand::RngExt;
 
@@ -32,7 +32,7 @@ type Stage<'a> = Box<dyn FnMut(&Posture) -> String + 'a>;
 struct Setting {
     model: Model,
     supports: Vec<Support>,
-    goals: Vec<Goal>,
+    goals: Vec<PriorityLevel>,
     loads: Vec<Load>,
 }
 
@@ -63,7 +63,7 @@ impl Setting {
 
     fn scenario(&self, start: &Posture) -> Scenario {
         let n = self.model.coordinates().len();
-        let task = |goal: &Goal| TaskSettings { goal: goal.clone(), above_relief: false };
+        let task = |goal: &PriorityLevel| TaskSettings { goal: goal.clone(), above_relief: false };
         Scenario {
             title: "twice".into(),
             model: self.model.clone(),
@@ -160,10 +160,11 @@ impl Setting {
     }
 
     fn rest(&self) -> Stage<'_> {
-        let (model, options) = (&self.model, relax::Options { max_steps: 30, ..relax::Options::default() });
+        let (model, options) =
+            (&self.model, posture_solver::Options { max_steps: 30, ..posture_solver::Options::default() });
         let (supports, goals) = (self.supports.clone(), self.goals.clone());
         let start = model.default_posture();
-        let mut engine = relax::Engine::new(model, &start, supports, goals, &self.loads, options).unwrap();
+        let mut engine = posture_solver::Engine::new(model, &start, supports, goals, &self.loads, options).unwrap();
         Box::new(move |posture| format!("{:?} {:?}", engine.solve(posture), engine.contact().forces()))
     }
 
@@ -181,7 +182,10 @@ impl Setting {
         Box::new(move |posture| {
             let (model, supports, goals, loads) = (&self.model, &self.supports, &self.goals, &self.loads);
             let search = Search { model, start: posture, supports, goals, loads, locked: &[] };
-            format!("{:?}", equilibria(&search, relax::Options { max_steps: 15, ..relax::Options::default() }))
+            format!(
+                "{:?}",
+                equilibria(&search, posture_solver::Options { max_steps: 15, ..posture_solver::Options::default() })
+            )
         })
     }
 

@@ -3,15 +3,16 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, Condition, Missing, Support, root_rates};
-use contrapposto::ik::Goal;
-use contrapposto::ik::body::{Body, Needs};
-use contrapposto::ik::task::{self, CenterOfMass, Effort, Orientation, Point, Task};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Sex, adult};
 use contrapposto::posture::Posture;
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::body::{Body, Needs};
+use contrapposto::tasks::{self, CenterOfMass, Effort, Orientation, Point, Task};
 use std::sync::OnceLock;
 
-use contrapposto::relax::{Engine, Equilibria, Mirror, Options, Search, SearchError, equilibria};
+use contrapposto::equilibria::{Equilibria, Mirror, Search, SearchError, equilibria};
+use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::{Load, PassiveTorque};
 use nalgebra::Vector3;
 
@@ -31,7 +32,7 @@ struct Standing {
     model: Model,
     start: Posture,
     supports: Vec<Support>,
-    goals: Vec<Goal>,
+    goals: Vec<PriorityLevel>,
     loads: Vec<Load>,
 }
 
@@ -53,12 +54,13 @@ impl Standing {
         let upright = |name: &str| {
             let segment = model.segment(name).unwrap();
             let target = kinematics.placement(&model, segment).rotation;
-            Goal::from(Task::Orientation(Orientation { segment, target }))
+            PriorityLevel::from(Task::Orientation(Orientation { segment, target }))
         };
         let mut goals = vec![];
         let side = if resting == Some("r") { -1.0 } else { 1.0 };
         if resting.is_some() {
-            let goal = task::Goal::At { target: V::new(0.03, 0.0, side * 0.055), axes: [true, false, true] };
+            let goal =
+                tasks::CenterOfMassGoal::At { target: V::new(0.03, 0.0, side * 0.055), axes: [true, false, true] };
             goals.push(Task::CenterOfMass(CenterOfMass { goal }).into());
         }
         goals.push(upright("head"));
@@ -123,7 +125,7 @@ fn one_leg_rests_in_two_ways() {
     let at = |name: &str| standing.model.coordinate(name).unwrap();
     let hip = at("hip_adduction_r");
     let degrees =
-        |posture: &contrapposto::relax::RelaxedPosture, i: usize| posture.relaxed.posture.values()[i].to_degrees();
+        |posture: &contrapposto::equilibria::RelaxedPosture, i: usize| posture.relaxed.posture.values()[i].to_degrees();
     // The hip that carries hangs on its ligaments, its side of the pelvis is the higher one, the other knee is bent.
     assert!(slouch.relaxed.effort < 0.7 * level.relaxed.effort);
     assert!(degrees(slouch, hip) > 15.0 && degrees(level, hip) < 8.0);
@@ -307,12 +309,12 @@ fn what_may_not_move_is_left_out_without_loss() {
     start.values_mut()[arm] = 1.2;
     let (hand, target) = (model.segment("hand_r").unwrap(), V::new(0.35, 1.05, 0.25));
     let point = Point { segment: hand, point: V::new(0.0, -0.05, 0.0), target, axes: [true; 3] };
-    let mut kept = task::Posture::whole(&model, start.clone());
+    let mut kept = tasks::Posture::whole(&model, start.clone());
     let leg = |name: &str| name.starts_with("hip") || name.starts_with("knee");
     for (weight, rate) in kept.weights.iter_mut().zip(model.rates()) {
         *weight = f64::from(u8::from(leg(&rate.name) || rate.name.starts_with("arm_flex_l")));
     }
-    let goals = [Task::Point(point), Task::Posture(kept), Task::Effort(Effort::whole(&model))].map(Goal::from);
+    let goals = [Task::Point(point), Task::Posture(kept), Task::Effort(Effort::whole(&model))].map(PriorityLevel::from);
     let solve = |valleys: usize, from: &Posture| {
         let options = Options { valleys, ..OPTIONS };
         let mut engine = Engine::new(&model, &start, vec![], goals.to_vec(), &[], options).unwrap();

@@ -4,14 +4,14 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, ContactForces, Support};
+use contrapposto::equilibria::{Stability, stability, stiffness};
 use contrapposto::hybrid::{Carrier, Equilibrium};
-use contrapposto::ik::body::{Body, Needs};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec, adult};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto::posture::Posture;
-use contrapposto::relax::{Stability, stability, stiffness};
 use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind, PassiveTorque};
+use contrapposto::tasks::body::{Body, Needs};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -8,15 +8,16 @@ mod trees;
 use std::collections::BTreeMap;
 
 use contrapposto::fatigue::FatigueLaw;
-use contrapposto::ik::body::{Body, Needs};
-use contrapposto::ik::task::{
-    CenterOfMass, Distance, Effort, Goal, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task, half_planes,
-};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::lexicographic::Level;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
+use contrapposto::tasks::body::{Body, Needs};
+use contrapposto::tasks::{
+    CenterOfMass, CenterOfMassGoal, Distance, Effort, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task,
+    half_planes,
+};
 use nalgebra::{Isometry3, Unit, UnitQuaternion};
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -98,10 +99,10 @@ fn tasks(rng: &mut Pcg64, model: &Model) -> Vec<Task> {
         tasks.push(Task::Posture(posture));
     }
     if model.mass() > 0.0 {
-        let goal = Goal::At { target: vector(rng, 1.0), axes: some_axes(rng) };
+        let goal = CenterOfMassGoal::At { target: vector(rng, 1.0), axes: some_axes(rng) };
         tasks.push(Task::CenterOfMass(CenterOfMass { goal }));
         let feet: Vec<V> = (0..6).map(|_| vector(rng, 0.3)).collect();
-        let goal = Goal::Inside { polygon: half_planes(&feet, vector(rng, 9.8)), margin: 0.02 };
+        let goal = CenterOfMassGoal::Inside { polygon: half_planes(&feet, vector(rng, 9.8)), margin: 0.02 };
         tasks.push(Task::CenterOfMass(CenterOfMass { goal }));
     }
     let effort = Effort::whole(model);
@@ -437,7 +438,7 @@ fn inequalities_hold_where_they_should() {
     let square: Vec<V> =
         [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)].map(|(x, z)| center + V::new(x, -1.0, z)).to_vec();
     let over = |margin| {
-        let goal = Goal::Inside { polygon: half_planes(&square, model.gravity()), margin };
+        let goal = CenterOfMassGoal::Inside { polygon: half_planes(&square, model.gravity()), margin };
         evaluate(&Task::CenterOfMass(CenterOfMass { goal }), &model, &posture, &[])
     };
     assert!(over(0.05).2.iter().all(|&r| r == 0.0));
@@ -566,7 +567,8 @@ fn wrong_tasks_are_refused_by_name() {
     assert!(text(between(-1.0, 2.0)).contains("lower limit (m) is -1; it must be between 0 and 1e9"));
     assert!(text(between(1.0, 0.5)).contains("upper limit (m) is 0.5; it must be at or above the lower limit"));
     assert!(text(between(1.0, f64::NAN)).contains("upper limit (m) is NaN"));
-    let over = |polygon, margin| Task::CenterOfMass(CenterOfMass { goal: Goal::Inside { polygon, margin } });
+    let over =
+        |polygon, margin| Task::CenterOfMass(CenterOfMass { goal: CenterOfMassGoal::Inside { polygon, margin } });
     assert!(text(over(vec![], 0.0)).contains("it asks for no edge of a polygon"));
     let edge = HalfPlane { normal: 2.0 * V::x(), offset: 1.0 };
     assert!(text(over(vec![edge], 0.0)).contains("length of an edge's normal is 2; it must be 1"));

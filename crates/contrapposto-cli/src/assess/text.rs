@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use contrapposto::assessment::{Assessment, GroupAssessment, Peak, PeakKind, Proposal};
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::{CoordinateKind, Model};
-use contrapposto::simulation::{Assessment, GroupAssessment, Peak, PeakKind, Proposal};
 use serde::Serialize;
 
 use crate::torques::plain_table;

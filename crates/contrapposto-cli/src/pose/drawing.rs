@@ -1,9 +1,9 @@
 //! From a solved pose to its picture: the body, where it started, and what it should reach.
 
-use contrapposto::ik::Pose;
-use contrapposto::ik::task::{Goal, Task};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
+use contrapposto::posture_solver::inverse_kinematics::Pose;
+use contrapposto::tasks::{CenterOfMassGoal, Task};
 use contrapposto_formats::PoseScenario;
 use contrapposto_plot::{BodyFigure, BodyPosture};
 use nalgebra::Vector3;
@@ -71,7 +71,7 @@ fn marks(scenario: &PoseScenario, pose: &Pose) -> Result<Marks, Fail> {
                 marks.gazes.push([kinematics.station(model, task.segment, task.eye), task.target]);
             }
             Task::CenterOfMass(task) => {
-                if let Goal::At { target, axes } = &task.goal {
+                if let CenterOfMassGoal::At { target, axes } = &task.goal {
                     marks.targets.push(unasked(*axes, *target, || center.unwrap_or(*target)));
                 }
             }

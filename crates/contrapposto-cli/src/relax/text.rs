@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture, Work};
 use contrapposto::hybrid::{Carrier, Equilibrium};
-use contrapposto::ik::Goal;
-use contrapposto::ik::task::Task;
 use contrapposto::model::Model;
-use contrapposto::relax::{Direction, Equilibria, Reason, RelaxedPosture, Work};
+use contrapposto::posture_solver::Reason;
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::Task;
 use contrapposto_formats::RelaxScenario;
 use serde::Serialize;
 
@@ -143,7 +144,7 @@ impl PostureText {
             force_n: carried.force.into(),
             center_of_pressure_m: carried.center_of_pressure.map(Into::into),
         });
-        let effort = |goal: &Goal| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
+        let effort = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
         let goals = scenario.goals.iter().zip(&scenario.labels).zip(&found.relaxed.errors);
         let tasks = goals.filter(|((goal, _), _)| !effort(goal));
         let hanging = found.hanging.iter().map(|hanging| HangingText {

@@ -1,10 +1,11 @@
 //! The page of `assess`: a recorded motion, who fails first, and what would relieve it.
 
+use contrapposto::assessment::{Assessment, GroupAssessment, Instant, PeakKind, Proposal};
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Outcome;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model};
-use contrapposto::simulation::{Assessment, Contact, GroupAssessment, Instant, PeakKind, Proposal, Standing};
+use contrapposto::simulation::{Contact, Standing};
 use contrapposto::statics::{Load, LoadKind};
 use contrapposto_report::{Entry, Figure, List, Moments, Table};
 use nalgebra::Vector3;

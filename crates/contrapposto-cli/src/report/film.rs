@@ -1,9 +1,10 @@
 //! A run as a page shows it: some hundred moments, those of decisions among them.
 
+use contrapposto::assessment::Instant;
 use contrapposto::contact::ContactForces;
 use contrapposto::hybrid::Decision;
 use contrapposto::model::{Model, Side};
-use contrapposto::simulation::{Contact, Instant, Scenario, Standing, Summary};
+use contrapposto::simulation::{Contact, Scenario, Standing, Summary};
 use nalgebra::Vector3;
 
 use crate::simulate::{Recording, Row};

@@ -1,11 +1,11 @@
 //! The pages of `pose` and `relax`: one posture, or a few to choose between.
 
 use contrapposto::contact::root_rates;
+use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture};
 use contrapposto::hybrid::{Carrier, Equilibrium};
-use contrapposto::ik::{Pose, Reason};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
-use contrapposto::relax::{Direction, Equilibria, RelaxedPosture};
+use contrapposto::posture_solver::inverse_kinematics::{Pose, Reason};
 use contrapposto::simulation::{Contact, Standing};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText, RelaxScenario};
 use contrapposto_report::{Entry, Figure, List, Moments, Report, Table};

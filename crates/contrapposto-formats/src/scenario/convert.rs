@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
-use contrapposto::ik::Goal;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, AdultError, Coordinate, CoordinateKind, Model, Part, Sex, adult, data};
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveError, Tabulated};
@@ -12,6 +11,7 @@ use contrapposto::simulation::{
     Event, ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables, TaskSettings,
 };
 use contrapposto::statics::{FixedIn, Load, LoadKind};
+use contrapposto::tasks::PriorityLevel;
 use nalgebra::Vector3;
 
 use super::pose::{Ranked, ranked, set};
@@ -179,7 +179,7 @@ fn events(
     at: &Located,
     model: &Model,
     text: &ScenarioText,
-    mut goals: Vec<Goal>,
+    mut goals: Vec<PriorityLevel>,
     mut strategies: Vec<Strategy>,
 ) -> Result<Vec<Event>, InputError> {
     let mut order: Vec<(usize, &EventText)> = text.event.iter().enumerate().collect();

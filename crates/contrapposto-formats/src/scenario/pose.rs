@@ -1,12 +1,13 @@
 //! A scenario read for `contrapposto pose`: body, start, loads and goals in order of priority, all checked.
 
 use contrapposto::contact::Support;
-use contrapposto::ik::task::{Placement, Task};
-use contrapposto::ik::{Goal, Options};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::posture::Posture;
+use contrapposto::posture_solver::inverse_kinematics::Options;
 use contrapposto::statics::Load;
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::{Placement, Task};
 use nalgebra::Vector3;
 
 use super::convert::{body, check_head, free, load, posture_value, shown};
@@ -31,7 +32,7 @@ pub struct PoseScenario {
     /// What pulls on it besides its weight.
     pub loads: Vec<Load>,
     /// The most important first; supports, if any, are the first one, and hard.
-    pub goals: Vec<Goal>,
+    pub goals: Vec<PriorityLevel>,
     /// A name for every task of every goal.
     pub labels: Vec<Vec<String>>,
     /// What carries it, where the patches of all supports are known; else empty. Goals know supports without them.
@@ -105,13 +106,13 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
     let mut kinematics = Kinematics::new(&model);
     kinematics.update(&model, &start).map_err(|error| at.error(&["posture"], error.to_string(), None))?;
     let mut stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: vec![] };
-    let mut goals: Vec<Goal> = vec![];
+    let mut goals: Vec<PriorityLevel> = vec![];
     let mut labels: Vec<Vec<String>> = vec![];
     let supports = supports(text, &mut stage)?;
     if !supports.is_empty() {
         let names = stage.supports.iter().map(|&segment| format!("support {}", model.segments()[segment].name));
         labels.push(names.collect());
-        goals.push(Goal { tasks: supports, hard: true, ..Goal::default() });
+        goals.push(PriorityLevel { tasks: supports, hard: true, ..PriorityLevel::default() });
     }
     for Ranked { goal, labels: own, .. } in ranked(&stage, &text.task)? {
         goals.push(goal);
@@ -147,7 +148,7 @@ fn pose(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<PoseS
 
 /// Tasks of one priority.
 pub(super) struct Ranked {
-    pub(super) goal: Goal,
+    pub(super) goal: PriorityLevel,
     pub(super) labels: Vec<String>,
     pub(super) above_relief: bool,
 }

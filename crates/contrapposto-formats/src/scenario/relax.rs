@@ -1,12 +1,12 @@
 //! A scenario read for `contrapposto relax`: body, start, loads, supports and tasks, all checked.
 
 use contrapposto::contact::Support;
-use contrapposto::ik::Goal;
-use contrapposto::ik::task::{Effort, Task};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::{Effort, Task};
 
 use super::convert::{body, check_head, free, load, shown};
 use super::pose::{locked, ranked, set};
@@ -31,7 +31,7 @@ pub struct RelaxScenario {
     /// What carries it.
     pub supports: Vec<Support>,
     /// Tasks, the most important first; one of them is effort.
-    pub goals: Vec<Goal>,
+    pub goals: Vec<PriorityLevel>,
     /// A name for every task of every goal.
     pub labels: Vec<Vec<String>>,
     /// No task of the file asks for effort: that of all muscles was added as the last one.
@@ -77,7 +77,7 @@ fn relax(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<Rela
         goals.push(ranked.goal);
         labels.push(ranked.labels);
     }
-    let asks = |goal: &Goal| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
+    let asks = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
     let effort_added = !goals.iter().any(asks);
     if effort_added {
         let effort = Effort::whole(&model);

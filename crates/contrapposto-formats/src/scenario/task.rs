@@ -1,11 +1,11 @@
 //! What a task of a scenario means: names become indices, degrees radians, words the numbers they stand for.
 
-use contrapposto::ik::task::{
-    CenterOfMass, Distance, Effort, Goal, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task, TaskError,
-    half_planes,
-};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{LARGEST, Model};
+use contrapposto::tasks::{
+    CenterOfMass, CenterOfMassGoal, Distance, Effort, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task,
+    TaskError, half_planes,
+};
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 
 use super::Located;
@@ -159,9 +159,9 @@ impl One<'_> {
         let goal = if placed {
             let (model, kinematics) = (self.stage.model, self.stage.kinematics);
             let target = self.place(|| kinematics.center_of_mass(model).unwrap_or_else(Vector3::zeros))?;
-            Goal::At { target, axes: self.axes()? }
+            CenterOfMassGoal::At { target, axes: self.axes()? }
         } else {
-            Goal::Inside { polygon: self.polygon()?, margin: text.margin_m.unwrap_or(0.0) }
+            CenterOfMassGoal::Inside { polygon: self.polygon()?, margin: text.margin_m.unwrap_or(0.0) }
         };
         Ok(Task::CenterOfMass(CenterOfMass { goal }))
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contrapposto::ik::Options;
+use contrapposto::posture_solver::inverse_kinematics::Options;
 use schemars::JsonSchema;
 use serde::Deserialize;
 

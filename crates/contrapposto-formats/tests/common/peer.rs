@@ -4,12 +4,12 @@
 
 use std::path::PathBuf;
 
-use contrapposto::ik::Goal;
-use contrapposto::ik::task::{self, CenterOfMass, Orientation, Point, Task};
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::math::lexicographic::{Level, Problem, Solver};
 use contrapposto::model::{Model, Placement};
 use contrapposto::posture::Posture;
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::{self, CenterOfMass, Orientation, Point, Task};
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::urdf;
 use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
@@ -75,23 +75,23 @@ impl Peer {
         let feet = &self.file["feet"];
         let place = Vector3::from_vec(numbers(&feet[format!("{side}_pos")]));
         let target = Placement::from_parts(Translation3::from(place), rotation(&feet[format!("{side}_rot")]));
-        Task::Placement(task::Placement { segment: self.segment(segment), point: Vector3::zeros(), target })
+        Task::Placement(tasks::Placement { segment: self.segment(segment), point: Vector3::zeros(), target })
     }
 
-    pub fn goals(&self, target: Vector3<f64>) -> Vec<Goal> {
+    pub fn goals(&self, target: Vector3<f64>) -> Vec<PriorityLevel> {
         let com = numbers(&self.file["com_xy_target"]);
-        let com = task::Goal::At { target: Vector3::new(com[0], com[1], 0.0), axes: [true, true, false] };
+        let com = tasks::CenterOfMassGoal::At { target: Vector3::new(com[0], com[1], 0.0), axes: [true, true, false] };
         let joint = |rate: &contrapposto::model::Rate| rate.coordinate.is_some() && !rate.name.starts_with("root_");
         let weights = self.model.rates().iter().map(|rate| f64::from(joint(rate))).collect();
         let feet = vec![self.foot("LeftFoot", "left"), self.foot("RightFoot", "right")];
         let hand = Point { segment: self.hand(), point: Vector3::zeros(), target, axes: [true; 3] };
         let head = Orientation { segment: self.segment("Head"), target: rotation(&self.file["head_rot_target"]) };
         vec![
-            Goal { tasks: feet, hard: true, ..Goal::default() },
+            PriorityLevel { tasks: feet, hard: true, ..PriorityLevel::default() },
             Task::CenterOfMass(CenterOfMass { goal: com }).into(),
             Task::Point(hand).into(),
             Task::Orientation(head).into(),
-            Task::Posture(task::Posture { target: self.rest.clone(), weights }).into(),
+            Task::Posture(tasks::Posture { target: self.rest.clone(), weights }).into(),
         ]
     }
 

@@ -8,14 +8,14 @@
 use std::path::{Path, PathBuf};
 
 use contrapposto::contact::{Balance, Support};
-use contrapposto::ik::Goal;
-use contrapposto::ik::task::{Effort, Point, Task};
 use contrapposto::model::{Adult, Model, MuscleGroup, adult};
 use contrapposto::passive::{DoubleExponential, End, PassiveCurve};
 use contrapposto::posture::Posture;
-use contrapposto::relax::{Engine, Options, Relaxed};
+use contrapposto::posture_solver::{Engine, Options, Relaxed};
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::strength::Strength;
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::{Effort, Point, Task};
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::urdf;
 use nalgebra::Vector3;
@@ -102,7 +102,7 @@ impl Problem {
     /// The engine for a target.
     pub(crate) fn engine(&self, target: Vector3<f64>, options: Options) -> Engine<'_> {
         let hand = Point { segment: self.load.segment, point: Vector3::zeros(), target, axes: [true; 3] };
-        let goals: Vec<Goal> = vec![Task::Point(hand).into(), Task::Effort(Effort::whole(&self.model)).into()];
+        let goals: Vec<PriorityLevel> = vec![Task::Point(hand).into(), Task::Effort(Effort::whole(&self.model)).into()];
         let supports = self.supports.clone();
         let mut engine = Engine::new(&self.model, &self.rest, supports, goals, &[self.load], options).unwrap();
         self.locked.iter().for_each(|rate| engine.lock(*rate));

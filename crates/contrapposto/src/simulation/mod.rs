@@ -3,7 +3,6 @@
 //! The loop of Rodriguez & Boulic 2007, section 3: torques, fatigue, hysteresis, minimisation, constraint, motion, record.
 //! [`Simulation::step`] is that loop, once; [`run`] repeats it, and a [`Run`] can be left and taken up again. Same scenario, same build: same bits.
 
-mod assess;
 mod group;
 mod relief_log;
 mod run;
@@ -14,7 +13,6 @@ mod step;
 mod summary;
 mod whole;
 
-pub use assess::{AssessError, AssessSettings, Assessment, GroupAssessment, Instant, Peak, PeakKind, Proposal, assess};
 pub use relief_log::{ReliefLog, ReliefRecord};
 pub use run::{Run, Snapshot, run};
 pub use sample::{Contact, Relief, Sample, Standing};

@@ -4,12 +4,12 @@ use super::Fall;
 use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
-use crate::ik::Goal;
-use crate::ik::task::{Task, TaskError};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
-use crate::relax::RelaxError;
+use crate::posture_solver::RelaxError;
 use crate::statics::{Load, LoadError, PassiveTorqueError};
+use crate::tasks::PriorityLevel;
+use crate::tasks::{Task, TaskError};
 
 /// Which reading of Tables 1 and 2 decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,7 @@ impl RunSettings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskSettings {
     /// Tasks of one priority.
-    pub goal: Goal,
+    pub goal: PriorityLevel,
     /// More important than the relief of tired muscles.
     pub above_relief: bool,
 }
@@ -84,7 +84,7 @@ pub struct Event {
     /// Loads from then on.
     pub loads: Option<Vec<Load>>,
     /// Places in [`Scenario::tasks`] and what is asked there from then on.
-    pub tasks: Vec<(usize, Goal)>,
+    pub tasks: Vec<(usize, PriorityLevel)>,
 }
 
 /// A complete experiment.
@@ -185,8 +185,8 @@ pub enum ScenarioError {
 const MOST_STEPS: f64 = 1e7;
 
 /// Do two goals ask for the same kinds of things?
-fn alike(a: &Goal, b: &Goal) -> bool {
-    let kinds = |goal: &Goal| goal.tasks.iter().map(Task::kind).collect::<Vec<_>>();
+fn alike(a: &PriorityLevel, b: &PriorityLevel) -> bool {
+    let kinds = |goal: &PriorityLevel| goal.tasks.iter().map(Task::kind).collect::<Vec<_>>();
     kinds(a) == kinds(b)
 }
 
@@ -206,7 +206,7 @@ impl Scenario {
             load.check(&self.model)?;
         }
         self.supports.iter().try_for_each(|support| support.check(&self.model))?;
-        let check = |task: usize, goal: &Goal| {
+        let check = |task: usize, goal: &PriorityLevel| {
             let tasks = goal.tasks.iter().map(|given| given.check(&self.model));
             tasks.collect::<Result<(), _>>().map_err(|error| ScenarioError::Task { task, error })
         };

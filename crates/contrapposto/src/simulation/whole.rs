@@ -1,16 +1,16 @@
 //! How is relief carried out by a body on its feet, with something to do?
 //!
-//! Reliefs are half-spaces (Eqs. 4-6) in the priorities of [`crate::relax::Engine`]: supports, tasks that stand above relief,
+//! Reliefs are half-spaces (Eqs. 4-6) in the priorities of [`crate::posture_solver::Engine`]: supports, tasks that stand above relief,
 //! the reliefs, the most tired group first, then the other tasks. Each is a level of its own, so reliefs that conflict are
 //! decided by fatigue, and of equals by the order of the model.
 
 use crate::constraint::HalfSpace;
 use crate::contact::{Balance, ContactForces, Missing};
-use crate::ik::Goal;
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::relax::{Engine, Options};
+use crate::posture_solver::{Engine, Options};
 use crate::statics::LoadKind;
+use crate::tasks::PriorityLevel;
 
 use super::{Scenario, ScenarioError};
 
@@ -62,7 +62,7 @@ impl<'a> Whole<'a> {
         let (above, below): (Vec<_>, Vec<_>) = (0..scenario.tasks.len()).partition(|&i| scenario.tasks[i].above_relief);
         let goal = |i: &usize| scenario.tasks[*i].goal.clone();
         let supports = || scenario.supports.clone();
-        let goals: Vec<Goal> = above.iter().chain(&below).map(goal).collect();
+        let goals: Vec<PriorityLevel> = above.iter().chain(&below).map(goal).collect();
         let lock = |engine: &mut Engine<'a>| {
             for (i, rate) in model.rates().iter().enumerate() {
                 if rate.coordinate.is_some_and(|c| !scenario.free[c]) {
@@ -74,8 +74,8 @@ impl<'a> Whole<'a> {
         let mut first = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut first);
         let start = first.solve(&scenario.start)?;
-        let reliefs = std::iter::repeat_n(Goal::default(), MOST);
-        let goals: Vec<Goal> = above.iter().map(goal).chain(reliefs).chain(below.iter().map(goal)).collect();
+        let reliefs = std::iter::repeat_n(PriorityLevel::default(), MOST);
+        let goals: Vec<PriorityLevel> = above.iter().map(goal).chain(reliefs).chain(below.iter().map(goal)).collect();
         let mut places = vec![0; scenario.tasks.len()];
         above.iter().enumerate().for_each(|(place, &i)| places[i] = place);
         below.iter().enumerate().for_each(|(place, &i)| places[i] = above.len() + MOST + place);
@@ -214,7 +214,7 @@ impl<'a> Whole<'a> {
         Ok(self.engine.set_loads(loads)?)
     }
 
-    pub(super) fn set_task(&mut self, task: usize, goal: &Goal) {
+    pub(super) fn set_task(&mut self, task: usize, goal: &PriorityLevel) {
         self.wake();
         self.engine.goals_mut()[self.places[task]].clone_from(goal);
     }

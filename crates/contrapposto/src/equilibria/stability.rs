@@ -1,0 +1,240 @@
+//! Does a posture come back by itself when it is pushed, and if not, which joints must be attended to?
+//!
+//! Muscles hold their torque, contact forces theirs (as world-fixed forces at their corners), supports stay where they are:
+//! a small motion `d` that the supports leave free is answered by the torque `-K d` with the stiffness
+//! `K = -(d tau_p/dq + d tau_e/dq)`. Its symmetric part, on the null space `Z` of the supports' Jacobians, decides. What is
+//! one-sided (a foot that could lift, the end of a range) counts as it is where the body stands: feet stay, ranges do not push.
+//!
+//! The metric is the mass matrix `M`, loads with weight included: `Z^T K Z x = s Z^T M Z x`. How many `s` are negative does not
+//! depend on the metric (Sylvester's law of inertia); with this one `s` has a meaning, `1/sqrt(-s)` is the time in which a
+//! disturbance grows by `e`, and slides and angles need no weights against each other. Joints without mass behind them get
+//! [`LEAST_MASS`] of the largest entry, so that every `s` is finite.
+//!
+//! For one joint the verdict is that of [`crate::hybrid::Equilibrium`]: stable where `d tau_a / d theta > 0`.
+
+use nalgebra::{Cholesky, DMatrix, DVector, SVD, SymmetricEigen};
+
+use crate::contact::Support;
+use crate::hybrid::{Carrier, Equilibrium};
+use crate::model::Model;
+use crate::statics::{Load, LoadKind};
+use crate::tasks::body::Body;
+use crate::tasks::passive_row;
+
+/// Share of the largest diagonal entry of the mass matrix that every rate has at least.
+pub const LEAST_MASS: f64 = 1e-9;
+/// Singular values of the supports' Jacobian below this share of the largest count as zero: a free direction.
+const FREE: f64 = 1e-9;
+/// Of the largest eigenvalue in size: what is smaller is rounding, and no more stable than a ball on a table.
+const ROUNDING: f64 = 1e-12;
+
+/// One way in which the body can move on its supports, square to the others in the metric of its mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Direction {
+    /// How far every rate moves, rad or m; of length 1 in the metric of the mass matrix (kg m^2).
+    pub motion: Vec<f64>,
+    /// `s`, 1/s^2: how hard the body is driven back (positive) or away (negative), by its inertia.
+    pub stiffness: f64,
+    /// Part of it that passive tissue gives, 1/s^2.
+    pub by_tissue: f64,
+    /// Part of it that weight, loads and contact forces give, 1/s^2.
+    pub by_load: f64,
+    /// Coordinates that move in it and that muscles could hold, with their share of the sum of squared motions; the largest
+    /// first, those below a hundredth left out.
+    pub joints: Vec<(usize, f64)>,
+}
+
+impl Direction {
+    /// Time in which a disturbance grows by `e`, s; `None` for one that does not grow.
+    pub fn growth_time(&self) -> Option<f64> {
+        (self.stiffness < 0.0).then(|| 1.0 / (-self.stiffness).sqrt())
+    }
+}
+
+/// What holds a posture when nobody attends to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stability {
+    /// By whom, judged in the weakest direction; `None` where the supports leave nothing free.
+    pub equilibrium: Option<Equilibrium>,
+    /// All directions, the least stable first.
+    pub directions: Vec<Direction>,
+    /// So many of them do not come back by themselves.
+    pub unstable: usize,
+    /// Size of the part of the stiffness that no energy gives, against its symmetric part (Frobenius norms on the free
+    /// directions): coupled passive laws, couples and body-fixed forces have such a part.
+    pub without_energy: f64,
+}
+
+impl Stability {
+    /// Directions that do not come back by themselves, the worst first.
+    pub fn unstable(&self) -> &[Direction] {
+        &self.directions[..self.unstable]
+    }
+}
+
+/// Stiffness of the body at every pair of rates, N m/rad: what tissue gives, and what weight, loads and contact forces give.
+/// Row by row, not made symmetric.
+pub fn stiffness(model: &Model, body: &Body) -> [Vec<f64>; 2] {
+    let n = model.rates().len();
+    let mut tissue = vec![0.0; n * n];
+    for (i, coordinate) in model.coordinates().iter().enumerate() {
+        let (Some(rate), false) = (coordinate.rate, model.is_dependent(i)) else { continue };
+        passive_row(model, body, i, rate, &mut tissue[rate * n..(rate + 1) * n]);
+    }
+    let load = (0..n).flat_map(|rate| body.gradient().row(rate).iter().map(|slope| -slope)).collect();
+    tissue.iter_mut().for_each(|slope| *slope = -*slope);
+    [tissue, load]
+}
+
+/// How stable is the posture of `body`, whose torques include contact forces? `loads` are the scenario's own: weights among them
+/// have inertia. `locked`: rates that do not move, besides coordinates that follow others.
+pub fn stability(model: &Model, body: &Body, supports: &[Support], loads: &[Load], locked: &[bool]) -> Stability {
+    let free: Vec<usize> = (0..model.rates().len())
+        .filter(|&i| !locked[i] && model.rates()[i].coordinate.is_none_or(|c| !model.is_dependent(c)))
+        .collect();
+    let basis = free_motions(model, body, supports, &free);
+    let n = basis.ncols();
+    if n == 0 {
+        return Stability { equilibrium: None, directions: vec![], unstable: 0, without_energy: 0.0 };
+    }
+    let [tissue, load] = stiffness(model, body).map(|full| {
+        let full = DMatrix::from_row_slice(model.rates().len(), model.rates().len(), &full);
+        basis.transpose() * full.select_rows(&free).select_columns(&free) * &basis
+    });
+    let total = &tissue + &load;
+    let symmetric = |m: &DMatrix<f64>| 0.5 * (m + m.transpose());
+    let half = symmetric(&total);
+    let without_energy = (&total - &half).norm() / half.norm().max(f64::MIN_POSITIVE);
+    let mut mass = mass_matrix(model, body, loads).select_rows(&free).select_columns(&free);
+    let largest = mass.diagonal().max();
+    let least = if largest > 0.0 { LEAST_MASS * largest } else { 1.0 };
+    (0..free.len()).for_each(|i| mass[(i, i)] += least);
+    let mass = basis.transpose() * mass * &basis;
+    // A sum of squares and a positive diagonal: only numbers without size could fail here.
+    let Some(root) = Cholesky::new(symmetric(&mass)) else {
+        return Stability { equilibrium: None, directions: vec![], unstable: 0, without_energy };
+    };
+    let lower = root.l();
+    let scaled = |m: &DMatrix<f64>| {
+        let left = lower.solve_lower_triangular(m)?;
+        lower.solve_lower_triangular(&left.transpose())
+    };
+    let Some(matrix) = scaled(&half) else {
+        return Stability { equilibrium: None, directions: vec![], unstable: 0, without_energy };
+    };
+    let found = SymmetricEigen::new(symmetric(&matrix));
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|a, b| found.eigenvalues[*a].total_cmp(&found.eigenvalues[*b]));
+    let (tissue, load) = (symmetric(&tissue), symmetric(&load));
+    let directions: Vec<Direction> = order
+        .into_iter()
+        .map(|i| {
+            let along: DVector<f64> = found.eigenvectors.column(i).into();
+            let along = lower.tr_solve_lower_triangular(&along).unwrap_or(along);
+            let moved = &basis * &along;
+            let mut motion = vec![0.0; model.rates().len()];
+            free.iter().zip(moved.iter()).for_each(|(&rate, moved)| motion[rate] = *moved);
+            Direction {
+                stiffness: found.eigenvalues[i],
+                by_tissue: along.dot(&(&tissue * &along)),
+                by_load: along.dot(&(&load * &along)),
+                joints: joints(model, &motion),
+                motion,
+            }
+        })
+        .collect();
+    let rounding = ROUNDING * found.eigenvalues.amax();
+    let unstable = directions.iter().filter(|direction| direction.stiffness <= rounding).count();
+    let weakest = &directions[0];
+    let equilibrium = if unstable > 0 {
+        Equilibrium::Unstable
+    } else if weakest.by_tissue >= weakest.by_load {
+        Equilibrium::Stable(Carrier::Ligaments)
+    } else {
+        Equilibrium::Stable(Carrier::Gravity)
+    };
+    Stability { equilibrium: Some(equilibrium), directions, unstable, without_energy }
+}
+
+/// A basis, square and of length 1, of the motions of the `free` rates that leave all supports in place: one column a motion.
+fn free_motions(model: &Model, body: &Body, supports: &[Support], free: &[usize]) -> DMatrix<f64> {
+    let n = model.rates().len();
+    let mut segments: Vec<usize> = supports.iter().map(|support| support.segment).collect();
+    segments.sort_unstable();
+    segments.dedup();
+    // Square at least, so that the whole basis comes out.
+    let mut jacobian = DMatrix::zeros((6 * segments.len()).max(free.len()), free.len());
+    let mut rows = vec![0.0; 3 * n];
+    for (i, &segment) in segments.iter().enumerate() {
+        let corners = supports.iter().filter(|support| support.segment == segment).flat_map(|support| &support.corners);
+        let middle = corners.clone().sum::<nalgebra::Vector3<f64>>() / corners.count().max(1) as f64;
+        for turn in [false, true] {
+            if turn {
+                body.kinematics().rotation_jacobian(model, segment, &mut rows);
+            } else {
+                body.kinematics().point_jacobian(model, segment, middle, &mut rows);
+            }
+            for row in 0..3 {
+                for (column, &rate) in free.iter().enumerate() {
+                    jacobian[(6 * i + 3 * usize::from(turn) + row, column)] = rows[row * n + rate];
+                }
+            }
+        }
+    }
+    if free.is_empty() || segments.is_empty() {
+        return DMatrix::identity(free.len(), free.len());
+    }
+    let svd = SVD::new(jacobian, false, true);
+    let largest = svd.singular_values.amax();
+    let Some(rows) = svd.v_t else { return DMatrix::zeros(free.len(), 0) };
+    let within = (0..free.len()).filter(|&i| svd.singular_values[i] <= FREE * largest);
+    let columns: Vec<DVector<f64>> = within.map(|i| rows.row(i).transpose()).collect();
+    if columns.is_empty() { DMatrix::zeros(free.len(), 0) } else { DMatrix::from_columns(&columns) }
+}
+
+/// Mass matrix of all rates, kg m^2 (kg for slides).
+fn mass_matrix(model: &Model, body: &Body, loads: &[Load]) -> DMatrix<f64> {
+    let n = model.rates().len();
+    let mut sum = DMatrix::zeros(n, n);
+    let mut rows = vec![0.0; 3 * n];
+    let kinematics = body.kinematics();
+    let mut points: Vec<_> = model.segments().iter().enumerate().map(|(i, s)| (i, s.center_of_mass, s.mass)).collect();
+    for load in loads {
+        if let LoadKind::Weight(mass) = load.kind {
+            points.push((load.segment, load.point, mass));
+        }
+    }
+    for (segment, point, mass) in points.into_iter().filter(|(_, _, mass)| *mass > 0.0) {
+        kinematics.point_jacobian(model, segment, point, &mut rows);
+        let jacobian = DMatrix::from_row_slice(3, n, &rows);
+        sum += mass * jacobian.transpose() * jacobian;
+    }
+    for (i, segment) in model.segments().iter().enumerate() {
+        kinematics.rotation_jacobian(model, i, &mut rows);
+        let jacobian = DMatrix::from_row_slice(3, n, &rows);
+        let turn = kinematics.placement(model, i).rotation.to_rotation_matrix();
+        let inertia = turn.matrix() * segment.inertia * turn.matrix().transpose();
+        sum += jacobian.transpose() * inertia * jacobian;
+    }
+    sum
+}
+
+/// Shares of a motion's squares, of coordinates with muscles; of all coordinates where none of those moves.
+fn joints(model: &Model, motion: &[f64]) -> Vec<(usize, f64)> {
+    let squares = |muscles: bool| -> Vec<(usize, f64)> {
+        let coordinates = model.coordinates().iter().enumerate();
+        let those = coordinates.filter(|(_, c)| !muscles || c.groups.is_some());
+        those.filter_map(|(i, c)| Some((i, motion[c.rate?].powi(2)))).collect()
+    };
+    let sum = |list: &[(usize, f64)]| list.iter().map(|(_, square)| square).sum::<f64>();
+    let mut list = squares(true);
+    if sum(&list) <= 0.0 {
+        list = squares(false);
+    }
+    let whole = sum(&list);
+    list.retain(|(_, square)| *square >= 0.01 * whole && *square > 0.0);
+    list.iter_mut().for_each(|(_, square)| *square /= whole);
+    // Of equals the first of the model.
+    list.sort_by(|a, b| b.1.total_cmp(&a.1));
+    list
+}

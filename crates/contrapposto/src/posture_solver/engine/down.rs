@@ -1,0 +1,68 @@
+//! When does the engine go down into valleys of effort, and what are they asked?
+
+use super::super::RelaxError;
+use super::Engine;
+use crate::contact::Balance;
+use crate::effort::site::Ask;
+use crate::effort::valleys::Valleys;
+use crate::posture::Posture;
+use crate::tasks::PriorityLevel;
+use crate::tasks::Task;
+
+impl Engine<'_> {
+    /// Moves to the lowest bottom of the valleys; is that the answer, and after how many steps?
+    pub(super) fn look_into_valleys(&mut self, posture: &mut Posture) -> Result<(bool, usize), RelaxError> {
+        if self.options.valleys == 0 || !self.can_descend() {
+            return Ok((false, 0));
+        }
+        self.see(posture)?;
+        let count = self.options.valleys;
+        let (ask, valleys) = self.ask();
+        let Some(bottom) = valleys.find(&ask, posture, count)? else { return Ok((false, 0)) };
+        self.see(posture)?;
+        let held = self.contact.balance() == Balance::Held;
+        Ok((bottom.settled && held && self.effort_goal == Some(self.goals.len() - 1), bottom.steps))
+    }
+
+    /// Moves `posture` to the bottom of the valley of effort in which it lies, while supports and the goals above effort hold, and
+    /// says whether it did: not if that lies farther away than the largest step, or goals below effort would be passed over.
+    ///
+    /// # Errors
+    /// [`RelaxError::Body`] when the posture does not fit the model.
+    pub fn sink(&mut self, posture: &mut Posture) -> Result<bool, RelaxError> {
+        if self.effort_goal != Some(self.goals.len().wrapping_sub(1)) || !self.can_descend() {
+            return Ok(false);
+        }
+        self.see(posture)?;
+        let most = self.options.max_step;
+        let (ask, valleys) = self.ask();
+        let there = valleys.sink(&ask, posture, most)?;
+        self.keep_ranges(posture);
+        Ok(there)
+    }
+
+    /// Is there an effort level that a descent can lower?
+    fn can_descend(&mut self) -> bool {
+        self.free.clear();
+        self.free.extend((0..self.locked.len()).filter(|rate| !self.locked[*rate]));
+        let alone = |goal: &PriorityLevel| {
+            goal.half_spaces.is_empty() && goal.tasks.iter().all(|task| matches!(task, Task::Effort(_)))
+        };
+        !self.free.is_empty() && self.effort_goal.is_some_and(|goal| alone(&self.goals[goal]))
+    }
+
+    /// What a descent is to do.
+    fn ask(&mut self) -> (Ask<'_>, &mut Valleys) {
+        let goal = self.effort_goal.unwrap_or_default();
+        let ask = Ask {
+            model: self.model,
+            places: &self.places,
+            above: &self.goals[..goal],
+            effort: &self.goals[goal],
+            loads: &self.loads,
+            free: &self.free,
+            contact: &self.contact,
+        };
+        (ask, &mut self.valleys)
+    }
+}

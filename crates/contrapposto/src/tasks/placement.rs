@@ -1,0 +1,49 @@
+//! Is a frame of a segment where it should be, and turned as it should be?
+//!
+//! Three rows of [`Point`] (m), then three of [`Orientation`] (rad): a metre weighs as much as a radian.
+
+use nalgebra::Vector3;
+
+use super::{Check, Orientation, Point, TaskError};
+use crate::math::lexicographic::Level;
+use crate::model::Model;
+use crate::tasks::body::Body;
+
+/// A point and the rotation of a segment, both as wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Index of the segment.
+    pub segment: usize,
+    /// Which point, in the segment's frame, m.
+    pub point: Vector3<f64>,
+    /// Where it should be in ground, m, and the rotation from the segment's frame to ground.
+    pub target: crate::model::Placement,
+}
+
+impl Placement {
+    fn parts(&self) -> (Point, Orientation) {
+        let Self { segment, point, target } = *self;
+        (
+            Point { segment, point, target: target.translation.vector, axes: [true; 3] },
+            Orientation { segment, target: target.rotation },
+        )
+    }
+
+    pub(super) fn error(&self, model: &Model, body: &Body) -> [f64; 6] {
+        let (point, orientation) = self.parts();
+        let (shift, turn) = (point.error(model, body), orientation.error(model, body));
+        [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z]
+    }
+
+    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+        let (point, orientation) = self.parts();
+        point.evaluate(model, body, level);
+        orientation.evaluate(model, body, level);
+    }
+
+    pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
+        let (point, orientation) = self.parts();
+        point.check(check)?;
+        orientation.check(check)
+    }
+}

@@ -1,0 +1,41 @@
+//! Is a point of a segment where it should be?
+//!
+//! Error `x - target` in ground axes, m, on the asked axes; its Jacobian is that of the point.
+
+use nalgebra::Vector3;
+
+use super::{Check, TaskError, append, equations};
+use crate::math::lexicographic::Level;
+use crate::model::Model;
+use crate::tasks::body::Body;
+
+/// A point of a segment at a place in ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Index of the segment.
+    pub segment: usize,
+    /// Which point, in the segment's frame, m.
+    pub point: Vector3<f64>,
+    /// Where it should be, in ground, m.
+    pub target: Vector3<f64>,
+    /// Which ground axes are asked for; one at least.
+    pub axes: [bool; 3],
+}
+
+impl Point {
+    pub(super) fn error(&self, model: &Model, body: &Body) -> Vector3<f64> {
+        body.kinematics().station(model, self.segment, self.point) - self.target
+    }
+
+    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+        body.kinematics().point_jacobian(model, self.segment, self.point, append(level, model, 3));
+        equations(level, model, self.axes, self.error(model, body));
+    }
+
+    pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
+        check.segment(self.segment)?;
+        check.vector("point (m)", &self.point)?;
+        check.vector("target (m)", &self.target)?;
+        check.some("axis", self.axes.contains(&true))
+    }
+}
