@@ -5,7 +5,7 @@
     peervenv/bin/pip install numpy==2.4.6 daqp==0.11.0 proxsuite==0.8.0 clarabel==0.11.1 scipy==1.17.1
     taskset -c 0 peervenv/bin/python scripts/compare_growth.py
 
-The benchmark `lexicographic` writes its growing problems first, with our answers and least times (active set known, and cold).
+The benchmark `solve` of `hierarchical-least-squares` writes its growing problems first, with our answers and least times (active set known, and cold).
 DAQP solves all levels in one call (`break_points`); the others solve one QP a level, the rows of the levels above held as
 equations where they came to. Every time is the solver's own, without python (DAQP and ProxQP: setting up and solving; Clarabel:
 solving), summed over the levels, the least of all repetitions, cold. A residual that differs from ours by more than 1e-6 of its
@@ -35,7 +35,7 @@ SAME = 1e-6
 
 def problems(folder):
     """Our benchmark writes one file a problem."""
-    command = ["cargo", "bench", "-q", "-p", "contrapposto", "--bench", "lexicographic", "--", "growth"]
+    command = ["cargo", "bench", "-q", "-p", "hierarchical-least-squares", "--bench", "solve", "--", "growth"]
     subprocess.run(command, cwd=HERE, check=True, env={**os.environ, "CONTRAPPOSTO_EXCHANGE": str(folder)})
     read = [json.loads(path.read_text()) for path in folder.glob("*.json")]
     for problem in read:

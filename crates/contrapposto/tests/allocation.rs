@@ -5,13 +5,13 @@
 
 use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
 use contrapposto::kinematics::{self, Kinematics};
-use contrapposto::math::lexicographic::{Level, Problem, Solver, Status};
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture;
 use contrapposto::posture_solver::inverse_kinematics::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal as Place, Distance, LookAt, Placement, Point, Posture, Task};
+use hierarchical_least_squares::{Level, Problem, Solver, Status};
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_pcg::Pcg64;

@@ -78,12 +78,13 @@ fn crates_depend_on_what_they_list() {
         let manifest = read(root().join("crates").join(&name).join("Cargo.toml"));
         let dependencies = manifest.split_once("[dependencies]").map_or("", |(_, rest)| rest);
         let dependencies = dependencies.split("\n[").next().unwrap();
-        let used: Vec<String> = dependencies
+        let mut used: Vec<String> = dependencies
             .lines()
             .filter_map(|line| line.split(['.', ' ', '=']).next())
-            .filter(|name| name.starts_with("contrapposto"))
+            .filter(|name| root().join("crates").join(name).join("Cargo.toml").exists() && !name.is_empty())
             .map(str::to_owned)
             .collect();
+        used.sort();
         assert_eq!(used, listed, "{name}: its manifest and ARCHITECTURE.md differ");
     }
 }

@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::kinematics::Kinematics;
-use contrapposto::math::lexicographic::Level;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
@@ -18,6 +17,7 @@ use contrapposto::tasks::{
     CenterOfMass, CenterOfMassGoal, Distance, Effort, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task,
     half_planes,
 };
+use hierarchical_least_squares::Level;
 use nalgebra::{Isometry3, Unit, UnitQuaternion};
 use rand::RngExt;
 use rand_pcg::Pcg64;

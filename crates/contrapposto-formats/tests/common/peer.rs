@@ -5,13 +5,13 @@
 use std::path::PathBuf;
 
 use contrapposto::kinematics::{self, Kinematics};
-use contrapposto::math::lexicographic::{Level, Problem, Solver};
 use contrapposto::model::{Model, Placement};
 use contrapposto::posture::Posture;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{self, CenterOfMass, Orientation, Point, Task};
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::urdf;
+use hierarchical_least_squares::{Level, Problem, Solver};
 use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
 use serde_json::Value;
 

@@ -11,9 +11,9 @@ use nalgebra::Vector3;
 use super::Support;
 use super::support::{SupportError, root_rates};
 use crate::kinematics::Kinematics;
-use crate::math::lexicographic::{Level, Problem, Solver, Status};
 use crate::model::{Model, Side};
 use crate::statics::{FixedIn, Load, LoadKind};
+use hierarchical_least_squares::{Level, Problem, Solver, Status};
 
 /// Is the root in equilibrium?
 #[derive(Clone, Copy, Debug, PartialEq)]

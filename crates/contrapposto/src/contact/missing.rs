@@ -11,8 +11,8 @@ use nalgebra::Vector3;
 
 use super::forces::{Balance, ContactForces, HELD, OF_A_CORNER};
 use crate::kinematics::Kinematics;
-use crate::math::lexicographic::{Level, Problem, Solver, Status};
 use crate::model::Model;
+use hierarchical_least_squares::{Level, Problem, Solver, Status};
 
 /// Corners count as one plane if their heights over it differ by no more, m.
 const FLAT: f64 = 0.01;

@@ -12,10 +12,10 @@ use super::hessian::{Hessian, Sight};
 use super::quadratic::Quadratic;
 use super::site::{Ask, Site};
 use crate::contact::bounds;
-use crate::math::lexicographic::dot;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::tasks::body::BodyError;
+use hierarchical_least_squares::linalg::dot;
 
 /// How to go down.
 #[derive(Clone, Copy, Debug)]

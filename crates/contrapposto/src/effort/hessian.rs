@@ -16,13 +16,13 @@
 //! matrix would bend down where no step may go.
 
 use super::site::{Ask, columns};
-use crate::math::lexicographic::{add_scaled, dot};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
 use crate::statics::{ExternalTorque, Gradient, Load};
 use crate::tasks::body::{Body, Needs};
 use crate::tasks::{Task, share_of_strength};
+use hierarchical_least_squares::linalg::{add_scaled, dot};
 
 /// How far the body moves along `w` for the difference, rad or m.
 const MOVE: f64 = 1e-5;

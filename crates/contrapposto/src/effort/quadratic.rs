@@ -9,7 +9,7 @@
 //! random problems): bounds hold, rows may be missed, and a descent, which judges every step by what comes of it, goes on.
 
 use super::symmetric::{add_times, back, eliminate, four, width};
-use crate::math::lexicographic::{add_scaled, add_squares, dot};
+use hierarchical_least_squares::linalg::{add_scaled, add_squares, dot};
 
 /// Weight of held rows in `M`, against the largest diagonal entry.
 const FAST: f64 = 10.0;

@@ -5,13 +5,14 @@ use nalgebra::Vector3;
 use super::hessian::Seen;
 use super::quadratic::Quadratic;
 use crate::contact::{ContactForces, Unknowns, friction_rows, share_row};
-use crate::math::lexicographic::{Level, add_scaled, add_squares};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind, PassiveTorque};
 use crate::tasks::PriorityLevel;
 use crate::tasks::body::{Body, BodyError, Needs};
 use crate::tasks::{Task, share_of_strength};
+use hierarchical_least_squares::Level;
+use hierarchical_least_squares::linalg::{add_scaled, add_squares};
 
 /// What is asked of posture and contact forces.
 #[derive(Clone, Copy, Debug)]

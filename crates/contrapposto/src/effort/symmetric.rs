@@ -1,6 +1,6 @@
 //! Symmetric matrices by their upper triangles, row after row.
 
-use crate::math::lexicographic::{add_fours, add_scaled, add_scaled_fours, dot};
+use hierarchical_least_squares::linalg::{add_fours, add_scaled, add_scaled_fours, dot};
 
 /// Adds `by` times column `j` of a symmetric matrix, of which the upper triangle is read.
 pub(crate) fn add_times(matrix: &[f64], j: usize, by: f64, to: &mut [f64]) {

@@ -3,7 +3,6 @@
 mod dichotomy;
 pub mod expression;
 mod function;
-pub mod lexicographic;
 mod monotone_cubic;
 
 pub use dichotomy::{dichotomy, dichotomy_between};

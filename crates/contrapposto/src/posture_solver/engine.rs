@@ -19,7 +19,6 @@ use crate::contact::{ContactForces, Support};
 use crate::effort::hessian::Sight;
 use crate::effort::valleys::Valleys;
 use crate::kinematics::Kinematics;
-use crate::math::lexicographic::{Level, Problem, Solver};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::inverse_kinematics::GoalError;
@@ -27,6 +26,7 @@ use crate::statics::{ExternalTorque, Load, PassiveTorque};
 use crate::tasks::PriorityLevel;
 use crate::tasks::body::{Body, BodyError, Needs};
 use crate::tasks::{Placement, Task, TaskError};
+use hierarchical_least_squares::{Level, Problem, Solver};
 
 /// Levels before the goals: contact and equilibrium, supports, shares.
 const BEFORE: usize = 3;

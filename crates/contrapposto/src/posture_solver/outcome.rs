@@ -1,10 +1,10 @@
 //! How far may steps of posture and contact forces go, what comes of them, and why were they refused?
 
 use crate::contact::{Balance, SupportError};
-use crate::math::lexicographic::{ProblemError, Status};
 use crate::posture::Posture;
 use crate::posture_solver::inverse_kinematics::GoalError;
 use crate::tasks::body::BodyError;
+use hierarchical_least_squares::{ProblemError, Status};
 
 /// How far a step may go, and when steps end.
 #[derive(Clone, Copy, Debug, PartialEq)]

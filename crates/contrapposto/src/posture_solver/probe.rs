@@ -3,11 +3,11 @@
 use super::RelaxError;
 use crate::contact::ContactForces;
 use crate::kinematics::Kinematics;
-use crate::math::lexicographic::{Level, Problem, Solver};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{ExternalTorque, Load, PassiveTorque};
 use crate::tasks::body::BodyError;
+use hierarchical_least_squares::{Level, Problem, Solver};
 
 /// How far the joint moves to either side for the difference, rad or m.
 const MOVE: f64 = 1e-4;

@@ -6,9 +6,9 @@
 use nalgebra::Vector3;
 
 use super::{Check, HalfPlane, TaskError, add_along, append, chosen, equations};
-use crate::math::lexicographic::Level;
 use crate::model::Model;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// The centre of mass at a place, or over a polygon.
 #[derive(Clone, Debug, PartialEq)]

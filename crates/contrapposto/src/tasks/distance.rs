@@ -6,9 +6,9 @@
 use nalgebra::Vector3;
 
 use super::{Check, TaskError, add_along, append};
-use crate::math::lexicographic::Level;
 use crate::model::{LARGEST, Model};
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// Two points within a range of distances.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,10 +8,10 @@
 //! `q_d(q_i)` through however many couplings, `tau_i = sum_d q_d' tau_d` and `d tau_i/dq_i` has `q_d'' tau_d` besides.
 
 use super::{Check, TaskError, append, equation};
-use crate::math::lexicographic::Level;
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// Little muscle torque.
 #[derive(Clone, Debug, PartialEq)]

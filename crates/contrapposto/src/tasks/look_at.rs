@@ -11,9 +11,9 @@
 use nalgebra::{UnitVector3, Vector3};
 
 use super::{Check, TaskError, add_along, append, equation};
-use crate::math::lexicographic::Level;
 use crate::model::Model;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// A direction of a segment toward a place in ground.
 #[derive(Clone, Copy, Debug, PartialEq)]

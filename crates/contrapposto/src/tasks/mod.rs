@@ -31,10 +31,10 @@ pub use priority_level::PriorityLevel;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::math::lexicographic::Level;
 use crate::model::{LARGEST, Model};
 use crate::posture::PostureError;
 use body::{Body, Needs};
+use hierarchical_least_squares::Level;
 
 /// Something the body should do.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,9 +8,9 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{Check, TaskError, append, equations, multiply};
-use crate::math::lexicographic::Level;
 use crate::model::Model;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// A segment turned as wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]

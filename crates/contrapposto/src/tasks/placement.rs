@@ -5,9 +5,9 @@
 use nalgebra::Vector3;
 
 use super::{Check, Orientation, Point, TaskError};
-use crate::math::lexicographic::Level;
 use crate::model::Model;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// A point and the rotation of a segment, both as wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]

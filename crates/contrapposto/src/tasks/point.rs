@@ -5,9 +5,9 @@
 use nalgebra::Vector3;
 
 use super::{Check, TaskError, append, equations};
-use crate::math::lexicographic::Level;
 use crate::model::Model;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// A point of a segment at a place in ground.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,10 +6,10 @@
 
 use super::orientation::inverse_left_jacobian;
 use super::{Check, TaskError, append, equation};
-use crate::math::lexicographic::Level;
 use crate::model::Model;
 use crate::posture::{Part, parts};
 use crate::tasks::body::Body;
+use hierarchical_least_squares::Level;
 
 /// Coordinates at wanted values.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,13 +9,14 @@
 use super::BEFORE;
 use crate::effort::hessian::{Hessian, Seen, Sight};
 use crate::effort::site::Ask;
-use crate::math::lexicographic::{Level, Multipliers, Problem, add_scaled, add_square};
 use crate::model::Model;
 use crate::posture_solver::inverse_kinematics::hold::Hold;
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
 use crate::tasks::Task;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::linalg::{add_scaled, add_square};
+use hierarchical_least_squares::{Level, Multipliers, Problem};
 
 /// Weight of rows above, against the largest diagonal entry: what levels above hold fast must not look as if it bent down.
 const FAST: f64 = 10.0;

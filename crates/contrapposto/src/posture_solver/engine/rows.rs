@@ -3,10 +3,10 @@
 use super::{BEFORE, Engine};
 use crate::contact::{Unknowns, bounds, friction_rows, share_row};
 use crate::effort::site::fill_forces;
-use crate::math::lexicographic::Level;
 use crate::posture::Posture;
 use crate::posture_solver::inverse_kinematics::bound_rates;
 use crate::tasks::Task;
+use hierarchical_least_squares::Level;
 
 /// Largest error of a level above effort that one step takes on, in its units: on the way to a far goal the body stays where
 /// effort is little, and so comes into the valleys that lead on.

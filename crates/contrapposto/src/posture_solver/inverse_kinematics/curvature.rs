@@ -12,11 +12,12 @@
 
 use super::hold::Hold;
 use super::symmetric::Axes;
-use crate::math::lexicographic::{Level, Problem, Solver, add_scaled, add_square};
 use crate::model::Model;
 use crate::statics::{ExternalTorque, Gradient, Load};
 use crate::tasks::PriorityLevel;
 use crate::tasks::body::Body;
+use hierarchical_least_squares::linalg::{add_scaled, add_square};
+use hierarchical_least_squares::{Level, Problem, Solver};
 
 /// Weight of directions that levels above hold fast, against the largest entry of the second derivative: large enough that
 /// what is bent there does not matter.

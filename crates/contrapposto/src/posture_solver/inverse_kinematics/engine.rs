@@ -1,13 +1,13 @@
 //! One step toward the goals, and steps until nothing moves.
 
 use super::curvature::Curvature;
-use crate::math::lexicographic::{Level, Multipliers, Problem, ProblemError, Solver, Status};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
 use crate::tasks::TaskError;
 use crate::tasks::body::{Body, BodyError, Needs};
+use hierarchical_least_squares::{Level, Multipliers, Problem, ProblemError, Solver, Status};
 
 /// How far a step may go, and when steps end.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,8 @@
 //! they are estimated anew: the `lambda` that leaves the shortest `J^T r + A^T lambda` over all rates that are not at the end of
 //! their range (the first-order estimate of Gill, Murray & Wright 1981, "Practical Optimization", section 6.6).
 
-use crate::math::lexicographic::{Level, Multipliers, Problem, dot};
+use hierarchical_least_squares::linalg::dot;
+use hierarchical_least_squares::{Level, Multipliers, Problem};
 
 /// A rate or row with less room than this, in its units, is at the end of its range.
 const NO_ROOM: f64 = 1e-9;
@@ -120,7 +121,7 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     use super::*;
-    use crate::math::lexicographic::Solver;
+    use hierarchical_least_squares::Solver;
 
     /// Where a level cannot be met, the estimate in the solution is what the solver says; and it is orthogonal to what holds,
     /// though some rows are said twice.

@@ -16,7 +16,7 @@ pub struct Level {
     /// `mu >= 0`: the level minimises `|residual|^2 + mu^2 |x|^2`; 0 for none. Only the values of its rows are kept for the
     /// levels below: what the rows do not touch is left to those, and the levels above feel nothing of the damping.
     pub damping: f64,
-    /// The level is meant to hold: a residual makes the answer [`super::Status::Infeasible`].
+    /// The level is meant to hold: a residual makes the answer [`crate::Status::Infeasible`].
     pub hard: bool,
 }
 
@@ -103,7 +103,7 @@ pub enum ProblemError {
 }
 
 /// Coefficients and finite limits must be at most this in size: squares and products of what is accepted stay finite.
-pub(super) const LARGEST: f64 = 1e60;
+pub(crate) const LARGEST: f64 = 1e60;
 
 impl Problem {
     /// Do all lengths fit and all numbers have a meaning?
@@ -122,7 +122,7 @@ impl Problem {
     }
 
     /// The check of everything but the coefficients.
-    pub(super) fn check_limits(&self) -> Result<(), ProblemError> {
+    pub(crate) fn check_limits(&self) -> Result<(), ProblemError> {
         let n = self.unknowns();
         check_limits(&self.lower, &self.upper, n, &|| "bound of an unknown".to_owned())?;
         for (k, level) in self.levels.iter().enumerate() {

@@ -5,34 +5,34 @@
 //! right. `1 - P_ff = G G^T`, where `L G^T` holds the columns `f` of the rows in the factor: a few small products instead of
 //! a factorisation of the whole level. Where `G G^T` is close to singular, the general way is taken.
 
-use super::dense::dot;
-use super::factor::Entry;
-use super::problem::Problem;
-use super::solver::{Role, Side, Solver, value};
+use crate::factor::Entry;
+use crate::linalg::dot;
+use crate::problem::Problem;
+use crate::solver::{Role, Side, Solver, value};
 
 /// Smallest pivot of `G G^T`, whose eigenvalues lie between 0 and 1.
 const SINGULAR: f64 = 1e-6;
 
 /// Space of [`Solver::diagonal_level`].
 #[derive(Clone, Debug, Default)]
-pub(super) struct Diagonal {
+pub(crate) struct Diagonal {
     /// The row that asks each unknown, by unknown.
-    pub(super) asked: Vec<Option<usize>>,
+    pub(crate) asked: Vec<Option<usize>>,
     /// Columns of the factor whose unknowns are not asked.
-    pub(super) unasked: Vec<usize>,
+    pub(crate) unasked: Vec<usize>,
     /// `G`, one row a column of `unasked`.
-    pub(super) half: Vec<f64>,
+    pub(crate) half: Vec<f64>,
     /// `G G^T`, then its Cholesky factor.
-    pub(super) square: Vec<f64>,
-    pub(super) columns: Vec<f64>,
+    pub(crate) square: Vec<f64>,
+    pub(crate) columns: Vec<f64>,
     /// What is wanted of the unknowns, turned, as far as the rows above reach.
-    pub(super) wanted: Vec<f64>,
+    pub(crate) wanted: Vec<f64>,
 }
 
 impl Solver {
     /// Solves the last level if it is of that kind: `None` if it is not (nothing was done then), otherwise whether it came
     /// to an end.
-    pub(super) fn diagonal_level(&mut self, problem: &Problem, k: usize) -> Option<bool> {
+    pub(crate) fn diagonal_level(&mut self, problem: &Problem, k: usize) -> Option<bool> {
         let weight = self.asks_single_unknowns(problem, k)?;
         let mut arrived = false;
         let mut fresh = true;

@@ -7,16 +7,16 @@
 //! to their rounding, and the sum zero to that rounding times the rows: where rows of one level weigh 1e-16 to 1 against each
 //! other, the sum alone would not notice the light ones.
 
-use super::dense::add_scaled;
-use super::problem::Problem;
-use super::solver::{MULTIPLIER, Role, Side, Solver};
+use crate::linalg::add_scaled;
+use crate::problem::Problem;
+use crate::solver::{MULTIPLIER, Role, Side, Solver};
 
 /// The last digits of a sum, as a share of it.
 const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
 
 impl Solver {
     /// Do the conditions of all levels hold at the last answer? Damped levels have more to them: `false` for those.
-    pub(super) fn is_still_best(&mut self, problem: &Problem) -> bool {
+    pub(crate) fn is_still_best(&mut self, problem: &Problem) -> bool {
         let mut end = 0;
         let starts = problem.levels.iter().map(|level| {
             end += level.rows();

@@ -4,11 +4,11 @@
 //! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others). Where the
 //! first level knows few unknowns, as two placed feet do, these come first, and its vectors end early.
 
-use super::dense::{add_scaled, add_scaled_pair, dot, dot_pair, norm};
+use crate::linalg::{add_scaled, add_scaled_pair, dot, dot_pair, norm};
 
 /// What a row of the factor stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Entry {
+pub(crate) enum Entry {
     /// The bound of an unknown.
     Bound(usize),
     /// A row, counted through all levels.
@@ -17,28 +17,28 @@ pub(super) enum Entry {
 
 /// See the module's text.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Factor {
+pub(crate) struct Factor {
     /// Unknowns that are not left out, and those that are.
-    pub(super) free: Vec<usize>,
-    pub(super) left_out: Vec<usize>,
+    pub(crate) free: Vec<usize>,
+    pub(crate) left_out: Vec<usize>,
     /// What each row stands for.
-    pub(super) entries: Vec<Entry>,
+    pub(crate) entries: Vec<Entry>,
     /// `L[r][..r]`, one row after the other, as long as `free`.
-    pub(super) lower: Vec<f64>,
+    pub(crate) lower: Vec<f64>,
     /// The reflections' vectors, [`Factor::padded`] long: zero before place `r` and behind `free`, so that sums may run over
     /// whole eights.
-    pub(super) vectors: Vec<f64>,
+    pub(crate) vectors: Vec<f64>,
     /// Where they end, in whole eights: only zeros from there on.
-    pub(super) ends: Vec<usize>,
-    pub(super) diagonal: Vec<f64>,
-    pub(super) scale: Vec<f64>,
+    pub(crate) ends: Vec<usize>,
+    pub(crate) diagonal: Vec<f64>,
+    pub(crate) scale: Vec<f64>,
     /// Product of each vector with the one before.
-    pub(super) cross: Vec<f64>,
+    pub(crate) cross: Vec<f64>,
 }
 
 impl Factor {
     /// No rows; the unknowns of `order` that are `fixed` are left out.
-    pub(super) fn reset(&mut self, order: &[usize], fixed: impl Fn(usize) -> bool) {
+    pub(crate) fn reset(&mut self, order: &[usize], fixed: impl Fn(usize) -> bool) {
         self.free.clear();
         self.free.extend(order.iter().filter(|&&i| !fixed(i)));
         self.left_out.clear();
@@ -47,22 +47,22 @@ impl Factor {
     }
 
     /// Number of rows.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.entries.len()
     }
 
     /// Number of unknowns that are not left out.
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.free.len()
     }
 
     /// The width up to the next eight: so long are turned rows, zero behind [`Factor::width`].
-    pub(super) fn padded(&self) -> usize {
+    pub(crate) fn padded(&self) -> usize {
         self.free.len().next_multiple_of(8)
     }
 
     /// Forgets all rows from `len` on.
-    pub(super) fn truncate(&mut self, len: usize) {
+    pub(crate) fn truncate(&mut self, len: usize) {
         self.entries.truncate(len);
         self.lower.truncate(len * self.free.len());
         self.vectors.truncate(len * self.padded());
@@ -73,7 +73,7 @@ impl Factor {
     }
 
     /// The entries of `x` at the free unknowns, then zeros.
-    pub(super) fn gather(&self, x: &[f64], out: &mut [f64]) {
+    pub(crate) fn gather(&self, x: &[f64], out: &mut [f64]) {
         for (out, &i) in out.iter_mut().zip(&self.free) {
             *out = x[i];
         }
@@ -100,7 +100,7 @@ impl Factor {
     }
 
     /// Applies the reflections of rows `from..to` to `t`: `Q^T t`, as far as they go. Two at a time, which reads `t` once.
-    pub(super) fn turn(&self, t: &mut [f64], from: usize, to: usize) {
+    pub(crate) fn turn(&self, t: &mut [f64], from: usize, to: usize) {
         let mut r = from;
         while r + 1 < to {
             let (a, b, t) = self.pair(r + 1, t);
@@ -116,7 +116,7 @@ impl Factor {
     }
 
     /// Applies all reflections backwards: `Q t`.
-    pub(super) fn turn_back(&self, t: &mut [f64]) {
+    pub(crate) fn turn_back(&self, t: &mut [f64]) {
         let mut r = self.len();
         while r >= 2 {
             let (a, b, t) = self.pair(r - 1, t);
@@ -132,7 +132,7 @@ impl Factor {
     }
 
     /// Adds a turned row, `Q^T` times it: its part beyond [`Factor::len`] must not vanish.
-    pub(super) fn append(&mut self, t: &[f64], entry: Entry) {
+    pub(crate) fn append(&mut self, t: &[f64], entry: Entry) {
         let (r, w, c) = (self.len(), self.width(), self.padded());
         let first = r / 8 * 8;
         let last = t[first..c].as_chunks::<8>().0.iter().rposition(|eight| *eight != [0.0; 8]);
@@ -153,7 +153,7 @@ impl Factor {
     }
 
     /// `y` with `L y = c` for the rows `from..`, whose right-hand sides are `c`; entries before `from` count as zero.
-    pub(super) fn solve_lower(&self, from: usize, c: &[f64], y: &mut [f64]) {
+    pub(crate) fn solve_lower(&self, from: usize, c: &[f64], y: &mut [f64]) {
         let w = self.free.len();
         for r in from..self.len() {
             let row = &self.lower[r * w..r * w + r];
@@ -162,7 +162,7 @@ impl Factor {
     }
 
     /// Replaces `h[..len]` by the solution of `L[..len]^T z = h`.
-    pub(super) fn solve_upper(&self, len: usize, h: &mut [f64]) {
+    pub(crate) fn solve_upper(&self, len: usize, h: &mut [f64]) {
         let w = self.free.len();
         for r in (0..len).rev() {
             h[r] /= self.diagonal[r];
@@ -172,12 +172,12 @@ impl Factor {
     }
 
     /// `L[r][r]`.
-    pub(super) fn diagonal(&self, r: usize) -> f64 {
+    pub(crate) fn diagonal(&self, r: usize) -> f64 {
         self.diagonal[r]
     }
 
     /// `L[r][..r]`.
-    pub(super) fn lower_row(&self, r: usize) -> &[f64] {
+    pub(crate) fn lower_row(&self, r: usize) -> &[f64] {
         let w = self.free.len();
         &self.lower[r * w..r * w + r]
     }

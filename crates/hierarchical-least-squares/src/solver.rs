@@ -1,10 +1,11 @@
 //! Down the levels: what is fixed, what is active, what is still free.
 
-use super::dense::{LeastSquares, dot, norm, norm_and_count};
-use super::diagonal::Diagonal;
-use super::factor::{Entry, Factor};
-use super::multipliers::{Multipliers, Table};
-use super::problem::{LARGEST, Problem, ProblemError};
+use crate::diagonal::Diagonal;
+use crate::factor::{Entry, Factor};
+use crate::least_squares::LeastSquares;
+use crate::linalg::{dot, norm, norm_and_count};
+use crate::multipliers::{Multipliers, Table};
+use crate::problem::{LARGEST, Problem, ProblemError};
 
 /// How it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +23,7 @@ pub enum Status {
 
 /// Which limit is active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(crate) enum Side {
     None,
     Lower,
     Upper,
@@ -32,7 +33,7 @@ pub(super) enum Side {
 
 /// What a row is to the level that is being solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// Holds, and is not active.
     Out,
     /// Its residual is being minimised.
@@ -46,11 +47,11 @@ pub(super) enum Role {
 }
 
 /// Relative size below which a row adds no new direction.
-pub(super) const INDEPENDENT: f64 = 1e-10;
+pub(crate) const INDEPENDENT: f64 = 1e-10;
 /// Relative size of what counts as rounding in the value of a row.
-pub(super) const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-12;
 /// Relative size of a multiplier that counts as zero: what presses with more is needed for good.
-pub(super) const MULTIPLIER: f64 = 1e-11;
+pub(crate) const MULTIPLIER: f64 = 1e-11;
 /// Rows shorter than this count as zero.
 const NOTHING: f64 = 1e-60;
 
@@ -58,54 +59,54 @@ const NOTHING: f64 = 1e-60;
 /// of the same size is solved again.
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
-    pub(super) x: Vec<f64>,
+    pub(crate) x: Vec<f64>,
     /// Where the rows of each level begin; one more at the end.
-    pub(super) offsets: Vec<usize>,
+    pub(crate) offsets: Vec<usize>,
     /// Level of each row, and its place there.
-    pub(super) places: Vec<(usize, usize)>,
-    pub(super) bounds: Vec<Side>,
+    pub(crate) places: Vec<(usize, usize)>,
+    pub(crate) bounds: Vec<Side>,
     /// Bounds that a level above needs: they are not left again.
-    pub(super) held: Vec<bool>,
+    pub(crate) held: Vec<bool>,
     /// By row, counted through all levels.
-    pub(super) sides: Vec<Side>,
-    pub(super) roles: Vec<Role>,
-    pub(super) norms: Vec<f64>,
+    pub(crate) sides: Vec<Side>,
+    pub(crate) roles: Vec<Role>,
+    pub(crate) norms: Vec<f64>,
     /// The only unknown in a row, where there is but one.
-    pub(super) single: Vec<Option<usize>>,
+    pub(crate) single: Vec<Option<usize>>,
     /// The larger of the row's finite limits, in size.
-    pub(super) limits: Vec<f64>,
+    pub(crate) limits: Vec<f64>,
     /// Length of `x`.
-    pub(super) length: f64,
+    pub(crate) length: f64,
     /// What is left of each row.
-    pub(super) residuals: Vec<f64>,
+    pub(crate) residuals: Vec<f64>,
     /// Is the last answer an answer?
-    pub(super) came_to_an_end: bool,
+    pub(crate) came_to_an_end: bool,
     /// The unknowns in the order of the factor's columns.
-    pub(super) order: Vec<usize>,
-    pub(super) factor: Factor,
+    pub(crate) order: Vec<usize>,
+    pub(crate) factor: Factor,
     /// Fixed rows that say nothing new beside those in the factor.
-    pub(super) dependents: Vec<usize>,
-    pub(super) table: Table,
+    pub(crate) dependents: Vec<usize>,
+    pub(crate) table: Table,
     /// Rows of the level in question, turned; their indices; their right-hand sides.
-    pub(super) turned: Vec<f64>,
-    pub(super) left: Vec<(f64, f64)>,
-    pub(super) soft: Vec<usize>,
-    pub(super) right: Vec<f64>,
+    pub(crate) turned: Vec<f64>,
+    pub(crate) left: Vec<(f64, f64)>,
+    pub(crate) soft: Vec<usize>,
+    pub(crate) right: Vec<f64>,
     /// What the best step leaves of each soft row.
-    pub(super) kept: Vec<f64>,
+    pub(crate) kept: Vec<f64>,
     /// How strongly the soft rows pull, all together.
-    pub(super) size: f64,
-    pub(super) y: Vec<f64>,
-    pub(super) step: Vec<f64>,
-    pub(super) gradient: Vec<f64>,
-    pub(super) work: Vec<f64>,
+    pub(crate) size: f64,
+    pub(crate) y: Vec<f64>,
+    pub(crate) step: Vec<f64>,
+    pub(crate) gradient: Vec<f64>,
+    pub(crate) work: Vec<f64>,
     /// `x` turned, for a damped level.
-    pub(super) turned_x: Vec<f64>,
-    pub(super) entries: Vec<Entry>,
-    pub(super) least: LeastSquares,
-    pub(super) diagonal: Diagonal,
-    pub(super) changes: usize,
-    pub(super) limit: usize,
+    pub(crate) turned_x: Vec<f64>,
+    pub(crate) entries: Vec<Entry>,
+    pub(crate) least: LeastSquares,
+    pub(crate) diagonal: Diagonal,
+    pub(crate) changes: usize,
+    pub(crate) limit: usize,
 }
 
 impl Solver {
@@ -329,45 +330,45 @@ impl Solver {
     }
 
     /// One more change of the active set; `false` when there were too many.
-    pub(super) fn may_change(&mut self) -> bool {
+    pub(crate) fn may_change(&mut self) -> bool {
         self.changes += 1;
         self.changes <= self.limit
     }
 
     /// So many changes that rounding must be at work: light rows beside heavy ones are no longer judged by their own.
-    pub(super) fn is_weary(&self) -> bool {
+    pub(crate) fn is_weary(&self) -> bool {
         self.changes > self.limit / 4
     }
 
     /// Level and row within it.
-    pub(super) fn place(&self, row: usize) -> (usize, usize) {
+    pub(crate) fn place(&self, row: usize) -> (usize, usize) {
         self.places[row]
     }
 
     /// Rounding to be expected in the value of a row.
-    pub(super) fn rounding(&self, row: usize) -> f64 {
+    pub(crate) fn rounding(&self, row: usize) -> f64 {
         ROUNDING * (self.limits[row] + self.norms[row] * self.length) + f64::MIN_POSITIVE
     }
 
     /// `a . x` of a row.
-    pub(super) fn value(&self, problem: &Problem, row: usize, x: &[f64]) -> f64 {
+    pub(crate) fn value(&self, problem: &Problem, row: usize, x: &[f64]) -> f64 {
         value(problem, self.places[row], self.single[row], x)
     }
 
     /// What is left of a row, computed from the problem.
-    pub(super) fn row_residual(&self, problem: &Problem, row: usize) -> f64 {
+    pub(crate) fn row_residual(&self, problem: &Problem, row: usize) -> f64 {
         let (k, i) = self.place(row);
         let value = self.value(problem, row, &self.x);
         (value - problem.levels[k].upper[i]).max(0.0) + (value - problem.levels[k].lower[i]).min(0.0)
     }
 
     /// Does a row have any direction at all?
-    pub(super) fn is_something(&self, row: usize) -> bool {
+    pub(crate) fn is_something(&self, row: usize) -> bool {
         self.norms[row] > NOTHING
     }
 
     /// Adds the bound of unknown `i` behind what is in the factor. `false` if it says nothing new.
-    pub(super) fn activate_bound(&mut self, problem: &Problem, i: usize, side: Side) -> bool {
+    pub(crate) fn activate_bound(&mut self, problem: &Problem, i: usize, side: Side) -> bool {
         self.bounds[i] = side;
         self.x[i] = if side == Side::Lower { problem.lower[i] } else { problem.upper[i] };
         self.work.fill(0.0);
@@ -388,7 +389,7 @@ impl Solver {
     }
 
     /// Adds a row of a level behind what is in the factor.
-    pub(super) fn activate_row(&mut self, problem: &Problem, row: usize) -> bool {
+    pub(crate) fn activate_row(&mut self, problem: &Problem, row: usize) -> bool {
         let (k, i) = self.place(row);
         let n = problem.unknowns();
         self.factor.gather(&problem.levels[k].matrix[i * n..(i + 1) * n], &mut self.work);
@@ -396,7 +397,7 @@ impl Solver {
     }
 
     /// Leaves an active bound or row, and factorises the rest anew.
-    pub(super) fn leave(&mut self, problem: &Problem, dropped: Entry) {
+    pub(crate) fn leave(&mut self, problem: &Problem, dropped: Entry) {
         match dropped {
             Entry::Bound(i) => self.bounds[i] = Side::None,
             Entry::Row(row) => (self.roles[row], self.sides[row]) = (Role::Out, Side::None),
@@ -405,7 +406,7 @@ impl Solver {
     }
 
     /// Factorises what is active and fixed anew, bounds as columns left out.
-    pub(super) fn refactor(&mut self, problem: &Problem) {
+    pub(crate) fn refactor(&mut self, problem: &Problem) {
         self.entries.clear();
         self.entries.extend_from_slice(&self.factor.entries);
         self.entries.extend(self.dependents.iter().map(|&row| Entry::Row(row)));
@@ -423,7 +424,7 @@ impl Solver {
     }
 
     /// A row that says nothing new: kept in mind if it is fixed, not active otherwise.
-    pub(super) fn lay_aside(&mut self, row: usize) {
+    pub(crate) fn lay_aside(&mut self, row: usize) {
         if self.roles[row] == Role::Fixed {
             self.dependents.push(row);
         } else {
@@ -432,7 +433,7 @@ impl Solver {
     }
 
     /// The first limit that the step meets before its end: how far (0 to 1), and whose.
-    pub(super) fn first_block(&self, problem: &Problem, k: usize) -> (f64, Option<(Entry, Side)>) {
+    pub(crate) fn first_block(&self, problem: &Problem, k: usize) -> (f64, Option<(Entry, Side)>) {
         let length = norm(&self.step);
         let mut found = (1.0, None);
         let mut meet = |room: f64, speed: f64, entry: Entry, side: Side| {
@@ -474,7 +475,7 @@ impl Solver {
     }
 
     /// `x += share step`, bounds kept exactly.
-    pub(super) fn advance(&mut self, problem: &Problem, share: f64) {
+    pub(crate) fn advance(&mut self, problem: &Problem, share: f64) {
         // What stands at a bound has no step.
         let limits = problem.lower.iter().zip(&problem.upper);
         for ((x, step), (lower, upper)) in self.x.iter_mut().zip(&self.step).zip(limits) {
@@ -487,7 +488,7 @@ impl Solver {
 }
 
 /// `a . x` of row `i` of level `k`, which may have a single unknown.
-pub(super) fn value(problem: &Problem, (k, i): (usize, usize), single: Option<usize>, x: &[f64]) -> f64 {
+pub(crate) fn value(problem: &Problem, (k, i): (usize, usize), single: Option<usize>, x: &[f64]) -> f64 {
     let a = &problem.levels[k].matrix[i * x.len()..(i + 1) * x.len()];
     single.map_or_else(|| dot(a, x), |c| a[c] * x[c])
 }

@@ -18,17 +18,17 @@ pub struct Multipliers<'a> {
 
 /// Storage of all levels' multipliers.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Table {
-    pub(super) unknowns: usize,
-    pub(super) bounds: Vec<f64>,
-    pub(super) rows: Vec<f64>,
+pub(crate) struct Table {
+    pub(crate) unknowns: usize,
+    pub(crate) bounds: Vec<f64>,
+    pub(crate) rows: Vec<f64>,
     /// Where the rows of each level begin.
-    pub(super) starts: Vec<usize>,
+    pub(crate) starts: Vec<usize>,
 }
 
 impl Table {
     /// Zeros for `unknowns` and levels whose first rows are `offsets`.
-    pub(super) fn reset(&mut self, unknowns: usize, offsets: &[usize]) {
+    pub(crate) fn reset(&mut self, unknowns: usize, offsets: &[usize]) {
         self.unknowns = unknowns;
         let levels = offsets.len() - 1;
         self.bounds.clear();
@@ -44,7 +44,7 @@ impl Table {
     }
 
     /// Those of one level; none where nothing was solved.
-    pub(super) fn level(&self, k: usize) -> Multipliers<'_> {
+    pub(crate) fn level(&self, k: usize) -> Multipliers<'_> {
         let Some(starts) = self.starts.get(k..k + 2) else { return Multipliers { bounds: &[], rows: &[] } };
         Multipliers {
             bounds: &self.bounds[k * self.unknowns..(k + 1) * self.unknowns],
@@ -53,7 +53,7 @@ impl Table {
     }
 
     /// Those of one level, to fill: bounds and rows.
-    pub(super) fn level_mut(&mut self, k: usize) -> (&mut [f64], &mut [f64]) {
+    pub(crate) fn level_mut(&mut self, k: usize) -> (&mut [f64], &mut [f64]) {
         let bounds = &mut self.bounds[k * self.unknowns..(k + 1) * self.unknowns];
         (bounds, &mut self.rows[self.starts[k]..self.starts[k + 1]])
     }

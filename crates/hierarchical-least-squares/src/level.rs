@@ -1,16 +1,16 @@
 //! One level: least squares over its rows in the null space of everything above, by active set.
 
-use super::dense::{add_scaled, dot, norm};
-use super::factor::Entry;
-use super::problem::Problem;
-use super::solver::{INDEPENDENT, MULTIPLIER, ROUNDING, Role, Side, Solver};
+use crate::factor::Entry;
+use crate::linalg::{add_scaled, dot, norm};
+use crate::problem::Problem;
+use crate::solver::{INDEPENDENT, MULTIPLIER, ROUNDING, Role, Side, Solver};
 
 /// The last digits of a value, as a share of its rounding.
 const DIGITS: f64 = 1e-3;
 
 impl Solver {
     /// Minimises level `k` and fixes what it reached. `false` if it did not come to an end.
-    pub(super) fn level(&mut self, problem: &Problem, k: usize) -> bool {
+    pub(crate) fn level(&mut self, problem: &Problem, k: usize) -> bool {
         let damped = problem.levels[k].damping > 0.0;
         self.choose_soft_rows(problem, k);
         'active_set: loop {
@@ -52,7 +52,7 @@ impl Solver {
     }
 
     /// What blocked a step of level `k` becomes active.
-    pub(super) fn activate(&mut self, problem: &Problem, k: usize, entry: Entry, side: Side) {
+    pub(crate) fn activate(&mut self, problem: &Problem, k: usize, entry: Entry, side: Side) {
         match entry {
             Entry::Bound(i) => {
                 self.activate_bound(problem, i, side);
@@ -219,7 +219,7 @@ impl Solver {
     }
 
     /// `work`, by free column, becomes `step`, by unknown.
-    pub(super) fn scatter_step(&mut self) {
+    pub(crate) fn scatter_step(&mut self) {
         self.step.fill(0.0);
         for (c, &i) in self.factor.free.iter().enumerate() {
             if self.bounds[i] == Side::None {
@@ -339,7 +339,7 @@ impl Solver {
     /// Multipliers of the first `base` entries and of the bounds, into the table, for the gradient in `work` (turned) and
     /// `gradient` (at the unknowns left out). Answers the active bound or
     /// row whose multiplier has the wrong sign, the worst one; otherwise notes (`hold`) which are needed from now on.
-    pub(super) fn multiply(
+    pub(crate) fn multiply(
         &mut self,
         problem: &Problem,
         k: usize,

@@ -3,7 +3,7 @@
 
 use crate::double_double::{Double, dot, inner};
 use crate::generator::{Draw, Row, outside};
-use contrapposto::math::lexicographic::{Problem, Solver};
+use hierarchical_least_squares::{Problem, Solver};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 

@@ -10,21 +10,16 @@
     reason = "tests: helpers outside #[test] functions too"
 )]
 
-#[path = "lexicographic/conditions.rs"]
 mod conditions;
-#[path = "lexicographic/double_double.rs"]
 mod double_double;
-#[path = "lexicographic/generator.rs"]
 mod generator;
-#[path = "lexicographic/linear.rs"]
 mod linear;
-#[path = "lexicographic/oracle.rs"]
 mod oracle;
 
 use conditions::{Answer, Misses, RESIDUAL, misses, products, reference, residual, residual_of, spread};
-use contrapposto::math::lexicographic::{Level, Problem, Solver, Status};
 use double_double::Double;
 use generator::{Draw, Scaling, Wish, draw, empty_level, normal, random};
+use hierarchical_least_squares::{Level, Problem, Solver, Status};
 use nalgebra::{DMatrix, DVector};
 use oracle::{Cascade, Trouble};
 use rand::RngExt;

@@ -1,10 +1,10 @@
 //! Space for the largest problem to come, all at once.
 
-use super::dense::LeastSquares;
-use super::diagonal::Diagonal;
-use super::factor::Factor;
-use super::multipliers::Table;
-use super::solver::Solver;
+use crate::diagonal::Diagonal;
+use crate::factor::Factor;
+use crate::least_squares::LeastSquares;
+use crate::multipliers::Table;
+use crate::solver::Solver;
 
 impl Solver {
     /// Knows nothing yet, and allocates nothing for problems up to this size: `unknowns`, `levels`, `most` rows in one of them,

@@ -11,7 +11,7 @@
 //! robotics").
 //!
 //! ```
-//! use contrapposto::math::lexicographic::{Level, Problem, Solver, Status};
+//! use hierarchical_least_squares::{Level, Problem, Solver, Status};
 //!
 //! // First x + y = 2, then x = 5, then y = 5, with y at least -1.
 //! let mut problem = Problem::new(2);
@@ -25,20 +25,20 @@
 //! assert_eq!(solver.solve(&problem)?, Status::Solved);
 //! assert!((solver.solution()[0] - 3.0).abs() < 1e-14 && solver.solution()[1] == -1.0);
 //! assert!((solver.residual(1)[0] + 2.0).abs() < 1e-14); // the bound on y stands in the way of x
-//! # Ok::<(), contrapposto::math::lexicographic::ProblemError>(())
+//! # Ok::<(), hierarchical_least_squares::ProblemError>(())
 //! ```
 
 mod certificate;
-mod dense;
 mod diagonal;
 mod factor;
+mod least_squares;
 mod level;
+pub mod linalg;
 mod multipliers;
 mod problem;
 mod solver;
 mod space;
 
-pub(crate) use dense::{add_fours, add_scaled, add_scaled_fours, add_square, add_squares, dot};
 pub use multipliers::Multipliers;
 pub use problem::{Level, Problem, ProblemError};
 pub use solver::{Solver, Status};

@@ -5,8 +5,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use contrapposto::math::lexicographic::{Level, Problem, Solver};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use hierarchical_least_squares::{Level, Problem, Solver};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 

@@ -9,7 +9,7 @@
 //! Rows are drawn near unit length and scaled last; `Draw` keeps both.
 
 use crate::linear::null_space;
-use contrapposto::math::lexicographic::{Level, Problem};
+use hierarchical_least_squares::{Level, Problem};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
