@@ -9,13 +9,13 @@
 //! changes with the angle have closed forms of their own.
 //!
 //! Scouts that look for valleys are to pass over dips (an arm that balances overhead costs no muscle anything): they know of
-//! tasks, weight, loads and single joints' passive torque only ([`Sight::Coarse`]).
+//! tasks, weight, loads and single joints' passive torque only ([`HessianModel::Partial`]).
 //!
 //! Forces that cancel each other within one support do no work while it stays; their mixed part lies in the motions that turn
 //! the support. These are taken out of the mixed part, which changes the multipliers of the supports and nothing else: else the
 //! matrix would bend down where no step may go.
 
-use super::site::{Ask, columns};
+use super::problem::{EffortProblem, contact_columns};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
@@ -33,7 +33,7 @@ const NEW: f64 = 1e-6;
 
 /// What is known of the posture and the forces in which effort bends.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen<'a> {
+pub(crate) struct FirstOrder<'a> {
     pub(crate) body: &'a Body,
     /// Loads of the scenario, then one a corner.
     pub(crate) loads: &'a [Load],
@@ -48,11 +48,11 @@ pub(crate) struct Seen<'a> {
 
 /// How much of that is to be seen?
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sight {
+pub(crate) enum HessianModel {
     /// All.
-    Fine,
+    Full,
     /// Tasks, weight, loads and single joints.
-    Coarse,
+    Partial,
 }
 
 /// Keeps its space.
@@ -92,12 +92,19 @@ impl Hessian {
 
     /// Adds to the upper triangle of `matrix` what goes beyond first derivatives, with the multipliers of the root's equilibrium
     /// and of the tasks above effort.
-    pub(crate) fn bend(&mut self, ask: &Ask<'_>, at: &Seen<'_>, multipliers: &[f64], sight: Sight, matrix: &mut [f64]) {
+    pub(crate) fn bend(
+        &mut self,
+        ask: &EffortProblem<'_>,
+        at: &FirstOrder<'_>,
+        multipliers: &[f64],
+        sight: HessianModel,
+        matrix: &mut [f64],
+    ) {
         self.weigh(ask, at, multipliers);
         self.bend_of_tasks(ask, at, multipliers, matrix);
         let moved = self.bend_of_torques(ask, at, matrix);
         self.bend_of_passive(ask, at, matrix);
-        if sight == Sight::Fine {
+        if sight == HessianModel::Full {
             if let Some(moved) = moved {
                 self.bend_of_forces(ask, at, moved, matrix);
             }
@@ -106,7 +113,7 @@ impl Hessian {
         }
     }
 
-    fn weigh(&mut self, ask: &Ask<'_>, at: &Seen<'_>, multipliers: &[f64]) {
+    fn weigh(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, multipliers: &[f64]) {
         self.weights.fill(0.0);
         for (rate, y) in ask.contact.root().iter().zip(multipliers) {
             self.weights[*rate] = y / ask.contact.weight();
@@ -116,7 +123,7 @@ impl Hessian {
         }
     }
 
-    fn bend_of_tasks(&mut self, ask: &Ask<'_>, at: &Seen<'_>, multipliers: &[f64], matrix: &mut [f64]) {
+    fn bend_of_tasks(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, multipliers: &[f64], matrix: &mut [f64]) {
         let Some(mut multipliers) = multipliers.get(ask.contact.root().len()..) else { return };
         self.loads.clear();
         for task in ask.goals().flat_map(|goal| &goal.tasks) {
@@ -133,7 +140,7 @@ impl Hessian {
     }
 
     /// Gives how far along `w` the body has moved for it.
-    fn bend_of_torques(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) -> Option<f64> {
+    fn bend_of_torques(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) -> Option<f64> {
         let model = ask.model;
         let size = self.weights.iter().fold(0.0, |size: f64, w| size.max(w.abs()));
         if size.is_nan() || size <= 0.0 {
@@ -152,7 +159,7 @@ impl Hessian {
     }
 
     /// `sum_i w_i tau_p,i''` of joints whose passive torque depends on their own angle.
-    fn bend_of_passive(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) {
+    fn bend_of_passive(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
         let (model, n, values) = (ask.model, ask.unknowns(), at.body.kinematics().values());
         for (i, &rate) in ask.free.iter().enumerate() {
             let Some(own) = model.rates()[rate].coordinate else { continue };
@@ -169,7 +176,7 @@ impl Hessian {
     }
 
     /// The same of coupled laws.
-    fn bend_of_coupled(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) {
+    fn bend_of_coupled(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
         let (model, n, values) = (ask.model, ask.unknowns(), at.body.kinematics().values());
         for (own, coordinate) in model.coordinates().iter().enumerate() {
             let (Some(PassiveLaw::Coupled(law)), Some(rate)) = (&coordinate.passive, coordinate.rate) else { continue };
@@ -194,7 +201,7 @@ impl Hessian {
 
     /// Strength changes with the angle. With `e = tau_a / S` this adds `(J^T k + k^T J) e - e^2 S''/S` at the joint, where `J` is
     /// the row of `e` and `k = -S'/S`.
-    fn bend_of_strength(&mut self, ask: &Ask<'_>, at: &Seen<'_>, matrix: &mut [f64]) {
+    fn bend_of_strength(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
         let n = ask.unknowns();
         for (coordinate, rate, error, row) in efforts(ask, at) {
             let Some(groups) = &ask.model.coordinates()[coordinate].groups else { continue };
@@ -213,12 +220,12 @@ impl Hessian {
         }
     }
 
-    fn bend_of_forces(&mut self, ask: &Ask<'_>, at: &Seen<'_>, h: f64, matrix: &mut [f64]) {
+    fn bend_of_forces(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, h: f64, matrix: &mut [f64]) {
         if at.columns.is_empty() {
             return;
         }
         let (rates, n, k) = (ask.model.rates().len(), ask.unknowns(), ask.free.len());
-        columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
+        contact_columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
         self.basis.clear();
         self.mixed.resize(k, 0.0);
         for row in at.places.chunks_exact(n) {
@@ -241,7 +248,7 @@ impl Hessian {
 }
 
 /// Adds `share` times the symmetric part of a gradient, less that of another one.
-fn add_gradient(ask: &Ask<'_>, share: f64, of: &Gradient, less: Option<&Gradient>, matrix: &mut [f64]) {
+fn add_gradient(ask: &EffortProblem<'_>, share: f64, of: &Gradient, less: Option<&Gradient>, matrix: &mut [f64]) {
     let n = ask.unknowns();
     let symmetric = of.is_symmetric() && less.is_none_or(Gradient::is_symmetric);
     for (i, &a) in ask.free.iter().enumerate() {
@@ -258,7 +265,10 @@ fn add_gradient(ask: &Ask<'_>, share: f64, of: &Gradient, less: Option<&Gradient
 }
 
 /// Of every coordinate whose effort counts: its rate, its error and the row of that.
-fn efforts<'a>(ask: &'a Ask<'_>, at: &Seen<'a>) -> impl Iterator<Item = (usize, usize, f64, &'a [f64])> {
+fn efforts<'a>(
+    ask: &'a EffortProblem<'_>,
+    at: &FirstOrder<'a>,
+) -> impl Iterator<Item = (usize, usize, f64, &'a [f64])> {
     let effort =
         ask.effort.tasks.iter().map_while(|task| if let Task::Effort(effort) = task { Some(effort) } else { None });
     let rows = at.errors.iter().zip(at.slopes.chunks_exact(ask.unknowns()));
@@ -279,9 +289,9 @@ mod tests {
     use rand::RngExt;
     use rand_pcg::Pcg64Mcg;
 
-    use super::super::ground::{Ground, alike, moved};
-    use super::super::quadratic::Quadratic;
-    use super::super::site::Site;
+    use super::super::iterate::Iterate;
+    use super::super::qp::QuadraticProgram;
+    use super::super::standing_adult::{StandingAdult, alike, moved};
     use super::*;
     use crate::tasks::PriorityLevel;
 
@@ -293,7 +303,7 @@ mod tests {
     /// relative to what lies beyond first derivatives.
     #[test]
     fn the_matrix_is_the_second_derivative_of_the_lagrangian() {
-        let ground = Ground::new();
+        let ground = StandingAdult::new();
         let mut hessian = Hessian::new(&ground.model);
         let (mut worst, mut compared) = (0f64, 0);
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 40, |random, ask, site| {
@@ -309,7 +319,7 @@ mod tests {
             }
             remove(&mut direction[..k], &basis);
 
-            let mut problem = Quadratic::default();
+            let mut problem = QuadraticProgram::default();
             (problem.n, problem.shifted) = (n, k);
             site.write(1.0, &mut problem);
             let along = |matrix: &[f64]| -> f64 {
@@ -317,11 +327,11 @@ mod tests {
                 (0..n * n).map(|e| direction[e / n] * upper(e / n, e % n) * direction[e % n]).sum()
             };
             let squares = along(&problem.matrix);
-            hessian.bend(ask, &site.seen(ask), &multipliers, Sight::Fine, &mut problem.matrix);
+            hessian.bend(ask, &site.seen(ask), &multipliers, HessianModel::Full, &mut problem.matrix);
             let exact = along(&problem.matrix);
 
             let equations = root + ask.goals().map(PriorityLevel::rows).sum::<usize>();
-            let lagrangian = |site: &Site| {
+            let lagrangian = |site: &Iterate| {
                 let rows = multipliers.iter().zip(&site.lower).take(equations);
                 site.effort - rows.map(|(y, rest)| y * rest).sum::<f64>()
             };

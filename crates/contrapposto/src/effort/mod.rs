@@ -1,13 +1,14 @@
 //! Solves for the posture and the contact forces of least effort under constraints, by sequential quadratic programming and
 //! basin hopping.
 
-pub(crate) mod descent;
-#[cfg(test)]
-mod ground;
+pub(crate) mod basin_hopping;
 pub(crate) mod hessian;
-mod limbs;
-mod quadratic;
-pub(crate) mod site;
+mod iterate;
+pub(crate) mod problem;
+mod qp;
+mod reduced_problem;
+mod sqp;
+#[cfg(test)]
+mod standing_adult;
 pub(crate) mod symmetric;
-pub(crate) mod valleys;
 mod weld;

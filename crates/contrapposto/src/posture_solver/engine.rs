@@ -3,7 +3,7 @@
 //! Effort is a sum of squares under constraints that bend, so this is a Gauss-Newton method within a largest step. A step
 //! counts if it lowers `|e|^2/2 + price sum |errors of the levels above|`, the price above every multiplier; else it is taken
 //! back and the largest step shrinks (Nocedal & Wright 2006, "Numerical Optimization", ch. 18). `rows.rs` writes the problem of a
-//! step, `merit.rs` judges it, `down.rs` leaves the way down to [`crate::effort::valleys`].
+//! step, `merit.rs` judges it, `down.rs` leaves the way down to [`crate::effort::basin_hopping`].
 
 mod curvature;
 mod down;
@@ -16,8 +16,8 @@ use nalgebra::Vector3;
 use super::probe::Probe;
 use super::{Options, Reason, RelaxError, Relaxed, Step};
 use crate::contact::{ContactForces, Support};
-use crate::effort::hessian::Sight;
-use crate::effort::valleys::Valleys;
+use crate::effort::basin_hopping::BasinHopping;
+use crate::effort::hessian::HessianModel;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
@@ -65,7 +65,7 @@ pub struct Engine<'a> {
     /// What the last step left of each level.
     unreached: Vec<f64>,
     curvature: Curvature,
-    valleys: Valleys,
+    valleys: BasinHopping,
     /// All rates, and those that move.
     rates: Vec<usize>,
     free: Vec<usize>,
@@ -146,7 +146,7 @@ impl<'a> Engine<'a> {
             price: 0.0,
             unreached: vec![],
             curvature: Curvature::new(model, unknowns),
-            valleys: Valleys::new(model),
+            valleys: BasinHopping::new(model),
             rates: (0..rates).collect(),
             free: vec![],
             reach: options.max_step,
@@ -161,9 +161,9 @@ impl<'a> Engine<'a> {
         self.locked[rate] = true;
     }
 
-    /// It is to pass over dips in which there is little to be found ([`Sight::Coarse`]).
+    /// It is to pass over dips in which there is little to be found ([`HessianModel::Partial`]).
     pub(crate) fn scout(&mut self) {
-        self.curvature.sight = Sight::Coarse;
+        self.curvature.sight = HessianModel::Partial;
     }
 
     /// The goals, to move targets between steps. What is changed must still fit the model; effort must stay where it is.

@@ -7,8 +7,8 @@
 //! mixed second derivatives the step is Newton's on both.
 
 use super::BEFORE;
-use crate::effort::hessian::{Hessian, Seen, Sight};
-use crate::effort::site::Ask;
+use crate::effort::hessian::{FirstOrder, Hessian, HessianModel};
+use crate::effort::problem::EffortProblem;
 use crate::model::Model;
 use crate::posture_solver::inverse_kinematics::hold::Hold;
 use crate::statics::Load;
@@ -27,7 +27,7 @@ const FLAT: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(super) struct Curvature {
     hessian: Hessian,
-    pub(super) sight: Sight,
+    pub(super) sight: HessianModel,
     hold: Hold,
     /// Of the root's equilibrium and of the tasks above.
     multipliers: Vec<f64>,
@@ -47,7 +47,7 @@ impl Curvature {
     pub(super) fn new(model: &Model, unknowns: usize) -> Self {
         Self {
             hessian: Hessian::new(model),
-            sight: Sight::Fine,
+            sight: HessianModel::Full,
             hold: Hold::new(unknowns, unknowns),
             multipliers: vec![],
             errors: vec![],
@@ -65,7 +65,7 @@ impl Curvature {
     /// step.
     pub(super) fn bend(
         &mut self,
-        ask: &Ask<'_>,
+        ask: &EffortProblem<'_>,
         body: &Body,
         loads: &[Load],
         problem: &mut Problem,
@@ -80,12 +80,12 @@ impl Curvature {
             add_scaled(&mut self.slope, *error, row);
         }
         self.hold.estimate(problem, &problem.levels[..k], last, &self.slope);
-        if self.sight == Sight::Coarse {
+        if self.sight == HessianModel::Partial {
             self.hold.keep(last);
         }
         self.gather(ask, &problem.levels[..k]);
         self.matrix.fill(0.0);
-        let seen = Seen {
+        let seen = FirstOrder {
             body,
             loads,
             columns: ask.contact.columns(),
@@ -114,7 +114,7 @@ impl Curvature {
     }
 
     /// The multipliers that bend: those of the root's equilibrium, the last rows of the first level, and of tasks.
-    fn gather(&mut self, ask: &Ask<'_>, above: &[Level]) {
+    fn gather(&mut self, ask: &EffortProblem<'_>, above: &[Level]) {
         self.multipliers.clear();
         let mut rest = &self.hold.multipliers[..];
         for (k, level) in above.iter().enumerate() {

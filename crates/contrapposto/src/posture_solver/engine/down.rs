@@ -3,8 +3,8 @@
 use super::super::RelaxError;
 use super::Engine;
 use crate::contact::Balance;
-use crate::effort::site::Ask;
-use crate::effort::valleys::Valleys;
+use crate::effort::basin_hopping::BasinHopping;
+use crate::effort::problem::EffortProblem;
 use crate::posture::Posture;
 use crate::tasks::PriorityLevel;
 use crate::tasks::Task;
@@ -52,9 +52,9 @@ impl Engine<'_> {
     }
 
     /// What a descent is to do.
-    fn ask(&mut self) -> (Ask<'_>, &mut Valleys) {
+    fn ask(&mut self) -> (EffortProblem<'_>, &mut BasinHopping) {
         let goal = self.effort_goal.unwrap_or_default();
-        let ask = Ask {
+        let ask = EffortProblem {
             model: self.model,
             places: &self.places,
             above: &self.goals[..goal],

@@ -3,7 +3,7 @@
 //! Merit is `|e|^2/2 + price sum |errors of the levels above|`, the price above every multiplier.
 
 use super::{BEFORE, Engine};
-use crate::effort::site::Ask;
+use crate::effort::problem::EffortProblem;
 
 impl Engine<'_> {
     /// Merit of the present posture (0) or of the one before the last step (1).
@@ -39,7 +39,7 @@ impl Engine<'_> {
     /// Gives the effort level its second derivative.
     pub(super) fn bend(&mut self) {
         let Some(goal) = self.effort_goal else { return };
-        let ask = Ask {
+        let ask = EffortProblem {
             model: self.model,
             places: &self.places,
             above: &self.goals[..goal],

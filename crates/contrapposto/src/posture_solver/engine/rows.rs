@@ -2,7 +2,7 @@
 
 use super::{BEFORE, Engine};
 use crate::contact::{Unknowns, bounds, friction_rows, share_row};
-use crate::effort::site::fill_forces;
+use crate::effort::problem::fill_force_columns;
 use crate::posture::Posture;
 use crate::posture_solver::inverse_kinematics::bound_rates;
 use crate::tasks::Task;
@@ -32,7 +32,7 @@ impl Engine<'_> {
                     if let Some(effort) = effort {
                         let (coordinate, columns) = (effort.coordinates[i], self.contact.columns());
                         let error = -self.narrow.upper[i];
-                        fill_forces(self.model, &self.body, columns, coordinate, error, &mut row[rates..]);
+                        fill_force_columns(self.model, &self.body, columns, coordinate, error, &mut row[rates..]);
                     }
                 });
             }

@@ -2,28 +2,28 @@
 //!
 //! Effort has many: arms, neck and spine each rest on their tissue in more than one way. From the bottom of the nearest one
 //! the limbs are moved aside, as far as goals let them to first order, and go down again; what lies lower is kept (Wales & Doye
-//! 1997, "Global optimization by basin-hopping"), part by part where parts rest by themselves ([`super::limbs`]). The directions
+//! 1997, "Global optimization by basin-hopping"), part by part where parts rest by themselves ([`super::reduced_problem`]). The directions
 //! come from a fixed sequence of numbers: the same problem has the same answer.
 
-use super::descent::{Bottom, Descent, Manner};
-use super::limbs::{Limbs, Parts};
-use super::site::Ask;
+use super::problem::EffortProblem;
+use super::reduced_problem::{DecoupledSubtrees, ReducedProblem};
+use super::sqp::{LocalMinimum, Sqp, SqpOptions};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::tasks::body::BodyError;
 
 /// The way to the nearest valley.
-const NEAR: Manner = Manner { pace: 0.15, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-3 };
+const NEAR: SqpOptions = SqpOptions { pace: 0.15, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-3 };
 /// The way down from aside, where goals are still near; whoever must go far there does not end low.
-const ASIDE: Manner = Manner { pace: 0.4, plain: 5, reach: 0.6, longer: false, steps: 20, gain: 0.05 };
+const ASIDE: SqpOptions = SqpOptions { pace: 0.4, plain: 5, reach: 0.6, longer: false, steps: 20, gain: 0.05 };
 /// Another way to a valley whose goals are far.
-const AGAIN: Manner = Manner { reach: 0.3, longer: true, steps: 100, gain: 1e-3, ..ASIDE };
+const AGAIN: SqpOptions = SqpOptions { reach: 0.3, longer: true, steps: 100, gain: 1e-3, ..ASIDE };
 /// The way down from a posture put together from parts.
-const MIXED: Manner = Manner { plain: 0, reach: 0.3, ..ASIDE };
+const MIXED: SqpOptions = SqpOptions { plain: 0, reach: 0.3, ..ASIDE };
 /// The way to the bottom of a posture that hardly moves any more: a step that gains a millionth is not worth a move.
-const SINK: Manner = Manner { pace: 0.4, plain: 0, reach: 0.1, longer: true, steps: 40, gain: 1e-6 };
+const SINK: SqpOptions = SqpOptions { pace: 0.4, plain: 0, reach: 0.1, longer: true, steps: 40, gain: 1e-6 };
 /// The way to the very bottom.
-const LAST: Manner = Manner { pace: 0.4, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-13 };
+const LAST: SqpOptions = SqpOptions { pace: 0.4, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-13 };
 /// How far aside, as a share of the range of each coordinate.
 const FAR: f64 = 0.7;
 /// Share of the coordinates that go aside, neighbours in the model's order.
@@ -38,17 +38,17 @@ const EXACT: f64 = 1e-9;
 
 /// A descent, and the lowest place so far. Keeps its space, but for what welded bodies need.
 #[derive(Clone, Debug)]
-pub(crate) struct Valleys {
-    descent: Descent,
-    lowest: Place,
+pub(crate) struct BasinHopping {
+    descent: Sqp,
+    lowest: Candidate,
     /// The bottom of the nearest valley.
     near: Posture,
-    look: Look,
+    look: Perturbations,
 }
 
 /// A posture with its forces, and the multipliers of what must hold there.
 #[derive(Clone, Debug)]
-struct Place {
+struct Candidate {
     posture: Posture,
     forces: Vec<f64>,
     multipliers: Vec<f64>,
@@ -56,19 +56,19 @@ struct Place {
 
 /// Looks for other valleys.
 #[derive(Clone, Debug)]
-struct Look {
-    aside: Place,
+struct Perturbations {
+    aside: Candidate,
     wish: Vec<f64>,
 }
 
-impl Valleys {
+impl BasinHopping {
     pub(crate) fn new(model: &Model) -> Self {
-        let place = Place { posture: model.default_posture(), forces: vec![], multipliers: vec![] };
+        let place = Candidate { posture: model.default_posture(), forces: vec![], multipliers: vec![] };
         Self {
-            descent: Descent::new(model),
+            descent: Sqp::new(model),
             lowest: place.clone(),
             near: model.default_posture(),
-            look: Look { aside: place, wish: vec![] },
+            look: Perturbations { aside: place, wish: vec![] },
         }
     }
 
@@ -76,11 +76,11 @@ impl Valleys {
     /// must hold cannot be reached from there.
     pub(crate) fn find(
         &mut self,
-        ask: &Ask<'_>,
+        ask: &EffortProblem<'_>,
         posture: &mut Posture,
         count: usize,
-    ) -> Result<Option<Bottom>, BodyError> {
-        let mut limbs = Limbs::of(ask, posture)?;
+    ) -> Result<Option<LocalMinimum>, BodyError> {
+        let mut limbs = ReducedProblem::of(ask, posture)?;
         if ask.contact.supports().is_empty() {
             let welded = limbs.take().filter(|limbs| limbs.model.rates().len() < ask.model.rates().len());
             if let Some(limbs) = welded {
@@ -94,7 +94,7 @@ impl Valleys {
         let mut steps = 0;
         if let Some(limbs) = &limbs {
             // First what limbs can do by themselves: the rest of the body has less to do then.
-            let mut descent = Descent::new(&limbs.model);
+            let mut descent = Sqp::new(&limbs.model);
             let bottom = descent.go(&limbs.ask(ask), posture, &[], &[], &NEAR)?;
             steps += bottom.steps;
             if bottom.violation <= ROUGH {
@@ -113,11 +113,11 @@ impl Valleys {
         lowest.keep(descent);
         self.near.values_mut().copy_from_slice(lowest.posture.values());
         if limbs.is_some() {
-            limbs = Limbs::of(ask, &lowest.posture)?; // the rest may have moved
+            limbs = ReducedProblem::of(ask, &lowest.posture)?; // the rest may have moved
         }
         if let Some(limbs) = &limbs {
-            let mut alone = Place { forces: vec![], ..lowest.clone() };
-            steps += self.look.search(&limbs.ask(ask), &mut Descent::new(&limbs.model), &mut alone, count)?;
+            let mut alone = Candidate { forces: vec![], ..lowest.clone() };
+            steps += self.look.search(&limbs.ask(ask), &mut Sqp::new(&limbs.model), &mut alone, count)?;
             lowest.posture = alone.posture;
         } else {
             steps += self.look.search(ask, descent, lowest, count)?;
@@ -134,12 +134,17 @@ impl Valleys {
             return Ok(None);
         }
         posture.values_mut().copy_from_slice(descent.at.posture.values());
-        Ok(Some(Bottom { steps, settled: last.settled && last.violation <= EXACT, ..last }))
+        Ok(Some(LocalMinimum { steps, settled: last.settled && last.violation <= EXACT, ..last }))
     }
 
     /// Moves `posture` to the bottom of its own valley, and says whether it did: not if that lies farther away than `most` in any
     /// coordinate, or something that must hold does not.
-    pub(crate) fn sink(&mut self, ask: &Ask<'_>, posture: &mut Posture, most: f64) -> Result<bool, BodyError> {
+    pub(crate) fn sink(
+        &mut self,
+        ask: &EffortProblem<'_>,
+        posture: &mut Posture,
+        most: f64,
+    ) -> Result<bool, BodyError> {
         let forces = &mut self.lowest.forces;
         forces.clear();
         forces.extend_from_slice(ask.contact.forces());
@@ -154,30 +159,30 @@ impl Valleys {
     }
 }
 
-impl Place {
+impl Candidate {
     /// It is where the descent is now.
-    fn keep(&mut self, descent: &Descent) {
+    fn keep(&mut self, descent: &Sqp) {
         self.keep_posture(descent);
         self.forces.clone_from(&descent.at.forces);
         self.multipliers.clone_from(&descent.multipliers);
     }
 
-    fn keep_posture(&mut self, descent: &Descent) {
+    fn keep_posture(&mut self, descent: &Sqp) {
         self.posture.values_mut().copy_from_slice(descent.at.posture.values());
     }
 }
 
-impl Look {
+impl Perturbations {
     /// Moves `lowest` to the lowest of so many valleys and returns the number of steps that took.
     fn search(
         &mut self,
-        ask: &Ask<'_>,
-        descent: &mut Descent,
-        lowest: &mut Place,
+        ask: &EffortProblem<'_>,
+        descent: &mut Sqp,
+        lowest: &mut Candidate,
         count: usize,
     ) -> Result<usize, BodyError> {
         descent.begin(ask, &lowest.posture, &lowest.forces)?;
-        let parts = Parts::of(ask, &descent.at);
+        let parts = DecoupledSubtrees::of(ask, &descent.at);
         let mut efforts = parts.efforts(&descent.at.errors);
         let (mut best, mut steps, mut random) = (descent.at.effort, 0, 0);
         for _ in 1..count {
@@ -215,7 +220,7 @@ impl Look {
     }
 
     /// A direction for every unknown: numbers from -1 to 1, times how far each coordinate of a part of the body may go.
-    fn wish(&mut self, ask: &Ask<'_>, random: &mut u64) {
+    fn wish(&mut self, ask: &EffortProblem<'_>, random: &mut u64) {
         self.wish.clear();
         let count = ask.free.len() as f64;
         let start = 0.5 * (1.0 + number(random));

@@ -8,9 +8,10 @@
 //! long as the one before. What bends away from a long step is corrected with the factors at hand before it is judged (Fletcher
 //! 1982, "Second order corrections for non-differentiable optimization"), or feet that turn would keep steps short.
 
-use super::hessian::{Hessian, Sight};
-use super::quadratic::Quadratic;
-use super::site::{Ask, Site};
+use super::hessian::{Hessian, HessianModel};
+use super::iterate::Iterate;
+use super::problem::EffortProblem;
+use super::qp::QuadraticProgram;
 use crate::contact::bounds;
 use crate::model::Model;
 use crate::posture::Posture;
@@ -19,7 +20,7 @@ use hierarchical_least_squares::linalg::dot;
 
 /// How to go down.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Manner {
+pub(crate) struct SqpOptions {
     /// Length of what does not hold that one step takes on: on the way to a far goal the body stays where effort is little.
     pub(crate) pace: f64,
     /// Steps at the beginning that use first derivatives only.
@@ -35,7 +36,7 @@ pub(crate) struct Manner {
 
 /// Where it came to.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bottom {
+pub(crate) struct LocalMinimum {
     /// Half the sum of squares of the effort level.
     pub(crate) effort: f64,
     /// Sum of sizes of what does not hold.
@@ -54,24 +55,24 @@ const AGREES: f64 = 0.7;
 
 /// Posture and forces on their way down. Keeps its space.
 #[derive(Clone, Debug)]
-pub(crate) struct Descent {
-    pub(crate) at: Site,
-    next: Site,
+pub(crate) struct Sqp {
+    pub(crate) at: Iterate,
+    next: Iterate,
     hessian: Hessian,
-    problem: Quadratic,
+    problem: QuadraticProgram,
     correction: Vec<f64>,
     by_rate: Vec<f64>,
     /// Of the rows of `at`.
     pub(crate) multipliers: Vec<f64>,
 }
 
-impl Descent {
+impl Sqp {
     pub(crate) fn new(model: &Model) -> Self {
         Self {
-            at: Site::new(model),
-            next: Site::new(model),
+            at: Iterate::new(model),
+            next: Iterate::new(model),
             hessian: Hessian::new(model),
-            problem: Quadratic::default(),
+            problem: QuadraticProgram::default(),
             correction: vec![],
             by_rate: vec![0.0; model.rates().len()],
             multipliers: vec![],
@@ -81,12 +82,12 @@ impl Descent {
     /// Goes down from `start` with `forces` and the multipliers of what must hold, if known; the end is in `at`.
     pub(crate) fn go(
         &mut self,
-        ask: &Ask<'_>,
+        ask: &EffortProblem<'_>,
         start: &Posture,
         forces: &[f64],
         multipliers: &[f64],
-        manner: &Manner,
-    ) -> Result<Bottom, BodyError> {
+        manner: &SqpOptions,
+    ) -> Result<LocalMinimum, BodyError> {
         self.begin(ask, start, forces)?;
         self.multipliers.extend_from_slice(multipliers);
         let (mut shift, mut raise, mut price, mut reach) = (0f64, 2f64, 0f64, manner.reach);
@@ -97,7 +98,13 @@ impl Descent {
             let share = self.share(manner.pace);
             self.problem.unit = self.at.write(share, &mut self.problem);
             if steps > manner.plain {
-                self.hessian.bend(ask, &self.at.seen(ask), &self.multipliers, Sight::Fine, &mut self.problem.matrix);
+                self.hessian.bend(
+                    ask,
+                    &self.at.seen(ask),
+                    &self.multipliers,
+                    HessianModel::Full,
+                    &mut self.problem.matrix,
+                );
             }
             self.bound(ask);
             let Some(needed) = self.problem.solve(shift) else { break };
@@ -152,13 +159,13 @@ impl Descent {
             little = if foreseen <= manner.gain * before && share == 1.0 { little + 1 } else { 0 };
             settled = little >= 2 || length * largest <= STILL || (little > 0 && foreseen < 1e-13 * before);
         }
-        Ok(Bottom { effort: self.at.effort, violation: self.at.violation(), steps, settled })
+        Ok(LocalMinimum { effort: self.at.effort, violation: self.at.violation(), steps, settled })
     }
 
     /// Moves `at` from `start` as near to `wish` as what must hold allows to first order.
     pub(crate) fn aside(
         &mut self,
-        ask: &Ask<'_>,
+        ask: &EffortProblem<'_>,
         start: &Posture,
         forces: &[f64],
         wish: &[f64],
@@ -179,7 +186,7 @@ impl Descent {
         Ok(())
     }
 
-    pub(crate) fn begin(&mut self, ask: &Ask<'_>, start: &Posture, forces: &[f64]) -> Result<(), BodyError> {
+    pub(crate) fn begin(&mut self, ask: &EffortProblem<'_>, start: &Posture, forces: &[f64]) -> Result<(), BodyError> {
         self.at.posture.values_mut().copy_from_slice(start.values());
         for site in [&mut self.at, &mut self.next] {
             site.forces.clear();
@@ -201,7 +208,7 @@ impl Descent {
     }
 
     /// Ranges, and forces that only push.
-    fn bound(&mut self, ask: &Ask<'_>) {
+    fn bound(&mut self, ask: &EffortProblem<'_>) {
         let problem = &mut self.problem;
         problem.least.clear();
         problem.most.clear();
@@ -223,7 +230,7 @@ impl Descent {
     }
 
     /// Puts `next` where the step leads.
-    fn move_next(&mut self, ask: &Ask<'_>, length: f64) {
+    fn move_next(&mut self, ask: &EffortProblem<'_>, length: f64) {
         self.next.posture.values_mut().copy_from_slice(self.at.posture.values());
         self.next.forces.copy_from_slice(&self.at.forces);
         displace(&mut self.next, ask, &self.problem.step, length, &mut self.by_rate);
@@ -232,7 +239,7 @@ impl Descent {
     /// The merit after the step, corrected where that helps; `next` is there.
     fn try_step(
         &mut self,
-        ask: &Ask<'_>,
+        ask: &EffortProblem<'_>,
         length: f64,
         share: f64,
         price: f64,
@@ -247,7 +254,7 @@ impl Descent {
         let left = 1.0 - length * share;
         // What is missing beyond what the step was to leave.
         let bent = |row: usize| {
-            let missing = |site: &Site| site.lower[row].max(0.0) + site.upper[row].min(0.0);
+            let missing = |site: &Iterate| site.lower[row].max(0.0) + site.upper[row].min(0.0);
             missing(next) - left * missing(at)
         };
         let sum: f64 = (0..next.lower.len()).filter(|row| problem.holds(*row)).map(|row| bent(row).abs()).sum();
@@ -271,7 +278,7 @@ impl Descent {
 }
 
 /// Moves posture and forces by `length` times the step.
-fn displace(site: &mut Site, ask: &Ask<'_>, step: &[f64], length: f64, by_rate: &mut [f64]) {
+fn displace(site: &mut Iterate, ask: &EffortProblem<'_>, step: &[f64], length: f64, by_rate: &mut [f64]) {
     by_rate.fill(0.0);
     for (rate, d) in ask.free.iter().zip(step) {
         by_rate[*rate] = length * d;

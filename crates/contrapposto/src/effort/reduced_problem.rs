@@ -5,7 +5,8 @@
 //! forces stay. What hangs on that and is no goal's concern, the free arm and the head of somebody who reaches, rests by itself
 //! as well: of two postures each such part is taken from the one where it works less.
 
-use super::site::{Ask, Site};
+use super::iterate::Iterate;
+use super::problem::EffortProblem;
 use super::weld::weld;
 use crate::contact::ContactForces;
 use crate::kinematics::Kinematics;
@@ -17,7 +18,7 @@ use crate::tasks::{Effort, Task};
 
 /// What moves no support, and what is asked of it.
 #[derive(Debug)]
-pub(crate) struct Limbs {
+pub(crate) struct ReducedProblem {
     /// The body with the rest of it welded.
     pub(crate) model: Model,
     rates: Vec<usize>,
@@ -27,13 +28,13 @@ pub(crate) struct Limbs {
     contact: ContactForces,
 }
 
-impl Limbs {
+impl ReducedProblem {
     /// Of a body in `posture`: without supports everything that may move. `None` where nothing that has muscles moves without
     /// moving a support, or the root is free and nothing holds it.
     ///
     /// # Errors
     /// [`BodyError`] when the posture is none of the model's.
-    pub(crate) fn of(ask: &Ask<'_>, posture: &Posture) -> Result<Option<Self>, BodyError> {
+    pub(crate) fn of(ask: &EffortProblem<'_>, posture: &Posture) -> Result<Option<Self>, BodyError> {
         let model = ask.model;
         let mut holds = vec![false; model.rates().len()];
         for support in ask.contact.supports() {
@@ -79,8 +80,8 @@ impl Limbs {
     }
 
     /// What is asked of them by themselves.
-    pub(crate) fn ask<'b>(&'b self, ask: &Ask<'b>) -> Ask<'b> {
-        Ask {
+    pub(crate) fn ask<'b>(&'b self, ask: &EffortProblem<'b>) -> EffortProblem<'b> {
+        EffortProblem {
             model: &self.model,
             places: &self.still,
             above: &self.above,
@@ -92,18 +93,18 @@ impl Limbs {
     }
 }
 
-/// Parts that rest by themselves.
+/// DecoupledSubtrees that rest by themselves.
 #[derive(Clone, Debug)]
-pub(crate) struct Parts {
+pub(crate) struct DecoupledSubtrees {
     /// The part of each segment and of each coordinate that counts as effort; 0 is all that goals concern.
     of_segments: Vec<usize>,
     of_efforts: Vec<usize>,
     count: usize,
 }
 
-impl Parts {
+impl DecoupledSubtrees {
     /// As the rows of what must hold say in `at`.
-    pub(crate) fn of(ask: &Ask<'_>, at: &Site) -> Self {
+    pub(crate) fn of(ask: &EffortProblem<'_>, at: &Iterate) -> Self {
         let (model, n) = (ask.model, ask.unknowns());
         let concerns = |rate: usize| {
             let place = ask.free.iter().position(|free| *free == rate);
@@ -158,7 +159,14 @@ impl Parts {
     }
 
     /// Gives `posture` those parts of `other` that work less there.
-    pub(crate) fn mix(&self, ask: &Ask<'_>, posture: &mut Posture, efforts: &[f64], other: &Posture, others: &[f64]) {
+    pub(crate) fn mix(
+        &self,
+        ask: &EffortProblem<'_>,
+        posture: &mut Posture,
+        efforts: &[f64],
+        other: &Posture,
+        others: &[f64],
+    ) {
         for (segment, &part) in ask.model.segments().iter().zip(&self.of_segments) {
             if others[part] < efforts[part] {
                 let place = segment.coordinates.clone();
@@ -173,13 +181,13 @@ mod tests {
     use rand::RngExt;
     use rand_pcg::Pcg64Mcg;
 
-    use super::super::ground::Ground;
+    use super::super::standing_adult::StandingAdult;
     use super::*;
 
     const SEED: u64 = 37;
 
-    fn seen(ask: &Ask<'_>, posture: &Posture) -> Site {
-        let mut site = Site::new(ask.model);
+    fn seen(ask: &EffortProblem<'_>, posture: &Posture) -> Iterate {
+        let mut site = Iterate::new(ask.model);
         site.posture = posture.clone();
         site.see(ask).unwrap();
         site
@@ -188,10 +196,10 @@ mod tests {
     /// What limbs ask by themselves is what they ask on the whole body, whatever the forces below.
     #[test]
     fn limbs_work_as_they_do_on_the_body() {
-        let ground = Ground::new();
+        let ground = StandingAdult::new();
         let mut worst = 0f64;
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 20, |_, ask, whole| {
-            let limbs = Limbs::of(ask, &whole.posture).unwrap().unwrap();
+            let limbs = ReducedProblem::of(ask, &whole.posture).unwrap().unwrap();
             assert!((11..ask.free.len()).contains(&limbs.rates.len()));
             let part = limbs.ask(ask);
             let site = seen(&part, &whole.posture);
@@ -215,13 +223,13 @@ mod tests {
     /// it from the one where it works less.
     #[test]
     fn parts_are_taken_from_where_they_work_less() {
-        let ground = Ground::new();
+        let ground = StandingAdult::new();
         let mut taken = [0, 0];
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 20, |random, ask, whole| {
-            let limbs = Limbs::of(ask, &whole.posture).unwrap().unwrap();
+            let limbs = ReducedProblem::of(ask, &whole.posture).unwrap().unwrap();
             let part = limbs.ask(ask);
             let site = seen(&part, &whole.posture);
-            let parts = Parts::of(&part, &site);
+            let parts = DecoupledSubtrees::of(&part, &site);
             let of = |segment: &str| parts.of_segments[ask.model.segment(segment).unwrap()];
             assert_eq!((of("torso"), of("hand_r")), (0, 0));
             assert!(of("hand_l") != of("head") && of("hand_l") * of("head") > 0, "the free arm and the head");

@@ -7,7 +7,8 @@ use nalgebra::Vector3;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use super::site::{Ask, Site};
+use super::iterate::Iterate;
+use super::problem::EffortProblem;
 use crate::contact::{ContactForces, Support};
 use crate::model::{Adult, Model, adult};
 use crate::statics::{FixedIn, Load, LoadKind};
@@ -15,7 +16,7 @@ use crate::tasks::PriorityLevel;
 use crate::tasks::body::{Body, Needs};
 use crate::tasks::{Effort, Placement, Point, Task};
 
-pub(crate) struct Ground {
+pub(crate) struct StandingAdult {
     pub(crate) model: Model,
     contact: ContactForces,
     effort: PriorityLevel,
@@ -24,7 +25,7 @@ pub(crate) struct Ground {
     free: Vec<usize>,
 }
 
-impl Ground {
+impl StandingAdult {
     pub(crate) fn new() -> Self {
         let model = adult(&Adult::default()).unwrap();
         let support = |name: &str| {
@@ -48,7 +49,7 @@ impl Ground {
         &self,
         random: &mut Pcg64Mcg,
         count: usize,
-        mut look: impl FnMut(&mut Pcg64Mcg, &Ask<'_>, &Site),
+        mut look: impl FnMut(&mut Pcg64Mcg, &EffortProblem<'_>, &Iterate),
     ) {
         for _ in 0..count {
             let mut posture = self.model.default_posture();
@@ -66,7 +67,7 @@ impl Ground {
                 let task = Placement { segment: support.segment, point: Vector3::zeros(), target };
                 places.tasks.push(Task::Placement(task));
             }
-            let ask = Ask {
+            let ask = EffortProblem {
                 model: &self.model,
                 places: &places,
                 above: std::slice::from_ref(&self.above),
@@ -75,7 +76,7 @@ impl Ground {
                 free: &self.free,
                 contact: &self.contact,
             };
-            let mut site = Site::new(&self.model);
+            let mut site = Iterate::new(&self.model);
             site.posture = posture;
             let force = |i: usize| if i.is_multiple_of(3) { 0.0..0.25 } else { -0.05..0.05 };
             site.forces = (0..self.contact.forces().len()).map(|i| random.random_range(force(i))).collect();
@@ -86,7 +87,7 @@ impl Ground {
 }
 
 /// The site after `by` times the step.
-pub(crate) fn moved(site: &Site, ask: &Ask<'_>, step: &[f64], by: f64) -> Site {
+pub(crate) fn moved(site: &Iterate, ask: &EffortProblem<'_>, step: &[f64], by: f64) -> Iterate {
     let mut moved = site.clone();
     let mut by_rate = vec![0.0; ask.model.rates().len()];
     ask.free.iter().zip(step).for_each(|(rate, d)| by_rate[*rate] = by * d);
@@ -97,6 +98,6 @@ pub(crate) fn moved(site: &Site, ask: &Ask<'_>, step: &[f64], by: f64) -> Site {
 }
 
 /// Did no group hand over to another? Where one does, effort has no second derivative.
-pub(crate) fn alike(a: &Site, b: &Site) -> bool {
+pub(crate) fn alike(a: &Iterate, b: &Iterate) -> bool {
     a.errors.iter().zip(&b.errors).all(|(a, b)| (*a > 0.0) == (*b > 0.0))
 }

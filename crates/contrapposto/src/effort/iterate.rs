@@ -2,59 +2,21 @@
 
 use nalgebra::Vector3;
 
-use super::hessian::Seen;
-use super::quadratic::Quadratic;
-use crate::contact::{ContactForces, Unknowns, friction_rows, share_row};
+use super::hessian::FirstOrder;
+use super::problem::{EffortProblem, contact_columns, fill_force_columns};
+use super::qp::QuadraticProgram;
+use crate::contact::{Unknowns, friction_rows, share_row};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind, PassiveTorque};
-use crate::tasks::PriorityLevel;
+use crate::tasks::Task;
 use crate::tasks::body::{Body, BodyError, Needs};
-use crate::tasks::{Task, share_of_strength};
 use hierarchical_least_squares::Level;
 use hierarchical_least_squares::linalg::{add_scaled, add_squares};
 
-/// What is asked of posture and contact forces.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ask<'b> {
-    pub(crate) model: &'b Model,
-    /// Where supports are to stay.
-    pub(crate) places: &'b PriorityLevel,
-    /// Goals above effort.
-    pub(crate) above: &'b [PriorityLevel],
-    /// The level of effort.
-    pub(crate) effort: &'b PriorityLevel,
-    pub(crate) loads: &'b [Load],
-    /// Rates that move.
-    pub(crate) free: &'b [usize],
-    /// Where the supports push; its forces are where a descent begins.
-    pub(crate) contact: &'b ContactForces,
-}
-
-impl Ask<'_> {
-    /// What must hold, besides the root's equilibrium and friction: places of supports, and goals above effort.
-    pub(crate) fn goals(&self) -> impl Iterator<Item = &PriorityLevel> {
-        std::iter::once(self.places).chain(self.above)
-    }
-
-    /// Coordinates whose effort counts, in the order of the errors.
-    pub(crate) fn efforts(&self) -> impl Iterator<Item = usize> {
-        let coordinates = self.effort.tasks.iter().filter_map(|task| match task {
-            Task::Effort(effort) => Some(&effort.coordinates),
-            _ => None,
-        });
-        coordinates.flatten().copied()
-    }
-
-    /// Number of unknowns: rates that move, then forces.
-    pub(crate) fn unknowns(&self) -> usize {
-        self.free.len() + self.contact.forces().len()
-    }
-}
-
 /// Posture, forces, and all that follows from them. Keeps its space.
 #[derive(Clone, Debug)]
-pub(crate) struct Site {
+pub(crate) struct Iterate {
     pub(crate) posture: Posture,
     /// As [`ContactForces::forces`].
     pub(crate) forces: Vec<f64>,
@@ -79,7 +41,7 @@ pub(crate) struct Site {
     jacobian: Vec<f64>,
 }
 
-impl Site {
+impl Iterate {
     pub(crate) fn new(model: &Model) -> Self {
         Self {
             posture: model.default_posture(),
@@ -106,7 +68,7 @@ impl Site {
     }
 
     /// Computes everything for `posture` and `forces`.
-    pub(crate) fn see(&mut self, ask: &Ask<'_>) -> Result<(), BodyError> {
+    pub(crate) fn see(&mut self, ask: &EffortProblem<'_>) -> Result<(), BodyError> {
         let (model, contact) = (ask.model, ask.contact);
         self.loads.clear();
         self.loads.extend_from_slice(ask.loads);
@@ -121,7 +83,7 @@ impl Site {
         if !contact.root().is_empty() {
             self.passive.update(model, self.body.kinematics())?;
         }
-        columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
+        contact_columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
         self.effort_rows(ask);
         self.rows.clear();
         self.lower.clear();
@@ -133,9 +95,9 @@ impl Site {
     }
 
     /// What a second derivative needs of it.
-    pub(crate) fn seen(&self, ask: &Ask<'_>) -> Seen<'_> {
+    pub(crate) fn seen(&self, ask: &EffortProblem<'_>) -> FirstOrder<'_> {
         let (n, root) = (ask.unknowns(), ask.contact.root().len());
-        Seen {
+        FirstOrder {
             body: &self.body,
             loads: &self.loads,
             columns: &self.columns,
@@ -145,7 +107,7 @@ impl Site {
         }
     }
 
-    fn effort_rows(&mut self, ask: &Ask<'_>) {
+    fn effort_rows(&mut self, ask: &EffortProblem<'_>) {
         let n = ask.model.rates().len();
         self.errors.clear();
         self.slopes.clear();
@@ -160,14 +122,14 @@ impl Site {
                 if let (Task::Effort(effort), false) = (task, self.forces.is_empty()) {
                     let to = &mut self.slopes[start..];
                     let (coordinate, error) = (effort.coordinates[i], -self.narrow.upper[i]);
-                    fill_forces(ask.model, &self.body, &self.columns, coordinate, error, to);
+                    fill_force_columns(ask.model, &self.body, &self.columns, coordinate, error, to);
                 }
             }
         }
         self.effort = 0.5 * self.errors.iter().map(|e| e * e).sum::<f64>();
     }
 
-    fn root_rows(&mut self, ask: &Ask<'_>) {
+    fn root_rows(&mut self, ask: &EffortProblem<'_>) {
         let (n, weight) = (ask.model.rates().len(), ask.contact.weight());
         for &rate in ask.contact.root() {
             let slopes = self.body.gradient().row(rate);
@@ -179,7 +141,7 @@ impl Site {
         }
     }
 
-    fn goal_rows(&mut self, ask: &Ask<'_>) {
+    fn goal_rows(&mut self, ask: &EffortProblem<'_>) {
         let n = ask.model.rates().len();
         let forces = self.forces.len();
         for goal in ask.goals() {
@@ -203,7 +165,7 @@ impl Site {
         }
     }
 
-    fn force_rows(&mut self, ask: &Ask<'_>) {
+    fn force_rows(&mut self, ask: &EffortProblem<'_>) {
         self.narrow.clear();
         self.row.resize(ask.unknowns(), 0.0);
         let unknowns = Unknowns { first: ask.free.len(), now: Some(&self.forces) };
@@ -219,7 +181,7 @@ impl Site {
 
     /// Gives `problem` the rows, taken on by `share`, and what effort bends by first derivatives; returns the largest diagonal
     /// entry of the posture.
-    pub(crate) fn write(&self, share: f64, problem: &mut Quadratic) -> f64 {
+    pub(crate) fn write(&self, share: f64, problem: &mut QuadraticProgram) -> f64 {
         let n = problem.n;
         problem.rows.clone_from(&self.rows);
         problem.lower.clear();
@@ -244,36 +206,12 @@ impl Site {
     }
 }
 
-/// Torque of every rate at one body weight of each unknown force.
-pub(crate) fn columns(ask: &Ask<'_>, body: &Body, jacobian: &mut [f64], columns: &mut Vec<f64>) {
-    let n = ask.model.rates().len();
-    columns.clear();
-    for (load, axes) in ask.contact.loads().iter().zip(ask.contact.axes()) {
-        body.kinematics().point_jacobian(ask.model, load.segment, load.point, jacobian);
-        for axis in axes {
-            let force = ask.contact.weight() * axis;
-            columns.extend(
-                (0..n).map(|k| force.x * jacobian[k] + force.y * jacobian[n + k] + force.z * jacobian[2 * n + k]),
-            );
-        }
-    }
-}
-
-/// What contact forces do to the effort of a coordinate, now `error`.
-pub(crate) fn fill_forces(model: &Model, body: &Body, columns: &[f64], coordinate: usize, error: f64, row: &mut [f64]) {
-    let Some(rate) = model.coordinates()[coordinate].rate else { return };
-    let share = share_of_strength(model, body, coordinate, error);
-    for (entry, column) in row.iter_mut().zip(columns.chunks_exact(model.rates().len())) {
-        *entry = -column[rate] * share;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use rand::RngExt;
     use rand_pcg::Pcg64Mcg;
 
-    use super::super::ground::{Ground, alike, moved};
+    use super::super::standing_adult::{StandingAdult, alike, moved};
 
     const SEED: u64 = 29;
     /// Step of the difference, rad, m or body weights.
@@ -282,7 +220,7 @@ mod tests {
     /// Rows of effort and of what must hold along a motion of posture and forces, and along forces alone.
     #[test]
     fn rows_are_the_derivatives_of_what_they_belong_to() {
-        let ground = Ground::new();
+        let ground = StandingAdult::new();
         let (mut worst, mut compared) = ([0f64; 2], 0);
         ground.each(&mut Pcg64Mcg::new(SEED.into()), 40, |random, ask, site| {
             let n = ask.unknowns();

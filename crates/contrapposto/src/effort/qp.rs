@@ -29,7 +29,7 @@ const SHORT: f64 = 1e-12;
 
 /// The problem, its answer, and the factors, which serve for corrections. Keeps its space.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Quadratic {
+pub(crate) struct QuadraticProgram {
     /// Number of unknowns.
     pub(crate) n: usize,
     /// `H`; the upper triangle is read.
@@ -58,7 +58,7 @@ pub(crate) struct Quadratic {
     kept: Vec<i8>,
     free: Vec<usize>,
     on: Vec<usize>,
-    /// `[R V z]` over `[. S -]`, see [`Quadratic::factorise`].
+    /// `[R V z]` over `[. S -]`, see [`QuadraticProgram::factorise`].
     factor: Vec<f64>,
     table: Vec<f64>,
     /// `H d`, or `M d` of what is held.
@@ -66,7 +66,7 @@ pub(crate) struct Quadratic {
     answer: Vec<f64>,
 }
 
-impl Quadratic {
+impl QuadraticProgram {
     /// Forgets what was held.
     pub(crate) fn forget(&mut self) {
         self.held.clear();
@@ -375,12 +375,12 @@ mod tests {
     const SEED: u64 = 31;
 
     /// A problem as a descent meets it: the step 0 need not hold, but some step does.
-    fn random_problem(random: &mut Pcg64Mcg, bent_down: bool) -> Quadratic {
+    fn random_problem(random: &mut Pcg64Mcg, bent_down: bool) -> QuadraticProgram {
         let n = random.random_range(20..70);
         let equations = random.random_range(0..=n / 3);
         let rows = equations + random.random_range(0..=n / 2);
         let mut numbers = |count: usize| (0..count).map(|_| random.random_range(-1.0..1.0)).collect::<Vec<f64>>();
-        let mut problem = Quadratic { n, shifted: n, unit: 1.0, ..Quadratic::default() };
+        let mut problem = QuadraticProgram { n, shifted: n, unit: 1.0, ..QuadraticProgram::default() };
         problem.slope = numbers(n);
         problem.rows = numbers(rows * n);
         problem.matrix = vec![0.0; n * n];
@@ -421,7 +421,7 @@ mod tests {
     }
 
     /// The same by an interior-point method; where the matrix bends down it is given the square of each equation.
-    fn clarabel(problem: &Quadratic, bent_down: bool) -> Option<Vec<f64>> {
+    fn clarabel(problem: &QuadraticProgram, bent_down: bool) -> Option<Vec<f64>> {
         let (n, m) = (problem.n, problem.lower.len());
         let (mut matrix, mut slope) = (problem.matrix.clone(), problem.slope.clone());
         let equation = |r: &usize| problem.lower[*r] == problem.upper[*r];
