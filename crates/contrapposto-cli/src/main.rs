@@ -4,30 +4,22 @@
 //! input. A closed pipe is no failure.
 
 mod args;
-mod assess;
-mod chart;
-mod compare;
-mod convert;
+mod commands;
 mod fail;
-mod figures;
-mod held;
 mod input;
-mod inspect;
-mod minimize;
 mod model_file;
+mod motion_file;
 mod output;
-mod passive;
-mod pose;
-mod relax;
-mod report;
-mod simulate;
-mod torques;
+mod progress;
+mod scenario_file;
+mod view;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
 use args::{Args, Verb};
+use commands::{assess, compare, convert, figures, inspect, minimize, passive, pose, relax, simulate, torques};
 
 fn main() -> ExitCode {
     let result = match Args::parse().verb {

@@ -6,7 +6,6 @@ mod fill;
 mod include;
 mod tissue;
 
-use std::io::Write;
 use std::path::Path;
 
 use contrapposto::model::Model;
@@ -199,10 +198,4 @@ fn gathered(notes: Vec<String>) -> Vec<String> {
         rest.insert(0, format!("not needed at rest and read past: {}", kinds.join(", ")));
     }
     rest
-}
-
-/// Tells standard error something that is no failure.
-pub(crate) fn tell(kind: &str, text: &str) {
-    // Nothing is left to try when standard error is closed.
-    let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }

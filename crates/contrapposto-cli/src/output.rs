@@ -1,4 +1,4 @@
-//! Results: standard output that survives a closed pipe, and files that appear whole or not at all.
+//! Results: standard output that survives a closed pipe, notes on standard error, and files that appear whole or not at all.
 
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
@@ -12,6 +12,12 @@ use crate::fail::Fail;
 pub(crate) fn print(text: &str) -> Result<(), Fail> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(stdout_failed)
+}
+
+/// Tells standard error something that is no failure.
+pub(crate) fn tell(kind: &str, text: &str) {
+    // Nothing is left to try when standard error is closed.
+    let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }
 
 /// What a failed write to standard output means.
@@ -103,4 +109,12 @@ impl Pending {
     pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), Fail> {
         self.file.write_all(bytes).map_err(|error| Fail::job(self.path.display(), error))
     }
+}
+
+/// The folder that a file stands in, and its own name.
+pub(crate) fn folder_and_name(path: &Path) -> Result<(PathBuf, String), Fail> {
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name = name.ok_or_else(|| Fail::Refused(format!("{}: is no name of a file", path.display())))?;
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    Ok((parent.unwrap_or(Path::new(".")).to_owned(), name.to_owned()))
 }

@@ -1,0 +1,13 @@
+//! One module a command: its arguments in, one call of the library, its outputs.
+
+pub(crate) mod assess;
+pub(crate) mod compare;
+pub(crate) mod convert;
+pub(crate) mod figures;
+pub(crate) mod inspect;
+pub(crate) mod minimize;
+pub(crate) mod passive;
+pub(crate) mod pose;
+pub(crate) mod relax;
+pub(crate) mod simulate;
+pub(crate) mod torques;

@@ -1,0 +1,211 @@
+//! `contrapposto assess`: which muscle group fails first in a recorded motion, when, and what would relieve it.
+
+use std::path::Path;
+
+use contrapposto::assessment::assess as assessed;
+use contrapposto::assessment::{AssessSettings, Assessment, Instant};
+use contrapposto::contact::Support;
+use contrapposto::model::{CoordinateKind, Model, Side};
+use contrapposto_formats::motion::write_sto;
+use nalgebra::Vector3;
+
+use crate::args::AssessArgs;
+use crate::fail::Fail;
+use crate::model_file::{Opened, Tissue, open};
+use crate::motion_file::{loads_of, no_segment, outside, patch, read_motion};
+use crate::output::{Folder, print, tell};
+use crate::view::figures::figures_of_assessment;
+use crate::view::report::assessment::{Shots, report_of_assessment};
+use crate::view::text::assess::{AssessText, report};
+use crate::view::text::torques::{header, row};
+use crate::view::torque_rows::{Frame, Order, Row, Torques};
+
+const FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
+/// Friction of a support: shoe on floor, as in scenarios.
+const FRICTION: f64 = 0.6;
+/// A residual of this share of the body's weight is worth a word.
+const RESIDUAL: f64 = 1e-6;
+/// The same for the share of frames in which the body moves too fast to count as held.
+const FAST_SHARE: f64 = 0.05;
+
+pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
+    if args.model.model == Path::new("-") && args.motion == Path::new("-") {
+        return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
+    }
+    let mut opened = open(&args.model, true)?;
+    let mut notes = std::mem::take(&mut opened.notes);
+    let model = &opened.model;
+    let accepted = "MOTION is a .mot, .sto or .csv file";
+    let motion = read_motion(&args.motion, accepted, &args.under, model, &mut notes)?;
+    let (held, ground) = loads_of(&args.under, model, &mut notes)?;
+    if let Some(ground) = &ground {
+        ground.check(motion.iter().map(|(time, _)| *time))?;
+    }
+    if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
+        let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
+        return Err(Fail::Refused(why.to_owned()));
+    }
+    let settings = AssessSettings {
+        supports: supports(args, model)?,
+        passive_ranges: Tissue::new(&opened).ranges().to_vec(),
+        ..AssessSettings::default()
+    };
+    outside(&opened, &motion, &mut notes);
+    notes.iter().for_each(|note| tell("note", note));
+
+    let mut tables = Tables::new(model, motion.len());
+    let mut shots = args.out.as_ref().map(|_| Shots::new(model, motion.len()));
+    let found = assessed(
+        model,
+        &motion,
+        |time, kinematics, loads| {
+            loads.extend_from_slice(&held);
+            if let Some(ground) = &ground {
+                ground.loads(time, model, kinematics, loads);
+            }
+        },
+        &settings,
+        |instant| {
+            tables.take(instant);
+            if let Some(shots) = &mut shots {
+                let measured = ground.as_ref();
+                shots.take(instant, |loads| {
+                    measured.iter().for_each(|g| g.loads(instant.time, model, instant.kinematics, loads));
+                });
+            }
+        },
+    )
+    .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
+    let warnings = warnings(args, &opened, &found, motion.len());
+    warnings.iter().for_each(|warning| tell("warning", warning));
+
+    let times = tables.times.clone();
+    let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let figures = shots.as_ref().filter(|_| args.figures).map(|shots| {
+        let worst = found.groups.iter().map(|group| group.coordinate);
+        figures_of_assessment(&title, model, &settings.supports, shots.frames(), worst)
+    });
+    let figures = figures.transpose()?.unwrap_or_default();
+    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
+    let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
+    let page = shots.map(|shots| report_of_assessment(&title, &shots, &found, &settings.supports, &held, &warnings));
+    let text = AssessText::new(model, &args.motion, &times, &found, warnings, files);
+    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("assess.json", error))? + "\n";
+    if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
+        let fatigue = tables.fatigue()?;
+        let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes);
+        let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+        Folder::open(out)?.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
+    }
+    print(&if args.json { json } else { report(&text) })
+}
+
+/// What carries the body, on horizontal ground.
+fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
+    let mut patches = vec![];
+    for text in &args.patch {
+        patches.push(patch(model, text)?);
+    }
+    let mut supports: Vec<Support> = vec![];
+    for name in &args.support {
+        let refuse = |why: String| Fail::Refused(format!("--support {name}: {why}"));
+        let segment = model.segment(name).ok_or_else(|| refuse(no_segment(model, name)))?;
+        if supports.iter().any(|support| support.segment == segment) {
+            return Err(refuse("it is named twice".to_owned()));
+        }
+        let given = patches.iter().find(|(of, _)| *of == segment).map(|(_, corners)| corners);
+        let corners: Vec<Vector3<f64>> = given.unwrap_or(&model.segments()[segment].patch).clone();
+        if corners.is_empty() {
+            return Err(refuse(format!(
+                "where it touches the ground is not known; give corners in its frame (m): --patch \"{name} X,Y,Z X,Y,Z ...\""
+            )));
+        }
+        let Some(normal) = (-model.gravity()).try_normalize(1e-9) else {
+            return Err(refuse("without gravity there is no ground".to_owned()));
+        };
+        supports.push(Support { segment, corners, normal, friction: FRICTION, share_max: 1.0 });
+    }
+    if let Some((segment, _)) = patches.iter().find(|(of, _)| !supports.iter().any(|support| support.segment == *of)) {
+        let name = &model.segments()[*segment].name;
+        return Err(Fail::Refused(format!("--patch \"{name} ...\": `{name}` is no support; name it with --support")));
+    }
+    Ok(supports)
+}
+
+/// What makes the numbers doubtful.
+fn warnings(args: &AssessArgs, opened: &Opened, found: &Assessment, frames: usize) -> Vec<String> {
+    let mut warnings = vec![];
+    let (force, moment) = (found.residual_force, found.residual_moment);
+    let least = RESIDUAL * (opened.model.mass() * opened.model.gravity().norm()).max(1.0);
+    if force.value > least || moment.value > least {
+        let missing = format!(
+            "{:.2} N at {} s and {:.2} N m at {} s at most",
+            force.value, force.time, moment.value, moment.time
+        );
+        warnings.push(if !args.support.is_empty() {
+            format!(
+                "in {} of {frames} frames the supports cannot hold the body; what is missing: {missing}",
+                found.unheld
+            )
+        } else if args.under.grf.is_some() {
+            format!("ground reaction and motion do not agree: the root carries {missing}")
+        } else {
+            format!("nothing holds the body up: the root carries {missing}; give --grf FILE.mot or --support SEG,SEG")
+        });
+    }
+    if found.fast_share > FAST_SHARE {
+        warnings.push(format!(
+            "the centre of mass accelerates by more than 1 m/s2 in {:.0} percent of the frames (at most {:.1}, at {} s): \
+            torques of postures at rest say little of such a motion",
+            100.0 * found.fast_share,
+            found.acceleration.value,
+            found.acceleration.time
+        ));
+    }
+    warnings
+}
+
+/// The tables of torques and fatigue, as they grow.
+struct Tables<'a> {
+    model: &'a Model,
+    order: Order,
+    torques: String,
+    /// Coordinates with muscle groups.
+    working: Vec<usize>,
+    times: Vec<f64>,
+    /// Fatigue, then load, of both groups of each of them.
+    fatigue: Vec<Vec<f64>>,
+}
+
+impl<'a> Tables<'a> {
+    fn new(model: &'a Model, frames: usize) -> Self {
+        let order = Order::new(model);
+        let torques = header(model, &order, frames, '\t', false);
+        let coordinates = model.coordinates().iter().enumerate();
+        let working = coordinates.filter(|(i, c)| c.groups.is_some() && !model.is_dependent(*i)).map(|(i, _)| i);
+        Self { model, order, torques, working: working.collect(), times: vec![], fatigue: vec![] }
+    }
+
+    fn take(&mut self, instant: &Instant) {
+        let Instant { index, time, values, external, passive, fatigue, load, .. } = *instant;
+        let torques = |row: &Row| Torques::new(external[row.rate], passive[row.rate]);
+        let rows = self.order.rows.iter().map(torques).collect();
+        let frame = Frame { index, time, values, rows, coupled: vec![], center_of_mass: None, gradient: None };
+        self.torques.push_str(&row(&self.order, &frame, '\t'));
+        self.times.push(time);
+        let working = self.working.iter();
+        self.fatigue.push(working.flat_map(|&i| [fatigue[i], load[i]]).flatten().collect());
+    }
+
+    fn fatigue(&self) -> Result<String, Fail> {
+        let label = |&i: &usize| {
+            let name = &self.model.coordinates()[i].name;
+            ["fatigue", "load"].map(|what| Side::BOTH.map(|side| format!("{name}.{what}_{}", side.word())))
+        };
+        let labels: Vec<String> = self.working.iter().flat_map(label).flatten().collect();
+        // Shares have no unit: as lengths they are written as they are.
+        let columns: Vec<_> = labels.iter().map(|label| (label.as_str(), CoordinateKind::Translation)).collect();
+        write_sto("fatigue", &columns, false, &self.times, &self.fatigue)
+            .map_err(|error| Fail::job("fatigue.sto", error))
+    }
+}

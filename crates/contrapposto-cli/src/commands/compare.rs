@@ -1,0 +1,119 @@
+//! `contrapposto compare`: what differs between postures? Each scenario is carried out as its file asks, then drawn and tabled
+//! side by side.
+
+use std::path::Path;
+
+use contrapposto::posture_solver::inverse_kinematics::Engine;
+use contrapposto::simulation::Run;
+use contrapposto_formats::{read_pose, read_scenario, scenario_runs};
+use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
+
+use crate::args::CompareArgs;
+use crate::fail::Fail;
+use crate::output::{Folder, print, tell};
+use crate::progress::progress_bar;
+use crate::scenario_file::ScenarioFile;
+use crate::view::body;
+use crate::view::figures::both;
+use crate::view::frame::Frame;
+use crate::view::held::held;
+use crate::view::text::compare::{CompareText, Stance, report};
+
+pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
+    if args.scenarios.iter().filter(|path| *path == Path::new("-")).count() > 1 {
+        return Err(Fail::Refused("standard input is one file: `-` can stand for one scenario only".to_owned()));
+    }
+    let mut stances = vec![];
+    for (path, letter) in args.scenarios.iter().zip('A'..) {
+        stances.push(carry_out(path, letter)?);
+    }
+    let files = ["compare.json", "compare.svg", "compare.png"].map(str::to_owned).to_vec();
+    let text = CompareText::new(&stances, files);
+    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("compare.json", error))? + "\n";
+    let picture = body_figure(&picture(&stances)?);
+    let [svg, png] = both("compare", &picture)?;
+    let folder = Folder::open(&args.out)?;
+    folder.write(&[("compare.json", json.as_bytes()), (&svg.0, &svg.1), (&png.0, &png.1)])?;
+    let picture = folder.path(&svg.0);
+    print(&if args.json { json } else { report(&stances, &text) + &format!("picture: {}\n", picture.display()) })
+}
+
+/// A scenario with a duration is simulated, and its last posture taken; one without is posed.
+fn carry_out(path: &Path, letter: char) -> Result<Stance, Fail> {
+    let ScenarioFile { name: file, bytes, model } = ScenarioFile::read(path)?;
+    if !scenario_runs(&file, &bytes)? {
+        return posed(&file, &bytes, model, letter);
+    }
+    let scenario = read_scenario(&file, &bytes, model)?;
+    let failed = |error| Fail::job(&file, error);
+    let mut run = Run::new(&scenario).map_err(failed)?;
+    let progress = progress_bar(scenario.run.duration);
+    let mut last: Option<Frame> = None;
+    while let Some(sample) = run.next_sample().map_err(failed)? {
+        progress.set_position(sample.time as u64);
+        last = Some(Frame::of_sample(&sample));
+    }
+    progress.finish_and_clear();
+    if let Some(fall) = run.summary().fall {
+        return Err(Fail::job(&file, fall));
+    }
+    let Some(frame) = last else { return Err(Fail::job(&file, "the run has no sample")) };
+    Ok(Stance {
+        letter,
+        title: title(&scenario.title, path),
+        how: format!("simulated, {:.0} s", frame.time),
+        posture: frame.posture.clone(),
+        frame: Some(frame),
+        supports: scenario.supports,
+        model: scenario.model,
+        file,
+    })
+}
+
+fn posed(file: &str, bytes: &[u8], model: Option<contrapposto::model::Model>, letter: char) -> Result<Stance, Fail> {
+    let scenario = read_pose(file, bytes, model)?;
+    let refused =
+        |error: contrapposto::posture_solver::inverse_kinematics::GoalError| Fail::Refused(format!("{file}: {error}"));
+    let mut engine =
+        Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
+    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
+    let pose = engine.solve(&scenario.start).map_err(|error| Fail::job(file, error))?;
+    let frame = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
+    if frame.is_none() {
+        tell("note", &format!("{file}: its supports cannot hold the body in its last posture; loads are not known"));
+    }
+    Ok(Stance {
+        letter,
+        title: title(&scenario.title, Path::new(file)),
+        how: "posed".to_owned(),
+        posture: pose.posture.values().to_vec(),
+        frame,
+        supports: scenario.supports,
+        model: scenario.model,
+        file: file.to_owned(),
+    })
+}
+
+/// The scenario's title, or the name of its file.
+fn title(title: &str, path: &Path) -> String {
+    let stem = || path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    if title.trim().is_empty() { stem() } else { title.to_owned() }
+}
+
+/// The postures side by side.
+fn picture(stances: &[Stance]) -> Result<BodyFigure, Fail> {
+    let mut postures = vec![];
+    for stance in stances {
+        let mut posture = match &stance.frame {
+            Some(frame) => body::body(&stance.model, &stance.supports, frame)?,
+            None => BodyPosture { parts: body::parts(&stance.model, &stance.posture, None)?, ..BodyPosture::default() },
+        };
+        posture.title = format!("{}: {}", stance.letter, stance.title);
+        posture.notes = match &stance.frame {
+            Some(frame) => body::key_numbers(&stance.model, &stance.supports, frame),
+            None => vec!["nothing holds it".to_owned()],
+        };
+        postures.push(posture);
+    }
+    Ok(BodyFigure { postures, ..BodyFigure::default() })
+}

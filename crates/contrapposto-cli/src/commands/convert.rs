@@ -1,0 +1,51 @@
+//! `contrapposto convert`: the same body in another format.
+
+use std::path::Path;
+
+use contrapposto::model::Model;
+use contrapposto_formats::write::{self, WriteError, Written};
+
+use crate::args::ConvertArgs;
+use crate::fail::Fail;
+use crate::model_file::open;
+use crate::output::{Folder, folder_and_name, print, tell};
+
+/// Writes a model as text.
+type Writer = fn(&Model) -> Result<Written, WriteError>;
+
+pub(crate) fn convert(args: &ConvertArgs) -> Result<(), Fail> {
+    let shown = args.out.display();
+    let writer = writer(&args.out)?;
+    let same = |a: &Path, b: &Path| a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
+    if same(&args.model.model, &args.out) {
+        return Err(Fail::Refused(format!("{shown}: is the model itself; give another name")));
+    }
+    // What a file does not have is not invented for the next one, unless it is asked for.
+    let opened = open(&args.model, false)?;
+    let written = writer(&opened.model).map_err(|error| Fail::Refused(format!("{shown}: {error}")))?;
+    let (folder, name) = folder_and_name(&args.out)?;
+    Folder::open(&folder)?.write(&[(&name, written.text.as_bytes())])?;
+    opened.notes.iter().for_each(|note| tell("note", note));
+    written.lost.iter().for_each(|lost| tell("lost", lost));
+    let model = &opened.model;
+    print(&format!(
+        "{shown}: {} segments, {} coordinates, {:.4} kg; {} things lost\n",
+        model.segments().len(),
+        model.coordinates().len(),
+        model.mass(),
+        written.lost.len()
+    ))
+}
+
+fn writer(out: &Path) -> Result<Writer, Fail> {
+    let ending = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    match ending.as_deref() {
+        Some("osim") => Ok(write::osim),
+        Some("urdf") => Ok(write::urdf),
+        Some("xml" | "mjcf") => Ok(write::mjcf),
+        _ => {
+            let shown = out.display();
+            Err(Fail::Refused(format!("{shown}: the name must end in .osim, .urdf, or .xml or .mjcf (MJCF)")))
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! `contrapposto relax`: the different postures of least effort under the tasks of a scenario.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
+use contrapposto::model::CoordinateKind;
+use contrapposto::posture_solver::Options;
+use contrapposto_formats::motion::write_sto;
+use contrapposto_formats::{RelaxScenario, read_relax};
+use contrapposto_plot::{BodyFigure, body_figure};
+
+use crate::args::RelaxArgs;
+use crate::fail::Fail;
+use crate::output::{Folder, print, tell};
+use crate::progress::spinner;
+use crate::scenario_file::ScenarioFile;
+use crate::view::body;
+use crate::view::frame::frame_of_posture;
+use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibria};
+use crate::view::text::relax::{RelaxText, percent, report};
+
+const FILES: [&str; 6] = ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
+/// Largest change of a joint in one step, rad.
+const STEP: f64 = 0.1;
+/// Most steps of the last stage of each posture.
+const STEPS: usize = 300;
+
+pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
+    let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
+    let scenario = read_relax(&name, &bytes, model)?;
+    if !scenario.unused.is_empty() {
+        let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
+        tell(
+            "note",
+            &format!("{} {} no part in `relax`", list.join(", "), if list.len() == 1 { "has" } else { "have" }),
+        );
+    }
+    if scenario.effort_added {
+        tell("note", "no task asks for effort; that of all muscles was added as the last one");
+    }
+    let search = Search {
+        model: &scenario.model,
+        start: &scenario.start,
+        supports: &scenario.supports,
+        goals: &scenario.goals,
+        loads: &scenario.loads,
+        locked: &scenario.locked,
+    };
+    let spinner = spinner();
+    let found = equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::default() });
+    spinner.finish_and_clear();
+    let found = found.map_err(|error| match error {
+        SearchError::Relax(error) => Fail::Refused(format!("{name}: {error}")),
+        error => Fail::Job(format!("{name}: {error}")),
+    })?;
+    let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
+    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
+    let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
+    let text = RelaxText::new(&scenario, &found, files);
+    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("relax.json", error))? + "\n";
+    let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, &figures, out)).transpose()?;
+    let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
+    print(&if args.json { json } else { report(&text) + page.as_deref().unwrap_or_default() })
+}
+
+/// Writes all files.
+fn write(
+    scenario: &RelaxScenario,
+    found: &Equilibria,
+    text: &RelaxText,
+    json: &str,
+    figures: &[(String, Vec<u8>)],
+    out: &Path,
+) -> Result<Folder, Fail> {
+    let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
+    let rows: Vec<&[f64]> = found.postures.iter().map(|posture| posture.relaxed.posture.values()).collect();
+    let times: Vec<f64> = (0..rows.len()).map(|i| i as f64).collect();
+    let title = if scenario.title.is_empty() { "postures of least effort" } else { &scenario.title };
+    let mot = write_sto(title, &columns, true, &times, &rows).map_err(|error| Fail::job("postures.mot", error))?;
+    let csv = table(scenario, found);
+    let picture = body_figure(&drawing(scenario, found, text)?);
+    let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
+    let folder = Folder::open(out)?;
+    let page = report_of_equilibria(scenario, found)?;
+    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+    folder.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
+    Ok(folder)
+}
+
+/// One row a posture and coordinate.
+fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
+    let mut csv = "posture,coordinate,value,unit,external,passive,active,relative_load\n".to_owned();
+    for (number, posture) in found.postures.iter().enumerate() {
+        for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
+            let value = posture.relaxed.posture.values()[i];
+            let (value, unit) = match coordinate.kind {
+                CoordinateKind::Rotation => (value.to_degrees(), "deg"),
+                CoordinateKind::Translation => (value, "m"),
+                CoordinateKind::Quaternion => (value, "1"),
+            };
+            let _ = write!(csv, "{},{},{value},{unit}", number + 1, coordinate.name);
+            let Some(rate) = coordinate.rate else {
+                csv.push_str(",,,,\n");
+                continue;
+            };
+            let (external, passive) = (posture.torques[0][rate], posture.torques[1][rate]);
+            let load =
+                posture.work.iter().find(|work| work.coordinate == i).map(|work| work.relative_load().to_string());
+            let active = -(external + passive);
+            let _ = writeln!(csv, ",{external},{passive},{active},{}", load.unwrap_or_default());
+        }
+    }
+    csv
+}
+
+/// All postures side by side.
+fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<BodyFigure, Fail> {
+    let model = &scenario.model;
+    let mut postures = vec![];
+    for (i, (posture, text)) in found.postures.iter().zip(&text.postures).enumerate() {
+        let frame = frame_of_posture(model, posture)?;
+        let mut drawn = body::body(model, &scenario.supports, &frame)?;
+        drawn.title = format!("{}: effort {:.4}", i + 1, text.effort);
+        // The first number is the effort of all muscles, not that of the task.
+        drawn.notes = body::key_numbers(model, &scenario.supports, &frame).split_off(1);
+        postures.push(drawn);
+    }
+    let subtitle = match found.postures.len() {
+        1 => "one posture of least effort".to_owned(),
+        n => format!("{n} postures of least effort"),
+    };
+    let least = found.postures.first().map_or(0.0, |posture| posture.relaxed.effort);
+    let more = found
+        .postures
+        .get(1)
+        .map(|posture| format!("; the next takes {} more", percent(posture.relaxed.effort / least - 1.0)));
+    let subtitle = subtitle + more.as_deref().unwrap_or_default();
+    Ok(BodyFigure { title: scenario.title.clone(), subtitle, postures, ..BodyFigure::default() })
+}

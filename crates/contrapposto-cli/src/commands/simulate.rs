@@ -1,0 +1,129 @@
+//! `contrapposto simulate` and `contrapposto demo`: a scenario over time.
+
+mod snapshot;
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use contrapposto::simulation::{Run, Scenario, StopReason, Summary};
+use contrapposto_formats::{SummaryText, decisions_csv, read_scenario};
+
+use self::snapshot::{SNAPSHOT, go_on, save};
+use crate::args::{DemoArgs, SimulateArgs};
+use crate::fail::Fail;
+use crate::output::{Folder, print};
+use crate::progress::progress_bar;
+use crate::scenario_file::ScenarioFile;
+use crate::view::figures::{figures_of_run, pictures_of_run};
+use crate::view::recording::Recording;
+use crate::view::report::run::report_of_run;
+use crate::view::text::simulate::report;
+use crate::view::{animation, tables};
+
+/// The scenario of `contrapposto demo`.
+const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../../scenarios/figure-08.toml"));
+
+/// A run that takes longer is saved so often, so that a crash of the machine loses little.
+const BETWEEN_SAVES: Duration = Duration::from_secs(20);
+
+/// Someone pressed Ctrl-C.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
+    let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
+    let scenario = read_scenario(&name, &bytes, model)?;
+    carry_out(&scenario, &args.out, args.resume, args.figures, args.json)
+}
+
+pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
+    let scenario = read_scenario(DEMO.0, DEMO.1.as_bytes(), None)?;
+    carry_out(&scenario, &args.out, false, false, args.json)
+}
+
+fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json: bool) -> Result<(), Fail> {
+    let folder = Folder::open(out)?;
+    // A second handler is refused, which only happens if there is one already.
+    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    let failed = |error| Fail::job("simulation", error);
+    let (mut run, mut recording) = match resume {
+        true => go_on(scenario, &folder.path(SNAPSHOT))?,
+        false => (Run::new(scenario).map_err(failed)?, Recording::new(scenario)),
+    };
+    let progress = progress_bar(scenario.run.duration);
+    let mut number = run.snapshot().samples;
+    let mut saved = (Instant::now(), number);
+    // The start is always shown.
+    while number == 0 || !INTERRUPTED.load(Ordering::Relaxed) {
+        let Some(sample) = run.next_sample().map_err(failed)? else { break };
+        recording.take(number, &sample);
+        number += 1;
+        if number.is_multiple_of(256) {
+            progress.set_position(sample.time as u64);
+            if saved.0.elapsed() > BETWEEN_SAVES && run.snapshot().samples > saved.1 {
+                save(scenario, &run, &recording, &folder)?;
+                saved = (Instant::now(), run.snapshot().samples);
+            }
+        }
+    }
+    progress.finish_and_clear();
+    let summary = run.summary();
+    let figures = if figures { figures_of_run(scenario, &recording, &summary)? } else { vec![] };
+    let json_text = write(scenario, &summary, &recording, &figures, &folder)?;
+    let partial = summary.reason == StopReason::Interrupted;
+    if partial {
+        save(scenario, &run, &recording, &folder)?;
+    } else {
+        folder.remove(SNAPSHOT)?;
+    }
+    print(&if json { json_text } else { report(scenario, &summary, &folder) })?;
+    match summary.fall {
+        Some(fall) => Err(Fail::Job(format!("{fall}; what came before is in {}", out.display()))),
+        None if partial => Err(Fail::Job(format!(
+            "interrupted at {:.2} of {} s: what is done is in {}; the same command with --resume goes on",
+            summary.end_time,
+            scenario.run.duration,
+            out.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// All files but the snapshot; gives the text of `summary.json`.
+fn write(
+    scenario: &Scenario,
+    summary: &Summary,
+    recording: &Recording,
+    figures: &[(String, Vec<u8>)],
+    folder: &Folder,
+) -> Result<String, Fail> {
+    let mut contents = vec![
+        ("trajectory.csv", tables::trajectory(scenario, recording).into_bytes()),
+        ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
+        ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
+        ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
+        ("report.html", report_of_run(scenario, recording, summary)?.into_bytes()),
+        ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
+    ];
+    contents.extend(animation::bodies(scenario, recording)?);
+    if !scenario.supports.is_empty() {
+        contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
+    }
+    let names = if scenario.is_whole() {
+        ["postures.svg", "postures.png"]
+    } else {
+        ["torque-balance.svg", "torque-balance.png"]
+    };
+    let [first, second] = pictures_of_run(scenario, summary, recording)?;
+    for (names, figure) in [(names, first), (["time-line.svg", "time-line.png"], second)] {
+        contents.push((names[0], figure.svg().into_bytes()));
+        contents.push((names[1], figure.png().map_err(|error| Fail::job("PNG", error))?));
+    }
+    contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
+    let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
+    let text = SummaryText::new(scenario, summary, files);
+    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("summary.json", error))? + "\n";
+    contents.push(("summary.json", json.clone().into_bytes()));
+    folder.write(&contents)?;
+    Ok(json)
+}

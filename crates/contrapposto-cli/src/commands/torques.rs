@@ -1,0 +1,194 @@
+//! `contrapposto torques`: what gravity, loads, ligaments and muscles give at every coordinate of a body at rest.
+
+use std::path::Path;
+
+use contrapposto::posture::Posture;
+use contrapposto::statics::Load;
+
+use crate::args::TorquesArgs;
+use crate::fail::Fail;
+use crate::model_file::{Opened, Tissue, open};
+use crate::motion_file::{GroundReaction, loads_of, outside, read_motion};
+use crate::output::{Folder, Pending, folder_and_name, tell};
+use crate::view::residual::Residual;
+use crate::view::text::torques as text;
+use crate::view::torque_rows::{Frame, Order, Statics};
+
+/// What the command works on.
+struct Job {
+    opened: Opened,
+    frames: Vec<(f64, Posture)>,
+    loads: Vec<Load>,
+    ground: Option<GroundReaction>,
+    gradient: bool,
+}
+
+pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
+    if args.model.model == Path::new("-") && args.postures == Path::new("-") {
+        return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
+    }
+    let target = args.out.as_deref().map(Target::new).transpose()?;
+    let mut opened = open(&args.model, true)?;
+    let mut notes = std::mem::take(&mut opened.notes);
+    let model = &opened.model;
+    let frames = match args.postures == Path::new("default") {
+        true => vec![(0.0, model.default_posture())],
+        false => {
+            let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
+            read_motion(&args.postures, accepted, &args.under, model, &mut notes)?
+        }
+    };
+    let (loads, ground) = loads_of(&args.under, model, &mut notes)?;
+    outside(&opened, &frames, &mut notes);
+    let job = Job { opened, frames, loads, ground, gradient: args.gradient };
+    job.check()?;
+    notes.iter().for_each(|note| tell("note", note));
+
+    let order = Order::new(&job.opened.model);
+    let mut residual = Residual::new(&job.opened.model);
+    if let Some(target) = target {
+        let mut file = target.begin()?;
+        let mut sink = |text: &str| file.append(text.as_bytes());
+        match target.form {
+            Form::Json => json(&job, &order, &mut residual, &mut sink)?,
+            Form::Table(separator) => table(&job, &order, separator, &mut residual, &mut sink)?,
+        }
+        target.folder.commit(vec![file])?;
+        residual = Residual::new(&job.opened.model);
+    }
+    let mut out = Printed::default();
+    let mut sink = |text: &str| out.append(text);
+    match (&args.out, job.frames.as_slice()) {
+        _ if args.json => json(&job, &order, &mut residual, &mut sink)?,
+        (_, [_]) => job.run(&order, &mut residual, |frame| sink(&text::readable(&job.opened.model, &order, frame)))?,
+        (Some(path), frames) => {
+            job.run(&order, &mut residual, |_| Ok(()))?;
+            sink(&format!("{} frames in {}\n", frames.len(), path.display()))?;
+        }
+        (None, _) => table(&job, &order, ',', &mut residual, &mut sink)?,
+    }
+    out.finish()?;
+    if let Some((kind, text)) = residual.told(&job.opened.model, job.ground.is_some()) {
+        tell(kind, &text);
+    }
+    Ok(())
+}
+
+fn json(
+    job: &Job,
+    order: &Order,
+    residual: &mut Residual,
+    sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
+) -> Result<(), Fail> {
+    sink("[")?;
+    let mut before = "\n";
+    job.run(order, residual, |frame| {
+        let text = serde_json::to_string(&text::json(&job.opened.model, order, frame));
+        sink(std::mem::replace(&mut before, ",\n"))?;
+        sink(&text.map_err(|error| Fail::job("JSON", error))?)
+    })?;
+    sink("\n]\n")
+}
+
+fn table(
+    job: &Job,
+    order: &Order,
+    separator: char,
+    residual: &mut Residual,
+    sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
+) -> Result<(), Fail> {
+    sink(&text::header(&job.opened.model, order, job.frames.len(), separator, job.gradient))?;
+    job.run(order, residual, |frame| sink(&text::row(order, frame, separator)))
+}
+
+impl Job {
+    /// Everything that could go wrong in a frame, before the first one is printed.
+    fn check(&self) -> Result<(), Fail> {
+        let mut statics = Statics::new(&self.opened.model, Tissue::new(&self.opened), false);
+        for (frame, (_, posture)) in self.frames.iter().enumerate() {
+            statics.place(&self.opened.model, posture).map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
+        }
+        self.ground.as_ref().map_or(Ok(()), |ground| ground.check(self.frames.iter().map(|(time, _)| *time)))
+    }
+
+    /// Computes frame after frame.
+    fn run(
+        &self,
+        order: &Order,
+        residual: &mut Residual,
+        mut visit: impl FnMut(&Frame<'_>) -> Result<(), Fail>,
+    ) -> Result<(), Fail> {
+        let mut statics = Statics::new(&self.opened.model, Tissue::new(&self.opened), self.gradient);
+        let mut loads = vec![];
+        for (index, (time, posture)) in self.frames.iter().enumerate() {
+            let failed = |why: String| Fail::Refused(format!("frame {index}: {why}"));
+            statics.place(&self.opened.model, posture).map_err(failed)?;
+            loads.clone_from(&self.loads);
+            if let Some(ground) = &self.ground {
+                ground.loads(*time, &self.opened.model, statics.kinematics(), &mut loads);
+            }
+            statics.pull(&self.opened.model, &loads).map_err(failed)?;
+            let frame = statics.frame(&self.opened.model, order, index, *time);
+            residual.take(&frame);
+            visit(&frame)?;
+        }
+        Ok(())
+    }
+}
+
+/// A file for the results.
+struct Target {
+    folder: Folder,
+    name: String,
+    form: Form,
+}
+
+enum Form {
+    Json,
+    /// Cells apart by commas, or by tabs under OpenSim's header.
+    Table(char),
+}
+
+impl Target {
+    fn new(path: &Path) -> Result<Self, Fail> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        let form = match ending.as_deref() {
+            Some("csv") => Form::Table(','),
+            Some("sto" | "mot") => Form::Table('\t'),
+            Some("json") => Form::Json,
+            _ => {
+                let shown = path.display();
+                return Err(Fail::Refused(format!("--out {shown}: the name must end in .csv, .sto, .mot or .json")));
+            }
+        };
+        let (folder, name) = folder_and_name(path)?;
+        Ok(Self { folder: Folder::open(&folder)?, name, form })
+    }
+
+    fn begin(&self) -> Result<Pending, Fail> {
+        self.folder.begin(&self.name)
+    }
+}
+
+/// Standard output, in pieces of some size.
+#[derive(Default)]
+struct Printed {
+    waiting: String,
+}
+
+impl Printed {
+    const PIECE: usize = 1 << 16;
+
+    fn append(&mut self, text: &str) -> Result<(), Fail> {
+        self.waiting.push_str(text);
+        if self.waiting.len() >= Self::PIECE {
+            crate::output::print(&self.waiting)?;
+            self.waiting.clear();
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<(), Fail> {
+        crate::output::print(&self.waiting)
+    }
+}

@@ -1,0 +1,104 @@
+//! POSTURES and MOTION on the command line, and the loads that act on the body in them.
+
+mod ground;
+mod loads;
+
+use std::path::Path;
+
+use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::posture::Posture;
+use contrapposto::statics::Load;
+use contrapposto_formats::motion::{self, Units, postures, read_table};
+
+use crate::args::LoadArgs;
+use crate::fail::Fail;
+use crate::input::read;
+use crate::model_file::{Opened, Tissue};
+pub(crate) use ground::GroundReaction;
+pub(crate) use loads::{no_segment, patch};
+
+/// Held weights and forces, and ground reactions if there are any.
+pub(crate) fn loads_of(
+    args: &LoadArgs,
+    model: &Model,
+    notes: &mut Vec<String>,
+) -> Result<(Vec<Load>, Option<GroundReaction>), Fail> {
+    let mut loads = vec![];
+    for text in &args.load {
+        loads.push(loads::weight(model, text)?);
+    }
+    for text in &args.force {
+        loads.push(loads::force(model, text)?);
+    }
+    let ground = args.grf.as_ref().map(|path| GroundReaction::read(path, &args.grf_on, model, notes)).transpose()?;
+    Ok((loads, ground))
+}
+
+/// The postures of a table, with their times. `accepted`: what the file may be.
+pub(crate) fn read_motion(
+    path: &Path,
+    accepted: &str,
+    args: &LoadArgs,
+    model: &Model,
+    notes: &mut Vec<String>,
+) -> Result<Vec<(f64, Posture)>, Fail> {
+    let name = path.display().to_string();
+    let bytes = read(path, motion::MOST_BYTES as u64).map_err(|fail| match fail {
+        Fail::Refused(why) => Fail::Refused(format!("{why}\n  {accepted}")),
+        other => other,
+    })?;
+    let table = read_table(&name, &bytes)?;
+    let units = match (args.degrees, args.radians) {
+        (true, _) => Units::Degrees,
+        (_, true) => Units::Radians,
+        _ => Units::FromFile,
+    };
+    let read = postures(&table, &name, &bytes, model, units)?;
+    for (names, what) in [
+        (&read.missing, "coordinates without a column stand at their default"),
+        (&read.unknown, "columns that are no coordinate of the model are passed over"),
+    ] {
+        if !names.is_empty() {
+            notes.push(format!("{name}: {} {what}: {}", names.len(), first_of(names)));
+        }
+    }
+    if read.postures.is_empty() {
+        return Err(Fail::Refused(format!("{name}: holds no rows")));
+    }
+    Ok(read.postures)
+}
+
+fn first_of(names: &[String]) -> String {
+    let more = if names.len() > 12 { ", ..." } else { "" };
+    format!("{}{more}", names.iter().take(12).map(String::as_str).collect::<Vec<_>>().join(", "))
+}
+
+/// Says which coordinates leave their range, and which what their built-in curve is meant for.
+pub(crate) fn outside(opened: &Opened, frames: &[(f64, Posture)], notes: &mut Vec<String>) {
+    /// Beyond a limit without a word, rad or m.
+    const SLACK: f64 = 1e-3;
+    let model = &opened.model;
+    let tissue = Tissue::new(opened);
+    let (mut beyond, mut held) = (vec![], vec![]);
+    for (index, coordinate) in model.coordinates().iter().enumerate() {
+        let (min, max) = coordinate.range;
+        if coordinate.kind == CoordinateKind::Quaternion || model.is_dependent(index) {
+            continue;
+        }
+        let any = |test: &dyn Fn(f64) -> bool| frames.iter().any(|(_, posture)| test(posture.values()[index]));
+        if any(&|value| value < min - SLACK || value > max + SLACK) {
+            beyond.push(format!("`{}`", coordinate.name));
+        }
+        if any(&|value| tissue.holds(index, value)) {
+            held.push(format!("`{}`", coordinate.name));
+        }
+    }
+    for (names, what) in [
+        (beyond, "outside their range in some frame"),
+        (held, "outside what their built-in curve is meant for in some frame, passive torque held at its limit"),
+    ] {
+        if !names.is_empty() {
+            notes.push(format!("{what}: {}", first_of(&names)));
+        }
+    }
+}

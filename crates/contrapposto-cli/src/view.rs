@@ -1,0 +1,24 @@
+//! Shapes of results for readers: recordings, moments, drawings, charts, pages, tables and texts.
+
+pub(crate) mod animation;
+pub(crate) mod axes;
+pub(crate) mod body;
+pub(crate) mod charts;
+pub(crate) mod decision;
+pub(crate) mod figures;
+pub(crate) mod film;
+pub(crate) mod frame;
+pub(crate) mod held;
+pub(crate) mod muscles;
+pub(crate) mod pose_picture;
+pub(crate) mod recording;
+pub(crate) mod report;
+pub(crate) mod residual;
+pub(crate) mod scene;
+pub(crate) mod selection;
+mod solid;
+mod surfaces;
+pub(crate) mod tables;
+pub(crate) mod text;
+pub(crate) mod torque_rows;
+pub(crate) mod words;

@@ -1,0 +1,91 @@
+//! A body at one moment as a drawing shows it: the same solid parts, loads and axes as on the page.
+
+use contrapposto::contact::Support;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto::simulation::Contact;
+use contrapposto_plot::{BodyForce, BodyPart, BodyPosture};
+use nalgebra::{Point3, Vector3};
+
+use super::axes::{pelvis_list, turn};
+use super::frame::Frame;
+use super::selection::shown;
+use super::solid;
+use super::words::{percent, plain};
+use crate::fail::Fail;
+
+/// Most supports whose share is told.
+const MOST_SHARES: usize = 4;
+
+/// The parts of a body in a posture, in the colours of `load` (by coordinate) where it is known.
+pub(crate) fn parts(model: &Model, posture: &[f64], load: Option<&[f64]>) -> Result<Vec<BodyPart>, Fail> {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("picture", error))?;
+    let (shown, turn) = (shown(model), turn(model));
+    let mut parts = vec![];
+    for s in 0..model.segments().len() {
+        let place = kinematics.placement(model, s);
+        let moved_by = solid::joined_by(model, s);
+        let moves = shown.iter().filter(|i| moved_by.contains(i) && model.coordinates()[**i].groups.is_some());
+        let load = load.and_then(|load| moves.map(|&i| load[i]).reduce(f64::max));
+        for balls in solid::parts(model, s) {
+            let ball = |[x, y, z, r]: [f64; 4]| {
+                let [x, y, z] = turn.point((place * Point3::new(x, y, z)).coords);
+                [x, y, z, r]
+            };
+            parts.push(BodyPart { balls: balls.into_iter().map(ball).collect(), load });
+        }
+    }
+    Ok(parts)
+}
+
+/// The body of a frame: parts, contact forces, centre of mass, ground. Loads are shown where it is known what carries it.
+pub(crate) fn body(model: &Model, supports: &[Support], frame: &Frame) -> Result<BodyPosture, Fail> {
+    let turn = turn(model);
+    let standing = frame.standing.as_ref();
+    let force = |contact: &Contact| {
+        let at = contact.center_of_pressure?;
+        Some(BodyForce { at: turn.point(at), force: turn.point(contact.force) })
+    };
+    Ok(BodyPosture {
+        parts: parts(model, &frame.posture, (!frame.load.is_empty()).then_some(&frame.load))?,
+        forces: standing.iter().flat_map(|standing| &standing.contacts).filter_map(force).collect(),
+        center_of_mass: standing.filter(|_| !supports.is_empty()).map(|standing| turn.point(standing.center_of_mass)),
+        ground: ground(model, supports, &frame.posture)?,
+        ..BodyPosture::default()
+    })
+}
+
+/// Height of the lowest corner of what carries the body.
+fn ground(model: &Model, supports: &[Support], posture: &[f64]) -> Result<Option<f64>, Fail> {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("picture", error))?;
+    let turn = turn(model);
+    let height =
+        |support: &Support, corner: &Vector3<f64>| turn.point(kinematics.station(model, support.segment, *corner))[1];
+    Ok(supports
+        .iter()
+        .flat_map(|s| s.corners.iter().map(move |corner| (s, corner)))
+        .map(|(s, c)| height(s, c))
+        .reduce(f64::min))
+}
+
+/// The few numbers that say most of how it stands: `effort 0.0590`, `left foot 15 %`, `pelvis 6.2° down to the right`.
+pub(crate) fn key_numbers(model: &Model, supports: &[Support], frame: &Frame) -> Vec<String> {
+    let mut numbers = vec![format!("effort {:.4}", frame.effort())];
+    let contacts = frame.standing.iter().flat_map(|standing| &standing.contacts);
+    let share = |(support, contact): (&Support, &Contact)| {
+        format!("{} {}", plain(&model.segments()[support.segment].name), percent(contact.share))
+    };
+    numbers.extend(supports.iter().zip(contacts).take(MOST_SHARES).map(share));
+    if let Some(list) = pelvis_list(model, &frame.posture).filter(|_| !supports.is_empty()) {
+        let side = if list > 0.0 { "right" } else { "left" };
+        numbers.push(if list.abs() < 0.05 {
+            "pelvis level".to_owned()
+        } else {
+            format!("pelvis {:.1}° down to the {side}", list.abs())
+        });
+    }
+    numbers
+}

@@ -1,0 +1,129 @@
+//! One moment of a body: posture, torques, loads, fatigue and contact forces.
+
+use contrapposto::assessment::Instant;
+use contrapposto::contact::ContactForces;
+use contrapposto::equilibria::RelaxedPosture;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Model, Side};
+use contrapposto::simulation::{Contact, Sample, Standing};
+use nalgebra::Vector3;
+
+use super::recording::Row;
+use crate::fail::Fail;
+
+/// One moment.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame {
+    pub(crate) time: f64,
+    pub(crate) posture: Vec<f64>,
+    pub(crate) external: Vec<f64>,
+    pub(crate) passive: Vec<f64>,
+    pub(crate) load: Vec<f64>,
+    /// Where it is known.
+    pub(crate) fatigue: Option<Vec<[f64; 2]>>,
+    pub(crate) standing: Option<Standing>,
+}
+
+impl Frame {
+    pub(crate) fn of_row(row: Row) -> Self {
+        let contact = |numbers: &[f64; 10]| {
+            let [share, fx, fy, fz, px, py, pz, cx, cy, cz] = *numbers;
+            let (force, at, couple) = ([fx, fy, fz].into(), [px, py, pz].into(), [cx, cy, cz].into());
+            Contact { force, share, center_of_pressure: (share > 0.0).then_some(at), couple }
+        };
+        let standing = row.center_of_mass.map(|center| Standing {
+            contacts: row.contacts.iter().map(contact).collect(),
+            center_of_mass: center.into(),
+            ..Standing::default()
+        });
+        Self {
+            time: row.time,
+            posture: row.posture.to_vec(),
+            external: row.external.to_vec(),
+            passive: row.passive.to_vec(),
+            load: row.load.to_vec(),
+            fatigue: Some(row.fatigue.to_vec()),
+            standing,
+        }
+    }
+
+    /// One sample of a run.
+    pub(crate) fn of_sample(sample: &Sample) -> Self {
+        Self {
+            time: sample.time,
+            posture: sample.posture.to_vec(),
+            external: sample.external.to_vec(),
+            passive: sample.passive.to_vec(),
+            load: sample.load.to_vec(),
+            fatigue: Some(sample.fatigue.to_vec()),
+            standing: sample.standing.cloned(),
+        }
+    }
+
+    /// A posture with its torques by rate.
+    pub(crate) fn at(model: &Model, time: f64, posture: &[f64], [external, passive]: [&[f64]; 2]) -> Self {
+        let of = |torques: &[f64]| -> Vec<f64> {
+            model.coordinates().iter().map(|coordinate| coordinate.rate.map_or(0.0, |rate| torques[rate])).collect()
+        };
+        let (external, passive) = (of(external), of(passive));
+        let load = |(i, coordinate): (usize, &contrapposto::model::Coordinate)| {
+            let (active, known) = (-(passive[i] + external[i]), !model.is_dependent(i));
+            let groups = coordinate.groups.as_ref().filter(|_| known && coordinate.rate.is_some());
+            groups.map_or(0.0, |groups| active.abs() / groups[Side::of(active).index()].strength.torque(posture[i]))
+        };
+        let load = model.coordinates().iter().enumerate().map(load).collect();
+        Self { time, posture: posture.to_vec(), external, passive, load, fatigue: None, standing: None }
+    }
+
+    /// A posture that was given, held at rest.
+    pub(crate) fn of_instant(model: &Model, instant: &Instant) -> Self {
+        let torques = [instant.external, instant.passive];
+        let contact = |contact: &ContactForces, i: usize| Contact {
+            force: contact.force(i),
+            share: contact.share(i),
+            center_of_pressure: contact.center_of_pressure(model, instant.kinematics, i),
+            couple: Vector3::zeros(),
+        };
+        let standing = instant.contact.map(|forces| Standing {
+            contacts: (0..forces.supports().len()).map(|i| contact(forces, i)).collect(),
+            center_of_mass: instant.kinematics.center_of_mass(model).unwrap_or_default(),
+            ..Standing::default()
+        });
+        Self { standing, ..Self::at(model, instant.time, instant.values, torques) }
+    }
+
+    /// Active torque of a coordinate, N m.
+    pub(crate) fn active(&self, i: usize) -> f64 {
+        -(self.passive[i] + self.external[i])
+    }
+
+    /// Sum of squares of relative loads.
+    pub(crate) fn effort(&self) -> f64 {
+        self.load.iter().map(|load| load * load).sum()
+    }
+
+    /// How much of what pulls on a coordinate passive tissue carries, 0..=1; `None` where next to nothing pulls.
+    pub(crate) fn carried(&self, i: usize) -> Option<f64> {
+        let external = self.external[i];
+        (external.abs() > 0.5).then(|| (-self.passive[i] / external).clamp(0.0, 1.0))
+    }
+}
+
+/// As it was found: contact forces and torques are not computed anew.
+pub(crate) fn frame_of_posture(model: &Model, found: &RelaxedPosture) -> Result<Frame, Fail> {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &found.relaxed.posture).map_err(|error| Fail::job("report", error))?;
+    let contacts = found.supports.iter().map(|carried| Contact {
+        force: carried.force,
+        share: carried.share,
+        center_of_pressure: carried.center_of_pressure,
+        couple: nalgebra::Vector3::zeros(),
+    });
+    let standing = (!found.supports.is_empty()).then(|| Standing {
+        contacts: contacts.collect(),
+        center_of_mass: kinematics.center_of_mass(model).unwrap_or_default(),
+        ..Standing::default()
+    });
+    let [external, passive] = &found.torques;
+    Ok(Frame { standing, ..Frame::at(model, 0.0, found.relaxed.posture.values(), [external, passive]) })
+}

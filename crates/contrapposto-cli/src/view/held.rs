@@ -1,0 +1,41 @@
+//! What does a posture that is held still ask of the muscles? External, passive and active torque, contact forces of least effort.
+
+use contrapposto::assessment::{AssessSettings, assess};
+use contrapposto::contact::Support;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto::statics::Load;
+
+use super::frame::Frame;
+use crate::fail::Fail;
+
+/// A posture that is held still.
+pub(crate) struct Held {
+    /// What it asks for. Where the supports cannot hold it, with the root held besides, as if by hand.
+    pub(crate) frame: Frame,
+    /// Do the supports hold it? True without supports.
+    pub(crate) holds: bool,
+}
+
+impl Held {
+    /// What it asks for, where that is known.
+    pub(crate) fn known(self) -> Option<Frame> {
+        self.holds.then_some(self.frame)
+    }
+}
+
+/// Without supports the root is held as if by hand.
+pub(crate) fn held(model: &Model, posture: &Posture, loads: &[Load], supports: &[Support]) -> Result<Held, Fail> {
+    let settings = AssessSettings { supports: supports.to_vec(), ..AssessSettings::default() };
+    let mut frame = None;
+    let found = assess(
+        model,
+        &[(0.0, posture.clone())],
+        |_, _, all| all.extend_from_slice(loads),
+        &settings,
+        |instant| frame = Some(Frame::of_instant(model, instant)),
+    )
+    .map_err(|error| Fail::job("posture", error))?;
+    let frame = frame.ok_or_else(|| Fail::job("posture", "it has no torques"))?;
+    Ok(Held { frame, holds: found.unheld == 0 })
+}

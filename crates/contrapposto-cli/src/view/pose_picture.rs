@@ -1,0 +1,90 @@
+//! From a solved pose to its picture: the body, where it started, and what it should reach.
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::posture_solver::inverse_kinematics::Pose;
+use contrapposto::tasks::{CenterOfMassGoal, Task};
+use contrapposto_formats::PoseScenario;
+use contrapposto_plot::{BodyFigure, BodyPosture};
+use nalgebra::Vector3;
+
+use super::axes::turn;
+use super::body;
+use super::held::held;
+use crate::fail::Fail;
+
+/// What is drawn beside the body, ground, m.
+#[derive(Default)]
+struct Marks {
+    targets: Vec<Vector3<f64>>,
+    /// Lines of sight: eye, and what it should meet.
+    gazes: Vec<[Vector3<f64>; 2]>,
+    /// Of mass.
+    center: Option<Vector3<f64>>,
+}
+
+/// The picture of a solved pose.
+pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<BodyFigure, Fail> {
+    let mut posture = pose_posture(scenario, pose)?;
+    posture.start = body::parts(&scenario.model, scenario.start.values(), None)?;
+    Ok(BodyFigure {
+        title: scenario.title.clone(),
+        subtitle: subtitle.to_owned(),
+        target: "target".to_owned(),
+        postures: vec![posture],
+    })
+}
+
+/// The body of a solved pose, with what it should reach.
+fn pose_posture(scenario: &PoseScenario, pose: &Pose) -> Result<BodyPosture, Fail> {
+    let model = &scenario.model;
+    let frame = held(model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
+    let mut posture = match &frame {
+        Some(frame) => body::body(model, &scenario.supports, frame)?,
+        None => BodyPosture { parts: body::parts(model, pose.posture.values(), None)?, ..BodyPosture::default() },
+    };
+    let (turn, marks) = (turn(model), marks(scenario, pose)?);
+    posture.targets = marks.targets.into_iter().map(|at| turn.point(at)).collect();
+    posture.gazes = marks.gazes.into_iter().map(|gaze| gaze.map(|at| turn.point(at))).collect();
+    posture.center_of_mass = posture.center_of_mass.or_else(|| marks.center.map(|center| turn.point(center)));
+    Ok(posture)
+}
+
+/// Places that the tasks of a pose ask for, ground, m.
+pub(crate) fn targets(scenario: &PoseScenario, pose: &Pose) -> Result<Vec<Vector3<f64>>, Fail> {
+    Ok(marks(scenario, pose)?.targets)
+}
+
+fn marks(scenario: &PoseScenario, pose: &Pose) -> Result<Marks, Fail> {
+    let model = &scenario.model;
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &pose.posture).map_err(|error| Fail::job("picture", error))?;
+    let center = kinematics.center_of_mass(model);
+    let mut marks = Marks { center, ..Marks::default() };
+    for task in scenario.goals.iter().filter(|goal| !goal.hard).flat_map(|goal| &goal.tasks) {
+        match task {
+            Task::Point(task) => marks
+                .targets
+                .push(unasked(task.axes, task.target, || kinematics.station(model, task.segment, task.point))),
+            Task::Placement(task) => marks.targets.push(task.target.translation.vector),
+            Task::LookAt(task) => {
+                marks.targets.push(task.target);
+                marks.gazes.push([kinematics.station(model, task.segment, task.eye), task.target]);
+            }
+            Task::CenterOfMass(task) => {
+                if let CenterOfMassGoal::At { target, axes } = &task.goal {
+                    marks.targets.push(unasked(*axes, *target, || center.unwrap_or(*target)));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(marks)
+}
+
+/// A target on some axes only: the others are where the body is.
+fn unasked(axes: [bool; 3], mut target: Vector3<f64>, present: impl Fn() -> Vector3<f64>) -> Vector3<f64> {
+    for k in (0..3).filter(|&k| !axes[k]) {
+        target[k] = present()[k];
+    }
+    target
+}

@@ -1,0 +1,222 @@
+//! The page of `assess`: a recorded motion, who fails first, and what would relieve it.
+
+use contrapposto::assessment::{Assessment, GroupAssessment, Instant, PeakKind, Proposal};
+use contrapposto::contact::Support;
+use contrapposto::hybrid::Outcome;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::simulation::{Contact, Standing};
+use contrapposto::statics::{Load, LoadKind};
+use contrapposto_report::{Entry, Figure, List, Moments, Table};
+use nalgebra::Vector3;
+
+use crate::fail::Fail;
+use crate::view::decision::answer;
+use crate::view::film::MOST_FRAMES;
+use crate::view::frame::Frame;
+use crate::view::scene::Scene;
+use crate::view::selection::shown;
+use crate::view::words::{group, percent, plain, sentence, value};
+
+/// So many groups are told of.
+const SHOWN: usize = 10;
+
+/// Moments of a motion, as many as a page shows.
+pub(crate) struct Shots<'a> {
+    model: &'a Model,
+    instants: usize,
+    frames: Vec<Frame>,
+    /// Segments that measured forces act on.
+    pushed: Vec<usize>,
+}
+
+impl<'a> Shots<'a> {
+    pub(crate) fn new(model: &'a Model, instants: usize) -> Self {
+        Self { model, instants, frames: vec![], pushed: vec![] }
+    }
+
+    /// Takes in an instant, if it is one of those that are shown. `measured`: what the ground was measured to push with.
+    pub(crate) fn take(&mut self, instant: &Instant, measured: impl FnOnce(&mut Vec<Load>)) {
+        let stride = self.instants.div_ceil(MOST_FRAMES).max(1);
+        if !instant.index.is_multiple_of(stride) && instant.index + 1 != self.instants {
+            return;
+        }
+        let mut frame = Frame::of_instant(self.model, instant);
+        frame.fatigue = Some(instant.fatigue.to_vec());
+        let mut loads = vec![];
+        measured(&mut loads);
+        let with_next = loads.iter().zip(loads.iter().skip(1).map(Some).chain([None]));
+        let contacts = with_next.filter_map(|(load, next)| self.contact(instant.kinematics, load, next));
+        let (segments, contacts): (Vec<usize>, Vec<Contact>) = contacts.unzip();
+        if !contacts.is_empty() {
+            let center_of_mass = instant.kinematics.center_of_mass(self.model).unwrap_or_default();
+            frame.standing = Some(Standing { contacts, center_of_mass, ..Standing::default() });
+            self.pushed = segments;
+        }
+        self.frames.push(frame);
+    }
+
+    /// A measured force, where it acts without the couple that follows it (but for its part about the upright axis).
+    fn contact(&self, kinematics: &Kinematics, load: &Load, next: Option<&Load>) -> Option<(usize, Contact)> {
+        let LoadKind::Force(force, _) = load.kind else { return None };
+        let couple = match next.map(|next| next.kind) {
+            Some(LoadKind::Couple(couple, _)) => couple,
+            _ => Vector3::zeros(),
+        };
+        let weight = -self.model.mass() * self.model.gravity();
+        let up = weight.try_normalize(0.0).unwrap_or_else(Vector3::y);
+        let pushes = force.dot(&up);
+        let share = if weight.norm() > 0.0 { pushes / weight.norm() } else { 0.0 };
+        let at = kinematics.station(self.model, load.segment, load.point) + up.cross(&couple) / pushes;
+        let center_of_pressure = (pushes > 0.0).then_some(at);
+        Some((load.segment, Contact { force, share, center_of_pressure, couple: up * couple.dot(&up) }))
+    }
+
+    /// In the order of time.
+    pub(crate) fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// The frame nearest to a time.
+    fn nearest(&self, time: f64) -> usize {
+        let after = self.frames.partition_point(|frame| frame.time < time).min(self.frames.len().saturating_sub(1));
+        let before = after.saturating_sub(1);
+        let away = |frame: usize| self.frames.get(frame).map_or(f64::INFINITY, |frame| (frame.time - time).abs());
+        if away(before) <= away(after) { before } else { after }
+    }
+}
+
+/// The page of an assessment. `held`: what pulls on the body at all times.
+pub(crate) fn report_of_assessment(
+    title: &str,
+    shots: &Shots<'_>,
+    found: &Assessment,
+    supports: &[Support],
+    held: &[Load],
+    warnings: &[String],
+) -> Result<String, Fail> {
+    let Shots { model, frames, .. } = shots;
+    let Some((first, last)) = frames.first().zip(frames.last()) else {
+        return Ok(contrapposto_report::write(&contrapposto_report::Report::default()));
+    };
+    let working: Vec<&GroupAssessment> = found.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
+    let shown = shown(model);
+    let moved = |i: &&usize| frames.iter().any(|frame| (frame.posture[**i] - first.posture[**i]).abs() > 1e-6);
+    let alone = supports.is_empty() && shots.pushed.is_empty() && shown.iter().filter(moved).count() <= 1;
+    let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, supports) };
+    scene.carried.extend(&shots.pushed);
+    let times = frames.iter().map(|frame| frame.time).collect();
+    let mut report = scene.report(Moments::Times(times), working.first().map_or(0, |group| group.coordinate))?;
+    let span = last.time - first.time;
+    report.headline = match working.first() {
+        None => "No muscle has anything to hold.".to_owned(),
+        Some(worst) => match worst.exhausted_at {
+            Some(time) => {
+                format!("{} fails first: at {time:.1} s it can no longer hold what is asked.", name(model, worst))
+            }
+            None => format!(
+                "No muscle group fails in {span:.1} s; {} tires most, to {}.",
+                lower(&name(model, worst)),
+                percent(worst.peak_fatigue.value)
+            ),
+        },
+    };
+    report.reasons = warnings.iter().map(|warning| sentence(warning) + ".").collect();
+    report
+        .reasons
+        .push("Each posture counts as held at rest; loads change in a straight line from one to the next.".to_owned());
+    let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
+    let failed: Vec<f64> = found.groups.iter().filter_map(|group| group.exhausted_at).collect();
+    let earliest = failed.first().map_or_else(String::new, |time| format!("the first at {time:.1} s"));
+    report.figures.push(figure("Muscle groups that fail", format!("{} of {}", failed.len(), working.len()), earliest));
+    if let Some(tired) = working.iter().max_by(|a, b| a.peak_fatigue.value.total_cmp(&b.peak_fatigue.value)) {
+        report.figures.push(figure("Greatest fatigue", percent(tired.peak_fatigue.value), name(model, tired)));
+    }
+    if let Some(hard) = working.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value)) {
+        let note = format!("{}, at {:.1} s", name(model, hard), hard.peak_load.time);
+        report.figures.push(figure("Greatest load", percent(hard.peak_load.value), note));
+    }
+    report.figures.push(figure("The motion lasts", format!("{span:.1} s"), format!("{} postures", shots.instants)));
+    report.list = List {
+        heading: "Who fails, and what would relieve it".to_owned(),
+        entries: entries(shots, &working, &shown),
+        none: "Nothing: no group fails, and none has relief to be found by its joint alone.".to_owned(),
+    };
+    let row = |group: &&GroupAssessment| {
+        vec![
+            name(model, group),
+            percent(group.peak_load.value),
+            format!("{:.2} s", group.peak_load.time),
+            percent(group.fatigue),
+            group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at {time:.1} s")),
+        ]
+    };
+    report.table = Table {
+        heading: "Over the whole motion".to_owned(),
+        columns: ["Muscle group", "Peak load", "At", "Fatigue at the end", "Fails"].map(str::to_owned).to_vec(),
+        rows: working.iter().take(SHOWN).map(row).collect(),
+    };
+    Ok(contrapposto_report::write(&report))
+}
+
+/// When groups fail, and what would relieve them at their peaks.
+fn entries(shots: &Shots<'_>, working: &[&GroupAssessment], shown: &[usize]) -> Vec<Entry> {
+    let model = shots.model;
+    let mut entries = vec![];
+    for found in working.iter().take(SHOWN) {
+        let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
+        if let Some(time) = found.exhausted_at {
+            let text = format!("{} fails: it can no longer hold what is asked.", name(model, found));
+            entries.push(Entry { frame: shots.nearest(time), joint, text });
+        }
+        if model.coordinates()[found.coordinate].kind != CoordinateKind::Rotation {
+            continue;
+        }
+        for peak in found.proposals.chunk_by(|a, b| a.at == b.at) {
+            let moves = |proposal: &Proposal| !matches!(proposal.decision.outcome, Outcome::Stay | Outcome::None);
+            if peak.iter().any(moves) {
+                entries.push(Entry { frame: shots.nearest(peak[0].time), joint, text: relief(model, found, peak) });
+            }
+        }
+    }
+    entries.sort_by_key(|entry| entry.frame);
+    entries
+}
+
+/// What both strategies propose at a peak; once, where they agree.
+fn relief(model: &Model, found: &GroupAssessment, peak: &[Proposal]) -> String {
+    let i = found.coordinate;
+    let what = match peak[0].at {
+        PeakKind::Load => format!("greatest load, {} of its strength", percent(found.peak_load.value)),
+        PeakKind::Fatigue => format!("greatest fatigue, {}", percent(found.peak_fatigue.value)),
+    };
+    let told = |proposal: &Proposal| {
+        let goal = proposal.decision.goal.map(|goal| value(model, i, goal)).unwrap_or_default();
+        answer(&proposal.decision, &value(model, i, proposal.angle), &goal)
+    };
+    let answers: Vec<String> = peak.iter().map(told).collect();
+    let agree = answers.iter().all(|answer| *answer == answers[0]);
+    let relief = match answers.as_slice() {
+        [active, passive] if !agree => format!("Ready, {active} Relaxed, {passive}"),
+        answers => sentence(&answers[0]),
+    };
+    format!(
+        "{}: {what}. If {} alone moved: {}",
+        name(model, found),
+        plain(&model.coordinates()[i].name),
+        lower(&relief)
+    )
+}
+
+/// `Right elbow flexion`: the group.
+fn name(model: &Model, found: &GroupAssessment) -> String {
+    let coordinate = &model.coordinates()[found.coordinate];
+    let name = coordinate.groups.as_ref().map(|groups| group(&groups[found.side.index()].name, &coordinate.name));
+    sentence(&name.unwrap_or_default())
+}
+
+/// The first letter small.
+fn lower(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}

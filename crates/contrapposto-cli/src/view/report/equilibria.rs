@@ -1,0 +1,172 @@
+//! The page of the postures of least effort.
+
+use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture};
+use contrapposto::hybrid::{Carrier, Equilibrium};
+use contrapposto::model::Model;
+use contrapposto_formats::RelaxScenario;
+use contrapposto_report::{Entry, List, Moments, Table};
+
+use super::figure::{carriers, figure, figures_of, weight};
+use crate::fail::Fail;
+use crate::view::figures::figures_of_postures;
+use crate::view::frame::{Frame, frame_of_posture};
+use crate::view::muscles::{fails_first, hardest};
+use crate::view::scene::Scene;
+use crate::view::selection::shown;
+use crate::view::words::{how_long, list, percent, plain, value};
+
+/// So many joints and directions are told of each posture.
+const SHOWN: usize = 3;
+
+/// `--figures` of all postures of least effort.
+pub(crate) fn figures_of_equilibria(
+    scenario: &RelaxScenario,
+    found: &Equilibria,
+) -> Result<Vec<(String, Vec<u8>)>, Fail> {
+    let frames = frames_of_postures(&scenario.model, &found.postures)?;
+    figures_of_postures(&scenario.title, &scenario.model, &frames, &numbered(frames.len()))
+}
+
+fn frames_of_postures(model: &Model, postures: &[RelaxedPosture]) -> Result<Vec<Frame>, Fail> {
+    postures.iter().map(|posture| frame_of_posture(model, posture)).collect()
+}
+
+/// `posture 1`, `posture 2`, ...
+fn numbered(count: usize) -> Vec<String> {
+    (1..=count).map(|number| format!("posture {number}")).collect()
+}
+
+/// The page of all postures of least effort.
+pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria) -> Result<String, Fail> {
+    let model = &scenario.model;
+    let frames = frames_of_postures(model, &found.postures)?;
+    let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports);
+    let shown = shown(model);
+    let first = found.postures.first().map_or(0, speaking);
+    let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;
+    let supports = carriers(&scene);
+    let entry = |(frame, posture): (usize, &RelaxedPosture)| Entry {
+        frame,
+        joint: shown.iter().position(|&i| i == speaking(posture)).unwrap_or(0),
+        text: told(model, posture, &frames[frame], &supports),
+    };
+    report.list = List {
+        heading: "Postures of least effort".to_owned(),
+        entries: found.postures.iter().enumerate().map(entry).collect(),
+        none: String::new(),
+    };
+    let Some((best, frame)) = found.postures.first().zip(frames.first()) else {
+        return Ok(contrapposto_report::write(&report));
+    };
+    let more = found.postures.get(1).map(|next| percent(next.relaxed.effort / best.relaxed.effort - 1.0));
+    report.headline = match (found.postures.len(), &more) {
+        (n, Some(more)) => {
+            format!("{n} ways to rest: {} takes the least effort, the next {more} more.", hangs(model, best))
+        }
+        _ => format!("One way to rest: {}.", hangs(model, best)),
+    };
+    report.reasons.push(verdict(model, best));
+    let mut searched = format!("{} starts were tried", found.starts);
+    for (count, what) in
+        [(found.fell, "fell"), (found.yielded, "kept tasks or supports less well than these and are left out")]
+    {
+        if count > 0 {
+            searched += &format!(", {count} {what}");
+        }
+    }
+    report.reasons.push(searched + ".");
+    let note = more.map_or_else(|| "sum of squared loads".to_owned(), |more| format!("the next takes {more} more"));
+    report.figures.push(figure("Least effort", format!("{:.4}", best.relaxed.effort), &note));
+    figures_of(model, frame, &supports, &mut report);
+    let row = |(i, (posture, frame)): (usize, (&RelaxedPosture, &Frame))| {
+        let hardest = hardest(model, frame).map(|(name, load)| format!("{name}, {}", percent(load)));
+        let effort = format!("{:.4}", posture.relaxed.effort);
+        vec![(i + 1).to_string(), effort, weight(frame, &supports), held_by(posture), hardest.unwrap_or_default()]
+    };
+    report.table = Table {
+        heading: "Side by side".to_owned(),
+        columns: ["Posture", "Effort", "Weight on", "Held by", "Hardest worked"].map(str::to_owned).to_vec(),
+        rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
+    };
+    Ok(contrapposto_report::write(&report))
+}
+
+/// The coordinate that says most of a posture: the one that hangs on its ligaments, else the hardest worked.
+fn speaking(found: &RelaxedPosture) -> usize {
+    let hanging = found.hanging.first().map(|hanging| hanging.coordinate);
+    hanging.or_else(|| found.work.first().map(|work| work.coordinate)).unwrap_or(0)
+}
+
+/// `hanging on the ligaments of right hip adduction`.
+fn hangs(model: &Model, found: &RelaxedPosture) -> String {
+    match found.hanging.first() {
+        Some(joint) => format!("hanging on the ligaments of {}", plain(&model.coordinates()[joint.coordinate].name)),
+        None => "a posture without ligaments that carry".to_owned(),
+    }
+}
+
+fn held_by(found: &RelaxedPosture) -> String {
+    match found.stability.equilibrium {
+        None => "its supports alone".to_owned(),
+        Some(Equilibrium::Stable(Carrier::Ligaments)) => "ligaments".to_owned(),
+        Some(Equilibrium::Stable(Carrier::Gravity)) => "its own weight".to_owned(),
+        Some(Equilibrium::Unstable) => match found.stability.unstable {
+            1 => "attention, in 1 direction".to_owned(),
+            n => format!("attention, in {n} directions"),
+        },
+    }
+}
+
+fn verdict(model: &Model, found: &RelaxedPosture) -> String {
+    match found.stability.equilibrium {
+        None => "Its supports leave nothing free to move.".to_owned(),
+        Some(Equilibrium::Stable(Carrier::Ligaments)) => {
+            "Pushed, it comes back by itself: ligaments hold it.".to_owned()
+        }
+        Some(Equilibrium::Stable(Carrier::Gravity)) => {
+            "Pushed, it comes back by itself: its weight holds it.".to_owned()
+        }
+        Some(Equilibrium::Unstable) => {
+            let name = |&(i, _): &(usize, f64)| plain(&model.coordinates()[i].name);
+            let direction = |direction: &Direction| {
+                let joints: Vec<String> = direction.joints.iter().take(SHOWN).map(name).collect();
+                let grows = direction.growth_time().map(|time| format!(" (a sway grows e-fold in {time:.2} s)"));
+                format!("{}{}", list(&joints), grows.unwrap_or_default())
+            };
+            let worst: Vec<String> = found.stability.unstable().iter().take(1).map(direction).collect();
+            format!("It does not stay by itself; what must be attended to most: {}.", worst.join(""))
+        }
+    }
+}
+
+fn told(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String]) -> String {
+    let mut told = vec![format!("Effort {:.4}; weight on {}.", found.relaxed.effort, weight(frame, supports))];
+    if supports.is_empty() {
+        told = vec![format!("Effort {:.4}.", found.relaxed.effort)];
+    }
+    let hanging = found.hanging.iter().take(SHOWN).map(|joint| {
+        let i = joint.coordinate;
+        let at = value(model, i, frame.posture[i]);
+        format!(
+            "{} at {at} ({} of {:.1} N m)",
+            plain(&model.coordinates()[i].name),
+            percent(joint.share()),
+            joint.external.abs()
+        )
+    });
+    let hanging: Vec<String> = hanging.collect();
+    told.push(if hanging.is_empty() {
+        "No joint hangs on its ligaments.".to_owned()
+    } else {
+        format!("Hangs on ligaments: {}.", list(&hanging))
+    });
+    told.push(verdict(model, found));
+    if let Some((name, load)) = hardest(model, frame) {
+        told.push(format!("Works hardest: {name}, {}.", percent(load)));
+    }
+    told.push(match fails_first(model, frame) {
+        Some((name, time)) => format!("Can be held: {}, then {name} gives up.", how_long(time)),
+        None => "Can be held for ever, as far as muscles go.".to_owned(),
+    });
+    told.join(" ")
+}

@@ -1,0 +1,39 @@
+//! Figures and names that the pages of postures share.
+
+use contrapposto::model::Model;
+use contrapposto_report::{Figure, Report};
+
+use crate::view::frame::Frame;
+use crate::view::muscles::{fails_first, hardest};
+use crate::view::scene::Scene;
+use crate::view::words::{how_long, percent, plain, sentence};
+
+/// Names of what carries the body.
+pub(super) fn carriers(scene: &Scene<'_>) -> Vec<String> {
+    scene.carried.iter().map(|&segment| plain(&scene.model.segments()[segment].name)).collect()
+}
+
+/// `right foot 85 %, left foot 15 %`.
+pub(super) fn weight(frame: &Frame, supports: &[String]) -> String {
+    let contacts = frame.standing.iter().flat_map(|standing| &standing.contacts);
+    let shares = contacts.zip(supports).map(|(contact, name)| format!("{name} {}", percent(contact.share)));
+    shares.collect::<Vec<_>>().join(", ")
+}
+
+pub(super) fn figure(label: &str, value: String, note: &str) -> Figure {
+    Figure { label: label.to_owned(), value, note: note.to_owned() }
+}
+
+/// Who carries, and who works hardest.
+pub(super) fn figures_of(model: &Model, frame: &Frame, supports: &[String], report: &mut Report) {
+    let contacts = frame.standing.iter().flat_map(|standing| &standing.contacts);
+    for (contact, name) in contacts.zip(supports).take(4) {
+        report.figures.push(figure(&format!("Weight on {name}"), percent(contact.share), ""));
+    }
+    if let Some((name, load)) = hardest(model, frame).filter(|(_, load)| *load > 0.0) {
+        report.figures.push(figure("Hardest worked", percent(load), &sentence(&name)));
+    }
+    if let Some((name, time)) = fails_first(model, frame) {
+        report.figures.push(figure("Can be held", how_long(time), &format!("then {name} gives up")));
+    }
+}

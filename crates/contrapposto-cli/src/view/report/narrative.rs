@@ -1,0 +1,204 @@
+//! The words of a run's page: a headline, the reasons, and the few numbers that say most.
+
+use contrapposto::simulation::{Scenario, StopReason, Summary};
+use contrapposto_report::{Figure, Report};
+
+use crate::view::axes::pelvis_list;
+use crate::view::film::Film;
+use crate::view::frame::Frame;
+use crate::view::muscles::{hardest, tired};
+use crate::view::words::{how_long, percent, plain, sentence, value};
+
+/// A pelvis that hangs more than this, degrees, is no level one.
+const LEVEL: f64 = 4.0;
+/// A joint that moved less, degrees, stayed.
+const STAYED: f64 = 0.5;
+
+/// Fills in headline, reasons and figures.
+pub(super) fn tell(scenario: &Scenario, film: &Film, summary: &Summary, shown: &[usize], report: &mut Report) {
+    let (Some(first), Some(last), Some(&main)) = (film.frames.first(), film.frames.last(), shown.get(report.main))
+    else {
+        return;
+    };
+    let story = Story { scenario, first, last, main };
+    let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
+    // On its feet (or hands), not seated.
+    let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
+    let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
+    report.headline = match standing {
+        Some((_, list)) if list.abs() >= LEVEL => story.of_slouch(list),
+        _ if film.happened == 0 => story.of_rest(summary.end_time),
+        Some((_, list)) => story.of_level(list),
+        None => story.of_joint(),
+    };
+    report.reasons = story.reasons(standing.is_some());
+    report.reasons.push(story.end(film, summary));
+    report.figures = story.figures(standing);
+}
+
+struct Story<'a> {
+    scenario: &'a Scenario,
+    first: &'a Frame,
+    last: &'a Frame,
+    main: usize,
+}
+
+impl Story<'_> {
+    fn of_slouch(&self, list: f64) -> String {
+        let side = if list > 0.0 { "right" } else { "left" };
+        format!("Slouched: the pelvis hangs {:.0}° down to the {side}, and {}.", list.abs(), self.weight())
+    }
+
+    fn of_level(&self, list: f64) -> String {
+        format!("No slouch: the pelvis ends level (within {:.0}°), and {}.", list.abs().ceil().max(1.0), self.weight())
+    }
+
+    /// Nobody asked for relief.
+    fn of_rest(&self, seconds: f64) -> String {
+        let hardest = match hardest(&self.scenario.model, self.last) {
+            Some((name, load)) => format!("; {name} works hardest, at {} of its strength", percent(load)),
+            None => String::new(),
+        };
+        format!("It holds: in {} no muscle got so tired that it asked for relief{hardest}.", how_long(seconds))
+    }
+
+    fn weight(&self) -> String {
+        match self.heaviest() {
+            Some((name, share)) => format!("{} of the weight is on the {name}", percent(share)),
+            None => "nothing carries it".to_owned(),
+        }
+    }
+
+    fn of_joint(&self) -> String {
+        let name = sentence(&plain(&self.scenario.model.coordinates()[self.main].name));
+        let [from, to] =
+            [self.first, self.last].map(|frame| value(&self.scenario.model, self.main, frame.posture[self.main]));
+        let [before, after] = [self.first, self.last].map(|frame| frame.active(self.main).abs());
+        if self.moved().abs() < STAYED {
+            return format!("{name} stayed at {to}: its muscles hold {after:.1} N m.");
+        }
+        let verb = if after > before { "more" } else { "less" };
+        format!("{name} moved from {from} to {to}: its muscles hold {verb}, {after:.1} N m instead of {before:.1}.")
+    }
+
+    fn moved(&self) -> f64 {
+        (self.last.posture[self.main] - self.first.posture[self.main]).to_degrees()
+    }
+
+    /// The support that carries most at the end, and its share.
+    fn heaviest(&self) -> Option<(String, f64)> {
+        let contacts = &self.last.standing.as_ref()?.contacts;
+        let name = |i: usize| plain(&self.scenario.model.segments()[self.scenario.supports[i].segment].name);
+        let (i, contact) = contacts.iter().enumerate().max_by(|a, b| a.1.share.total_cmp(&b.1.share))?;
+        Some((name(i), contact.share))
+    }
+
+    fn reasons(&self, standing: bool) -> Vec<String> {
+        let Self { scenario, first, last, main } = *self;
+        let name = plain(&scenario.model.coordinates()[main].name);
+        let mut reasons = vec![];
+        let critical = scenario.hysteresis.critical_level;
+        if let Some((group, fatigue)) = tired(&scenario.model, main, first).filter(|(_, fatigue)| *fatigue >= critical)
+        {
+            reasons.push(format!(
+                "Why: the muscles of {group} were tired from the start ({}) and asked for rest.",
+                percent(fatigue)
+            ));
+        }
+        if standing && self.moved().abs() >= STAYED {
+            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.posture[main]));
+            let [before, after] = [first, last].map(|frame| frame.active(main).abs());
+            reasons.push(format!(
+                "{} moved from {from} to {to}; its muscles hold {after:.1} N m, at the start {before:.1}.",
+                sentence(&name)
+            ));
+        }
+        if let Some(share) = last.carried(main) {
+            let whole = last.external[main].abs();
+            let before =
+                first.carried(main).map(|before| format!(", at the start {}", percent(before))).unwrap_or_default();
+            let part = match share {
+                0.0..0.005 => "none".to_owned(),
+                0.005..0.5 => format!("only {}", percent(share)),
+                _ => percent(share),
+            };
+            reasons.push(format!("Ligaments carry {part} of the {whole:.1} N m that pull on {name}{before}."));
+        }
+        reasons
+    }
+
+    fn end(&self, film: &Film, summary: &Summary) -> String {
+        let how = match summary.reason {
+            StopReason::Settled => "nothing moved any more",
+            StopReason::Duration => "its whole duration",
+            StopReason::Interrupted => "it was interrupted",
+            StopReason::Fell => "nothing held the body any more",
+        };
+        let why = summary.fall.map_or(String::new(), |fall| format!(" {}.", sentence(&fall.to_string())));
+        let told = film.events.len() as u64;
+        let more = match film.happened - told {
+            0 => String::new(),
+            more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", film.happened),
+        };
+        format!("The run ended after {:.0} s: {how}.{why}{more}", summary.end_time)
+    }
+
+    fn figures(&self, standing: Option<(f64, f64)>) -> Vec<Figure> {
+        let Self { scenario, first, last, main } = *self;
+        let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
+        let mut figures = vec![];
+        if let Some((before, after)) = standing {
+            let side = |list: f64| if list > 0.0 { "right" } else { "left" };
+            let down = if after.abs() < 0.05 { "level".to_owned() } else { format!("down to the {}", side(after)) };
+            let note = format!("{down}; {:.1}° at the start", before.abs());
+            figures.push(figure("Pelvis hangs", format!("{:.1}°", after.abs()), note));
+        }
+        let shares =
+            |frame: &Frame| frame.standing.as_ref().map(|s| s.contacts.iter().map(|c| c.share).collect::<Vec<_>>());
+        for (i, (before, after)) in
+            shares(first).into_iter().flatten().zip(shares(last).into_iter().flatten()).enumerate().take(4)
+        {
+            let name = plain(&scenario.model.segments()[scenario.supports[i].segment].name);
+            figures.push(figure(
+                &format!("Weight on {name}"),
+                percent(after),
+                format!("{} at the start", percent(before)),
+            ));
+        }
+        if scenario.supports.is_empty() {
+            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.posture[main]));
+            figures.push(figure(
+                &sentence(&plain(&scenario.model.coordinates()[main].name)),
+                to,
+                format!("{from} at the start"),
+            ));
+            let [before, after] = [first, last].map(|frame| frame.active(main).abs());
+            figures.push(figure(
+                "Its muscles hold",
+                format!("{after:.1} N m"),
+                format!("{before:.1} N m at the start"),
+            ));
+        }
+        if let Some(share) = last.carried(main) {
+            figures.push(figure(
+                "Ligaments carry",
+                percent(share),
+                format!("of what pulls on {}", plain(&scenario.model.coordinates()[main].name)),
+            ));
+        }
+        let [before, after] = [first, last].map(Frame::effort);
+        let change =
+            if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { format!("{after:.3}") };
+        let change =
+            if change == "-0 %" || change == "+0 %" { "unchanged".to_owned() } else { change.replace('-', "\u{2212}") };
+        figures.push(figure(
+            "Effort of all muscles",
+            change,
+            format!("sum of squared loads, {before:.3} to {after:.3}"),
+        ));
+        if let Some((name, load)) = hardest(&scenario.model, last) {
+            figures.push(figure("Hardest worked", percent(load), name));
+        }
+        figures
+    }
+}

@@ -1,0 +1,42 @@
+//! The page of a run over time.
+
+use contrapposto::simulation::{Scenario, Summary};
+use contrapposto_report::{Entry, List, Moments};
+
+use super::narrative;
+use crate::fail::Fail;
+use crate::view::decision::decision;
+use crate::view::film::{Event, Film};
+use crate::view::recording::Recording;
+use crate::view::scene::Scene;
+use crate::view::selection::{main_coordinate, shown};
+
+/// The page of a run.
+pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary: &Summary) -> Result<String, Fail> {
+    let film = Film::new(scenario, recording, summary);
+    let shown = shown(&scenario.model);
+    let start = film.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
+    let scene = Scene {
+        held: (!scenario.is_whole()).then_some(scenario.loads.as_slice()),
+        ..Scene::of(&scenario.title, &scenario.model, start, &film.frames, &scenario.supports)
+    };
+    let times = film.frames.iter().map(|frame| frame.time).collect();
+    let mut report = scene.report(Moments::Times(times), main_coordinate(scenario, summary))?;
+    report.levels = Some([scenario.hysteresis.critical_level, scenario.hysteresis.recovery_level]);
+    report.list = List {
+        heading: "What was decided".to_owned(),
+        entries: entries(scenario, &film, &shown),
+        none: "Nothing: no muscle group asked for relief.".to_owned(),
+    };
+    narrative::tell(scenario, &film, summary, &shown, &mut report);
+    Ok(contrapposto_report::write(&report))
+}
+
+fn entries(scenario: &Scenario, film: &Film, shown: &[usize]) -> Vec<Entry> {
+    let entry = |event: &Event| {
+        let joint = shown.iter().position(|&i| i == event.coordinate)?;
+        let frame = film.frames.iter().position(|frame| frame.time >= event.time)?;
+        Some(Entry { frame, joint, text: decision(&scenario.model, event, &film.frames[frame]) })
+    };
+    film.events.iter().filter_map(entry).collect()
+}

@@ -1,0 +1,166 @@
+//! The numbers that all pages share: the body, its joints and its supports in every moment.
+
+use contrapposto::contact::Support;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{CoordinateKind, Model, Side};
+use contrapposto::posture::Posture;
+use contrapposto::statics::Load;
+use contrapposto_report::{Balance, Group, Joint, Moments, Report, Segment};
+use nalgebra::Vector3;
+
+use super::axes::{Turn, turn, visible};
+use super::charts::Sweep;
+use super::frame::Frame;
+use super::selection::shown;
+use super::{solid, surfaces, words};
+use crate::fail::Fail;
+
+/// Angles at which the torques of a joint are drawn.
+pub(crate) const ANGLES: usize = 121;
+
+/// A body in some moments, and what it rests on.
+pub(crate) struct Scene<'a> {
+    pub(crate) title: &'a str,
+    pub(crate) model: &'a Model,
+    /// Its posture before anything happened.
+    pub(crate) start: &'a [f64],
+    pub(crate) frames: &'a [Frame],
+    /// What carries it, in a place of its own.
+    pub(crate) supports: &'a [Support],
+    /// Segments of the contacts of every frame.
+    pub(crate) carried: Vec<usize>,
+    /// What pulls on it while one joint alone is moved; `None` where that makes no sense, as under a body that stands.
+    pub(crate) held: Option<&'a [Load]>,
+}
+
+impl<'a> Scene<'a> {
+    /// A body in some moments on its supports, which alone touch it; no joint is moved alone.
+    pub(crate) fn of(
+        title: &'a str,
+        model: &'a Model,
+        start: &'a [f64],
+        frames: &'a [Frame],
+        supports: &'a [Support],
+    ) -> Self {
+        let carried = supports.iter().map(|support| support.segment).collect();
+        Self { title, model, start, frames, supports, carried, held: None }
+    }
+
+    /// The page without its words. `main`: the coordinate to show first.
+    pub(crate) fn report(&self, moments: Moments, main: usize) -> Result<Report, Fail> {
+        let model = self.model;
+        let (shown, turn) = (shown(model), turn(model));
+        let surroundings = surfaces::surroundings(model, self.supports, self.start, self.frames, &turn)?;
+        let standing = self.frames.iter().filter_map(|frame| frame.standing.as_ref());
+        let centers: Vec<[f64; 3]> = standing.map(|standing| turn.point(standing.center_of_mass)).collect();
+        // Postures that differ bend the curves of coupled laws each in its own way.
+        let last = self.frames.last().into_iter().collect();
+        let bent: Vec<&Frame> = if matches!(moments, Moments::Times(_)) { last } else { self.frames.iter().collect() };
+        Ok(Report {
+            title: self.title.to_owned(),
+            body: model.name().to_owned(),
+            moments,
+            segments: self.segments(&shown, &turn)?,
+            joints: shown.iter().map(|&i| self.joint(i, &bent)).collect::<Result<_, _>>()?,
+            main: shown.iter().position(|&i| i == main).unwrap_or(0),
+            supports: self.supports(&turn),
+            ground: surroundings.ground,
+            surfaces: surroundings.surfaces,
+            center_of_mass: if centers.len() == self.frames.len() { centers } else { vec![] },
+            ..Report::default()
+        })
+    }
+
+    fn segments(&self, shown: &[usize], turn: &Turn) -> Result<Vec<Segment>, Fail> {
+        let model = self.model;
+        let mut kinematics = Kinematics::new(model);
+        let mut parts: Vec<(usize, Segment)> = vec![];
+        for (s, segment) in model.segments().iter().enumerate() {
+            let coordinates = solid::joined_by(model, s);
+            let joints = shown.iter().enumerate().filter(|(_, i)| coordinates.contains(i)).map(|(place, _)| place);
+            let joints: Vec<usize> = joints.collect();
+            for balls in solid::parts(model, s) {
+                let name = segment.name.clone();
+                parts.push((s, Segment { name, balls, joints: joints.clone(), ..Segment::default() }));
+            }
+        }
+        let mut see = |posture: &[f64], parts: &mut [(usize, Segment)], put: fn(&mut Segment, [f64; 7])| {
+            let posture = Posture::new(posture.to_vec());
+            kinematics.update(model, &posture).map_err(|error| Fail::job("report", error))?;
+            parts.iter_mut().for_each(|(s, part)| put(part, turn.place(&kinematics.placement(model, *s))));
+            Ok::<(), Fail>(())
+        };
+        for frame in self.frames {
+            see(&frame.posture, &mut parts, |part, place| part.places.push(place))?;
+        }
+        see(self.start, &mut parts, |part, place| part.start = place)?;
+        Ok(parts.into_iter().map(|(_, part)| part).collect())
+    }
+
+    fn supports(&self, turn: &Turn) -> Vec<contrapposto_report::Support> {
+        let support = |(i, &segment): (usize, &usize)| {
+            let label = words::plain(&self.model.segments()[segment].name);
+            let mut shown = contrapposto_report::Support { label, ..Default::default() };
+            let mut at = Vector3::zeros();
+            for contact in self.frames.iter().filter_map(|frame| frame.standing.as_ref()?.contacts.get(i)) {
+                at = contact.center_of_pressure.unwrap_or(at);
+                shown.force.push(turn.point(contact.force));
+                shown.at.push(turn.point(at));
+                shown.share.push(contact.share);
+            }
+            shown
+        };
+        self.carried.iter().enumerate().map(support).collect()
+    }
+
+    fn joint(&self, i: usize, bent: &[&Frame]) -> Result<Joint, Fail> {
+        let coordinate = &self.model.coordinates()[i];
+        let over = |value: &dyn Fn(&Frame) -> f64| self.frames.iter().map(value).collect::<Vec<f64>>();
+        let tires = self.frames.iter().all(|frame| frame.fatigue.is_some());
+        let group = |side: Side| {
+            let group = &coordinate.groups.as_ref()?[side.index()];
+            let fatigue = |frame: &Frame| frame.fatigue.as_ref().map_or(0.0, |fatigue| fatigue[i][side.index()]);
+            let left = |frame: &Frame| {
+                let load = if Side::of(frame.active(i)) == side { frame.load[i] } else { 0.0 };
+                group.fatigue.time_left(fatigue(frame), load)
+            };
+            let label = words::group(&group.name, &coordinate.name);
+            Some(Group { label, fatigue: if tires { over(&fatigue) } else { vec![] }, left: over(&left) })
+        };
+        Ok(Joint {
+            name: coordinate.name.clone(),
+            label: words::plain(&coordinate.name),
+            positive: coordinate.positive.clone(),
+            slides: coordinate.kind == CoordinateKind::Translation,
+            groups: group(Side::Positive).zip(group(Side::Negative)).map(|(a, b)| [a, b]),
+            angle: over(&|frame| visible(coordinate, frame.posture[i])),
+            external: over(&|frame| frame.external[i]),
+            passive: over(&|frame| frame.passive[i]),
+            load: over(&|frame| frame.load[i]),
+            balance: bent.iter().filter_map(|frame| self.balance(i, frame).transpose()).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Torques over the range, in the posture of a frame; none of a joint without passive tissue.
+    fn balance(&self, i: usize, frame: &Frame) -> Result<Option<Balance>, Fail> {
+        let coordinate = &self.model.coordinates()[i];
+        let Some(law) = &coordinate.passive else { return Ok(None) };
+        let (min, max) = coordinate.range;
+        let mut balance = Balance::default();
+        let mut values = frame.posture.clone();
+        let mut sweep = self.held.map(|loads| Sweep::new(self.model, loads, i, &frame.posture));
+        for k in 0..ANGLES {
+            let angle = min + (max - min) * k as f64 / (ANGLES - 1) as f64;
+            balance.angle.push(visible(coordinate, angle));
+            if let Some(sweep) = &mut sweep {
+                let (external, passive) = sweep.torques(angle)?;
+                balance.minus_passive.push(-passive);
+                balance.external.push(external);
+            } else {
+                values[i] = angle;
+                balance.minus_passive.push(-law.torque(i, &values));
+            }
+        }
+        Ok(Some(balance))
+    }
+}

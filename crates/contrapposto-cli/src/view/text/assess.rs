@@ -1,0 +1,211 @@
+//! What `assess.json` says, and the table for readers.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use contrapposto::assessment::{Assessment, GroupAssessment, Peak, PeakKind, Proposal};
+use contrapposto::hybrid::Strategy;
+use contrapposto::model::{CoordinateKind, Model};
+use serde::Serialize;
+
+use super::plain_table;
+
+/// So many groups stand in the table.
+const SHOWN: usize = 10;
+/// For so many of them relief is told.
+const RELIEVED: usize = 3;
+
+/// The whole file.
+#[derive(Serialize)]
+pub(crate) struct AssessText {
+    model: String,
+    motion: String,
+    frames: usize,
+    start_s: f64,
+    end_s: f64,
+    /// Every group of known strength, the worst first.
+    groups: Vec<GroupText>,
+    /// What the root lacks at most: neither loads nor supports give it.
+    residual_force_n: PeakText,
+    residual_moment_nm: PeakText,
+    /// Frames in which the supports cannot hold the body.
+    unheld_frames: usize,
+    acceleration_m_s2: PeakText,
+    /// Share of the frames in which the centre of mass accelerates by more than 1 m/s2.
+    fast_share: f64,
+    warnings: Vec<String>,
+    files: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct PeakText {
+    value: f64,
+    at_s: f64,
+}
+
+#[derive(Serialize)]
+struct GroupText {
+    group: String,
+    coordinate: String,
+    /// `positive` or `negative`: the sign of its torque.
+    side: &'static str,
+    /// Active torque over strength.
+    peak_load: PeakText,
+    peak_fatigue: PeakText,
+    fatigue_at_end: f64,
+    /// `null`: it holds.
+    exhausted_at_s: Option<f64>,
+    proposals: Vec<ProposalText>,
+}
+
+#[derive(Serialize)]
+struct ProposalText {
+    /// `load` or `fatigue`: at which peak.
+    at: &'static str,
+    time_s: f64,
+    strategy: &'static str,
+    case: &'static str,
+    outcome: &'static str,
+    angle_deg: f64,
+    goal_deg: Option<f64>,
+    active_nm: f64,
+    active_at_goal_nm: Option<f64>,
+    sentence: String,
+}
+
+impl From<Peak> for PeakText {
+    fn from(peak: Peak) -> Self {
+        Self { value: peak.value, at_s: peak.time }
+    }
+}
+
+impl AssessText {
+    pub(crate) fn new(
+        model: &Model,
+        motion: &Path,
+        times: &[f64],
+        found: &Assessment,
+        warnings: Vec<String>,
+        files: Vec<String>,
+    ) -> Self {
+        Self {
+            model: model.name().to_owned(),
+            motion: motion.display().to_string(),
+            frames: times.len(),
+            start_s: times.first().copied().unwrap_or_default(),
+            end_s: times.last().copied().unwrap_or_default(),
+            groups: found.groups.iter().map(|group| GroupText::new(model, group)).collect(),
+            residual_force_n: found.residual_force.into(),
+            residual_moment_nm: found.residual_moment.into(),
+            unheld_frames: found.unheld,
+            acceleration_m_s2: found.acceleration.into(),
+            fast_share: found.fast_share,
+            warnings,
+            files,
+        }
+    }
+}
+
+impl GroupText {
+    fn new(model: &Model, found: &GroupAssessment) -> Self {
+        let coordinate = &model.coordinates()[found.coordinate];
+        let group = coordinate.groups.as_ref().map(|groups| groups[found.side.index()].name.clone());
+        Self {
+            group: group.unwrap_or_default(),
+            coordinate: coordinate.name.clone(),
+            side: found.side.word(),
+            peak_load: found.peak_load.into(),
+            peak_fatigue: found.peak_fatigue.into(),
+            fatigue_at_end: found.fatigue,
+            exhausted_at_s: found.exhausted_at,
+            // Relief of a slide is no angle.
+            proposals: match coordinate.kind {
+                CoordinateKind::Rotation => found.proposals.iter().map(ProposalText::new).collect(),
+                _ => vec![],
+            },
+        }
+    }
+
+    fn name(&self) -> String {
+        format!("{} ({})", self.group, self.coordinate)
+    }
+}
+
+impl ProposalText {
+    fn new(proposal: &Proposal) -> Self {
+        let decision = &proposal.decision;
+        Self {
+            at: match proposal.at {
+                PeakKind::Load => "load",
+                PeakKind::Fatigue => "fatigue",
+            },
+            time_s: proposal.time,
+            strategy: match proposal.strategy {
+                Strategy::Active => "active",
+                Strategy::Passive => "passive",
+            },
+            case: decision.case.number(),
+            outcome: decision.outcome.word(),
+            angle_deg: proposal.angle.to_degrees(),
+            goal_deg: decision.goal.map(f64::to_degrees),
+            active_nm: decision.active_torque,
+            active_at_goal_nm: decision.active_torque_at_goal,
+            sentence: proposal.sentence.clone(),
+        }
+    }
+}
+
+/// The worst groups, what would relieve them, and who fails first.
+pub(crate) fn report(text: &AssessText) -> String {
+    let working: Vec<&GroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
+    let mut table = plain_table();
+    table.set_header(["muscle group", "peak load", "at", "fatigue at the end", "fails"]);
+    for group in working.iter().take(SHOWN) {
+        table.add_row([
+            group.name(),
+            format!("{:.0} %", 100.0 * group.peak_load.value),
+            format!("{:.2} s", group.peak_load.at_s),
+            format!("{:.2}", group.fatigue_at_end),
+            group.exhausted_at_s.map_or_else(|| "holds".to_owned(), |time| format!("at {time:.1} s")),
+        ]);
+    }
+    let mut out = format!("{table}\n");
+    if working.len() > SHOWN {
+        let _ = writeln!(out, "and {} less loaded ones, which --json shows", working.len() - SHOWN);
+    }
+    out.push_str("\nrelief, if that joint alone moved:\n");
+    for group in working.iter().take(RELIEVED) {
+        if group.proposals.is_empty() {
+            let _ = writeln!(out, "{}: no falling passive curve of this joint is known", group.name());
+        }
+        let mut told: Vec<String> = vec![];
+        for peak in group.proposals.chunk_by(|a, b| a.at == b.at) {
+            let sentences = sentences(peak);
+            if sentences != told {
+                let ProposalText { at, time_s, angle_deg, .. } = peak[0];
+                let _ = writeln!(out, "{}, greatest {at} at {time_s:.2} s, {angle_deg:.1} deg:", group.name());
+                for sentence in &sentences {
+                    let _ = writeln!(out, "  {sentence}");
+                }
+                told = sentences;
+            }
+        }
+    }
+    let first = working.first().and_then(|group| Some((group, group.exhausted_at_s?)));
+    let _ = match first {
+        Some((group, time)) => writeln!(out, "\nfails first: {} at {time:.1} s", group.name()),
+        None => writeln!(out, "\nno group fails from {} s to {} s", text.start_s, text.end_s),
+    };
+    out
+}
+
+/// What the strategies say at a peak; once, where they agree.
+fn sentences(peak: &[ProposalText]) -> Vec<String> {
+    let agree = peak.iter().all(|proposal| proposal.goal_deg == peak[0].goal_deg);
+    let all = peak.iter().map(|proposal| proposal.sentence.clone());
+    if agree {
+        all.take(1).map(|text| text.replace("active strategy", "either strategy")).collect()
+    } else {
+        all.collect()
+    }
+}

@@ -1,0 +1,275 @@
+//! What `compare.json` says, and the table for readers. Bodies are compared by names: of coordinates, and of their muscle groups.
+
+use std::collections::BTreeMap;
+
+use contrapposto::contact::Support;
+use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
+use serde::Serialize;
+
+use super::plain_table;
+use crate::view::axes::pelvis_list;
+use crate::view::frame::Frame;
+use crate::view::words::{group as group_in_words, plain};
+
+/// So many muscle groups and angles stand in the table.
+const SHOWN: usize = 10;
+/// Smaller differences, of strength and in degrees, are not worth a line.
+const SAME: f64 = 5e-4;
+const SAME_ANGLE: f64 = 0.05;
+
+/// A scenario carried out.
+pub(crate) struct Stance {
+    /// `A`, `B` and so on.
+    pub(crate) letter: char,
+    pub(crate) file: String,
+    pub(crate) title: String,
+    /// How it came about: `simulated, 120 s`, `posed`.
+    pub(crate) how: String,
+    pub(crate) model: Model,
+    pub(crate) supports: Vec<Support>,
+    /// Value of every coordinate.
+    pub(crate) posture: Vec<f64>,
+    /// Torques and loads; `None` where the supports cannot hold the posture.
+    pub(crate) frame: Option<Frame>,
+}
+
+/// The whole file.
+#[derive(Serialize)]
+pub(crate) struct CompareText {
+    postures: Vec<PostureText>,
+    /// Muscle groups that all bodies have, those that differ most first.
+    groups: Vec<GroupText>,
+    /// Coordinates that all bodies have, those that differ most first.
+    coordinates: Vec<CoordinateText>,
+    /// Coordinates that some body does not have.
+    not_in_all: Vec<String>,
+    files: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct PostureText {
+    file: String,
+    title: String,
+    model: String,
+    /// `simulated, 120 s`, or `posed`.
+    how: String,
+    /// Sum of (active torque / strength)^2; `null` where the supports cannot hold it.
+    effort: Option<f64>,
+    supports: Vec<ShareText>,
+    /// How far the pelvis hangs down to its right.
+    pelvis_list_deg: Option<f64>,
+    /// rad, m, components of quaternions.
+    coordinates: BTreeMap<String, f64>,
+}
+
+#[derive(Serialize)]
+struct ShareText {
+    segment: String,
+    /// Of the weight of the body.
+    share: Option<f64>,
+}
+
+/// A muscle group; numbers by posture.
+#[derive(Serialize)]
+struct GroupText {
+    group: String,
+    coordinate: String,
+    /// `positive` or `negative`: the sign of its torque.
+    side: &'static str,
+    /// Active torque over strength.
+    relative_load: Vec<Option<f64>>,
+    /// What ligaments carry in its stead, over its strength.
+    on_ligaments: Vec<Option<f64>>,
+    difference: f64,
+}
+
+/// A coordinate; its values by posture.
+#[derive(Serialize)]
+struct CoordinateText {
+    coordinate: String,
+    unit: &'static str,
+    value: Vec<f64>,
+    difference: f64,
+}
+
+impl CompareText {
+    pub(crate) fn new(stances: &[Stance], files: Vec<String>) -> Self {
+        let mut text = Self {
+            postures: stances.iter().map(PostureText::new).collect(),
+            groups: vec![],
+            coordinates: vec![],
+            not_in_all: vec![],
+            files,
+        };
+        for (s, stance) in stances.iter().enumerate() {
+            for coordinate in stance.model.coordinates() {
+                let same = |other: &Stance| {
+                    let i = other.model.coordinate(&coordinate.name)?;
+                    (other.model.coordinates()[i].kind == coordinate.kind).then_some(i)
+                };
+                let places: Option<Vec<usize>> = stances.iter().map(same).collect();
+                match places {
+                    Some(places) if s == 0 => text.take(stances, coordinate, &places),
+                    None if !text.not_in_all.contains(&coordinate.name) => {
+                        text.not_in_all.push(coordinate.name.clone());
+                    }
+                    _ => {}
+                }
+            }
+        }
+        // Of equals the first in the body.
+        text.groups.sort_by(|a, b| b.difference.total_cmp(&a.difference));
+        let weight = |c: &CoordinateText| if c.unit == "rad" { c.difference.to_degrees() } else { 1e3 * c.difference };
+        text.coordinates.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+        text
+    }
+
+    /// A coordinate that all have, `places` of it.
+    fn take(&mut self, stances: &[Stance], coordinate: &Coordinate, places: &[usize]) {
+        let value: Vec<f64> = stances.iter().zip(places).map(|(stance, &i)| stance.posture[i]).collect();
+        let unit = match coordinate.kind {
+            CoordinateKind::Rotation => "rad",
+            CoordinateKind::Translation => "m",
+            CoordinateKind::Quaternion => "1",
+        };
+        let difference = spread(value.iter().copied());
+        self.coordinates.push(CoordinateText { coordinate: coordinate.name.clone(), unit, value, difference });
+        let groups = stances.iter().zip(places).map(|(stance, &i)| stance.model.coordinates()[i].groups.as_ref());
+        let Some(groups) = groups.collect::<Option<Vec<_>>>() else { return };
+        for side in Side::BOTH {
+            let numbers = stances.iter().zip(places).map(|(stance, &i)| work(stance, i, side));
+            let (relative_load, on_ligaments): (Vec<_>, Vec<_>) = numbers.map(Option::unzip).unzip();
+            let difference = [&relative_load, &on_ligaments].map(|list| spread(list.iter().flatten().copied()));
+            self.groups.push(GroupText {
+                group: groups[0][side.index()].name.clone(),
+                coordinate: coordinate.name.clone(),
+                side: side.word(),
+                relative_load,
+                on_ligaments,
+                difference: difference[0].max(difference[1]),
+            });
+        }
+    }
+}
+
+/// Load of a group, and what ligaments carry in its stead, as shares of its strength.
+fn work(stance: &Stance, i: usize, side: Side) -> Option<(f64, f64)> {
+    let frame = stance.frame.as_ref()?;
+    let group = &stance.model.coordinates()[i].groups.as_ref()?[side.index()];
+    let load = if Side::of(frame.active(i)) == side { frame.load[i] } else { 0.0 };
+    let (external, passive) = (frame.external[i], frame.passive[i]);
+    let carried = (-passive * external.signum()).clamp(0.0, external.abs());
+    let strength = group.strength.torque(frame.posture[i]);
+    let spared = Side::of(-external) == side && strength > 0.0;
+    Some((load, if spared { carried / strength } else { 0.0 }))
+}
+
+/// Largest minus smallest; of nothing, 0.
+fn spread(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    (high - low).max(0.0)
+}
+
+impl PostureText {
+    fn new(stance: &Stance) -> Self {
+        let contacts =
+            stance.frame.as_ref().and_then(|frame| frame.standing.as_ref()).map(|standing| &standing.contacts);
+        let share = |(i, support): (usize, &Support)| ShareText {
+            segment: stance.model.segments()[support.segment].name.clone(),
+            share: contacts.and_then(|contacts| contacts.get(i)).map(|contact| contact.share),
+        };
+        let names = stance.model.coordinates().iter().map(|coordinate| coordinate.name.clone());
+        Self {
+            file: stance.file.clone(),
+            title: stance.title.clone(),
+            model: stance.model.name().to_owned(),
+            how: stance.how.clone(),
+            effort: stance.frame.as_ref().map(Frame::effort),
+            supports: stance.supports.iter().enumerate().map(share).collect(),
+            pelvis_list_deg: pelvis_list(&stance.model, &stance.posture),
+            coordinates: names.zip(stance.posture.iter().copied()).collect(),
+        }
+    }
+}
+
+/// The table for readers.
+pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
+    let mut out = String::new();
+    for (stance, posture) in stances.iter().zip(&text.postures) {
+        out += &format!("{}: {} ({}, {})\n", stance.letter, stance.title, posture.file, stance.how);
+    }
+    out += &format!("\n{}\n", whole(stances, text));
+    let letters = |what: &str| stances.iter().map(|s| format!("{what} {}", s.letter)).collect::<Vec<_>>();
+    let groups: Vec<&GroupText> = text.groups.iter().filter(|g| g.difference >= SAME).take(SHOWN).collect();
+    if !groups.is_empty() {
+        let mut table = plain_table();
+        table.set_header([vec!["muscle group".to_owned()], letters("load"), letters("ligaments")].concat());
+        for group in groups {
+            let name = group_in_words(&group.group, &group.coordinate);
+            let numbers = group.relative_load.iter().chain(&group.on_ligaments).map(|value| percent(*value));
+            table.add_row(std::iter::once(name).chain(numbers));
+        }
+        out += &format!(
+            "\nMuscles that differ most: what they do, and what ligaments carry in their stead, of their strength\n{table}\n"
+        );
+    }
+    let angles = |c: &&CoordinateText| c.unit == "rad" && c.difference.to_degrees() >= SAME_ANGLE;
+    let angles: Vec<&CoordinateText> = text.coordinates.iter().filter(angles).take(SHOWN).collect();
+    if !angles.is_empty() {
+        let mut table = plain_table();
+        table.set_header([vec!["angle, deg".to_owned()], letters("in"), vec!["difference".to_owned()]].concat());
+        for coordinate in angles {
+            let values =
+                coordinate.value.iter().chain([&coordinate.difference]).map(|value| number(value.to_degrees()));
+            table.add_row(std::iter::once(plain(&coordinate.coordinate)).chain(values));
+        }
+        out += &format!("\nAngles that differ most\n{table}\n");
+    }
+    if let Some((first, rest)) = text.not_in_all.split_first() {
+        let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+        out += &format!("\nnot compared, for not all bodies have it: {first}{more}\n");
+    }
+    out + "\n"
+}
+
+/// Effort, shares and pelvis.
+fn whole(stances: &[Stance], text: &CompareText) -> comfy_table::Table {
+    let mut table = plain_table();
+    table.set_header(std::iter::once(String::new()).chain(stances.iter().map(|stance| stance.letter.to_string())));
+    let mut row = |label: String, cell: &dyn Fn(&PostureText) -> String| {
+        table.add_row(std::iter::once(label).chain(text.postures.iter().map(cell)));
+    };
+    let known = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+    row("effort of all muscles".to_owned(), &|posture| known(posture.effort.map(|effort| format!("{effort:.4}"))));
+    let mut named: Vec<&str> = vec![];
+    for share in text.postures.iter().flat_map(|posture| &posture.supports) {
+        if !named.contains(&share.segment.as_str()) {
+            named.push(&share.segment);
+        }
+    }
+    for segment in named {
+        row(format!("weight on {}", plain(segment)), &|posture| {
+            let share = posture.supports.iter().find(|share| share.segment == segment);
+            percent(share.and_then(|share| share.share))
+        });
+    }
+    if text.postures.iter().any(|posture| posture.pelvis_list_deg.is_some()) {
+        row("pelvis hangs".to_owned(), &|posture| {
+            known(posture.pelvis_list_deg.map(|list| match number(list.abs()).as_str() {
+                "0.0" => "level".to_owned(),
+                angle => format!("{angle} deg {}", if list > 0.0 { "right" } else { "left" }),
+            }))
+        });
+    }
+    table
+}
+
+/// One decimal, and no minus before nothing.
+fn number(value: f64) -> String {
+    let text = format!("{value:.1}");
+    if text == "-0.0" { "0.0".to_owned() } else { text }
+}
+
+fn percent(share: Option<f64>) -> String {
+    share.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share))
+}

@@ -1,0 +1,339 @@
+//! Everything that is known of a model, as `inspect --json` prints it and as tables for readers.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::math::Function;
+use contrapposto::model::{Coordinate, CoordinateKind, JointKind, Model};
+use contrapposto::passive::{PassiveLaw, Term};
+use serde::Serialize;
+
+use super::plain_table;
+use super::sources::{Known, Seen, Source};
+use crate::model_file::{Opened, Tissue};
+
+#[derive(Serialize)]
+pub(crate) struct Report<'a> {
+    file: &'a str,
+    format: &'static str,
+    name: &'a str,
+    mass_kg: f64,
+    gravity_m_s2: [f64; 3],
+    /// In the default posture.
+    center_of_mass_m: Option<[f64; 3]>,
+    segments: Vec<SegmentText<'a>>,
+    coordinate_order: Vec<&'a str>,
+    coordinates: BTreeMap<&'a str, CoordinateText<'a>>,
+    /// What was ignored, changed or filled in, one sentence each.
+    notes: &'a [String],
+}
+
+#[derive(Serialize)]
+struct SegmentText<'a> {
+    name: &'a str,
+    /// `null`: ground.
+    parent: Option<&'a str>,
+    mass_kg: f64,
+    center_of_mass_m: [f64; 3],
+    inertia_kg_m2: [[f64; 3]; 3],
+    joint: JointText<'a>,
+}
+
+#[derive(Serialize)]
+struct JointText<'a> {
+    name: &'a str,
+    kind: &'static str,
+    coordinates: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct CoordinateText<'a> {
+    /// `rotation`, `translation` or `quaternion`.
+    kind: &'static str,
+    /// Unit of range and default.
+    unit: &'static str,
+    positive: &'a str,
+    /// `null`: no limit.
+    range: [Option<f64>; 2],
+    range_source: Option<Source>,
+    default: f64,
+    locked: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    follows: Option<FollowsText<'a>>,
+    passive: Option<PassiveText>,
+    strength: Option<StrengthText<'a>>,
+    fatigue: Option<FatigueText>,
+}
+
+#[derive(Serialize)]
+struct FollowsText<'a> {
+    coordinate: &'a str,
+    function: &'static str,
+}
+
+#[derive(Serialize)]
+struct PassiveText {
+    law: String,
+    curve: Option<&'static str>,
+    torque_at_limits_nm: Option<[f64; 2]>,
+    source: Option<Source>,
+}
+
+#[derive(Serialize)]
+struct StrengthText<'a> {
+    positive: GroupText<'a>,
+    negative: GroupText<'a>,
+}
+
+#[derive(Serialize)]
+struct GroupText<'a> {
+    name: &'a str,
+    peak_nm: f64,
+    at_rad: f64,
+    source: Option<Source>,
+}
+
+#[derive(Serialize)]
+struct FatigueText {
+    class: Option<&'static str>,
+    source: Option<Source>,
+}
+
+pub(crate) fn report<'a>(opened: &'a Opened, file: &'a str) -> Report<'a> {
+    let model = &opened.model;
+    let coordinates = model.coordinates();
+    Report {
+        file,
+        format: opened.format.word(),
+        name: model.name(),
+        mass_kg: model.mass(),
+        gravity_m_s2: model.gravity().into(),
+        center_of_mass_m: Kinematics::new(model).center_of_mass(model).map(Into::into),
+        segments: model
+            .segments()
+            .iter()
+            .map(|segment| SegmentText {
+                name: &segment.name,
+                parent: segment.parent.map(|parent| model.segments()[parent].name.as_str()),
+                mass_kg: segment.mass,
+                center_of_mass_m: segment.center_of_mass.into(),
+                inertia_kg_m2: [0, 1, 2].map(|i| [0, 1, 2].map(|j| segment.inertia[(i, j)])),
+                joint: JointText {
+                    name: &segment.joint,
+                    kind: joint_word(&segment.joint_kind),
+                    coordinates: coordinates[segment.coordinates.clone()].iter().map(|c| c.name.as_str()).collect(),
+                },
+            })
+            .collect(),
+        coordinate_order: coordinates.iter().map(|c| c.name.as_str()).collect(),
+        coordinates: coordinates
+            .iter()
+            .enumerate()
+            .map(|(index, coordinate)| (coordinate.name.as_str(), text(opened, model, index, coordinate)))
+            .collect(),
+        notes: &opened.notes,
+    }
+}
+
+fn text<'a>(opened: &Opened, model: &'a Model, index: usize, coordinate: &'a Coordinate) -> CoordinateText<'a> {
+    let known = Known::of(opened, index);
+    let (kind, unit) = match coordinate.kind {
+        CoordinateKind::Rotation => ("rotation", "rad"),
+        CoordinateKind::Translation => ("translation", "m"),
+        CoordinateKind::Quaternion => ("quaternion", "1"),
+    };
+    let limit = |limit: f64| Some(limit).filter(|limit| limit.is_finite());
+    let follows = model.couplings().iter().find(|coupling| coupling.dependent == index);
+    let group = |side: usize| {
+        let source = known.strength.get(side).or(known.strength.first()).cloned();
+        coordinate.groups.as_ref().map(|groups| {
+            let group = &groups[side];
+            GroupText { name: &group.name, peak_nm: group.strength.peak, at_rad: group.strength.best, source }
+        })
+    };
+    CoordinateText {
+        kind,
+        unit,
+        positive: &coordinate.positive,
+        range: [limit(coordinate.range.0), limit(coordinate.range.1)],
+        range_source: known.range.clone(),
+        default: coordinate.default,
+        locked: coordinate.locked,
+        follows: follows.map(|coupling| FollowsText {
+            coordinate: &model.coordinates()[coupling.independent].name,
+            function: function_word(&coupling.function),
+        }),
+        passive: coordinate.passive.as_ref().map(|law| PassiveText {
+            law: law_word(law),
+            curve: known.curve,
+            torque_at_limits_nm: at_limits(opened, index),
+            source: known.passive.clone(),
+        }),
+        strength: group(0).zip(group(1)).map(|(positive, negative)| StrengthText { positive, negative }),
+        fatigue: coordinate.groups.as_ref().map(|_| FatigueText { class: known.class, source: known.fatigue.clone() }),
+    }
+}
+
+fn function_word(function: &Function) -> &'static str {
+    match function {
+        Function::Constant(_) => "constant",
+        Function::Linear { .. } => "linear",
+        Function::Polynomial(_) => "polynomial",
+        Function::Sine { .. } => "sine",
+        Function::Spline(_) => "spline",
+        Function::NaturalSpline(_) => "natural spline",
+        _ => "other",
+    }
+}
+
+/// `hinge`, `free`, `driven by functions`.
+fn joint_word(kind: &JointKind) -> &'static str {
+    match kind {
+        JointKind::Weld => "weld",
+        JointKind::Hinge(_) => "hinge",
+        JointKind::Slide(_) => "slide",
+        JointKind::Universal(_) => "universal",
+        JointKind::Gimbal(_) => "gimbal",
+        JointKind::Ball => "ball",
+        JointKind::Free => "free",
+        JointKind::Chain(_) => "chain",
+        JointKind::Driven(_) => "driven",
+    }
+}
+
+/// The law in a word or two.
+fn law_word(law: &PassiveLaw) -> String {
+    let term = |term: &Term| match term {
+        Term::Spring { .. } => "spring",
+        Term::Polynomial { .. } => "polynomial",
+        Term::CoordinateLimitForce(_) => "coordinate limit force",
+        Term::Exponentials(_) => "exponentials",
+        Term::Expression(_) => "formula",
+    };
+    match law {
+        PassiveLaw::Curve(_) => "curve".to_owned(),
+        PassiveLaw::Coupled(_) => "coupled law of hip, knee and ankle".to_owned(),
+        PassiveLaw::Sum(terms) => terms.iter().map(term).collect::<Vec<_>>().join(" + "),
+    }
+}
+
+/// Passive torque at both limits of the range, the rest of the body at its default; `None` where a limit or a law is missing.
+fn at_limits(opened: &Opened, index: usize) -> Option<[f64; 2]> {
+    let (model, coordinate) = (&opened.model, &opened.model.coordinates()[index]);
+    coordinate.passive.as_ref()?;
+    let mut posture = model.default_posture();
+    let mut tissue = Tissue::new(opened);
+    let mut at = |limit: f64| {
+        posture.values_mut()[index] = limit;
+        tissue.place(posture.values());
+        Some(tissue.torque(model, index)).filter(|torque| limit.is_finite() && torque.is_finite())
+    };
+    Some([at(coordinate.range.0)?, at(coordinate.range.1)?])
+}
+
+pub(crate) fn readable(opened: &Opened, file: &str) -> String {
+    let model = &opened.model;
+    let gravity = model.gravity();
+    let mut text = format!(
+        "{file}: {} `{}`\n{} segments, {} coordinates, {:.4} kg, gravity {} {} {} m/s2\n",
+        opened.format.word(),
+        model.name(),
+        model.segments().len(),
+        model.coordinates().len(),
+        model.mass(),
+        gravity.x,
+        gravity.y,
+        gravity.z,
+    );
+    let mut table = plain_table();
+    table.set_header(["segment", "parent", "kg", "joint", "coordinates"]);
+    for segment in model.segments() {
+        let names: Vec<&str> =
+            model.coordinates()[segment.coordinates.clone()].iter().map(|c| c.name.as_str()).collect();
+        table.add_row([
+            segment.name.clone(),
+            segment.parent.map_or("ground".to_owned(), |parent| model.segments()[parent].name.clone()),
+            format!("{:.4}", segment.mass),
+            format!("{} ({})", segment.joint, joint_word(&segment.joint_kind)),
+            names.join(", "),
+        ]);
+    }
+    let _ = write!(text, "\n{table}\n\n");
+    let mut seen = Seen::default();
+    let _ = writeln!(text, "{}", coordinates(opened, &mut seen));
+    text.push_str(&seen.legend());
+    if !opened.notes.is_empty() {
+        text.push_str("\nnotes:\n");
+        opened.notes.iter().for_each(|note| {
+            let _ = writeln!(text, "  {note}");
+        });
+    }
+    text
+}
+
+fn coordinates(opened: &Opened, seen: &mut Seen) -> comfy_table::Table {
+    use contrapposto::model::CoordinateKind::{Quaternion, Rotation, Translation};
+    let model = &opened.model;
+    let mut table = plain_table();
+    table.set_header([
+        "coordinate",
+        "positive",
+        "range",
+        "default",
+        "passive, N m at limits",
+        "strength +/-, N m",
+        "fatigue",
+    ]);
+    for (index, coordinate) in model.coordinates().iter().enumerate() {
+        let known = Known::of(opened, index);
+        let shown = |x: f64| match coordinate.kind {
+            _ if x.is_infinite() => "none".to_owned(),
+            Rotation => format!("{:.1}", x.to_degrees()),
+            _ => format!("{x:.3}"),
+        };
+        let unit = match coordinate.kind {
+            Rotation => " deg",
+            Translation => " m",
+            Quaternion => "",
+        };
+        let (min, max) = coordinate.range;
+        let mut range = format!("{} .. {}{unit}", shown(min), shown(max));
+        if let Some(coupling) = model.couplings().iter().find(|coupling| coupling.dependent == index) {
+            range = format!("follows {}", model.coordinates()[coupling.independent].name);
+        } else if coordinate.locked {
+            range.push_str(", locked");
+        }
+        let passive = match &coordinate.passive {
+            None => String::new(),
+            Some(law) => {
+                let ends = at_limits(opened, index).map(|[low, high]| format!("{low:.1} .. {high:.1} "));
+                format!("{}{}{}", ends.unwrap_or_default(), law_word(law), seen.mark(known.passive.as_ref()))
+            }
+        };
+        let (strength, fatigue) = match &coordinate.groups {
+            None => (String::new(), String::new()),
+            Some([positive, negative]) => (
+                format!(
+                    "{:.0} / {:.0}{}",
+                    positive.strength.peak,
+                    negative.strength.peak,
+                    known.strength.iter().map(|source| seen.mark(Some(source))).collect::<String>()
+                ),
+                format!("{}{}", known.class.unwrap_or("of a class"), seen.mark(known.fatigue.as_ref())),
+            ),
+        };
+        let default = format!("{}{unit}", shown(coordinate.default));
+        let range = format!("{range}{}", seen.mark(known.range.as_ref()));
+        table.add_row([
+            coordinate.name.clone(),
+            coordinate.positive.clone(),
+            range,
+            default,
+            passive,
+            strength,
+            fatigue,
+        ]);
+    }
+    table
+}

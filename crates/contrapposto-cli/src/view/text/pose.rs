@@ -1,0 +1,61 @@
+//! The terminal table of a solved pose.
+
+use contrapposto::posture_solver::inverse_kinematics::{Pose, Reason};
+use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
+
+use super::plain_table;
+use crate::output::Folder;
+
+/// `left: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
+pub(crate) fn subtitle(text: &PoseText) -> String {
+    let missing: Vec<String> = tasks(text)
+        .filter(|entries| !reached(entries))
+        .map(|entries| format!("{} {}", entries[0].task, all_left(entries)))
+        .collect();
+    if missing.is_empty() { "everything is reached".to_owned() } else { format!("left: {}", missing.join("; ")) }
+}
+
+/// The entries of each task: one, or one for each of its units.
+pub(crate) fn tasks(text: &PoseText) -> impl Iterator<Item = &[PoseLevelText]> {
+    text.levels.chunk_by(|a, b| a.priority == b.priority && a.task == b.task && a.unit != b.unit)
+}
+
+pub(crate) fn reached(entries: &[PoseLevelText]) -> bool {
+    entries.iter().all(|entry| entry.reached)
+}
+
+pub(crate) fn all_left(entries: &[PoseLevelText]) -> String {
+    entries.iter().map(left).collect::<Vec<_>>().join(", ")
+}
+
+/// `0.412 mm`, in units that people read.
+fn left(level: &PoseLevelText) -> String {
+    let (value, unit) = match level.unit {
+        "m" => (1e3 * level.residual, " mm"),
+        "rad" => (level.residual.to_degrees(), " deg"),
+        _ => (level.residual, " of strength"),
+    };
+    // What counts as nothing is not worth its digits.
+    if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
+}
+
+pub(crate) fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, folder: &Folder) -> String {
+    let mut table = plain_table();
+    table.set_header(["priority", "task", "what is left", ""]);
+    for entries in tasks(text) {
+        table.add_row([
+            entries[0].priority.to_string(),
+            entries[0].task.clone(),
+            all_left(entries),
+            if reached(entries) { "reached" } else { "" }.to_owned(),
+        ]);
+    }
+    let reason = match pose.reason {
+        Reason::Reached => "everything is reached",
+        Reason::Closest => "nothing moves any more: what is left is as near as the tasks above allow",
+        Reason::Steps => "the largest number of steps was made, and the body still moves",
+    };
+    let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
+    let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };
+    format!("{title}{table}\n{reason} ({steps})\nreport: {}\n", folder.path("report.html").display())
+}

@@ -1,0 +1,306 @@
+//! What `relax.json` says, and the table for readers.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture, Work};
+use contrapposto::hybrid::{Carrier, Equilibrium};
+use contrapposto::model::Model;
+use contrapposto::posture_solver::Reason;
+use contrapposto::tasks::PriorityLevel;
+use contrapposto::tasks::Task;
+use contrapposto_formats::RelaxScenario;
+use serde::Serialize;
+
+use super::plain_table;
+use crate::view::words::how_long;
+
+/// So many joints and groups are told of each posture.
+const SHOWN: usize = 3;
+
+/// The whole file.
+#[derive(Serialize)]
+pub(crate) struct RelaxText {
+    title: String,
+    model: String,
+    /// Starts that were tried, and how many of them fell.
+    starts: usize,
+    fell: usize,
+    /// Different postures left out: their tasks were left farther away, or their supports slipped.
+    left_out: usize,
+    steps: usize,
+    coordinate_order: Vec<String>,
+    /// The one of least effort first.
+    pub(crate) postures: Vec<PostureText>,
+    files: Vec<String>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct PostureText {
+    /// Sum of (active torque / strength)^2 over the coordinates of the effort task.
+    pub(crate) effort: f64,
+    /// `false`: it still moved after the largest number of steps; effort still fell, by little.
+    settled: bool,
+    /// `ligaments`, `gravity` (it comes back by itself), `attention` (it does not), or `null` where nothing can move.
+    held_by: Option<&'static str>,
+    /// Directions in which it does not come back by itself, the worst first.
+    unstable: Vec<DirectionText>,
+    /// Directions that the supports leave free.
+    free_directions: usize,
+    /// Size of the part of the stiffness without energy, against the rest.
+    stiffness_without_energy: f64,
+    supports: Vec<SupportText>,
+    /// Errors of the tasks, lengths in their units.
+    tasks: Vec<TaskText>,
+    slip: f64,
+    /// Joints whose ligaments carry half or more of what weight and loads ask.
+    hanging: Vec<HangingText>,
+    /// Groups that work, the hardest first.
+    groups: Vec<GroupText>,
+    /// The group that gives up first when nobody shifts, from a rested start; `null`: it can be held for ever.
+    fails_first: Option<GroupText>,
+    /// rad, m, components of quaternions.
+    coordinates: BTreeMap<String, f64>,
+    /// Starts that led here.
+    starts: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct DirectionText {
+    /// 1/s2, by the body's inertia.
+    stiffness: f64,
+    by_tissue: f64,
+    by_load: f64,
+    /// Time in which a disturbance grows by e; `null` where it neither grows nor comes back.
+    growth_time_s: Option<f64>,
+    joints: Vec<ShareText>,
+}
+
+#[derive(Serialize)]
+struct ShareText {
+    coordinate: String,
+    share: f64,
+}
+
+#[derive(Serialize)]
+pub(crate) struct SupportText {
+    segment: String,
+    share: f64,
+    force_n: [f64; 3],
+    center_of_pressure_m: Option<[f64; 3]>,
+}
+
+#[derive(Serialize)]
+struct TaskText {
+    task: String,
+    error: f64,
+}
+
+#[derive(Serialize)]
+struct HangingText {
+    coordinate: String,
+    value: f64,
+    external_nm: f64,
+    passive_nm: f64,
+    share: f64,
+}
+
+#[derive(Serialize)]
+struct GroupText {
+    group: String,
+    coordinate: String,
+    /// `positive` or `negative`: the sign of its torque.
+    side: &'static str,
+    active_nm: f64,
+    relative_load: f64,
+    /// How long it can hold this from a rested start; `null`: for ever.
+    endurance_s: Option<f64>,
+}
+
+impl RelaxText {
+    pub(crate) fn new(scenario: &RelaxScenario, found: &Equilibria, files: Vec<String>) -> Self {
+        let names = scenario.model.coordinates().iter().map(|c| c.name.clone());
+        Self {
+            title: scenario.title.clone(),
+            model: scenario.model.name().to_owned(),
+            starts: found.starts,
+            fell: found.fell,
+            left_out: found.yielded,
+            steps: found.steps,
+            coordinate_order: names.collect(),
+            postures: found.postures.iter().map(|posture| PostureText::new(scenario, posture)).collect(),
+            files,
+        }
+    }
+}
+
+impl PostureText {
+    fn new(scenario: &RelaxScenario, found: &RelaxedPosture) -> Self {
+        let model = &scenario.model;
+        let name = |i: usize| model.coordinates()[i].name.clone();
+        let supports = scenario.supports.iter().zip(&found.supports).map(|(support, carried)| SupportText {
+            segment: model.segments()[support.segment].name.clone(),
+            share: carried.share,
+            force_n: carried.force.into(),
+            center_of_pressure_m: carried.center_of_pressure.map(Into::into),
+        });
+        let effort = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
+        let goals = scenario.goals.iter().zip(&scenario.labels).zip(&found.relaxed.errors);
+        let tasks = goals.filter(|((goal, _), _)| !effort(goal));
+        let hanging = found.hanging.iter().map(|hanging| HangingText {
+            coordinate: name(hanging.coordinate),
+            value: found.relaxed.posture.values()[hanging.coordinate],
+            external_nm: hanging.external,
+            passive_nm: hanging.passive,
+            share: hanging.share(),
+        });
+        let group = |work: &Work| {
+            let coordinate = &model.coordinates()[work.coordinate];
+            let group = coordinate.groups.as_ref().map(|groups| groups[work.side.index()].name.clone());
+            GroupText {
+                group: group.unwrap_or_default(),
+                coordinate: coordinate.name.clone(),
+                side: work.side.word(),
+                active_nm: work.active,
+                relative_load: work.relative_load(),
+                endurance_s: work.endurance.is_finite().then_some(work.endurance),
+            }
+        };
+        let values = found.relaxed.posture.values().iter().copied();
+        Self {
+            effort: found.relaxed.effort,
+            settled: found.relaxed.reason == Reason::Settled,
+            held_by: found.stability.equilibrium.map(|equilibrium| match equilibrium {
+                Equilibrium::Stable(Carrier::Ligaments) => "ligaments",
+                Equilibrium::Stable(Carrier::Gravity) => "gravity",
+                Equilibrium::Unstable => "attention",
+            }),
+            unstable: found.stability.unstable().iter().map(|direction| DirectionText::new(model, direction)).collect(),
+            free_directions: found.stability.directions.len(),
+            stiffness_without_energy: found.stability.without_energy,
+            supports: supports.collect(),
+            tasks: tasks.map(|((_, labels), error)| TaskText { task: labels.join(" + "), error: *error }).collect(),
+            slip: found.relaxed.slip,
+            hanging: hanging.collect(),
+            groups: found.work.iter().map(group).collect(),
+            fails_first: found.fails_first().map(group),
+            coordinates: (0..model.coordinates().len()).map(name).zip(values).collect(),
+            starts: found.starts.clone(),
+        }
+    }
+}
+
+impl DirectionText {
+    fn new(model: &Model, found: &Direction) -> Self {
+        let share = |&(i, share): &(usize, f64)| ShareText { coordinate: model.coordinates()[i].name.clone(), share };
+        Self {
+            stiffness: found.stiffness,
+            by_tissue: found.by_tissue,
+            by_load: found.by_load,
+            growth_time_s: found.growth_time(),
+            joints: found.joints.iter().map(share).collect(),
+        }
+    }
+}
+
+/// `12 %`, with decimals where the share is small.
+pub(crate) fn percent(share: f64) -> String {
+    if (100.0 * share).abs() < 9.95 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
+}
+
+/// `calcn_r 85 %, calcn_l 15 %`.
+pub(crate) fn weight(posture: &PostureText) -> String {
+    let shares = posture.supports.iter().map(|support| format!("{} {}", support.segment, percent(support.share)));
+    shares.collect::<Vec<_>>().join(", ")
+}
+
+/// One row a posture, then what is to be said of each.
+pub(crate) fn report(text: &RelaxText) -> String {
+    let mut table = plain_table();
+    table.set_header(["posture", "effort", "weight on", "held by", "hardest worked"]);
+    for (i, posture) in text.postures.iter().enumerate() {
+        let hardest = posture.groups.first().map(|group| format!("{}, {}", group.name(), percent(group.relative_load)));
+        table.add_row([
+            (i + 1).to_string(),
+            format!("{:.4}", posture.effort),
+            weight(posture),
+            posture.held(),
+            hardest.unwrap_or_default(),
+        ]);
+    }
+    let title = if text.title.is_empty() { String::new() } else { format!("{}\n", text.title) };
+    let mut out = format!("{title}{table}\n");
+    for (i, posture) in text.postures.iter().enumerate() {
+        let _ = write!(out, "\nposture {}:\n{}", i + 1, posture.words());
+    }
+    let _ = write!(out, "\n{} start{}", text.starts, if text.starts == 1 { "" } else { "s" });
+    for (count, what) in [(text.fell, "fell"), (text.left_out, "left out, tasks or supports not kept as well as here")]
+    {
+        if count > 0 {
+            let _ = write!(out, ", {count} {what}");
+        }
+    }
+    out.push('\n');
+    out
+}
+
+impl GroupText {
+    fn name(&self) -> String {
+        format!("{} ({})", self.group, self.coordinate)
+    }
+}
+
+impl PostureText {
+    fn held(&self) -> String {
+        match (self.held_by, self.unstable.len()) {
+            (Some("attention"), 1) => "attention, in 1 direction".to_owned(),
+            (Some("attention"), n) => format!("attention, in {n} directions"),
+            (by, _) => by.unwrap_or("its supports alone").to_owned(),
+        }
+    }
+
+    fn words(&self) -> String {
+        let mut out = String::new();
+        let mut line = |what: &str, list: Vec<String>| {
+            if !list.is_empty() {
+                let _ = writeln!(out, "  {what}: {}", list.join("; "));
+            }
+        };
+        let hanging = self.hanging.iter().take(SHOWN).map(|joint| {
+            let share = percent(joint.share);
+            let at = format!("{} at {:.1} deg", joint.coordinate, joint.value.to_degrees());
+            format!("{at}, {:.1} N m, {share} of what weight asks", joint.passive_nm)
+        });
+        line("hangs on ligaments", hanging.collect());
+        let work = self.groups.iter().take(SHOWN);
+        line(
+            "works",
+            work.map(|group| format!("{} {:.1} N m, {}", group.name(), group.active_nm, percent(group.relative_load)))
+                .collect(),
+        );
+        line(
+            "can be held",
+            vec![match self.fails_first.as_ref().and_then(|group| Some((group, group.endurance_s?))) {
+                Some((group, time)) => format!("{}, then {} gives up", how_long(time), group.name()),
+                None => "for ever, as far as muscles go".to_owned(),
+            }],
+        );
+        let unstable = self.unstable.iter().take(SHOWN).map(|direction| {
+            let joints = direction.joints.iter().take(SHOWN);
+            let joints: Vec<String> =
+                joints.map(|joint| format!("{} {}", joint.coordinate, percent(joint.share))).collect();
+            let grows = direction.growth_time_s.map(|time| format!(" (grows by e in {time:.2} s)"));
+            joints.join(", ") + grows.as_deref().unwrap_or_default()
+        });
+        line("attention to", unstable.collect());
+        let left = self.tasks.iter().filter(|task| task.error > 1e-6);
+        line("not reached", left.map(|task| format!("{} by {:.4} (m, rad)", task.task, task.error)).collect());
+        if self.slip > 1e-6 {
+            line("supports slip", vec![format!("by {:.1e} (m, rad)", self.slip)]);
+        }
+        if !self.settled {
+            line("still moving", vec!["the largest number of steps was made; effort may yet fall a little".to_owned()]);
+        }
+        out
+    }
+}

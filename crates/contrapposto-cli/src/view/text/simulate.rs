@@ -1,0 +1,90 @@
+//! The terminal table of a run.
+
+use contrapposto::contact::Support;
+use contrapposto::hybrid::Case;
+use contrapposto::model::CoordinateKind;
+use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, StopReason, Summary};
+
+use super::plain_table;
+use crate::output::Folder;
+
+/// `active, R_min 0.2: cases 3.1 x6, 3.3 x33, 2.1 x1`.
+pub(crate) fn story(scenario: &Scenario, summary: &CoordinateSummary) -> String {
+    let ratio = scenario.strategy.minimum_decrease_ratio;
+    let strategy = match scenario.strategy.kind {
+        contrapposto::hybrid::Strategy::Active => format!("active strategy, R_min {ratio}"),
+        contrapposto::hybrid::Strategy::Passive => "passive strategy".to_owned(),
+    };
+    format!("{strategy}: {}", cases(summary))
+}
+
+/// `cases 3.1 x6, 3.3 x33, 2.1 x1`.
+pub(crate) fn cases(summary: &CoordinateSummary) -> String {
+    if summary.case_changes == 0 {
+        return "no relief asked for".to_owned();
+    }
+    let count = |case: Case| summary.iterations[case as usize];
+    let mut kinds = summary.cases.clone();
+    kinds.sort();
+    kinds.dedup();
+    if summary.case_changes as usize > kinds.len() {
+        let list: Vec<String> = kinds.iter().map(|&case| format!("{case} x{}", count(case))).collect();
+        return format!("cases {} in {} changes", list.join(", "), summary.case_changes - 1);
+    }
+    let list: Vec<String> = summary.cases.iter().map(|&case| format!("{case} x{}", count(case))).collect();
+    format!("cases {}", list.join(", "))
+}
+
+pub(crate) fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) -> String {
+    let mut table = plain_table();
+    table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
+    for ((coordinate, summary), free) in
+        scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free)
+    {
+        let [external, passive, active] = summary.final_torques;
+        let [positive, negative] = summary.peak_fatigue;
+        table.add_row([
+            format!("{}{}", coordinate.name, if *free { "" } else { " (locked)" }),
+            match coordinate.kind {
+                CoordinateKind::Rotation => format!("{:.1} deg", summary.final_value.to_degrees()),
+                CoordinateKind::Translation => format!("{:.3} m", summary.final_value),
+                CoordinateKind::Quaternion => format!("{:.4}", summary.final_value),
+            },
+            format!("{external:.2}"),
+            format!("{passive:.2}"),
+            format!("{active:.2}"),
+            format!("{:.0} %", 100.0 * summary.peak_load),
+            format!("{positive:.2} / {negative:.2}"),
+            if *free { cases(summary) } else { String::new() },
+        ]);
+    }
+    let reason = match summary.reason {
+        StopReason::Settled => "settled",
+        StopReason::Duration => "ran its whole duration",
+        StopReason::Interrupted => "interrupted",
+        StopReason::Fell => "fell",
+    };
+    let picture = if scenario.is_whole() { "postures.svg" } else { "torque-balance.svg" };
+    let standing =
+        summary.standing.as_ref().map_or(String::new(), |standing| standing_text(scenario, summary, standing));
+    format!(
+        "{}\n{table}\n{standing}{reason} after {:.2} s ({} samples)\npictures: {}, {}\n",
+        scenario.title,
+        summary.end_time,
+        summary.samples,
+        folder.path(picture).display(),
+        folder.path("time-line.svg").display(),
+    )
+}
+
+/// `calcn_r carries 85.0 %, calcn_l 15.0 %; effort 0.097 at the start, 0.059 at the end`.
+fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) -> String {
+    let segments = scenario.model.segments();
+    let share = |(support, contact): (&Support, &Contact)| {
+        format!("{} carries {:.1} %", segments[support.segment].name, 100.0 * contact.share)
+    };
+    let mut parts: Vec<String> = scenario.supports.iter().zip(&standing.contacts).map(share).collect();
+    let start = summary.effort_at_start.unwrap_or(standing.effort);
+    parts.push(format!("effort {start:.4} at the start, {:.4} at the end", standing.effort));
+    parts.join(", ") + "\n"
+}

@@ -1,0 +1,114 @@
+//! Where does a number of a coordinate come from, and how far can it be trusted?
+
+use std::fmt::Write;
+
+use contrapposto::model::data::{self, Reference};
+use serde::Serialize;
+
+use crate::model_file::{Format, Opened, Origin};
+
+/// Status and source of a number.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Source {
+    /// `verified`, `derived`, `assumed` and so on; `from the file`, `from the overlay`.
+    pub(crate) status: String,
+    pub(crate) source: String,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub(crate) note: String,
+}
+
+impl Source {
+    fn reference(reference: &Reference) -> Self {
+        let Reference { status, source, note } = reference;
+        Self { status: status.to_string(), source: source.clone(), note: note.clone() }
+    }
+
+    fn told(status: &str) -> Self {
+        Self { status: status.to_owned(), source: String::new(), note: String::new() }
+    }
+}
+
+/// What is known of the numbers of a coordinate.
+#[derive(Debug, Default)]
+pub(crate) struct Known {
+    pub(crate) range: Option<Source>,
+    pub(crate) passive: Option<Source>,
+    /// Name of the built-in curve.
+    pub(crate) curve: Option<&'static str>,
+    /// Of the positive and the negative group; one where both are the same, none where there are no groups.
+    pub(crate) strength: Vec<Source>,
+    pub(crate) fatigue: Option<Source>,
+    pub(crate) class: Option<&'static str>,
+}
+
+impl Known {
+    pub(crate) fn of(opened: &Opened, index: usize) -> Self {
+        let origins = &opened.origins[index];
+        let coordinate = &opened.model.coordinates()[index];
+        let library = data::library();
+        let sources = origins.twin.as_deref().and_then(|twin| library.sources(twin));
+        let sources = sources.as_ref();
+        let pick = |origin, reference: Option<&Reference>| match origin {
+            Origin::File => Some(Source::told("from the file")),
+            Origin::Overlay => Some(Source::told("from the overlay")),
+            Origin::Library => reference.map(Source::reference),
+        };
+        let mut known = Self { range: pick(origins.range, sources.map(|s| s.range)), ..Self::default() };
+        if coordinate.passive.is_some() {
+            let curve = sources.and_then(|s| s.curve).and_then(|name| library.curve(name));
+            let curve = curve.map(|row| of_sex(row, opened));
+            known.passive = pick(origins.passive, curve.map(|row| &row.reference));
+            known.curve = curve.filter(|_| origins.passive == Origin::Library).map(|row| row.name.as_str());
+        }
+        if coordinate.groups.is_some() {
+            let [positive, negative] = match sources.and_then(|s| s.strength) {
+                Some(strength) => strength.map(Some),
+                None => [None; 2],
+            };
+            known.strength = [positive, negative].into_iter().filter_map(|r| pick(origins.strength, r)).collect();
+            known.strength.dedup();
+            let class = sources.and_then(|s| s.fatigue_class).filter(|_| origins.fatigue == Origin::Library);
+            known.class = class;
+            let reference = class.and_then(|class| library.three_compartment(class)).map(|(_, reference)| reference);
+            known.fatigue = pick(origins.fatigue, reference);
+        }
+        known
+    }
+}
+
+/// Curves of the trunk differ between the sexes; the library's list names the man's.
+fn of_sex(row: &'static data::CurveRow, opened: &Opened) -> &'static data::CurveRow {
+    let female = opened.format == Format::Adult && opened.model.name().ends_with(", female");
+    let hers = row.name.strip_suffix("_male").filter(|_| female).map(|stem| format!("{stem}_female"));
+    hers.and_then(|name| data::library().curve(&name)).unwrap_or(row)
+}
+
+/// Sources that a table refers to by number.
+#[derive(Debug, Default)]
+pub(crate) struct Seen(Vec<Source>);
+
+impl Seen {
+    /// ` verified [3]`; nothing where the file itself is the source.
+    pub(crate) fn mark(&mut self, source: Option<&Source>) -> String {
+        let Some(source) = source.filter(|source| source.status != "from the file") else { return String::new() };
+        if source.source.is_empty() {
+            return format!(" {}", source.status);
+        }
+        let number = self.0.iter().position(|seen| seen == source).unwrap_or_else(|| {
+            self.0.push(source.clone());
+            self.0.len() - 1
+        });
+        format!(" {} [{}]", source.status, number + 1)
+    }
+
+    /// The numbered sources.
+    pub(crate) fn legend(&self) -> String {
+        let mut text = String::new();
+        for (number, Source { status, source, note }) in self.0.iter().enumerate() {
+            let note = if note.is_empty() { String::new() } else { format!(" ({note})") };
+            let head = if number == 0 { "\nsources:\n" } else { "" };
+            let _ = writeln!(text, "{head}  [{}] {status}: {source}{note}", number + 1);
+        }
+        text
+    }
+}

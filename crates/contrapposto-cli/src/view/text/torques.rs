@@ -1,0 +1,176 @@
+//! Frames as JSON, as a table for programs, and as one for readers.
+
+use std::fmt::Write;
+
+use contrapposto::model::{CoordinateKind, Model};
+use serde::{Serialize, Serializer};
+
+use super::plain_table;
+use crate::view::torque_rows::{Frame, Order, Row, Torques};
+
+/// One frame in rad, m, N and N m.
+#[derive(Serialize)]
+pub(crate) struct FrameText<'a> {
+    frame: usize,
+    coordinate_order: Vec<&'a str>,
+    coordinates: Named<'a, TorquesText>,
+    uncoupled: Named<'a, TorquesText>,
+    /// Of free joints and balls, whose rates are no coordinates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    values: Option<Named<'a, f64>>,
+    center_of_mass: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gradient: Option<&'a [Vec<f64>]>,
+}
+
+#[derive(Serialize)]
+struct TorquesText {
+    angle: Option<f64>,
+    external: f64,
+    passive: f64,
+    active: f64,
+}
+
+/// An object whose keys keep their order.
+struct Named<'a, T>(Vec<(&'a str, T)>);
+
+impl<T: Serialize> Serialize for Named<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+pub(crate) fn json<'a>(model: &'a Model, order: &'a Order, frame: &'a Frame<'_>) -> FrameText<'a> {
+    let named = |rows: &'a [Row], torques: &[Torques]| {
+        let text = |(row, torques): (&'a Row, &Torques)| {
+            let Torques { external, passive, active } = *torques;
+            let angle = row.coordinate.map(|c| frame.values[c]);
+            (row.name.as_str(), TorquesText { angle, external, passive, active })
+        };
+        Named(rows.iter().zip(torques).map(text).collect())
+    };
+    let value = |&c: &usize| (model.coordinates()[c].name.as_str(), frame.values[c]);
+    FrameText {
+        frame: frame.index,
+        coordinate_order: order.rows.iter().map(|row| row.name.as_str()).collect(),
+        coordinates: named(&order.rows, &frame.rows),
+        uncoupled: named(&order.coupled, &frame.coupled),
+        values: (!order.values.is_empty()).then(|| Named(order.values.iter().map(value).collect())),
+        center_of_mass: frame.center_of_mass.map(Into::into),
+        gradient: frame.gradient.as_deref(),
+    }
+}
+
+/// Heads of the table, with OpenSim's own header where tabs separate.
+pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: char, gradient: bool) -> String {
+    let mut labels = vec!["time".to_owned()];
+    for &c in &order.values {
+        let coordinate = &model.coordinates()[c];
+        let what = if coordinate.kind == CoordinateKind::Quaternion { "value" } else { "position_m" };
+        labels.push(format!("{}.{what}", plain(&coordinate.name)));
+    }
+    for row in &order.rows {
+        let name = plain(&row.name);
+        let unit = if row.turns { "nm" } else { "n" };
+        if row.coordinate.is_some() {
+            labels.push(format!("{name}.{}", if row.turns { "angle_deg" } else { "position_m" }));
+        }
+        labels.extend(["external", "passive", "active"].map(|torque| format!("{name}.{torque}_{unit}")));
+    }
+    if gradient {
+        for row in &order.rows {
+            labels.extend(
+                order.rows.iter().map(|column| format!("{}.external_by.{}", plain(&row.name), plain(&column.name))),
+            );
+        }
+    }
+    let mut text = String::new();
+    if separator == '\t' {
+        let columns = labels.len();
+        text = format!("torques\nversion=1\nnRows={frames}\nnColumns={columns}\ninDegrees=yes\nendheader\n");
+    }
+    let mut between = "";
+    let separator = separator.to_string();
+    for label in labels {
+        text.push_str(between);
+        text.push_str(&label);
+        between = &separator;
+    }
+    text.push('\n');
+    text
+}
+
+/// One row of the table. Numbers are written in the shortest form that reads back the same.
+pub(crate) fn row(order: &Order, frame: &Frame<'_>, separator: char) -> String {
+    let mut text = format!("{:?}", frame.time);
+    let mut put = |value: f64| {
+        let _ = write!(text, "{separator}{value:?}");
+    };
+    order.values.iter().for_each(|&c| put(frame.values[c]));
+    for (row, torques) in order.rows.iter().zip(&frame.rows) {
+        if let Some(c) = row.coordinate {
+            put(if row.turns { frame.values[c].to_degrees() } else { frame.values[c] });
+        }
+        [torques.external, torques.passive, torques.active].into_iter().for_each(&mut put);
+    }
+    frame.gradient.iter().flatten().flatten().for_each(|entry| put(*entry));
+    text.push('\n');
+    text
+}
+
+/// A table for readers, degrees and newton-metres.
+pub(crate) fn readable(model: &Model, order: &Order, frame: &Frame<'_>) -> String {
+    let mut table = plain_table();
+    table.set_header(["coordinate", "at", "external", "passive", "active", "unit"]);
+    for (row, torques) in order.rows.iter().zip(&frame.rows) {
+        table.add_row(cells(row, torques, frame));
+    }
+    let mut text = format!("{table}\n");
+    if !order.coupled.is_empty() {
+        let mut table = plain_table();
+        table.set_header(["uncoupled", "at", "external", "passive", "active", "unit"]);
+        for (row, torques) in order.coupled.iter().zip(&frame.coupled) {
+            table.add_row(cells(row, torques, frame));
+        }
+        let _ = write!(text, "\nas if no coordinate followed another one:\n{table}\n");
+    }
+    if !order.values.is_empty() {
+        let value = |&c: &usize| format!("{} {:.4}", model.coordinates()[c].name, frame.values[c]);
+        let _ = write!(text, "\n{}\n", order.values.iter().map(value).collect::<Vec<_>>().join(", "));
+    }
+    if let Some(center) = frame.center_of_mass {
+        let _ = write!(text, "\ncentre of mass {:.4}, {:.4}, {:.4} m\n", center.x, center.y, center.z);
+    }
+    if let Some(gradient) = &frame.gradient {
+        let mut table = plain_table();
+        let names = order.rows.iter().map(|row| row.name.clone());
+        table.set_header(std::iter::once("d external / d".to_owned()).chain(names));
+        for (row, entries) in order.rows.iter().zip(gradient) {
+            let entries = entries.iter().map(|entry| shown(*entry));
+            table.add_row(std::iter::once(row.name.clone()).chain(entries));
+        }
+        let _ = write!(text, "\nN m (N) per rad (m):\n{table}\n");
+    }
+    text
+}
+
+fn cells(row: &Row, torques: &Torques, frame: &Frame<'_>) -> [String; 6] {
+    let at = match row.coordinate.map(|c| frame.values[c]) {
+        None => String::new(),
+        Some(value) if row.turns => format!("{:.2} deg", value.to_degrees()),
+        Some(value) => format!("{value:.4} m"),
+    };
+    let [external, passive, active] = [torques.external, torques.passive, torques.active].map(shown);
+    [row.name.clone(), at, external, passive, active, if row.turns { "N m" } else { "N" }.to_owned()]
+}
+
+/// Three places, and no minus before nothing.
+fn shown(value: f64) -> String {
+    let text = format!("{value:.3}");
+    if text == "-0.000" { "0.000".to_owned() } else { text }
+}
+
+/// A name that is safe inside a column's title.
+fn plain(name: &str) -> String {
+    name.trim().chars().map(|c| if c == ',' || c == '"' || c.is_control() { '_' } else { c }).collect()
+}
