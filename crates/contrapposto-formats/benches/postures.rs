@@ -9,7 +9,8 @@ mod peer;
 
 use std::time::Instant;
 
-use contrapposto::posture_solver::inverse_kinematics::{Engine, Options};
+use contrapposto::posture_solver::Options;
+use contrapposto::posture_solver::inverse_kinematics::Engine;
 use peer::{Peer, target};
 
 /// Runs of each target.
@@ -25,7 +26,8 @@ fn main() {
         if only.is_some_and(|only| only != i) {
             continue;
         }
-        let mut engine = Engine::new(&peer.model, peer.goals(target(case)), &[], Options::default()).unwrap();
+        let mut engine =
+            Engine::new(&peer.model, peer.goals(target(case)), &[], Options::inverse_kinematics()).unwrap();
         let mut least = vec![f64::INFINITY; STEPS];
         let (mut total, mut made, mut changes) = (f64::INFINITY, 0, vec![]);
         for _ in 0..RUNS {

@@ -1,7 +1,7 @@
 //! How good are least-effort postures, and how fast, beside SLSQP on Pinocchio's derivatives? For each target of a file of the
 //! peer's answers: one solve from rest, the sum of squared active torques against the peer's, and the times of both.
 //!
-//! `cargo bench -p contrapposto-formats --bench relax -- FILE [valleys]`, FILE the answers that `50_posture_pinocchio.py` of the
+//! `cargo bench -p contrapposto-formats --bench relax -- FILE [local minima]`, FILE the answers that `50_posture_pinocchio.py` of the
 //! peers' bench wrote a moment ago on the same core; see docs/benchmarks.md.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a table for people to read")]
@@ -46,12 +46,12 @@ fn run(file: &Path, name: &str, standing: bool, options: Options) {
         let ratio = pose.effort / target.effort;
         no_worse += usize::from(ratio <= 1.0 + SAME);
         held += usize::from(effort::holds(&pose));
-        worst = worst.max(pose.errors[0]).max(pose.slip);
+        worst = worst.max(pose.levels[0].length).max(pose.slip);
         println!(
             "{i:2} effort {:9.3} peer {:9.3} ratio {ratio:6.3}  hand {:.0e} m  slip {:.0e}  {:?} {:?}, {} steps, {:.2} ms",
             pose.effort,
             target.effort,
-            pose.errors[0],
+            pose.levels[0].length,
             pose.slip,
             pose.balance,
             pose.reason,
@@ -81,8 +81,8 @@ fn main() {
         println!("left out: no file of the peer's answers was named");
         return;
     };
-    let valleys = arguments.get(1).map_or(Options::default().valleys, |n| n.parse().unwrap());
-    let options = Options { valleys, ..Options::default() };
+    let local_minima = arguments.get(1).map_or(Options::least_effort().local_minima, |n| n.parse().unwrap());
+    let options = Options { local_minima, ..Options::least_effort() };
     run(Path::new(file), "A_upper_body_fixed_pelvis_30dof", false, options);
     run(Path::new(file), "B_standing_66_unknowns", true, options);
 }

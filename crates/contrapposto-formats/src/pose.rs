@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::posture_solver::inverse_kinematics::{Pose, Reason};
-use contrapposto::tasks::Task;
+use contrapposto::posture_solver::{LevelError, Reason, RowError, SolvedPosture};
 use serde::Serialize;
 
 use crate::scenario::PoseScenario;
@@ -52,27 +51,26 @@ pub struct PoseLevelText {
 
 impl PoseText {
     /// From a solved pose. `files`: names of the files written beside it.
-    pub fn new(scenario: &PoseScenario, pose: &Pose, files: Vec<String>) -> Self {
+    pub fn new(scenario: &PoseScenario, pose: &SolvedPosture, files: Vec<String>) -> Self {
         let model = &scenario.model;
         let mut levels = vec![];
         for (k, (goal, reached)) in scenario.goals.iter().zip(&pose.levels).enumerate() {
-            let mut errors = reached.errors.as_slice();
+            let mut errors = reached.rows.as_slice();
             for (task, label) in goal.tasks.iter().zip(&scenario.labels[k]) {
                 let (own, rest) = errors.split_at(task.rows().min(errors.len()));
                 errors = rest;
-                levels.extend(lengths(scenario, task, own).into_iter().map(|(unit, residual)| PoseLevelText {
+                levels.extend(lengths(own).into_iter().map(|(unit, residual)| PoseLevelText {
                     priority: k + 1,
                     task: label.clone(),
                     residual,
                     unit,
-                    reached: residual <= scenario.options.reached,
+                    reached: residual <= scenario.options.level_tolerance,
                 }));
             }
         }
-        let hold = |(goal, reached): (
-            &contrapposto::tasks::PriorityLevel,
-            &contrapposto::posture_solver::inverse_kinematics::Reached,
-        )| { !goal.hard || reached.length <= scenario.options.reached };
+        let hold = |(goal, reached): (&contrapposto::tasks::PriorityLevel, &LevelError)| {
+            !goal.hard || reached.length <= scenario.options.level_tolerance
+        };
         let mut kinematics = Kinematics::new(model);
         let center = kinematics.update(model, &pose.posture).ok().and_then(|()| kinematics.center_of_mass(model));
         let names = || model.coordinates().iter().map(|c| c.name.clone());
@@ -81,8 +79,8 @@ impl PoseText {
             model: model.name().to_owned(),
             reason: match pose.reason {
                 Reason::Reached => "reached",
-                Reason::Closest => "closest",
-                Reason::Steps => "steps",
+                Reason::Converged => "closest",
+                Reason::StepLimit => "steps",
             },
             steps: pose.steps,
             supports_hold: scenario.goals.iter().zip(&pose.levels).all(hold),
@@ -96,10 +94,10 @@ impl PoseText {
 }
 
 /// Length of the error in every unit of the task, in the order in which they come.
-fn lengths(scenario: &PoseScenario, task: &Task, errors: &[f64]) -> Vec<(&'static str, f64)> {
+fn lengths(errors: &[RowError]) -> Vec<(&'static str, f64)> {
     let mut sums: Vec<(&'static str, f64)> = vec![];
-    for (row, error) in errors.iter().enumerate() {
-        let unit = task.unit(&scenario.model, row);
+    for RowError { value: error, unit } in errors {
+        let unit = unit.symbol();
         match sums.iter_mut().find(|(known, _)| *known == unit) {
             Some((_, sum)) => *sum += error * error,
             None => sums.push((unit, error * error)),

@@ -23,10 +23,10 @@ fn no_worse(name: &str, standing: bool) -> usize {
     let targets = problem::targets(&file, name);
     let mut count = 0;
     for target in &targets {
-        let pose = problem.engine(target.target, Options::default()).solve(&problem.rest).unwrap();
+        let pose = problem.engine(target.target, Options::least_effort()).solve(&problem.rest).unwrap();
         println!("{} by {}, {} steps", pose.effort, target.effort, pose.steps);
         assert!(problem::holds(&pose), "{pose:?}");
-        assert_eq!(pose.reason, Reason::Settled);
+        assert_eq!(pose.reason, Reason::Converged);
         count += usize::from(pose.effort <= target.effort * (1.0 + 1e-4));
     }
     count

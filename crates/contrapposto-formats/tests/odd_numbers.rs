@@ -224,7 +224,7 @@ target_m = [0.35, 1.1, 0.25]
 fn poses() {
     let read = |text: &str| read_pose("pose.toml", text.as_bytes(), None).map_err(|error| complaint(&error));
     odd_in_every_place("pose", POSE, &[], read, |pose| {
-        let options = contrapposto::posture_solver::inverse_kinematics::Options { max_steps: 3, ..pose.options };
+        let options = contrapposto::posture_solver::Options { max_steps: 3, ..pose.options };
         let mut engine = contrapposto::posture_solver::inverse_kinematics::Engine::new(
             &pose.model,
             pose.goals.clone(),
@@ -241,7 +241,10 @@ fn poses() {
 fn searches_for_rest() {
     let read = |text: &str| read_relax("relax.toml", text.as_bytes(), None).map_err(|error| complaint(&error));
     odd_in_every_place("relax", POSE, &[], read, |relax| {
-        let options = contrapposto::posture_solver::Options { max_steps: 2, ..Default::default() };
+        let options = contrapposto::posture_solver::Options {
+            max_steps: 2,
+            ..contrapposto::posture_solver::Options::least_effort()
+        };
         let supports = relax.supports.clone();
         let engine = contrapposto::posture_solver::Engine::new(
             &relax.model,

@@ -11,7 +11,8 @@ use common::complaint;
 use common::toml::hammer_toml;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
-use contrapposto::posture_solver::inverse_kinematics::{Engine, Options};
+use contrapposto::posture_solver::Options;
+use contrapposto::posture_solver::inverse_kinematics::Engine;
 use contrapposto::tasks::{CenterOfMassGoal, Task};
 use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::{InputError, PoseScenario, read_pose, read_scenario, scenario_model, scenario_schema};
@@ -125,7 +126,7 @@ fn everything_is_read() {
     assert_eq!(locked, ["mtp_angle_l", "mtp_angle_r"]);
     let options = scenario.options;
     assert!((options.max_step.to_degrees() - 20.0).abs() < 1e-12);
-    assert_eq!((options.max_steps, options.still, options.reached), (50, 1e-8, 1e-5));
+    assert_eq!((options.max_steps, options.step_tolerance, options.level_tolerance), (50, 1e-8, 1e-5));
     assert!(scenario.unused.is_empty());
 
     let Task::Point(point) = &scenario.goals[2].tasks[0] else { panic!() };

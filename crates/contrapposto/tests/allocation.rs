@@ -7,7 +7,8 @@ use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture;
-use contrapposto::posture_solver::inverse_kinematics::{Engine, Options};
+use contrapposto::posture_solver::Options;
+use contrapposto::posture_solver::inverse_kinematics::Engine;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal as Place, Distance, LookAt, Placement, Point, Posture, Task};
@@ -186,7 +187,7 @@ fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> V
 /// the body has moved.
 fn steps(what: &str, model: &Model, goals: Vec<PriorityLevel>, steps: usize) -> (f64, f64) {
     let start = model.default_posture();
-    let mut engine = Engine::new(model, goals, &loads(model), Options::default()).unwrap();
+    let mut engine = Engine::new(model, goals, &loads(model), Options::inverse_kinematics()).unwrap();
     let mut posture = start.clone();
     let mut call = 0;
     assert_silent(what, 1, |_| {

@@ -154,14 +154,14 @@ impl Setting {
     }
 
     fn pose(&self) -> Stage<'_> {
-        let options = ik::Options { max_steps: 40, ..ik::Options::default() };
+        let options = posture_solver::Options { max_steps: 40, ..posture_solver::Options::inverse_kinematics() };
         let mut engine = ik::Engine::new(&self.model, self.goals.clone(), &self.loads, options).unwrap();
         Box::new(move |posture| format!("{:?}", engine.solve(posture)))
     }
 
     fn rest(&self) -> Stage<'_> {
         let (model, options) =
-            (&self.model, posture_solver::Options { max_steps: 30, ..posture_solver::Options::default() });
+            (&self.model, posture_solver::Options { max_steps: 30, ..posture_solver::Options::least_effort() });
         let (supports, goals) = (self.supports.clone(), self.goals.clone());
         let start = model.default_posture();
         let mut engine = posture_solver::Engine::new(model, &start, supports, goals, &self.loads, options).unwrap();
@@ -184,7 +184,10 @@ impl Setting {
             let search = Search { model, start: posture, supports, goals, loads, locked: &[] };
             format!(
                 "{:?}",
-                equilibria(&search, posture_solver::Options { max_steps: 15, ..posture_solver::Options::default() })
+                equilibria(
+                    &search,
+                    posture_solver::Options { max_steps: 15, ..posture_solver::Options::least_effort() }
+                )
             )
         })
     }

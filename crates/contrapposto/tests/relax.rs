@@ -25,7 +25,7 @@ fn woman() -> Model {
     adult(&Adult { sex: Sex::Female, stature: 1.65, mass: 60.0, ..Adult::default() }).unwrap()
 }
 
-const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, still: 1e-9, gain: 1e-9, guarded: true, valleys: 0 };
+const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, local_minima: 0, ..Options::least_effort() };
 
 /// The scenario `stand-relaxed`, or its mirror image.
 struct Standing {
@@ -138,9 +138,9 @@ fn one_leg_rests_in_two_ways() {
         assert_eq!(posture.relaxed.balance, Balance::Held);
         let total: f64 = posture.supports.iter().map(|support| support.share).sum();
         assert!((total - 1.0).abs() < 1e-8 && posture.supports[1].share <= 0.15 + 1e-8);
-        assert!(posture.relaxed.slip < 1e-5 && posture.relaxed.errors[..3].iter().all(|error| *error < 1e-5));
+        assert!(posture.relaxed.slip < 1e-5 && posture.relaxed.levels[..3].iter().all(|level| level.length < 1e-5));
         let mut engine = standing.engine(OPTIONS);
-        engine.see(&posture.relaxed.posture).unwrap();
+        engine.evaluate(&posture.relaxed.posture).unwrap();
         let left = imbalance(&standing, &engine, &posture.relaxed.posture);
         assert!(left < BALANCE, "root out of balance by {left:.1e}");
         // Somebody on two feet must attend.
@@ -247,7 +247,7 @@ fn a_hand_never_leaves_its_target_for_comfort() {
         println!("effort {:.5}, hand off by {off:.1e} m, slip {:.1e}", posture.relaxed.effort, posture.relaxed.slip);
         assert!(off < 1e-5);
         let mut engine = standing.engine(OPTIONS);
-        engine.see(&posture.relaxed.posture).unwrap();
+        engine.evaluate(&posture.relaxed.posture).unwrap();
         assert!(imbalance(&standing, &engine, &posture.relaxed.posture) < BALANCE);
     }
 }
@@ -315,8 +315,8 @@ fn what_may_not_move_is_left_out_without_loss() {
         *weight = f64::from(u8::from(leg(&rate.name) || rate.name.starts_with("arm_flex_l")));
     }
     let goals = [Task::Point(point), Task::Posture(kept), Task::Effort(Effort::whole(&model))].map(PriorityLevel::from);
-    let solve = |valleys: usize, from: &Posture| {
-        let options = Options { valleys, ..OPTIONS };
+    let solve = |local_minima: usize, from: &Posture| {
+        let options = Options { local_minima, ..OPTIONS };
         let mut engine = Engine::new(&model, &start, vec![], goals.to_vec(), &[], options).unwrap();
         root_rates(&model).into_iter().chain(model.coordinates()[arm].rate).for_each(|rate| engine.lock(rate));
         engine.solve(from).unwrap()
@@ -324,7 +324,7 @@ fn what_may_not_move_is_left_out_without_loss() {
     let found = solve(6, &start);
     let (again, steps) = (solve(0, &found.posture), solve(0, &start));
     println!("effort {:.9}, after more steps {:.9}, of steps alone {:.6}", found.effort, again.effort, steps.effort);
-    assert!(found.errors[0] < 1e-8 && found.errors[1] < 1e-8, "{:?}", found.errors);
+    assert!(found.levels[0].length < 1e-8 && found.levels[1].length < 1e-8, "{:?}", found.levels);
     for (i, coordinate) in model.coordinates().iter().enumerate() {
         let still = i == arm || coordinate.rate.is_some_and(|rate| root_rates(&model).contains(&rate));
         assert!(!still || found.posture.values()[i] == start.values()[i], "{}", coordinate.name);
@@ -340,8 +340,8 @@ fn a_free_root_without_supports_stays() {
     let arm = standing.model.coordinate("arm_flex_l").unwrap();
     let mut effort = Effort::whole(&standing.model);
     effort.coordinates.retain(|c| *c != arm);
-    let solve = |valleys: usize| {
-        let options = Options { valleys, max_steps: 0, ..OPTIONS };
+    let solve = |local_minima: usize| {
+        let options = Options { local_minima, max_steps: 0, ..OPTIONS };
         let goals = vec![Task::Effort(effort.clone()).into()];
         let mut engine = Engine::new(&standing.model, &standing.start, vec![], goals, &[], options).unwrap();
         standing.model.coordinates()[arm].rate.into_iter().for_each(|rate| engine.lock(rate));

@@ -177,7 +177,7 @@ fn compare(
     for task in tasks(rng, model) {
         task.check(model).unwrap();
         let (exact, values, residual) = evaluate(&task, model, posture, &loads);
-        let by_unit = |row: usize| ["m", "rad", "1"].contains(&task.unit(model, row));
+        let by_unit = |row: usize| ["m", "rad", "1"].contains(&task.unit(model, row).symbol());
         assert!((0..task.rows()).all(by_unit) && !task.label(model).is_empty());
         let [fine, half, whole] = [1e-5, 5e-4, 1e-3].map(|h| differences(&task, model, posture, &loads, h));
         let entry = worst.entry(task.kind()).or_insert((0.0, f64::MAX, 0.0));

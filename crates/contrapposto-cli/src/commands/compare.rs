@@ -72,8 +72,7 @@ fn carry_out(path: &Path, letter: char) -> Result<Stance, Fail> {
 
 fn posed(file: &str, bytes: &[u8], model: Option<contrapposto::model::Model>, letter: char) -> Result<Stance, Fail> {
     let scenario = read_pose(file, bytes, model)?;
-    let refused =
-        |error: contrapposto::posture_solver::inverse_kinematics::GoalError| Fail::Refused(format!("{file}: {error}"));
+    let refused = |error: contrapposto::posture_solver::EngineError| Fail::Refused(format!("{file}: {error}"));
     let mut engine =
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));

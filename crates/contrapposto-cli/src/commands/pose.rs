@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use contrapposto::posture_solver::inverse_kinematics::{Engine, Pose, Reason};
+use contrapposto::posture_solver::inverse_kinematics::Engine;
+use contrapposto::posture_solver::{EngineError, Reason, SolvedPosture};
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
 use contrapposto_plot::body_figure;
@@ -24,8 +25,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
         tell("note", &format!("{} is for `simulate` and has no part in a pose", list.join(", ")));
     }
-    let refused =
-        |error: contrapposto::posture_solver::inverse_kinematics::GoalError| Fail::Refused(format!("{name}: {error}"));
+    let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
     let mut engine =
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));
@@ -42,7 +42,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
 /// Writes all files, and gives back the text of `pose.json`.
 fn write(
     scenario: &PoseScenario,
-    pose: &Pose,
+    pose: &SolvedPosture,
     text: &PoseText,
     figures: &[(String, Vec<u8>)],
     out: &Path,
@@ -63,7 +63,7 @@ fn write(
 }
 
 /// A task that yields is no failure; supports that slip, and steps that ran out, are.
-fn verdict(scenario: &PoseScenario, pose: &Pose, text: &PoseText) -> Result<(), Fail> {
+fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText) -> Result<(), Fail> {
     if !text.supports_hold {
         let lost: Vec<String> = tasks(text)
             .filter(|entries| scenario.goals[entries[0].priority - 1].hard && !reached(entries))
@@ -72,10 +72,10 @@ fn verdict(scenario: &PoseScenario, pose: &Pose, text: &PoseText) -> Result<(), 
         return Err(Fail::Job(format!("supports do not stay where they are: {}", lost.join(", "))));
     }
     match pose.reason {
-        Reason::Steps => Err(Fail::Job(format!(
+        Reason::StepLimit => Err(Fail::Job(format!(
             "no end after {} steps; the best posture is written. [solver] max_steps allows more",
             pose.steps
         ))),
-        Reason::Reached | Reason::Closest => Ok(()),
+        Reason::Reached | Reason::Converged => Ok(()),
     }
 }

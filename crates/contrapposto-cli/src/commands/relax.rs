@@ -48,7 +48,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         locked: &scenario.locked,
     };
     let spinner = spinner();
-    let found = equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::default() });
+    let found = equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::least_effort() });
     spinner.finish_and_clear();
     let found = found.map_err(|error| match error {
         SearchError::Relax(error) => Fail::Refused(format!("{name}: {error}")),

@@ -1,7 +1,7 @@
 //! From a solved pose to its picture: the body, where it started, and what it should reach.
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::posture_solver::inverse_kinematics::Pose;
+use contrapposto::posture_solver::SolvedPosture;
 use contrapposto::tasks::{CenterOfMassGoal, Task};
 use contrapposto_formats::PoseScenario;
 use contrapposto_plot::{BodyFigure, BodyPosture};
@@ -23,7 +23,7 @@ struct Marks {
 }
 
 /// The picture of a solved pose.
-pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str) -> Result<BodyFigure, Fail> {
+pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &SolvedPosture, subtitle: &str) -> Result<BodyFigure, Fail> {
     let mut posture = pose_posture(scenario, pose)?;
     posture.start = body::parts(&scenario.model, scenario.start.values(), None)?;
     Ok(BodyFigure {
@@ -35,7 +35,7 @@ pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &Pose, subtitle: &str)
 }
 
 /// The body of a solved pose, with what it should reach.
-fn pose_posture(scenario: &PoseScenario, pose: &Pose) -> Result<BodyPosture, Fail> {
+fn pose_posture(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<BodyPosture, Fail> {
     let model = &scenario.model;
     let frame = held(model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
     let mut posture = match &frame {
@@ -50,11 +50,11 @@ fn pose_posture(scenario: &PoseScenario, pose: &Pose) -> Result<BodyPosture, Fai
 }
 
 /// Places that the tasks of a pose ask for, ground, m.
-pub(crate) fn targets(scenario: &PoseScenario, pose: &Pose) -> Result<Vec<Vector3<f64>>, Fail> {
+pub(crate) fn targets(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<Vec<Vector3<f64>>, Fail> {
     Ok(marks(scenario, pose)?.targets)
 }
 
-fn marks(scenario: &PoseScenario, pose: &Pose) -> Result<Marks, Fail> {
+fn marks(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<Marks, Fail> {
     let model = &scenario.model;
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &pose.posture).map_err(|error| Fail::job("picture", error))?;

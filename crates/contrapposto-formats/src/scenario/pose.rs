@@ -4,7 +4,7 @@ use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::posture::Posture;
-use contrapposto::posture_solver::inverse_kinematics::Options;
+use contrapposto::posture_solver::Options;
 use contrapposto::statics::Load;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{Placement, Task};
@@ -273,7 +273,7 @@ fn supports(text: &ScenarioText, stage: &mut Stage<'_>) -> Result<Vec<Task>, Inp
 }
 
 fn options(at: &Located, text: &ScenarioText) -> Result<Options, InputError> {
-    let Some(solver) = &text.solver else { return Ok(Options::default()) };
+    let Some(solver) = &text.solver else { return Ok(Options::inverse_kinematics()) };
     let refuse = |key: &str, value: f64, accepted: &str| {
         Err(at.error(&["solver", key], format!("{key} is {}; it must be {accepted}", shown(value)), None))
     };
@@ -292,5 +292,11 @@ fn options(at: &Located, text: &ScenarioText) -> Result<Options, InputError> {
     if solver.still >= max_step {
         return refuse("still", solver.still, &format!("below the largest step, {} rad", shown(max_step)));
     }
-    Ok(Options { max_step, max_steps: solver.max_steps as usize, still: solver.still, reached: solver.reached })
+    Ok(Options {
+        max_step,
+        max_steps: solver.max_steps as usize,
+        step_tolerance: solver.still,
+        level_tolerance: solver.reached,
+        ..Options::inverse_kinematics()
+    })
 }

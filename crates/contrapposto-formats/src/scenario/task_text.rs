@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contrapposto::posture_solver::inverse_kinematics::Options;
+use contrapposto::posture_solver::Options;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -235,12 +235,12 @@ pub struct SolverText {
 
 impl Default for SolverText {
     fn default() -> Self {
-        let options = Options::default();
+        let options = Options::inverse_kinematics();
         Self {
             max_step_deg: options.max_step.to_degrees(),
             max_steps: options.max_steps.try_into().unwrap_or(u32::MAX),
-            still: options.still,
-            reached: options.reached,
+            still: options.step_tolerance,
+            reached: options.level_tolerance,
         }
     }
 }

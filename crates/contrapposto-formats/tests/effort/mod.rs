@@ -11,7 +11,7 @@ use contrapposto::contact::{Balance, Support};
 use contrapposto::model::{Adult, Model, MuscleGroup, adult};
 use contrapposto::passive::{DoubleExponential, End, PassiveCurve};
 use contrapposto::posture::Posture;
-use contrapposto::posture_solver::{Engine, Options, Relaxed};
+use contrapposto::posture_solver::{Engine, Options, SolvedPosture};
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::strength::Strength;
 use contrapposto::tasks::PriorityLevel;
@@ -134,6 +134,6 @@ pub(crate) fn targets(file: &Path, problem: &str) -> Vec<Target> {
 }
 
 /// Hand, feet and root where they should be?
-pub(crate) fn holds(pose: &Relaxed) -> bool {
-    pose.errors[0] < 1e-6 && pose.slip < 1e-6 && pose.balance == Balance::Held
+pub(crate) fn holds(pose: &SolvedPosture) -> bool {
+    pose.levels[0].length < 1e-6 && pose.slip < 1e-6 && pose.balance == Balance::Held
 }

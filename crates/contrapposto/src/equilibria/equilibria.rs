@@ -23,7 +23,7 @@ use super::stability::Stability;
 use crate::contact::{Missing, Support};
 use crate::model::{Model, Side};
 use crate::posture::Posture;
-use crate::posture_solver::{Options, RelaxError, Relaxed};
+use crate::posture_solver::{EngineError, Options, SolvedPosture};
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
 
@@ -60,7 +60,7 @@ pub struct Search<'a> {
 pub enum SearchError {
     /// Body, supports or goals do not fit.
     #[error(transparent)]
-    Relax(#[from] RelaxError),
+    Relax(#[from] EngineError),
     /// From no start a posture was found in which the supports hold the body.
     #[error("the supports cannot hold the body, in the best posture that was tried: {0}")]
     CannotStand(Missing),
@@ -121,7 +121,7 @@ pub struct Carried {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RelaxedPosture {
     /// Where it is, what is left of every goal, and how it ended.
-    pub relaxed: Relaxed,
+    pub relaxed: SolvedPosture,
     /// By supports, in their order.
     pub supports: Vec<Carried>,
     /// What holds it when nobody attends.

@@ -10,7 +10,7 @@ use crate::contact::{Condition, Missing};
 use crate::hybrid::{Problem, Strategy, minimise};
 use crate::model::{CoordinateKind, Side};
 use crate::posture::Posture;
-use crate::posture_solver::{Engine, Options, RelaxError, Relaxed};
+use crate::posture_solver::{Engine, EngineError, Options, SolvedPosture};
 use crate::tasks::PriorityLevel;
 use crate::tasks::{Effort, Task};
 
@@ -37,7 +37,7 @@ const ALL: Missing = Missing { force: f64::INFINITY, moment: f64::INFINITY, cond
 /// A posture that was come to.
 #[derive(Clone, Debug)]
 struct Found {
-    relaxed: Relaxed,
+    relaxed: SolvedPosture,
     /// By how much supports carry more than they should, shares of weight.
     excess: f64,
     /// What weight and loads, and what passive tissue ask of every coordinate with muscles, as shares of strength.
@@ -59,7 +59,7 @@ pub(super) struct Finder<'a> {
     /// What is missing where the body fell.
     fell: Vec<Missing>,
     /// Why the first posture that has no numbers was refused.
-    refused: Option<RelaxError>,
+    refused: Option<EngineError>,
     starts: usize,
     steps: usize,
 }
@@ -76,7 +76,7 @@ impl<'a> Finder<'a> {
         // Steps of priorities pass over the small dips in which a descent ends; other valleys are other starts.
         let engine = |max_steps: usize, goals: &[PriorityLevel]| {
             let (supports, goals) = (search.supports.to_vec(), goals.to_vec());
-            let options = Options { max_steps, valleys: 0, ..options };
+            let options = Options { max_steps, local_minima: 0, ..options };
             let mut engine = Engine::new(search.model, search.start, supports, goals, search.loads, options)?;
             search.locked.iter().for_each(|&rate| engine.lock(rate));
             Ok::<_, SearchError>(engine)
@@ -134,7 +134,7 @@ impl<'a> Finder<'a> {
     /// Settles from a posture with one of the engines and keeps what is new.
     fn run(&mut self, which: usize, from: &Posture, starts: Vec<String>) {
         let engine = &mut self.engines[which];
-        engine.goals_mut()[self.slot].half_spaces.clear();
+        engine.levels_mut()[self.slot].half_spaces.clear();
         self.starts += 1;
         let mut relaxed = match engine.solve(from) {
             Ok(relaxed) => relaxed,
@@ -151,7 +151,7 @@ impl<'a> Finder<'a> {
             self.fell.push(missing);
             return;
         }
-        relaxed.errors.remove(self.slot);
+        relaxed.levels.remove(self.slot);
         let contact = engine.contact();
         let supports = self.search.supports.iter().enumerate();
         let excess = supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum();
@@ -162,7 +162,9 @@ impl<'a> Finder<'a> {
         };
         let (slot, known) = (self.slot, &mut self.found[known]);
         known.starts.extend(new.starts);
-        let far = |relaxed: &Relaxed, excess: f64| excess + relaxed.slip + relaxed.errors[..slot].iter().sum::<f64>();
+        let far = |relaxed: &SolvedPosture, excess: f64| {
+            excess + relaxed.slip + relaxed.levels[..slot].iter().map(|level| level.length).sum::<f64>()
+        };
         if new.relaxed.effort < known.relaxed.effort
             && far(&new.relaxed, new.excess) <= far(&known.relaxed, known.excess) + YIELDED[0]
         {
@@ -196,7 +198,7 @@ impl<'a> Finder<'a> {
                 spaces.push(space);
             }
         }
-        self.engines[0].goals_mut()[self.slot].half_spaces = spaces;
+        self.engines[0].levels_mut()[self.slot].half_spaces = spaces;
         if let Ok(under) = self.engines[0].solve(from) {
             self.steps += under.steps;
             self.run(0, &under.posture, vec![label]);
@@ -307,7 +309,7 @@ impl<'a> Finder<'a> {
         for level in 0..=self.slot {
             let error = |i: usize| {
                 let found = &self.found[i];
-                if level == 0 { found.excess } else { found.relaxed.errors[level - 1] }
+                if level == 0 { found.excess } else { found.relaxed.levels[level - 1].length }
             };
             let least = counted.iter().map(|&i| error(i)).fold(f64::INFINITY, f64::min);
             counted.retain(|&i| error(i) <= least + yielded);
@@ -339,7 +341,7 @@ impl<'a> Finder<'a> {
     fn describe(&mut self, i: usize) -> Result<RelaxedPosture, SearchError> {
         let model = self.search.model;
         let Found { relaxed, starts, .. } = self.found[i].clone();
-        self.engines[1].see(&relaxed.posture)?;
+        self.engines[1].evaluate(&relaxed.posture)?;
         let (body, contact) = (self.engines[1].body(), self.engines[1].contact());
         let supports = (0..contact.supports().len()).map(|i| Carried {
             share: contact.share(i),

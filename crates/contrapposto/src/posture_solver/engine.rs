@@ -14,14 +14,13 @@ use curvature::Curvature;
 use nalgebra::Vector3;
 
 use super::probe::Probe;
-use super::{Options, Reason, RelaxError, Relaxed, Step};
+use super::{EngineError, LevelError, Options, Reason, SolvedPosture, Step};
 use crate::contact::{ContactForces, Support};
 use crate::effort::basin_hopping::BasinHopping;
 use crate::effort::hessian::HessianModel;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::posture_solver::inverse_kinematics::GoalError;
 use crate::statics::{ExternalTorque, Load, PassiveTorque};
 use crate::tasks::PriorityLevel;
 use crate::tasks::body::{Body, BodyError, Needs};
@@ -78,7 +77,7 @@ impl<'a> Engine<'a> {
     /// Checks supports and goals, the most important first. Supports stay where they are in `start`.
     ///
     /// # Errors
-    /// [`RelaxError`] names the first thing that does not fit the model.
+    /// [`EngineError`] names the first thing that does not fit the model.
     pub fn new(
         model: &'a Model,
         start: &Posture,
@@ -86,10 +85,11 @@ impl<'a> Engine<'a> {
         goals: Vec<PriorityLevel>,
         loads: &[Load],
         options: Options,
-    ) -> Result<Self, RelaxError> {
+    ) -> Result<Self, EngineError> {
         let mut needs = Needs { torque: true, center_of_mass: true };
-        let fits =
-            |level: usize, task: &Task| task.check(model).map_err(|error: TaskError| GoalError::Task { level, error });
+        let fits = |level: usize, task: &Task| {
+            task.check(model).map_err(|error: TaskError| EngineError::Task { level, error })
+        };
         for (level, goal) in goals.iter().enumerate() {
             for task in &goal.tasks {
                 fits(level, task)?;
@@ -167,7 +167,7 @@ impl<'a> Engine<'a> {
     }
 
     /// The goals, to move targets between steps. What is changed must still fit the model; effort must stay where it is.
-    pub fn goals_mut(&mut self) -> &mut [PriorityLevel] {
+    pub fn levels_mut(&mut self) -> &mut [PriorityLevel] {
         &mut self.goals
     }
 
@@ -175,7 +175,7 @@ impl<'a> Engine<'a> {
     ///
     /// # Errors
     /// [`BodyError::Load`] for a load that does not fit the model; nothing is changed then.
-    pub fn set_loads(&mut self, loads: &[Load]) -> Result<(), RelaxError> {
+    pub fn set_loads(&mut self, loads: &[Load]) -> Result<(), EngineError> {
         loads.iter().try_for_each(|load| load.check(self.model)).map_err(BodyError::from)?;
         self.loads = loads.to_vec();
         self.all_loads = loads.iter().chain(self.contact.loads()).copied().collect();
@@ -201,14 +201,14 @@ impl<'a> Engine<'a> {
     /// One step: moves `posture` by what the goals ask for.
     ///
     /// # Errors
-    /// [`RelaxError`] when the posture does not fit the model; it is not moved then.
-    pub fn step(&mut self, posture: &mut Posture) -> Result<Step, RelaxError> {
-        self.see(posture)?;
+    /// [`EngineError`] when the posture does not fit the model; it is not moved then.
+    pub fn step(&mut self, posture: &mut Posture) -> Result<Step, EngineError> {
+        self.evaluate(posture)?;
         self.build();
-        let taken_back = self.went_wrong();
-        if taken_back {
+        let rejected_previous = self.went_wrong();
+        if rejected_previous {
             posture.values_mut().copy_from_slice(self.last.values());
-            self.see(posture)?;
+            self.evaluate(posture)?;
             self.build();
         }
         self.bound(posture);
@@ -224,11 +224,11 @@ impl<'a> Engine<'a> {
         self.raise_price();
         self.unreached.clear();
         self.unreached.extend((0..self.problem.levels.len()).map(|k| self.solver.residual_norm(k)));
-        Ok(Step { largest: self.largest, taken_back, status })
+        Ok(Step { largest: self.largest, rejected_previous, status, changes: self.solver.changes() })
     }
 
     /// Lets the next step be as long as ever: something new is asked.
-    pub fn hurry(&mut self) {
+    pub fn widen_trust_region(&mut self) {
         self.reach = self.options.max_step;
         self.errors[0].fill(f64::INFINITY);
     }
@@ -251,7 +251,7 @@ impl<'a> Engine<'a> {
     ///
     /// # Errors
     /// As [`Engine::step`].
-    pub fn solve(&mut self, start: &Posture) -> Result<Relaxed, RelaxError> {
+    pub fn solve(&mut self, start: &Posture) -> Result<SolvedPosture, EngineError> {
         self.restart();
         let mut posture = start.clone();
         let (settled, mut steps) = self.look_into_valleys(&mut posture)?;
@@ -261,26 +261,35 @@ impl<'a> Engine<'a> {
             let step = self.step(&mut posture)?;
             steps += 1;
             let gained = self.merit(1) - self.merit(0);
-            let little = gained.abs() <= self.options.gain * self.merit(0) && step.largest < 0.9 * self.reach;
-            idle = if step.largest <= self.options.still {
+            let little =
+                gained.abs() <= self.options.merit_tolerance * self.merit(0) && step.largest < 0.9 * self.reach;
+            idle = if step.largest <= self.options.step_tolerance {
                 3
-            } else if little && !step.taken_back {
+            } else if little && !step.rejected_previous {
                 idle + 1
             } else {
                 0
             };
         }
-        self.see(&posture)?;
+        self.evaluate(&posture)?;
         self.build();
         if self.went_wrong() {
             posture.values_mut().copy_from_slice(self.last.values());
-            self.see(&posture)?;
+            self.evaluate(&posture)?;
             self.build();
         }
-        let reason = if steps < most { Reason::Settled } else { Reason::Steps };
-        Ok(Relaxed {
+        let levels: Vec<LevelError> =
+            self.goals.iter().map(|level| LevelError::of(level, self.model, &self.body)).collect();
+        let reason = if levels.iter().all(|level| level.length <= self.options.level_tolerance) {
+            Reason::Reached
+        } else if steps < most {
+            Reason::Converged
+        } else {
+            Reason::StepLimit
+        };
+        Ok(SolvedPosture {
             effort: 2.0 * self.effort[0],
-            errors: (0..self.goals.len()).map(|goal| self.error(goal)).collect(),
+            levels,
             slip: self.slip(),
             balance: self.contact.balance(),
             reason,
@@ -292,8 +301,8 @@ impl<'a> Engine<'a> {
     /// Computes everything that depends on the posture, contact forces included.
     ///
     /// # Errors
-    /// [`RelaxError::Body`] when the posture does not fit the model, or a passive law gives no torque in it.
-    pub fn see(&mut self, posture: &Posture) -> Result<(), RelaxError> {
+    /// [`EngineError::Body`] when the posture does not fit the model, or a passive law gives no torque in it.
+    pub fn evaluate(&mut self, posture: &Posture) -> Result<(), EngineError> {
         if self.seen && self.body.posture() == posture {
             return Ok(());
         }
@@ -331,9 +340,9 @@ impl<'a> Engine<'a> {
     /// found anew, N m/rad. `None` where the rate cannot move so.
     ///
     /// # Errors
-    /// [`RelaxError`] when the posture does not fit the model.
-    pub fn slope_along(&mut self, posture: &Posture, rate: usize, above: usize) -> Result<Option<f64>, RelaxError> {
-        self.see(posture)?;
+    /// [`EngineError`] when the posture does not fit the model.
+    pub fn slope_along(&mut self, posture: &Posture, rate: usize, above: usize) -> Result<Option<f64>, EngineError> {
+        self.evaluate(posture)?;
         let level = &mut self.probe.problem.levels[0];
         level.clear();
         for goal in std::iter::once(&self.places).chain(&self.goals[..above]) {

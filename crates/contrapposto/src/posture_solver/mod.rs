@@ -7,9 +7,13 @@
 //! forces are found anew for the posture reached ([`crate::contact`]), so that the reported posture is in equilibrium exactly.
 
 mod engine;
+mod error;
 pub mod inverse_kinematics;
-mod outcome;
+mod options;
 mod probe;
+mod report;
 
 pub use engine::Engine;
-pub use outcome::{Options, Reason, RelaxError, Relaxed, Step};
+pub use error::EngineError;
+pub use options::{Options, Reason, Step};
+pub use report::{LevelError, RowError, SolvedPosture};

@@ -1,6 +1,6 @@
 //! How does a torque change when one joint moves and the rest follows?
 
-use super::RelaxError;
+use super::EngineError;
 use crate::contact::ContactForces;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -67,7 +67,7 @@ impl Probe {
         posture: &Posture,
         rate: usize,
         loads: &[Load],
-    ) -> Result<Option<f64>, RelaxError> {
+    ) -> Result<Option<f64>, EngineError> {
         self.row.fill(0.0);
         self.row[rate] = 1.0;
         self.problem.levels[1].clear();

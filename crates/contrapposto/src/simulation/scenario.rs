@@ -6,7 +6,7 @@ use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
-use crate::posture_solver::RelaxError;
+use crate::posture_solver::EngineError;
 use crate::statics::{Load, LoadError, PassiveTorqueError};
 use crate::tasks::PriorityLevel;
 use crate::tasks::{Task, TaskError};
@@ -152,7 +152,7 @@ pub enum ScenarioError {
     Passive(#[from] PassiveTorqueError),
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
-    Relax(#[from] RelaxError),
+    Relax(#[from] EngineError),
     /// A snapshot is of another body or run.
     #[error("the snapshot does not fit this scenario")]
     Snapshot,

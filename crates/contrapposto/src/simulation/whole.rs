@@ -70,7 +70,7 @@ impl<'a> Whole<'a> {
                 }
             }
         };
-        let options = Options { max_step: 0.1, valleys: 0, ..Options::default() };
+        let options = Options { max_step: 0.1, local_minima: 0, ..Options::least_effort() };
         let mut first = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut first);
         let start = first.solve(&scenario.start)?;
@@ -79,7 +79,7 @@ impl<'a> Whole<'a> {
         let mut places = vec![0; scenario.tasks.len()];
         above.iter().enumerate().for_each(|(place, &i)| places[i] = place);
         below.iter().enumerate().for_each(|(place, &i)| places[i] = above.len() + MOST + place);
-        let options = Options { guarded: false, max_step: FOLLOW * scenario.relief.max_step, ..options };
+        let options = Options { reject_steps: false, max_step: FOLLOW * scenario.relief.max_step, ..options };
         // Supports stay where they were at the scenario's start, not where the first solution left them.
         let mut engine = Engine::new(model, &scenario.start, supports(), goals, &scenario.loads, options)?;
         lock(&mut engine);
@@ -121,7 +121,7 @@ impl<'a> Whole<'a> {
         }
         self.asked.clear();
         self.asked.extend(reliefs.iter().map(|(i, _)| *i));
-        for (slot, goal) in self.engine.goals_mut()[self.above..self.above + MOST].iter_mut().enumerate() {
+        for (slot, goal) in self.engine.levels_mut()[self.above..self.above + MOST].iter_mut().enumerate() {
             goal.half_spaces.truncate(usize::from(slot < reliefs.len()));
             match (reliefs.get(slot), goal.half_spaces.first_mut()) {
                 (Some((_, space)), Some(kept)) => kept.clone_from(space),
@@ -130,12 +130,12 @@ impl<'a> Whole<'a> {
             }
         }
         if pressing {
-            self.engine.hurry();
+            self.engine.widen_trust_region();
         }
         let largest = self.engine.step(posture)?.largest;
         let before = if self.calm == CALM { 0 } else { self.calm };
         self.calm = if largest <= SLOW && !pressing { before + 1 } else { 0 };
-        if self.calm > 0 && self.calm.is_multiple_of(SOON) && (largest <= STILL || self.engine.sink(posture)?) {
+        if self.calm > 0 && self.calm.is_multiple_of(SOON) && (largest <= STILL || self.engine.descend(posture)?) {
             self.calm = CALM;
         }
         let kept = |(slot, (_, space)): &(usize, &(usize, &HalfSpace))| {
@@ -148,7 +148,7 @@ impl<'a> Whole<'a> {
 
     /// Computes everything in a posture.
     pub(super) fn see(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
-        Ok(self.engine.see(posture)?)
+        Ok(self.engine.evaluate(posture)?)
     }
 
     /// Goes back to where the last step began.
@@ -204,7 +204,7 @@ impl<'a> Whole<'a> {
 
     /// Something changed: the body moves again.
     pub(super) fn wake(&mut self) {
-        self.engine.hurry();
+        self.engine.widen_trust_region();
         self.calm = 0;
         self.slopes.fill(None);
     }
@@ -216,7 +216,7 @@ impl<'a> Whole<'a> {
 
     pub(super) fn set_task(&mut self, task: usize, goal: &PriorityLevel) {
         self.wake();
-        self.engine.goals_mut()[self.places[task]].clone_from(goal);
+        self.engine.levels_mut()[self.places[task]].clone_from(goal);
     }
 
     pub(super) fn still(&self) -> bool {

@@ -16,6 +16,7 @@ mod polygon;
 mod posture;
 mod priority_level;
 mod pull;
+mod unit;
 
 pub use center_of_mass::{CenterOfMass, CenterOfMassGoal};
 pub use distance::Distance;
@@ -28,6 +29,7 @@ pub use point::Point;
 pub use polygon::{HalfPlane, half_planes};
 pub use posture::Posture;
 pub use priority_level::PriorityLevel;
+pub use unit::Unit;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -184,18 +186,18 @@ impl Task {
         }
     }
 
-    /// Unit of the error of a row: `m`, `rad`, or `1` for shares of strength.
+    /// Unit of the error of a row.
     ///
     /// # Panics
     /// Unless `row` is less than [`Task::rows`].
-    pub fn unit(&self, model: &Model, row: usize) -> &'static str {
+    pub fn unit(&self, model: &Model, row: usize) -> Unit {
         assert!(row < self.rows(), "row {row} of {}", self.rows());
         match self {
-            Self::Point(_) | Self::Distance(_) | Self::CenterOfMass(_) => "m",
-            Self::Orientation(_) | Self::LookAt(_) => "rad",
-            Self::Placement(_) => ["m", "rad"][row / 3],
+            Self::Point(_) | Self::Distance(_) | Self::CenterOfMass(_) => Unit::Metre,
+            Self::Orientation(_) | Self::LookAt(_) => Unit::Radian,
+            Self::Placement(_) => [Unit::Metre, Unit::Radian][row / 3],
             Self::Posture(task) => task.unit(model, row),
-            Self::Effort(_) => "1",
+            Self::Effort(_) => Unit::ShareOfStrength,
         }
     }
 

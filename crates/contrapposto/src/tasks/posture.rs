@@ -5,7 +5,7 @@
 //! the left one's of `-r`. Rows are multiplied with the weight of their rate.
 
 use super::orientation::inverse_left_jacobian;
-use super::{Check, TaskError, append, equation};
+use super::{Check, TaskError, Unit, append, equation};
 use crate::model::Model;
 use crate::posture::{Part, parts};
 use crate::tasks::body::Body;
@@ -28,9 +28,9 @@ impl Posture {
         Self { target, weights }
     }
 
-    pub(super) fn unit(&self, model: &Model, row: usize) -> &'static str {
+    pub(super) fn unit(&self, model: &Model, row: usize) -> Unit {
         let asked = model.rates().iter().zip(&self.weights).filter(|(_, weight)| **weight > 0.0);
-        asked.map(|(rate, _)| if rate.rotational { "rad" } else { "m" }).nth(row).unwrap_or("rad")
+        asked.map(|(rate, _)| Unit::of(rate)).nth(row).unwrap_or(Unit::Radian)
     }
 
     pub(super) fn residual(&self, model: &Model, body: &Body, out: &mut Vec<f64>) {

@@ -1,7 +1,7 @@
 //! The page of a solved pose.
 
 use contrapposto::contact::root_rates;
-use contrapposto::posture_solver::inverse_kinematics::{Pose, Reason};
+use contrapposto::posture_solver::{Reason, SolvedPosture};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 use contrapposto_report::{Moments, Table};
 
@@ -16,7 +16,7 @@ use crate::view::text::pose::{reached, tasks};
 use crate::view::words::{list, percent, plain};
 
 /// The page of a solved pose.
-pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseText) -> Result<String, Fail> {
+pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText) -> Result<String, Fail> {
     let model = &scenario.model;
     let Held { frame, holds } = held(model, &pose.posture, &scenario.loads, &scenario.supports)?;
     let frames = [frame];
@@ -44,9 +44,9 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
     };
     report.reasons = match pose.reason {
         Reason::Reached => vec![],
-        Reason::Closest if missing.is_empty() => vec![],
-        Reason::Closest => vec!["What is left is as near as the tasks above it allow.".to_owned()],
-        Reason::Steps => vec!["The largest number of steps was made, and the body still moves.".to_owned()],
+        Reason::Converged if missing.is_empty() => vec![],
+        Reason::Converged => vec!["What is left is as near as the tasks above it allow.".to_owned()],
+        Reason::StepLimit => vec!["The largest number of steps was made, and the body still moves.".to_owned()],
     };
     if !text.supports_hold {
         report.reasons.push("The supports do not stay where they are.".to_owned());
@@ -73,7 +73,7 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &Pose, text: &PoseTe
 }
 
 /// `--figures` of a solved pose.
-pub(crate) fn figures_of_pose(scenario: &PoseScenario, pose: &Pose) -> Result<Vec<(String, Vec<u8>)>, Fail> {
+pub(crate) fn figures_of_pose(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<Vec<(String, Vec<u8>)>, Fail> {
     let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
     figures_of_postures(&scenario.title, &scenario.model, &[held.frame], &["the posture".to_owned()])
 }

@@ -1,6 +1,6 @@
 //! The terminal table of a solved pose.
 
-use contrapposto::posture_solver::inverse_kinematics::{Pose, Reason};
+use contrapposto::posture_solver::{Reason, SolvedPosture};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 
 use super::plain_table;
@@ -39,7 +39,7 @@ fn left(level: &PoseLevelText) -> String {
     if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
 }
 
-pub(crate) fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, folder: &Folder) -> String {
+pub(crate) fn report(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText, folder: &Folder) -> String {
     let mut table = plain_table();
     table.set_header(["priority", "task", "what is left", ""]);
     for entries in tasks(text) {
@@ -52,8 +52,8 @@ pub(crate) fn report(scenario: &PoseScenario, pose: &Pose, text: &PoseText, fold
     }
     let reason = match pose.reason {
         Reason::Reached => "everything is reached",
-        Reason::Closest => "nothing moves any more: what is left is as near as the tasks above allow",
-        Reason::Steps => "the largest number of steps was made, and the body still moves",
+        Reason::Converged => "nothing moves any more: what is left is as near as the tasks above allow",
+        Reason::StepLimit => "the largest number of steps was made, and the body still moves",
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
     let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };

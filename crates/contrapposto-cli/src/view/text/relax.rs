@@ -145,7 +145,7 @@ impl PostureText {
             center_of_pressure_m: carried.center_of_pressure.map(Into::into),
         });
         let effort = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
-        let goals = scenario.goals.iter().zip(&scenario.labels).zip(&found.relaxed.errors);
+        let goals = scenario.goals.iter().zip(&scenario.labels).zip(&found.relaxed.levels);
         let tasks = goals.filter(|((goal, _), _)| !effort(goal));
         let hanging = found.hanging.iter().map(|hanging| HangingText {
             coordinate: name(hanging.coordinate),
@@ -169,7 +169,7 @@ impl PostureText {
         let values = found.relaxed.posture.values().iter().copied();
         Self {
             effort: found.relaxed.effort,
-            settled: found.relaxed.reason == Reason::Settled,
+            settled: found.relaxed.reason != Reason::StepLimit,
             held_by: found.stability.equilibrium.map(|equilibrium| match equilibrium {
                 Equilibrium::Stable(Carrier::Ligaments) => "ligaments",
                 Equilibrium::Stable(Carrier::Gravity) => "gravity",
@@ -179,7 +179,9 @@ impl PostureText {
             free_directions: found.stability.directions.len(),
             stiffness_without_energy: found.stability.without_energy,
             supports: supports.collect(),
-            tasks: tasks.map(|((_, labels), error)| TaskText { task: labels.join(" + "), error: *error }).collect(),
+            tasks: tasks
+                .map(|((_, labels), level)| TaskText { task: labels.join(" + "), error: level.length })
+                .collect(),
             slip: found.relaxed.slip,
             hanging: hanging.collect(),
             groups: found.work.iter().map(group).collect(),

@@ -1,6 +1,6 @@
 //! When does the engine go down into valleys of effort, and what are they asked?
 
-use super::super::RelaxError;
+use super::super::EngineError;
 use super::Engine;
 use crate::contact::Balance;
 use crate::effort::basin_hopping::BasinHopping;
@@ -11,15 +11,15 @@ use crate::tasks::Task;
 
 impl Engine<'_> {
     /// Moves to the lowest bottom of the valleys; is that the answer, and after how many steps?
-    pub(super) fn look_into_valleys(&mut self, posture: &mut Posture) -> Result<(bool, usize), RelaxError> {
-        if self.options.valleys == 0 || !self.can_descend() {
+    pub(super) fn look_into_valleys(&mut self, posture: &mut Posture) -> Result<(bool, usize), EngineError> {
+        if self.options.local_minima == 0 || !self.can_descend() {
             return Ok((false, 0));
         }
-        self.see(posture)?;
-        let count = self.options.valleys;
+        self.evaluate(posture)?;
+        let count = self.options.local_minima;
         let (ask, valleys) = self.ask();
         let Some(bottom) = valleys.find(&ask, posture, count)? else { return Ok((false, 0)) };
-        self.see(posture)?;
+        self.evaluate(posture)?;
         let held = self.contact.balance() == Balance::Held;
         Ok((bottom.settled && held && self.effort_goal == Some(self.goals.len() - 1), bottom.steps))
     }
@@ -28,12 +28,12 @@ impl Engine<'_> {
     /// says whether it did: not if that lies farther away than the largest step, or goals below effort would be passed over.
     ///
     /// # Errors
-    /// [`RelaxError::Body`] when the posture does not fit the model.
-    pub fn sink(&mut self, posture: &mut Posture) -> Result<bool, RelaxError> {
+    /// [`EngineError::Body`] when the posture does not fit the model.
+    pub fn descend(&mut self, posture: &mut Posture) -> Result<bool, EngineError> {
         if self.effort_goal != Some(self.goals.len().wrapping_sub(1)) || !self.can_descend() {
             return Ok(false);
         }
-        self.see(posture)?;
+        self.evaluate(posture)?;
         let most = self.options.max_step;
         let (ask, valleys) = self.ask();
         let there = valleys.sink(&ask, posture, most)?;

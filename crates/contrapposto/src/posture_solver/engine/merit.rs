@@ -28,12 +28,12 @@ impl Engine<'_> {
             *shift = 0.0;
         }
         self.reach = if wrong { 0.3 * self.largest } else { (2.0 * self.reach).min(self.options.max_step) };
-        if wrong && self.options.guarded {
+        if wrong && self.options.reject_steps {
             // What was before is now again.
             self.errors.swap(0, 1);
             self.effort[0] = self.effort[1];
         }
-        wrong && self.options.guarded
+        wrong && self.options.reject_steps
     }
 
     /// Gives the effort level its second derivative.

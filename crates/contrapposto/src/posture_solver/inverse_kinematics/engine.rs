@@ -1,114 +1,14 @@
 //! One step toward the goals, and steps until nothing moves.
 
 use super::curvature::Curvature;
+use crate::contact::Balance;
 use crate::model::Model;
 use crate::posture::Posture;
+use crate::posture_solver::{EngineError, LevelError, Options, Reason, SolvedPosture, Step};
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
-use crate::tasks::TaskError;
 use crate::tasks::body::{Body, BodyError, Needs};
-use hierarchical_least_squares::{Level, Multipliers, Problem, ProblemError, Solver, Status};
-
-/// How far a step may go, and when steps end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// Largest change of any rate in one step, rad or m.
-    pub max_step: f64,
-    /// Largest number of steps of [`Engine::solve`].
-    pub max_steps: usize,
-    /// Steps end when no rate would change by more than this, rad or m.
-    pub still: f64,
-    /// A level counts as reached when the length of its error is at most this, in its units.
-    pub reached: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { max_step: 0.6, max_steps: 300, still: 1e-9, reached: 1e-6 }
-    }
-}
-
-/// Why goals, posture or loads were refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum GoalError {
-    /// A task does not fit the model.
-    #[error("priority {}: {error}", level + 1)]
-    Task {
-        /// Level, the first is 0.
-        level: usize,
-        /// Why.
-        error: TaskError,
-    },
-    /// A half-space does not fit the model.
-    #[error("priority {}: a half-space {problem}", level + 1)]
-    HalfSpace {
-        /// Level, the first is 0.
-        level: usize,
-        /// Why.
-        problem: String,
-    },
-    /// An option without meaning.
-    #[error("{what} is {value}; it must be {accepted}")]
-    Option {
-        /// Which.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-        /// What would be accepted.
-        accepted: &'static str,
-    },
-    /// The posture or a load does not fit the model.
-    #[error(transparent)]
-    Body(#[from] BodyError),
-    /// Numbers so large that the rows of a task are not finite.
-    #[error("the goals have no finite rows in this posture: {0}")]
-    Rows(#[from] ProblemError),
-}
-
-/// What one step did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// Largest change of any rate, rad or m.
-    pub largest: f64,
-    /// What the solver says of the linearised goals.
-    pub status: Status,
-    /// How often its active set changed.
-    pub changes: usize,
-}
-
-/// Why [`Engine::solve`] ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
-    /// Every level is reached.
-    Reached,
-    /// Nothing moves any more, and some level is as near as the levels above allow.
-    Closest,
-    /// The largest number of steps was made.
-    Steps,
-}
-
-/// What is left of one level.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Reached {
-    /// The errors of its tasks, one after the other, in their units, then those of its half-spaces (rad, m).
-    pub errors: Vec<f64>,
-    /// Their length.
-    pub length: f64,
-}
-
-/// The posture that [`Engine::solve`] came to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pose {
-    /// All coordinates.
-    pub posture: Posture,
-    /// By level.
-    pub levels: Vec<Reached>,
-    /// Why it ended there.
-    pub reason: Reason,
-    /// Steps made.
-    pub steps: usize,
-}
+use hierarchical_least_squares::{Level, Multipliers, Problem, Solver};
 
 /// Brings a body toward goals. Nothing is allocated after the first step.
 #[derive(Clone, Debug)]
@@ -152,28 +52,30 @@ impl<'a> Engine<'a> {
     /// Checks the goals, the most important first. Coordinates that are locked or follow others do not move on their own.
     ///
     /// # Errors
-    /// [`GoalError`] names the first thing that does not fit the model.
+    /// [`EngineError`] names the first thing that does not fit the model.
     pub fn new(
         model: &'a Model,
         goals: Vec<PriorityLevel>,
         loads: &[Load],
         options: Options,
-    ) -> Result<Self, GoalError> {
-        for (what, value) in
-            [("max_step (rad, m)", options.max_step), ("still (rad, m)", options.still), ("reached", options.reached)]
-        {
+    ) -> Result<Self, EngineError> {
+        for (what, value) in [
+            ("max_step (rad, m)", options.max_step),
+            ("step_tolerance (rad, m)", options.step_tolerance),
+            ("level_tolerance", options.level_tolerance),
+        ] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(GoalError::Option { what, value, accepted: "greater than 0 and finite" });
+                return Err(EngineError::Option { what, value, accepted: "greater than 0 and finite" });
             }
         }
         let mut needs = Needs::default();
         for (level, goal) in goals.iter().enumerate() {
             for task in &goal.tasks {
-                task.check(model).map_err(|error| GoalError::Task { level, error })?;
+                task.check(model).map_err(|error| EngineError::Task { level, error })?;
                 needs = needs.with(task.needs());
             }
             for space in &goal.half_spaces {
-                check_half_space(model, space).map_err(|problem| GoalError::HalfSpace { level, problem })?;
+                check_half_space(model, space).map_err(|problem| EngineError::HalfSpace { level, problem })?;
             }
         }
         for load in loads {
@@ -225,7 +127,7 @@ impl<'a> Engine<'a> {
     }
 
     /// The goals, to move targets between steps. What is changed must still fit the model.
-    pub fn goals_mut(&mut self) -> &mut [PriorityLevel] {
+    pub fn levels_mut(&mut self) -> &mut [PriorityLevel] {
         &mut self.goals
     }
 
@@ -247,10 +149,11 @@ impl<'a> Engine<'a> {
     /// One step: moves `posture` by what the goals ask for, within ranges and `max_step`.
     ///
     /// # Errors
-    /// [`GoalError`] when the posture does not fit the model; it is not moved then.
-    pub fn step(&mut self, posture: &mut Posture) -> Result<Step, GoalError> {
+    /// [`EngineError`] when the posture does not fit the model; it is not moved then.
+    pub fn step(&mut self, posture: &mut Posture) -> Result<Step, EngineError> {
         self.linearise(posture)?;
-        if self.went_wrong() {
+        let rejected_previous = self.went_wrong();
+        if rejected_previous {
             posture.values_mut().copy_from_slice(self.last.values());
             self.linearise(posture)?;
         }
@@ -269,7 +172,7 @@ impl<'a> Engine<'a> {
             self.restore(posture, k)?;
         }
         self.largest = [largest, self.largest[0]];
-        Ok(Step { largest, status, changes: self.solver.changes() })
+        Ok(Step { largest, rejected_previous, status, changes: self.solver.changes() })
     }
 
     /// Forgets what earlier steps have shown: the next one starts afresh.
@@ -290,7 +193,7 @@ impl<'a> Engine<'a> {
     ///
     /// # Errors
     /// As [`Engine::step`].
-    pub fn solve(&mut self, start: &Posture) -> Result<Pose, GoalError> {
+    pub fn solve(&mut self, start: &Posture) -> Result<SolvedPosture, EngineError> {
         self.solve_watched(start, |_, _| {})
     }
 
@@ -302,54 +205,47 @@ impl<'a> Engine<'a> {
         &mut self,
         start: &Posture,
         mut watch: impl FnMut(&Step, &Posture),
-    ) -> Result<Pose, GoalError> {
+    ) -> Result<SolvedPosture, EngineError> {
         let mut posture = start.clone();
         self.restart();
         let most = self.options.max_steps;
         let warm = most / 3;
-        let cooling = (0.1 * self.options.still / self.options.max_step).powf(1.0 / (most - warm).max(1) as f64);
+        let cooling =
+            (0.1 * self.options.step_tolerance / self.options.max_step).powf(1.0 / (most - warm).max(1) as f64);
         let mut steps = 0;
         let mut still = false;
         while steps < most && !still {
             let step = self.step(&mut posture)?;
             watch(&step, &posture);
             steps += 1;
-            still = step.largest <= self.options.still;
+            still = step.largest <= self.options.step_tolerance;
             if steps > warm {
                 self.ceiling *= cooling;
             }
         }
         let levels = self.report(&posture)?;
-        let reached = levels.iter().all(|level| level.length <= self.options.reached);
+        let reached = levels.iter().all(|level| level.length <= self.options.level_tolerance);
         let reason = if reached {
             Reason::Reached
         } else if still {
-            Reason::Closest
+            Reason::Converged
         } else {
-            Reason::Steps
+            Reason::StepLimit
         };
-        Ok(Pose { posture, levels, reason, steps })
+        Ok(SolvedPosture { posture, levels, effort: 0.0, slip: 0.0, balance: Balance::Held, reason, steps })
     }
 
     /// What is left of each level at a posture.
     ///
     /// # Errors
     /// As [`Engine::step`].
-    pub fn report(&mut self, posture: &Posture) -> Result<Vec<Reached>, GoalError> {
+    pub fn report(&mut self, posture: &Posture) -> Result<Vec<LevelError>, EngineError> {
         self.body.update(self.model, posture, &self.loads, self.needs)?;
-        let mut levels = vec![];
-        for goal in &self.goals {
-            let mut errors = vec![];
-            goal.tasks.iter().for_each(|task| task.residual(self.model, &self.body, &mut errors));
-            errors.extend(goal.half_spaces.iter().map(|space| space.violation(posture.values()).max(0.0)));
-            let length = errors.iter().map(|e| e * e).sum::<f64>().sqrt();
-            levels.push(Reached { errors, length });
-        }
-        Ok(levels)
+        Ok(self.goals.iter().map(|level| LevelError::of(level, self.model, &self.body)).collect())
     }
 
     /// Rows of all levels and bounds of the step, at a posture.
-    fn linearise(&mut self, posture: &Posture) -> Result<(), GoalError> {
+    fn linearise(&mut self, posture: &Posture) -> Result<(), EngineError> {
         self.body.update(self.model, posture, &self.loads, self.needs)?;
         self.before.copy_from_slice(&self.errors);
         for (k, goal) in self.goals.iter().enumerate() {
@@ -394,7 +290,7 @@ impl<'a> Engine<'a> {
     fn choose_bent(&mut self) {
         let last = self.goals.len().saturating_sub(1);
         if let Some(k) = self.bent {
-            if self.errors[k] <= self.options.reached {
+            if self.errors[k] <= self.options.level_tolerance {
                 self.bent = None;
             }
             return;
@@ -404,7 +300,7 @@ impl<'a> Engine<'a> {
             let error = self.errors[k];
             let stalls =
                 above < 0.05 && error > 0.8 * self.before[k] && self.solver.residual_norm(k) > 0.5 * self.before[k];
-            self.stalls[k] = if stalls && error > self.options.reached { self.stalls[k] + 1 } else { 0 };
+            self.stalls[k] = if stalls && error > self.options.level_tolerance { self.stalls[k] + 1 } else { 0 };
             if self.stalls[k] >= STALLS {
                 self.bent = Some(k);
                 return;
@@ -420,7 +316,7 @@ impl<'a> Engine<'a> {
     }
 
     /// A long step of a bent level leaves errors above it that grow with its square: takes them back with the least motion.
-    fn restore(&mut self, posture: &mut Posture, k: usize) -> Result<(), GoalError> {
+    fn restore(&mut self, posture: &mut Posture, k: usize) -> Result<(), EngineError> {
         if k == 0 {
             return Ok(());
         }

@@ -9,5 +9,5 @@ mod engine;
 pub(crate) mod hold;
 mod symmetric;
 
+pub use engine::Engine;
 pub(crate) use engine::bound_rates;
-pub use engine::{Engine, GoalError, Options, Pose, Reached, Reason, Step};

@@ -1,0 +1,47 @@
+//! Why the posture solver refuses its input.
+
+use crate::contact::SupportError;
+use crate::tasks::TaskError;
+use crate::tasks::body::BodyError;
+use hierarchical_least_squares::ProblemError;
+
+/// Why levels, supports, options, posture or loads were refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EngineError {
+    /// A task does not fit the model.
+    #[error("priority {}: {error}", level + 1)]
+    Task {
+        /// Level, the first is 0.
+        level: usize,
+        /// Why.
+        error: TaskError,
+    },
+    /// A half-space does not fit the model.
+    #[error("priority {}: a half-space {problem}", level + 1)]
+    HalfSpace {
+        /// Level, the first is 0.
+        level: usize,
+        /// Why.
+        problem: String,
+    },
+    /// An option without meaning.
+    #[error("{what} is {value}; it must be {accepted}")]
+    Option {
+        /// Which.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+    /// A support does not fit the model.
+    #[error(transparent)]
+    Support(#[from] SupportError),
+    /// The posture or a load does not fit the model.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// Numbers so large that the rows of a task are not finite.
+    #[error("the levels have no finite rows in this posture: {0}")]
+    Rows(#[from] ProblemError),
+}

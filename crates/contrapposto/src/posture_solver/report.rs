@@ -1,0 +1,67 @@
+//! The result of a solve: a posture, the error of every level, and why the steps ended there.
+
+use super::Reason;
+use crate::contact::Balance;
+use crate::model::Model;
+use crate::posture::Posture;
+use crate::tasks::body::Body;
+use crate::tasks::{PriorityLevel, Unit};
+
+/// The posture that a solve came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolvedPosture {
+    /// All coordinates.
+    pub posture: Posture,
+    /// Errors by level.
+    pub levels: Vec<LevelError>,
+    /// Sum of squares of the effort level, as shares of strength; 0 without one.
+    pub effort: f64,
+    /// Distance of the supports from their places: length of the errors in m and rad together; 0 without supports.
+    pub slip: f64,
+    /// Equilibrium of the root; [`Balance::Held`] without supports.
+    pub balance: Balance,
+    /// Why the steps ended.
+    pub reason: Reason,
+    /// Number of steps.
+    pub steps: usize,
+}
+
+/// Error of one level in a posture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelError {
+    /// Errors of its tasks, one after the other, then of its half-spaces.
+    pub rows: Vec<RowError>,
+    /// Length of all of them; rows keep the scale of their units.
+    pub length: f64,
+}
+
+/// Error of one row of a level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowError {
+    /// Present less wanted, in `unit`; 0 where an inequality holds.
+    pub value: f64,
+    /// Unit of `value`.
+    pub unit: Unit,
+}
+
+impl LevelError {
+    /// Computes the error of `level` in the posture of `body`.
+    pub(super) fn of(level: &PriorityLevel, model: &Model, body: &Body) -> Self {
+        let mut rows = vec![];
+        let mut errors = vec![];
+        for task in &level.tasks {
+            errors.clear();
+            task.residual(model, body, &mut errors);
+            rows.extend(errors.iter().enumerate().map(|(i, &value)| RowError { value, unit: task.unit(model, i) }));
+        }
+        let values = body.posture().values();
+        rows.extend(level.half_spaces.iter().map(|space| {
+            let coordinate = space.normal.iter().position(|entry| *entry != 0.0);
+            let rate = coordinate.and_then(|c| model.coordinates()[c].rate);
+            let unit = rate.map_or(Unit::Radian, |rate| Unit::of(&model.rates()[rate]));
+            RowError { value: space.violation(values).max(0.0), unit }
+        }));
+        let length = rows.iter().map(|row| row.value * row.value).sum::<f64>().sqrt();
+        Self { rows, length }
+    }
+}
