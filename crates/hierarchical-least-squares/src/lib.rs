@@ -31,7 +31,6 @@
 mod certificate;
 mod diagonal;
 mod factor;
-mod least_squares;
 mod level;
 pub mod linalg;
 mod multipliers;

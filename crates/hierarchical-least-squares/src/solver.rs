@@ -2,8 +2,8 @@
 
 use crate::diagonal::Diagonal;
 use crate::factor::{Entry, Factor};
-use crate::least_squares::LeastSquares;
-use crate::linalg::{dot, norm, norm_and_count};
+use crate::linalg::LeastSquares;
+use crate::linalg::{dot, norm, norm_and_nonzeros};
 use crate::multipliers::{Multipliers, Table};
 use crate::problem::{LARGEST, Problem, ProblemError};
 
@@ -314,7 +314,7 @@ impl Solver {
         for level in &problem.levels {
             for i in 0..level.rows() {
                 let row = &level.matrix[i * n..(i + 1) * n];
-                let (norm, count) = norm_and_count(row);
+                let (norm, count) = norm_and_nonzeros(row);
                 // Most often the unknown behind that of the row before.
                 let next = self.single.last().copied().flatten().map_or(0, |c| c + 1);
                 let only = |c: &usize| row.get(*c).is_some_and(|a| *a != 0.0);

@@ -2,7 +2,7 @@
 
 use crate::diagonal::Diagonal;
 use crate::factor::Factor;
-use crate::least_squares::LeastSquares;
+use crate::linalg::LeastSquares;
 use crate::multipliers::Table;
 use crate::solver::Solver;
 
@@ -81,25 +81,6 @@ impl Diagonal {
             square: Vec::with_capacity(n * n),
             columns: Vec::with_capacity(n),
             wanted: Vec::with_capacity(n),
-        }
-    }
-}
-
-impl LeastSquares {
-    fn with_capacity(rows: usize, columns: usize) -> Self {
-        Self {
-            given: Vec::with_capacity(rows * columns),
-            given_right: Vec::with_capacity(rows),
-            matrix: Vec::with_capacity(rows * (columns + 1)),
-            order: Vec::with_capacity(rows),
-            sizes: Vec::with_capacity(rows),
-            places: Vec::with_capacity(columns),
-            left: Vec::with_capacity(columns),
-            vector: Vec::with_capacity(rows),
-            diagonal: Vec::with_capacity(columns),
-            scale: Vec::with_capacity(columns),
-            residual: Vec::with_capacity(rows),
-            ..Self::default()
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::statics::{FixedIn, Load, LoadKind, PassiveTorque};
 use crate::tasks::Task;
 use crate::tasks::body::{Body, BodyError, Needs};
 use hierarchical_least_squares::Level;
-use hierarchical_least_squares::linalg::{add_scaled, add_squares};
+use hierarchical_least_squares::linalg::{add_outer_products, add_scaled};
 
 /// Posture, forces, and all that follows from them. Keeps its space.
 #[derive(Clone, Debug)]
@@ -198,7 +198,7 @@ impl Iterate {
         problem.matrix.resize(n * n, 0.0);
         problem.slope.clear();
         problem.slope.resize(n, 0.0);
-        add_squares(&mut problem.matrix, n, &self.slopes, |_| 1.0);
+        add_outer_products(&mut problem.matrix, n, &self.slopes, |_| 1.0);
         for (row, error) in self.slopes.chunks_exact(n).zip(&self.errors) {
             add_scaled(&mut problem.slope, *error, row);
         }

@@ -10,5 +10,4 @@ mod reduced_problem;
 mod sqp;
 #[cfg(test)]
 mod standing_adult;
-pub(crate) mod symmetric;
 mod weld;

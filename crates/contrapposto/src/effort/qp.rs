@@ -8,8 +8,10 @@
 //! The guess is put right a few times only. Where most unknowns lie at bounds it may still be wrong then (one in ten of small
 //! random problems): bounds hold, rows may be missed, and a descent, which judges every step by what comes of it, goes on.
 
-use super::symmetric::{add_times, back, eliminate, four, width};
-use hierarchical_least_squares::linalg::{add_scaled, add_squares, dot};
+use hierarchical_least_squares::linalg::{
+    add_outer_products, add_scaled, add_symmetric_column, block_start, blocked_cholesky, dot, padded_width,
+    solve_upper, solve_upper_transposed,
+};
 
 /// Weight of held rows in `M`, against the largest diagonal entry.
 const FAST: f64 = 10.0;
@@ -103,7 +105,7 @@ impl QuadraticProgram {
         }
         self.bent.fill(0.0);
         for (j, d) in self.step.iter().enumerate() {
-            add_times(&self.matrix, j, *d, &mut self.bent);
+            add_symmetric_column(&mut self.bent, *d, &self.matrix, j);
         }
         let finite = self.step.iter().chain(&self.multipliers).all(|number| number.is_finite());
         finite.then_some(shift)
@@ -112,14 +114,14 @@ impl QuadraticProgram {
     /// The least change of the last answer, measured by `M`, that changes the rows that are held by `change`.
     pub(crate) fn correct(&mut self, change: impl Fn(usize) -> f64, correction: &mut [f64]) {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = width(k + q + 1);
+        let w = padded_width(k + q + 1);
         self.answer.clear();
         self.answer.extend(self.on.iter().map(|row| change(*row)));
         self.solve_schur();
         let mut z = std::mem::take(&mut self.table);
         z.clear();
         z.extend((0..k).map(|i| dot(&self.factor[i * w + k..i * w + k + q], &self.answer)));
-        back(&self.factor, w, &mut z);
+        solve_upper(&self.factor, w, &mut z);
         correction.fill(0.0);
         self.free.iter().zip(&z).for_each(|(i, z)| correction[*i] = *z);
         self.table = z;
@@ -166,7 +168,7 @@ impl QuadraticProgram {
             }
         }
         let (lower, upper, weights) = (&self.lower, &self.upper, &self.weights);
-        add_squares(&mut self.stiff, n, &self.rows, |r| if lower[r] == upper[r] { weights[r] } else { 0.0 });
+        add_outer_products(&mut self.stiff, n, &self.rows, |r| if lower[r] == upper[r] { weights[r] } else { 0.0 });
     }
 
     /// What is free, what is held.
@@ -196,19 +198,19 @@ impl QuadraticProgram {
     /// `[M A^T -g; 0 0 c]` over what is free and held.
     fn fill(&mut self) {
         let (n, k, q) = (self.n, self.free.len(), self.on.len());
-        let w = width(k + q + 1);
+        let w = padded_width(k + q + 1);
         self.factor.resize((k + q) * w, 0.0);
         let all = k == n;
         self.bent.fill(0.0);
         for (j, held) in self.held.iter().enumerate() {
             if *held != 0 {
-                add_times(&self.stiff, j, self.step[j], &mut self.bent);
+                add_symmetric_column(&mut self.bent, self.step[j], &self.stiff, j);
             }
         }
         for (a, &i) in self.free.iter().enumerate() {
             let (from, to) = (&self.stiff[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
             let pull = self.pull[i] + self.bent[i];
-            to[four(a)..a].fill(0.0);
+            to[block_start(a)..a].fill(0.0);
             if all {
                 to[a..k].copy_from_slice(&from[a..]);
             } else {
@@ -244,7 +246,7 @@ impl QuadraticProgram {
     /// `M = R^T R`, `V = R^-T A^T`, `z = R^-T(-g)`, and `S = V^T V` by a second factorisation.
     fn factorise(&mut self, shift: f64) -> bool {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = width(k + q + 1);
+        let w = padded_width(k + q + 1);
         let (mut posture, mut forces) = (0f64, 0f64);
         for (a, &i) in self.free.iter().enumerate() {
             let size = self.factor[a * w + a].abs();
@@ -254,7 +256,7 @@ impl QuadraticProgram {
             let more = if i < self.shifted { shift * self.unit + FLAT * posture } else { FLAT * forces };
             self.factor[a * w + a] += more;
         }
-        if !eliminate(&mut self.factor, w, 0, k) {
+        if !blocked_cholesky(&mut self.factor, w, 0, k) {
             return false;
         }
         // Rows that say the same twice.
@@ -264,28 +266,23 @@ impl QuadraticProgram {
             line[k..].iter_mut().for_each(|entry| *entry = -*entry);
             line[r] += trace;
         }
-        eliminate(&mut self.factor, w, k, k + q)
+        blocked_cholesky(&mut self.factor, w, k, k + q)
     }
 
     /// Step and multipliers from the factors.
     fn answer(&mut self) {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = width(k + q + 1);
+        let w = padded_width(k + q + 1);
         self.answer.clear();
         self.answer.extend((k..k + q).map(|r| self.factor[r * w + k + q]));
-        let base = k * w + k;
-        for i in (0..q).rev() {
-            let line = &self.factor[base + i * w..base + i * w + q];
-            let rest = dot(&line[i + 1..], &self.answer[i + 1..]);
-            self.answer[i] = (self.answer[i] - rest) / line[i];
-        }
+        solve_upper(self.factor.get(k * w + k..).unwrap_or_default(), w, &mut self.answer);
         let mut z = std::mem::take(&mut self.table);
         z.clear();
         z.extend((0..k).map(|i| {
             let line = &self.factor[i * w..(i + 1) * w];
             line[k + q] - dot(&line[k..k + q], &self.answer)
         }));
-        back(&self.factor, w, &mut z);
+        solve_upper(&self.factor, w, &mut z);
         self.free.iter().zip(&z).for_each(|(i, z)| self.step[*i] = *z);
         self.table = z;
         self.multipliers.clear();
@@ -296,18 +293,10 @@ impl QuadraticProgram {
     /// `S^-1` of what stands in `answer`.
     fn solve_schur(&mut self) {
         let (k, q) = (self.free.len(), self.on.len());
-        let w = width(k + q + 1);
-        let line = |i: usize| (k + i) * w + k;
-        for i in 0..q {
-            self.answer[i] /= self.factor[line(i) + i];
-            let by = self.answer[i];
-            let row = &self.factor[line(i)..line(i) + q];
-            add_scaled(&mut self.answer[i + 1..], -by, &row[i + 1..]);
-        }
-        for i in (0..q).rev() {
-            let row = &self.factor[line(i)..line(i) + q];
-            self.answer[i] = (self.answer[i] - dot(&row[i + 1..], &self.answer[i + 1..])) / row[i];
-        }
+        let w = padded_width(k + q + 1);
+        let schur = self.factor.get(k * w + k..).unwrap_or_default();
+        solve_upper_transposed(schur, w, &mut self.answer);
+        solve_upper(schur, w, &mut self.answer);
     }
 
     /// Adds what is violated, lets go what pulls; `true` if anything changed.

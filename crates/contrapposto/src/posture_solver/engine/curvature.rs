@@ -15,7 +15,7 @@ use crate::statics::Load;
 use crate::tasks::PriorityLevel;
 use crate::tasks::Task;
 use crate::tasks::body::Body;
-use hierarchical_least_squares::linalg::{add_scaled, add_square};
+use hierarchical_least_squares::linalg::{add_outer_product, add_scaled, cholesky};
 use hierarchical_least_squares::{Level, Multipliers, Problem};
 
 /// Weight of rows above, against the largest diagonal entry: what levels above hold fast must not look as if it bent down.
@@ -95,7 +95,7 @@ impl Curvature {
         };
         self.hessian.bend(ask, &seen, &self.multipliers, self.sight, &mut self.matrix);
         for row in self.level.matrix.chunks_exact(m) {
-            add_square(&mut self.matrix, row, 1.0);
+            add_outer_product(&mut self.matrix, row, 1.0);
         }
         let size = (0..m).fold(0.0, |size: f64, i| size.max(self.matrix[i * m + i].abs()));
         for above in &problem.levels[..k] {
@@ -104,7 +104,7 @@ impl Curvature {
                 let square: f64 = row.iter().map(|a| a * a).sum();
                 if square > 0.0 {
                     let weight = FAST * size / square;
-                    add_square(&mut self.matrix, row, weight);
+                    add_outer_product(&mut self.matrix, row, weight);
                     add_scaled(&mut self.slope, -weight * above.upper[i], row);
                 }
             }
@@ -174,25 +174,4 @@ impl Curvature {
     pub(super) fn shift(&mut self) -> &mut f64 {
         &mut self.shift
     }
-}
-
-/// Replaces the upper triangle by `R` with `R^T R` the matrix; `false` where it is not positive.
-fn cholesky(a: &mut [f64], m: usize) -> bool {
-    for r in 0..m {
-        let (upper, lower) = a.split_at_mut((r + 1) * m);
-        let row = &mut upper[r * m..];
-        if row[r].is_nan() || row[r] <= 0.0 {
-            return false;
-        }
-        let root = row[r].sqrt();
-        row[r..].iter_mut().for_each(|entry| *entry /= root);
-        for (i, target) in lower.chunks_exact_mut(m).enumerate() {
-            let i = r + 1 + i;
-            let factor = row[i];
-            if factor != 0.0 {
-                target[i..].iter_mut().zip(&row[i..]).for_each(|(entry, by)| *entry -= factor * by);
-            }
-        }
-    }
-    true
 }

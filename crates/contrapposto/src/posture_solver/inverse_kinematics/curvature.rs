@@ -11,12 +11,11 @@
 //! generalised forces change with the posture is that matrix. It is the gradient of external torque (Eqs. 7, 8).
 
 use super::hold::Hold;
-use super::symmetric::Axes;
 use crate::model::Model;
 use crate::statics::{ExternalTorque, Gradient, Load};
 use crate::tasks::PriorityLevel;
 use crate::tasks::body::Body;
-use hierarchical_least_squares::linalg::{add_scaled, add_square};
+use hierarchical_least_squares::linalg::{SymmetricEigen, add_outer_product, add_scaled, pivoted_cholesky};
 use hierarchical_least_squares::{Level, Problem, Solver};
 
 /// Weight of directions that levels above hold fast, against the largest entry of the second derivative: large enough that
@@ -40,7 +39,7 @@ pub(super) struct Curvature {
     order: Vec<usize>,
     /// How many unknowns of `order` are pivots.
     pivots: usize,
-    left: Axes,
+    left: SymmetricEigen,
     /// Axes of what is left, times the root of how they bend.
     axes: Vec<f64>,
     slope: Vec<f64>,
@@ -66,7 +65,7 @@ impl Curvature {
             factor: vec![0.0; n * n],
             order: Vec::with_capacity(n),
             pivots: 0,
-            left: Axes::new(n),
+            left: SymmetricEigen::new(n),
             axes: Vec::with_capacity(n * n),
             slope: vec![0.0; n],
             row: vec![0.0; n],
@@ -100,7 +99,7 @@ impl Curvature {
         self.hold.estimate(problem, &problem.levels[..k], last, &self.slope);
         self.second_derivative(model, goals, body, k);
         for row in self.level.matrix.chunks_exact(n) {
-            add_square(&mut self.matrix, row, 1.0);
+            add_outer_product(&mut self.matrix, row, 1.0);
         }
         let size = (0..n).fold(0.0, |size: f64, i| size.max(self.matrix[i * n + i].abs()));
         // What is held fast: equations above, and ranges that the level presses against.
@@ -110,7 +109,7 @@ impl Curvature {
                 let multiplier = rows.next().copied().unwrap_or(0.0);
                 let square: f64 = row.iter().map(|a| a * a).sum();
                 if square > 0.0 && (multiplier != 0.0 || above.lower[i] == above.upper[i]) {
-                    add_square(&mut self.matrix, row, FAST * size / square);
+                    add_outer_product(&mut self.matrix, row, FAST * size / square);
                     if above.lower[i] == above.upper[i] {
                         add_scaled(&mut self.slope, multiplier, row);
                     }
@@ -163,45 +162,16 @@ impl Curvature {
     /// directions get no row and are left to the levels below.
     fn factorise(&mut self, n: usize, size: f64) {
         let flat = FLAT * size;
-        self.order.clear();
-        self.order.extend(0..n);
         self.factor.copy_from_slice(&self.matrix);
-        let a = &mut self.factor;
-        let mut rank = 0;
-        while rank < n {
-            let r = rank;
-            let best = (r..n).fold(r, |b, i| {
-                if a[self.order[i] * n + self.order[i]] > a[self.order[b] * n + self.order[b]] { i } else { b }
-            });
-            let p = self.order[best];
-            if a[p * n + p] <= flat {
-                break;
-            }
-            self.order.swap(r, best);
-            let root = a[p * n + p].sqrt();
-            a[p * n + p] = root;
-            for &j in &self.order[r + 1..] {
-                a[p * n + j] /= root;
-            }
-            for s in r + 1..n {
-                let i = self.order[s];
-                let factor = a[p * n + i];
-                if factor != 0.0 {
-                    for &j in &self.order[r + 1..] {
-                        a[i * n + j] -= factor * a[p * n + j];
-                    }
-                }
-            }
-            rank += 1;
-        }
-        self.pivots = rank;
+        self.pivots = pivoted_cholesky(&mut self.factor, n, &mut self.order, flat);
+        let a = &self.factor;
         // What is left bends down or is flat: its own axes, walked as steeply as they bend.
         self.axes.clear();
-        let left = &self.order[rank..];
+        let left = &self.order[self.pivots..];
         if left.is_empty() {
             return;
         }
-        self.left.find(left.len(), |i, j| a[left[i] * n + left[j]]);
+        self.left.decompose(left.len(), |i, j| a[left[i] * n + left[j]]);
         for (bend, axis) in self.left.iter() {
             if bend.abs() > 10.0 * flat {
                 self.axes.extend(axis.iter().map(|x| x * bend.abs().sqrt()));

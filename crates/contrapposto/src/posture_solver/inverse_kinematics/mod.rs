@@ -7,7 +7,6 @@
 mod curvature;
 mod engine;
 pub(crate) mod hold;
-mod symmetric;
 
 pub use engine::Engine;
 pub(crate) use engine::bound_rates;
