@@ -1,7 +1,5 @@
 //! The file itself: what stands in it, and what it is allowed to do.
 
-use std::sync::LazyLock;
-
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use sha2::{Digest, Sha256};
@@ -19,23 +17,8 @@ const SCRIPTS: [&str; 4] = [
     include_str!("../page/page.js"),
 ];
 
-/// plotly.js as the crate embeds it, without the typesetting of formulas that comes with it.
-static PLOTLY: LazyLock<String> = LazyLock::new(|| {
-    let sources = plotly::Plot::offline_js_sources();
-    let script = sources.split_once("<script type=\"text/javascript\">").map_or("", |(_, rest)| rest);
-    read_once(script.split_once("</script>").map_or("", |(script, _)| script))
-});
-
-/// A browser reads a function twice, once to find its end and once when it is called; one in parentheses it reads once. All of
-/// plotly.js is a single function, and reading it is most of what opening a page costs.
-fn read_once(script: &str) -> String {
-    let whole = || {
-        let (head, rest) = script.split_once(" : this, () => {")?;
-        let (body, tail) = rest.rsplit_once("}));")?;
-        Some(format!("{head} : this, (() => {{{body}}})));{tail}"))
-    };
-    whole().unwrap_or_else(|| script.to_owned())
-}
+/// plotly.js, its `basic` distribution (version and source in `vendor/plotly.js/README.md`).
+const PLOTLY: &str = include_str!("../vendor/plotly.js/plotly-basic.min.js");
 
 /// Writes the page.
 ///
@@ -47,7 +30,7 @@ pub fn write(report: &Report) -> String {
     let script = SCRIPTS.concat();
     let policy = format!(
         "default-src 'none'; script-src '{}' '{}'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'",
-        hash(&PLOTLY),
+        hash(PLOTLY),
         hash(&script)
     );
     let title = if report.title.is_empty() { "contrapposto" } else { &report.title };
@@ -58,7 +41,7 @@ pub fn write(report: &Report) -> String {
         "style" => STYLE,
         "data" => &data,
         "script" => &script,
-        "plotly" => &PLOTLY,
+        "plotly" => PLOTLY,
         _ => "",
     };
     let mut page = String::with_capacity(PLOTLY.len() + data.len() + (1 << 18));
@@ -90,18 +73,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_library_is_there_and_ends_no_element() {
-        assert!(PLOTLY.len() > 1_000_000 && PLOTLY.contains("plotly.js v"), "{} bytes", PLOTLY.len());
-        for script in [PLOTLY.as_str(), &SCRIPTS.concat()] {
-            assert!(!script.to_lowercase().contains("</script") && !script.contains("<!--"));
-        }
+    fn plotly_is_the_file_that_its_readme_names() {
+        let digest: String = Sha256::digest(PLOTLY).iter().map(|byte| format!("{byte:02x}")).collect();
+        let version = PLOTLY.split("plotly.js (basic - minified) v").nth(1).and_then(|rest| rest.lines().next()).unwrap();
+        let readme = include_str!("../vendor/plotly.js/README.md");
+        assert!(readme.contains(&digest), "SHA-256 {digest}");
+        assert!(readme.contains(&format!("version {version},")), "version {version}");
     }
 
     #[test]
-    fn the_library_is_read_once() {
-        assert_eq!(PLOTLY.matches(" : this, (() => {").count(), 1);
-        assert!(PLOTLY.trim_end().ends_with("})));"));
-        assert_eq!(read_once("something else"), "something else");
+    fn no_script_ends_its_element() {
+        for script in [PLOTLY, &SCRIPTS.concat()] {
+            assert!(!script.to_lowercase().contains("</script") && !script.contains("<!--"));
+        }
     }
 
     #[test]
