@@ -1,11 +1,13 @@
 //! Where on the paper does a value stand? Ranges, tick marks, and the frame in which curves are drawn.
 
-use crate::canvas::{Align, Canvas, fit};
+use crate::canvas::Canvas;
 use crate::geometry::{Point, Rect, clip};
+use crate::shape::Align;
 use crate::style::{
     FRAME_LEFT, FRAME_PEN, FRAME_WIDTH, GRID_PEN, Ink, LABEL_SIZE, LEADER_PEN, PAPER, Pen, QUIET_TEXT, SMALL_SIZE,
     TEXT, ZERO_PEN,
 };
+use crate::text::fit;
 
 /// Largest size of a number that is drawn; anything beyond is treated like a missing value.
 const LARGEST: f64 = 1e9;

@@ -5,10 +5,12 @@ use crate::body::{BodyFigure, BodyForce, BodyPosture};
 use crate::body_legend::legend;
 use crate::body_paper::Paper;
 use crate::body_view::{Bounds, MOST_PARTS, VIEWS};
-use crate::canvas::{Align, Canvas, fit, wrap};
+use crate::canvas::Canvas;
 use crate::captions::heading;
 use crate::figure::Figure;
+use crate::shape::Align;
 use crate::style::{LABEL_SIZE, MARGIN, QUIET_TEXT, SMALL_SIZE, TEXT, WIDTH};
+use crate::text::{fit, wrap};
 
 /// Most postures; more would not be readable.
 const MOST_POSTURES: usize = 5;
@@ -27,7 +29,7 @@ const WEIGHT: f64 = 0.45;
 /// Draws all postures.
 #[must_use]
 pub fn body_figure(picture: &BodyFigure) -> Figure {
-    let mut canvas = Canvas::new();
+    let mut canvas = Canvas::default();
     let top = heading(&mut canvas, MARGIN, &picture.title, &picture.subtitle, MARGIN);
     let postures = &picture.postures[..picture.postures.len().min(MOST_POSTURES)];
     // Of one posture the views are the columns.

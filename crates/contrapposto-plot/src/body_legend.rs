@@ -4,12 +4,14 @@
 use crate::axes::number_text;
 use crate::body::{BodyFigure, BodyPosture};
 use crate::body_paper::{arrow, cross};
-use crate::canvas::{Align, Canvas, fit, text_width};
+use crate::canvas::Canvas;
 use crate::geometry::Point;
+use crate::shape::Align;
 use crate::style::{
     CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, MARGIN, OUTLINE_PEN, PAPER, Pen, SMALL_SIZE, TEXT, UNKNOWN, WIDTH,
     load_ink,
 };
+use crate::text::{fit, text_width};
 
 /// Length of a sample, of the scale of colours, and their height, px.
 const SAMPLE: f64 = 20.0;

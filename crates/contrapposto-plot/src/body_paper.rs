@@ -6,6 +6,7 @@ use crate::body_view::{Bounds, MOST_PARTS, View, balls};
 use crate::canvas::Canvas;
 use crate::depth::{Solid, order};
 use crate::geometry::Point;
+use crate::path::Path;
 use crate::style::{
     CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, GROUND, GROUND_PEN, Ink, OUTLINE_PEN, PAPER, PLUMB_PEN, Pen,
     TARGET_PEN, UNKNOWN, load_ink,
@@ -93,7 +94,7 @@ impl Paper<'_> {
 
     /// One outline about all parts together.
     fn ghost(&self, canvas: &mut Canvas, parts: &[BodyPart]) {
-        let paths: Vec<String> = self.solids(parts).iter().map(|(solid, _)| solid.outline.path_data()).collect();
+        let paths: Vec<Path> = self.solids(parts).iter().map(|(solid, _)| solid.outline.path()).collect();
         for (fill, pen) in [(GHOST_EDGE, Pen::solid(GHOST_EDGE, 2.0)), (GHOST, Pen::solid(GHOST, 0.4))] {
             paths.iter().for_each(|path| canvas.shape(path.clone(), fill, pen));
         }
@@ -104,7 +105,7 @@ impl Paper<'_> {
         for i in order(&solids) {
             let known = loads[i].filter(|load| !load.is_nan());
             let fill = known.map_or(UNKNOWN, |load| load_ink(load / self.scale_end));
-            canvas.shape(solids[i].outline.path_data(), fill, OUTLINE_PEN);
+            canvas.shape(solids[i].outline.path(), fill, OUTLINE_PEN);
         }
     }
 

@@ -1,8 +1,10 @@
 //! Which words explain a frame? A heading above it, and to its right the legend, where no curve can run into it.
 
 use crate::axes::Frame;
-use crate::canvas::{Align, Canvas, fit};
+use crate::canvas::Canvas;
+use crate::shape::Align;
 use crate::style::{Ink, LABEL_SIZE, LEGEND_LEFT, MARGIN, Pen, QUIET_TEXT, SMALL_SIZE, TEXT, TITLE_SIZE, WIDTH};
+use crate::text::fit;
 
 /// Vertical distance of two entries, px.
 const LINE_HEIGHT: f64 = 19.0;

@@ -1,11 +1,8 @@
-//! What does a finished picture offer? SVG text and PNG bytes of one and the same scene.
+//! Offers a finished picture as SVG text and as the bytes of a PNG file, both of the same shapes.
 
-use kuva::backend::png::PngBackend;
-use kuva::backend::svg::SvgBackend;
-use kuva::render::render::Scene;
-
-/// Image pixels for one unit of the SVG: a figure 800 units wide becomes 1600 pixels wide.
-const PNG_SCALE: f32 = 2.0;
+use crate::png::png;
+use crate::shape::Shape;
+use crate::svg::svg;
 
 /// Greatest height of a PNG in SVG units; beyond it the pixels would fill too much memory.
 const MAX_PNG_HEIGHT: f64 = 8_000.0;
@@ -31,33 +28,30 @@ pub enum PlotError {
 
 /// A finished picture, 800 SVG units wide.
 pub struct Figure {
-    scene: Scene,
+    height: f64,
+    shapes: Vec<Shape>,
 }
 
 impl Figure {
-    pub(crate) fn new(scene: Scene) -> Self {
-        Self { scene }
+    pub(crate) fn new(height: f64, shapes: Vec<Shape>) -> Self {
+        Self { height, shapes }
     }
 
     /// The picture as SVG text: self-contained, the same for the same input, scaling with the page it stands on.
     #[must_use]
     pub fn svg(&self) -> String {
-        let (width, height) = (self.scene.width, self.scene.height);
-        // Round ends and joints are what the PNG renderer draws.
-        let round = r#"stroke-linecap="round" stroke-linejoin="round""#;
-        let opening = format!(r#"<svg viewBox="0 0 {width} {height}" {round} "#);
-        SvgBackend::new().with_pretty(true).render_scene(&self.scene).replacen("<svg ", &opening, 1)
+        svg(self.height, &self.shapes)
     }
 
-    /// The picture as the bytes of a PNG file, 1600 pixels wide, drawn with bundled fonts.
+    /// The picture as the bytes of a PNG file, 1600 pixels wide, drawn with vendored fonts.
     ///
     /// # Errors
     ///
     /// [`PlotError::TooTall`] if the figure has too many panels for one image; [`PlotError::Encode`] if encoding fails.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        if self.scene.height > MAX_PNG_HEIGHT {
-            return Err(PlotError::TooTall { height: self.scene.height, limit: MAX_PNG_HEIGHT });
+        if self.height > MAX_PNG_HEIGHT {
+            return Err(PlotError::TooTall { height: self.height, limit: MAX_PNG_HEIGHT });
         }
-        PngBackend::new().with_scale(PNG_SCALE).render_scene(&self.scene).map_err(PlotError::Encode)
+        png(self.height, &self.shapes).map_err(PlotError::Encode)
     }
 }

@@ -1,4 +1,4 @@
-//! How are torques, postures and fatigue shown as pictures? Plain numbers in, a [`Figure`] out.
+//! Draws torques, postures and fatigue as pictures: plain numbers in, a [`Figure`] out, which is SVG text or PNG bytes.
 //!
 //! | Picture | Function | What it shows |
 //! |---|---|---|
@@ -11,10 +11,11 @@
 //! in their curve, lists of unequal length are read up to the shortest, and a picture of nothing says so.
 //! The same input gives the same bytes. Texts may come from strangers: they are escaped, and cut where they would overlap.
 //!
-//! Inside, every file stands on those above it in this list:
-//! `style` (colours, pens, sizes), `canvas` (the only file that knows the drawing library), `geometry` (clipping, dashes, spreading),
-//! `axes` (data to paper), `captions`, `tags` (notes and postures above a frame), `outline` (hulls of circles), `depth` (what hides
-//! what), `body` (numbers), `body_view` (from where), `body_paper` (shapes), `body_legend`, then one file for each picture.
+//! Inside, a file uses only those above it in this list: `geometry` (clipping, dashes, spreading), `style` (colours, pens, sizes),
+//! `path`, `shape` (the marks), `svg` and `font`, `png` (the two forms of a picture), `figure`, `canvas` (collects marks), `text`
+//! (estimated widths), `axes` (data to paper), `captions`, `tags` (notes and postures above a frame), `outline` (hulls of circles),
+//! `depth` (order of drawing), `body` (numbers), `body_view` (directions of view), `body_paper` (shapes), `body_legend`, then one
+//! file for each picture.
 
 mod axes;
 mod body;
@@ -26,11 +27,17 @@ mod canvas;
 mod captions;
 mod depth;
 mod figure;
+mod font;
 mod geometry;
 mod outline;
 mod passive_chart;
+mod path;
+mod png;
+mod shape;
 mod style;
+mod svg;
 mod tags;
+mod text;
 mod time_line;
 mod torque_balance;
 

@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use crate::geometry::Point;
+use crate::path::{Path, Step};
 
 /// Most circles of one outline.
 pub(crate) const MOST_CIRCLES: usize = 32;
@@ -25,6 +26,22 @@ struct Arc {
     circle: Circle,
     from: f64,
     to: f64,
+}
+
+impl Arc {
+    /// Cubic curves from the arc's first point to its last; of a circle without radius none.
+    fn curves(&self) -> impl Iterator<Item = Step> {
+        let pieces = if self.circle.radius > 0.0 { ((self.to - self.from) / LONGEST_CURVE).ceil() } else { 0.0 };
+        let step = (self.to - self.from) / pieces;
+        // A cubic curve whose handles are so long touches the arc at both ends and in the middle.
+        let handle = 4.0 / 3.0 * (step / 4.0).tan() * self.circle.radius;
+        (0..pieces as u32).map(move |piece| {
+            let ends = [f64::from(piece), f64::from(piece + 1)].map(|k| self.from + k * step);
+            let [(x0, y0), (x, y)] = ends.map(|angle| self.circle.point(angle));
+            let [(s0, c0), (s, c)] = ends.map(f64::sin_cos);
+            Step::Curve((x0 - handle * s0, y0 + handle * c0), (x + handle * s, y - handle * c), (x, y))
+        })
+    }
 }
 
 impl Circle {
@@ -63,29 +80,18 @@ impl Outline {
         polygon || self.arcs.iter().any(within)
     }
 
-    /// As an SVG path, closed; coordinates in px.
-    pub(crate) fn path_data(&self) -> String {
-        let mut data = String::new();
-        for (i, arc) in self.arcs.iter().enumerate() {
-            let (x, y) = arc.circle.point(arc.from);
-            data.push_str(&format!("{}{x:.2} {y:.2}", if i == 0 { 'M' } else { 'L' }));
-            let pieces = if arc.circle.radius > 0.0 { ((arc.to - arc.from) / LONGEST_CURVE).ceil() } else { 0.0 };
-            let step = (arc.to - arc.from) / pieces;
-            // A cubic curve whose handles are so long touches the arc at both ends and in the middle.
-            let handle = 4.0 / 3.0 * (step / 4.0).tan() * arc.circle.radius;
-            for piece in 0..pieces as u32 {
-                let ends = [f64::from(piece), f64::from(piece + 1)].map(|k| arc.from + k * step);
-                let [(x0, y0), (x, y)] = ends.map(|angle| arc.circle.point(angle));
-                let [(s0, c0), (s, c)] = ends.map(f64::sin_cos);
-                let (x1, y1) = (x0 - handle * s0, y0 + handle * c0);
-                let (x2, y2) = (x + handle * s, y - handle * c);
-                data.push_str(&format!("C{x1:.2} {y1:.2} {x2:.2} {y2:.2} {x:.2} {y:.2}"));
-            }
+    /// The closed path of the outline, px.
+    pub(crate) fn path(&self) -> Path {
+        let mut steps = vec![];
+        for arc in &self.arcs {
+            let start = arc.circle.point(arc.from);
+            steps.push(if steps.is_empty() { Step::Move(start) } else { Step::Line(start) });
+            steps.extend(arc.curves());
         }
-        if !data.is_empty() {
-            data.push('Z');
+        if !steps.is_empty() {
+            steps.push(Step::Close);
         }
-        data
+        Path(steps)
     }
 }
 
@@ -145,21 +151,13 @@ mod tests {
         }
     }
 
-    /// Points of a path as it is written: ends of lines and 16 points of every cubic curve.
-    fn points(path: &str) -> Vec<Point> {
-        let spaced: String =
-            path.chars().flat_map(|c| if c.is_alphabetic() { vec![' ', c, ' '] } else { vec![c] }).collect();
-        let (mut found, mut words): (Vec<Point>, _) = (vec![], spaced.split_whitespace());
-        while let Some(command) = words.next() {
-            let count = match command {
-                "M" | "L" => 1,
-                "C" => 3,
-                _ => 0,
-            };
-            let mut number = || words.next().unwrap().parse::<f64>().unwrap();
-            let given: Vec<Point> = (0..count).map(|_| (number(), number())).collect();
-            match (found.last().copied(), given.as_slice()) {
-                (Some(a), &[b, c, d]) => found.extend((1..=16).map(|k| {
+    /// Points of a path: ends of lines and 16 points of every cubic curve.
+    fn points(path: &Path) -> Vec<Point> {
+        let mut found: Vec<Point> = vec![];
+        for step in &path.0 {
+            match (found.last().copied(), *step) {
+                (_, Step::Move(point) | Step::Line(point)) => found.push(point),
+                (Some(a), Step::Curve(b, c, d)) => found.extend((1..=16).map(|k| {
                     let t = f64::from(k) / 16.0;
                     let s = 1.0 - t;
                     let mix = |f: fn(Point) -> f64| {
@@ -167,7 +165,7 @@ mod tests {
                     };
                     (mix(|p| p.0), mix(|p| p.1))
                 })),
-                _ => found.extend(given),
+                _ => {}
             }
         }
         found
@@ -191,12 +189,12 @@ mod tests {
         }
         for case in cases {
             let outline = Outline::of(&case);
-            let drawn = points(&outline.path_data());
+            let drawn = points(&outline.path());
             for k in 0..STEPS {
                 let (sin, cos) = (TAU * f64::from(k) / f64::from(STEPS)).sin_cos();
                 let wanted = case.iter().map(|c| c.reach((cos, sin))).fold(f64::NEG_INFINITY, f64::max);
                 let found = drawn.iter().map(|p| p.0 * cos + p.1 * sin).fold(f64::NEG_INFINITY, f64::max);
-                // Rounding of what is written, and the sag between the 16 points of a curve.
+                // The sag between the 16 points of a curve.
                 assert!((wanted - found).abs() < 0.03, "{case:?}: {wanted} {found}");
             }
             let turned: f64 = outline.arcs.iter().map(|arc| arc.to - arc.from).sum();
@@ -228,7 +226,7 @@ mod tests {
     #[test]
     fn nothing_has_no_outline() {
         let nothing = Outline::of(&[]);
-        assert_eq!(nothing.path_data(), "");
+        assert_eq!(nothing.path(), Path::default());
         assert!(!nothing.contains((0.0, 0.0)));
     }
 }

@@ -4,11 +4,13 @@
 //! of the external torque; its flattest angle divides the range in two.
 
 use crate::axes::{Frame, Range, degrees_text, drawable};
-use crate::canvas::{Align, Canvas, wrap};
+use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
+use crate::shape::Align;
 use crate::style::{BELOW_FRAME, FLAT_ZONE, FRAME_LEFT, MARGIN, PASSIVE_PEN, QUIET_TEXT, SMALL_SIZE, TEXT, WIDTH};
 use crate::tags::{Tag, draw_tags, draw_uprights, tags_height};
+use crate::text::wrap;
 
 const TORQUE_HEIGHT: f64 = 220.0;
 const SLOPE_HEIGHT: f64 = 150.0;
@@ -40,7 +42,7 @@ pub struct PassiveChart {
 /// Draws passive torque and slope.
 #[must_use]
 pub fn passive_curve(chart: &PassiveChart) -> Figure {
-    let mut canvas = Canvas::new();
+    let mut canvas = Canvas::default();
     let tags = tags(chart);
     let top = heading(&mut canvas, FRAME_LEFT, &chart.title, "", MARGIN) + tags_height(&tags);
 

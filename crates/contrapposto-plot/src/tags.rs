@@ -2,9 +2,11 @@
 //! axis, with a thin line that leads there.
 
 use crate::axes::{Frame, drawable};
-use crate::canvas::{Align, Canvas, fit, text_width};
+use crate::canvas::Canvas;
 use crate::geometry::{Point, Slot, spread};
+use crate::shape::Align;
 use crate::style::{ACTIVE, GOAL, Ink, LEADER, Pen, SMALL_SIZE, START, TRUNK};
+use crate::text::{fit, text_width};
 
 /// Size of a drawing of a posture, px.
 const SKETCH_WIDTH: f64 = 100.0;

@@ -59,7 +59,7 @@ struct Part<'a> {
 /// Draws the chart.
 #[must_use]
 pub fn time_line(line: &TimeLine) -> Figure {
-    let mut canvas = Canvas::new();
+    let mut canvas = Canvas::default();
     let tags: Vec<Tag> = line.events.iter().map(|(time, label)| Tag::note(*time, label.as_str(), TEXT)).collect();
     let mut top = heading(&mut canvas, FRAME_LEFT, &line.title, &line.subtitle, MARGIN) + tags_height(&tags);
     let times = Range::around(line.time_s.iter().copied());

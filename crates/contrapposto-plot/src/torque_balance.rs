@@ -59,7 +59,7 @@ pub struct TorqueBalance {
 /// Draws the panels, one below the other.
 #[must_use]
 pub fn torque_balance(panels: &[TorqueBalance]) -> Figure {
-    let mut canvas = Canvas::new();
+    let mut canvas = Canvas::default();
     let mut top = MARGIN;
     for panel in panels {
         top = draw_panel(&mut canvas, panel, top) + MARGIN;

@@ -66,9 +66,7 @@ fn advance(c: char) -> f64 {
 fn texts(svg: &str) -> Vec<(Extent, String)> {
     let text = |element: &str| {
         let (opening, rest) = element.split_once('>').unwrap();
-        let said = rest.split("</text>").next().unwrap().replace("</tspan>", "");
-        let said =
-            said.split_once('>').filter(|_| said.starts_with("<tspan")).map_or(said.clone(), |(_, s)| s.to_owned());
+        let said = rest.split("</text>").next().unwrap().to_owned();
         let (x, y, size) = (number(opening, "x"), number(opening, "y"), number(opening, "font-size"));
         let width = size * said.chars().map(advance).sum::<f64>();
         let left = match attribute(opening, "text-anchor") {
@@ -176,7 +174,7 @@ fn the_length_of_an_arrow_is_what_the_legend_says() {
         .map(|pair| {
             let point = |line: &str| -> Vec<f64> {
                 let d = attribute(line, "d").trim_start_matches('M').replace(['L', ','], " ");
-                d.split_whitespace().take(2).map(|n| n.trim().parse().unwrap()).collect()
+                d.split_whitespace().take(2).map(|n| n.parse().unwrap()).collect()
             };
             let (foot, tip) = (point(pair[0]), point(pair[1]));
             (tip[0] - foot[0]).hypot(tip[1] - foot[1])
