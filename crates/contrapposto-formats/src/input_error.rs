@@ -1,22 +1,19 @@
 //! What is wrong with an input file, where, and what would be right?
 
-use miette::{Diagnostic, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 /// A refused input. Prints with file, line, column and a caret when shown through `miette`.
 #[derive(Debug)]
 pub struct InputError(Box<Complaint>);
 
 /// What is wrong, where, and what would be right.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 struct Complaint {
     message: String,
-    #[source_code]
     source_code: Excerpt,
-    #[label("{label}")]
     span: Option<SourceSpan>,
     label: String,
-    #[help]
     help: Option<String>,
 }
 
@@ -30,15 +27,16 @@ impl std::error::Error for InputError {}
 
 impl Diagnostic for InputError {
     fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
-        self.0.help()
+        self.0.help.as_ref().map(|help| Box::new(help) as _)
     }
 
-    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        self.0.source_code()
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.0.source_code)
     }
 
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
-        self.0.labels()
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = |span| LabeledSpan::new_with_span(Some(self.0.label.clone()), span);
+        self.0.span.map(|span| Box::new(std::iter::once(label(span))) as _)
     }
 }
 

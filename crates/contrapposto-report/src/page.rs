@@ -75,7 +75,8 @@ mod tests {
     #[test]
     fn plotly_is_the_file_that_its_readme_names() {
         let digest: String = Sha256::digest(PLOTLY).iter().map(|byte| format!("{byte:02x}")).collect();
-        let version = PLOTLY.split("plotly.js (basic - minified) v").nth(1).and_then(|rest| rest.lines().next()).unwrap();
+        let version =
+            PLOTLY.split("plotly.js (basic - minified) v").nth(1).and_then(|rest| rest.lines().next()).unwrap();
         let readme = include_str!("../vendor/plotly.js/README.md");
         assert!(readme.contains(&digest), "SHA-256 {digest}");
         assert!(readme.contains(&format!("version {version},")), "version {version}");
