@@ -80,8 +80,8 @@ impl ContactForces {
         Ok(Self::build(model, supports, root_rates(model)))
     }
 
-    /// Of a part of a body that no support holds: no forces, and its root is held by the rest of the body.
-    pub(crate) fn of_a_limb(model: &Model) -> Self {
+    /// No forces, for a part of a body that moves no support: the rest of the body holds its root.
+    pub(crate) fn without_supports(model: &Model) -> Self {
         Self::build(model, vec![], vec![])
     }
 

@@ -1,52 +1,73 @@
-//! Which valley of effort lies lowest, of those near the start?
+//! Searches for the lowest of the local minima of effort near a posture, by basin hopping.
 //!
-//! Effort has many: arms, neck and spine each rest on their tissue in more than one way. From the bottom of the nearest one
-//! the limbs are moved aside, as far as goals let them to first order, and go down again; what lies lower is kept (Wales & Doye
-//! 1997, "Global optimization by basin-hopping"), part by part where parts rest by themselves ([`super::reduced_problem`]). The directions
-//! come from a fixed sequence of numbers: the same problem has the same answer.
+//! Effort has many local minima: arms, neck and spine each can hang on their passive tissue in more than one way. From the nearest
+//! local minimum the posture is perturbed, as far as the constraints allow to first order, and descends again; the lower one is
+//! kept (Wales & Doye 1997, "Global optimization by basin-hopping"), subtree by subtree where subtrees are decoupled
+//! ([`super::decoupled_subtrees`]). Perturbations come from a fixed sequence of numbers: equal problems have equal answers.
 
+use super::decoupled_subtrees::DecoupledSubtrees;
 use super::problem::EffortProblem;
-use super::reduced_problem::{DecoupledSubtrees, ReducedProblem};
+use super::reduced_problem::ReducedProblem;
 use super::sqp::{LocalMinimum, Sqp, SqpOptions};
+use super::tolerances::{
+    FINAL_VIOLATION, LARGEST_RANGE, LEAST_IMPROVEMENT, PERTURBED_COORDINATES, PERTURBED_SHARE, SEARCH_VIOLATION,
+};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::tasks::body::BodyError;
 
-/// The way to the nearest valley.
-const NEAR: SqpOptions = SqpOptions { pace: 0.15, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-3 };
-/// The way down from aside, where goals are still near; whoever must go far there does not end low.
-const ASIDE: SqpOptions = SqpOptions { pace: 0.4, plain: 5, reach: 0.6, longer: false, steps: 20, gain: 0.05 };
-/// Another way to a valley whose goals are far.
-const AGAIN: SqpOptions = SqpOptions { reach: 0.3, longer: true, steps: 100, gain: 1e-3, ..ASIDE };
-/// The way down from a posture put together from parts.
-const MIXED: SqpOptions = SqpOptions { plain: 0, reach: 0.3, ..ASIDE };
-/// The way to the bottom of a posture that hardly moves any more: a step that gains a millionth is not worth a move.
-const SINK: SqpOptions = SqpOptions { pace: 0.4, plain: 0, reach: 0.1, longer: true, steps: 40, gain: 1e-6 };
-/// The way to the very bottom.
-const LAST: SqpOptions = SqpOptions { pace: 0.4, plain: 0, reach: 0.3, longer: true, steps: 100, gain: 1e-13 };
-/// How far aside, as a share of the range of each coordinate.
-const FAR: f64 = 0.7;
-/// Share of the coordinates that go aside, neighbours in the model's order.
-const PART: f64 = 0.7;
-/// Largest range that counts, rad or m.
-const WIDE: f64 = 2.0;
-/// A bottom counts when it is lower by this share.
-const LOWER: f64 = 1e-3;
-/// What must hold may be missed by so much on the way, and at the end.
-const ROUGH: f64 = 1e-3;
-const EXACT: f64 = 1e-9;
+/// To the nearest local minimum.
+const TO_NEAREST: SqpOptions = SqpOptions {
+    feasibility_step: 0.15,
+    gauss_newton_steps: 0,
+    trust_radius: 0.3,
+    extrapolates: true,
+    max_steps: 100,
+    least_gain: 1e-3,
+};
+/// From a perturbed posture, whose targets are near; descents that must go far rarely end low.
+const FROM_PERTURBED: SqpOptions = SqpOptions {
+    feasibility_step: 0.4,
+    gauss_newton_steps: 5,
+    trust_radius: 0.6,
+    extrapolates: false,
+    max_steps: 20,
+    least_gain: 0.05,
+};
+/// To the nearest local minimum once more, where [`TO_NEAREST`] leaves constraints violated.
+const RETRY: SqpOptions =
+    SqpOptions { trust_radius: 0.3, extrapolates: true, max_steps: 100, least_gain: 1e-3, ..FROM_PERTURBED };
+/// From a posture that is mixed from subtrees of two postures.
+const FROM_MIXED: SqpOptions = SqpOptions { gauss_newton_steps: 0, trust_radius: 0.3, ..FROM_PERTURBED };
+/// From a posture that hardly moves any more to its own local minimum: a smaller predicted gain is not worth a motion.
+const AT_REST: SqpOptions = SqpOptions {
+    feasibility_step: 0.4,
+    gauss_newton_steps: 0,
+    trust_radius: 0.1,
+    extrapolates: true,
+    max_steps: 40,
+    least_gain: 1e-6,
+};
+/// To the local minimum that is the answer.
+const FINAL: SqpOptions = SqpOptions {
+    feasibility_step: 0.4,
+    gauss_newton_steps: 0,
+    trust_radius: 0.3,
+    extrapolates: true,
+    max_steps: 100,
+    least_gain: 1e-13,
+};
 
-/// A descent, and the lowest place so far. Keeps its space, but for what welded bodies need.
+/// Workspace of the search, except for reduced models.
 #[derive(Clone, Debug)]
 pub(crate) struct BasinHopping {
-    descent: Sqp,
+    sqp: Sqp,
     lowest: Candidate,
-    /// The bottom of the nearest valley.
-    near: Posture,
-    look: Perturbations,
+    nearest: Posture,
+    hop: Hop,
 }
 
-/// A posture with its forces, and the multipliers of what must hold there.
+/// A posture with its forces, and the multipliers of the constraints.
 #[derive(Clone, Debug)]
 struct Candidate {
     posture: Posture,
@@ -54,189 +75,208 @@ struct Candidate {
     multipliers: Vec<f64>,
 }
 
-/// Looks for other valleys.
+/// Workspace of a hop to another local minimum.
 #[derive(Clone, Debug)]
-struct Perturbations {
-    aside: Candidate,
-    wish: Vec<f64>,
+struct Hop {
+    perturbed: Candidate,
+    perturbation: Vec<f64>,
 }
 
 impl BasinHopping {
     pub(crate) fn new(model: &Model) -> Self {
-        let place = Candidate { posture: model.default_posture(), forces: vec![], multipliers: vec![] };
+        let candidate = Candidate { posture: model.default_posture(), forces: vec![], multipliers: vec![] };
         Self {
-            descent: Sqp::new(model),
-            lowest: place.clone(),
-            near: model.default_posture(),
-            look: Perturbations { aside: place, wish: vec![] },
+            sqp: Sqp::new(model),
+            lowest: candidate.clone(),
+            nearest: model.default_posture(),
+            hop: Hop { perturbed: candidate, perturbation: vec![] },
         }
     }
 
-    /// Looks into so many valleys, at least one, and moves `posture` to the lowest bottom; `None` leaves it where it is: what
-    /// must hold cannot be reached from there.
-    pub(crate) fn find(
+    /// Moves `posture` to the lowest local minimum of `count`, the nearest one and others that hops reach. `None` leaves the
+    /// posture where it is: no descent from there satisfies the constraints.
+    pub(crate) fn minimise(
         &mut self,
-        ask: &EffortProblem<'_>,
+        problem: &EffortProblem<'_>,
         posture: &mut Posture,
         count: usize,
     ) -> Result<Option<LocalMinimum>, BodyError> {
-        let mut limbs = ReducedProblem::of(ask, posture)?;
-        if ask.contact.supports().is_empty() {
-            let welded = limbs.take().filter(|limbs| limbs.model.rates().len() < ask.model.rates().len());
-            if let Some(limbs) = welded {
-                return Self::new(&limbs.model).find(&limbs.ask(ask), posture, count);
+        let mut reduced = ReducedProblem::of(problem, posture)?;
+        if problem.contact.supports().is_empty() {
+            let smaller = reduced.take().filter(|reduced| reduced.model.rates().len() < problem.model.rates().len());
+            if let Some(reduced) = smaller {
+                return Self::new(&reduced.model).minimise(&reduced.problem(problem), posture, count);
             }
         }
-        let (descent, lowest) = (&mut self.descent, &mut self.lowest);
-        lowest.forces.clear();
-        lowest.forces.extend_from_slice(ask.contact.forces());
-        lowest.posture.values_mut().copy_from_slice(posture.values());
-        let mut steps = 0;
-        if let Some(limbs) = &limbs {
-            // First what limbs can do by themselves: the rest of the body has less to do then.
-            let mut descent = Sqp::new(&limbs.model);
-            let bottom = descent.go(&limbs.ask(ask), posture, &[], &[], &NEAR)?;
-            steps += bottom.steps;
-            if bottom.violation <= ROUGH {
-                lowest.keep_posture(&descent);
-            }
-        }
-        let mut near = descent.go(ask, &lowest.posture, &lowest.forces, &[], &NEAR)?;
-        steps += near.steps;
-        if near.violation > ROUGH {
-            near = descent.go(ask, &lowest.posture, &lowest.forces, &[], &AGAIN)?;
-            steps += near.steps;
-        }
-        if near.violation > ROUGH {
+        let Some((nearest, mut steps)) = self.descend_to_nearest(problem, reduced.as_ref(), posture)? else {
             return Ok(None);
+        };
+        let (sqp, lowest) = (&mut self.sqp, &mut self.lowest);
+        if reduced.is_some() {
+            reduced = ReducedProblem::of(problem, &lowest.posture)?; // fixed joints may have moved
         }
-        lowest.keep(descent);
-        self.near.values_mut().copy_from_slice(lowest.posture.values());
-        if limbs.is_some() {
-            limbs = ReducedProblem::of(ask, &lowest.posture)?; // the rest may have moved
-        }
-        if let Some(limbs) = &limbs {
-            let mut alone = Candidate { forces: vec![], ..lowest.clone() };
-            steps += self.look.search(&limbs.ask(ask), &mut Sqp::new(&limbs.model), &mut alone, count)?;
-            lowest.posture = alone.posture;
+        if let Some(reduced) = &reduced {
+            let mut upper = Candidate { forces: vec![], ..lowest.clone() };
+            let mut sqp = Sqp::new(&reduced.model);
+            steps += self.hop.search(&reduced.problem(problem), &mut sqp, &mut upper, count)?;
+            lowest.posture = upper.posture;
         } else {
-            steps += self.look.search(ask, descent, lowest, count)?;
+            steps += self.hop.search(problem, sqp, lowest, count)?;
         }
-        let mut last = descent.go(ask, &lowest.posture, &lowest.forces, &lowest.multipliers, &LAST)?;
+        let mut last = sqp.descend(problem, &lowest.posture, &lowest.forces, &lowest.multipliers, &FINAL)?;
         steps += last.steps;
-        let moved = lowest.posture != self.near;
-        if limbs.is_some() && moved && (last.violation > ROUGH || last.effort > near.effort) {
-            // What the limbs gained cost the rest more.
-            last = descent.go(ask, &self.near, &lowest.forces, &lowest.multipliers, &LAST)?;
+        let moved = lowest.posture != self.nearest;
+        if reduced.is_some() && moved && (last.violation > SEARCH_VIOLATION || last.objective > nearest.objective) {
+            // The gain of the reduced problem costs the rest of the body more.
+            last = sqp.descend(problem, &self.nearest, &lowest.forces, &lowest.multipliers, &FINAL)?;
             steps += last.steps;
         }
-        if last.violation > ROUGH {
+        if last.violation > SEARCH_VIOLATION {
             return Ok(None);
         }
-        posture.values_mut().copy_from_slice(descent.at.posture.values());
-        Ok(Some(LocalMinimum { steps, settled: last.settled && last.violation <= EXACT, ..last }))
+        posture.values_mut().copy_from_slice(sqp.iterate.posture.values());
+        let converged = last.converged && last.violation <= FINAL_VIOLATION;
+        Ok(Some(LocalMinimum { steps, converged, ..last }))
     }
 
-    /// Moves `posture` to the bottom of its own valley, and says whether it did: not if that lies farther away than `most` in any
-    /// coordinate, or something that must hold does not.
-    pub(crate) fn sink(
+    /// Descends from `posture` to the nearest local minimum, in the reduced problem first; returns it and the number of steps.
+    fn descend_to_nearest(
         &mut self,
-        ask: &EffortProblem<'_>,
+        problem: &EffortProblem<'_>,
+        reduced: Option<&ReducedProblem>,
+        posture: &Posture,
+    ) -> Result<Option<(LocalMinimum, usize)>, BodyError> {
+        let (sqp, lowest) = (&mut self.sqp, &mut self.lowest);
+        lowest.forces.clear();
+        lowest.forces.extend_from_slice(problem.contact.forces());
+        lowest.posture.values_mut().copy_from_slice(posture.values());
+        let mut steps = 0;
+        if let Some(reduced) = reduced {
+            let mut sqp = Sqp::new(&reduced.model);
+            let end = sqp.descend(&reduced.problem(problem), posture, &[], &[], &TO_NEAREST)?;
+            steps += end.steps;
+            if end.violation <= SEARCH_VIOLATION {
+                lowest.keep_posture(&sqp);
+            }
+        }
+        let mut nearest = sqp.descend(problem, &lowest.posture, &lowest.forces, &[], &TO_NEAREST)?;
+        steps += nearest.steps;
+        if nearest.violation > SEARCH_VIOLATION {
+            nearest = sqp.descend(problem, &lowest.posture, &lowest.forces, &[], &RETRY)?;
+            steps += nearest.steps;
+        }
+        if nearest.violation > SEARCH_VIOLATION {
+            return Ok(None);
+        }
+        lowest.keep(sqp);
+        self.nearest.values_mut().copy_from_slice(lowest.posture.values());
+        Ok(Some((nearest, steps)))
+    }
+
+    /// Moves `posture` to its own local minimum, and returns whether it did: not if a coordinate would change by more than
+    /// `most`, or a constraint is violated there.
+    pub(crate) fn descend(
+        &mut self,
+        problem: &EffortProblem<'_>,
         posture: &mut Posture,
         most: f64,
     ) -> Result<bool, BodyError> {
         let forces = &mut self.lowest.forces;
         forces.clear();
-        forces.extend_from_slice(ask.contact.forces());
-        let bottom = self.descent.go(ask, posture, forces, &[], &SINK)?;
-        let end = &self.descent.at.posture;
+        forces.extend_from_slice(problem.contact.forces());
+        let minimum = self.sqp.descend(problem, posture, forces, &[], &AT_REST)?;
+        let end = &self.sqp.iterate.posture;
         let near = end.values().iter().zip(posture.values()).all(|(a, b)| (a - b).abs() <= most);
-        let there = bottom.settled && bottom.violation <= EXACT && near;
-        if there {
+        let reached = minimum.converged && minimum.violation <= FINAL_VIOLATION && near;
+        if reached {
             posture.values_mut().copy_from_slice(end.values());
         }
-        Ok(there)
+        Ok(reached)
     }
 }
 
 impl Candidate {
-    /// It is where the descent is now.
-    fn keep(&mut self, descent: &Sqp) {
-        self.keep_posture(descent);
-        self.forces.clone_from(&descent.at.forces);
-        self.multipliers.clone_from(&descent.multipliers);
+    /// Copies the iterate of a descent.
+    fn keep(&mut self, sqp: &Sqp) {
+        self.keep_posture(sqp);
+        self.forces.clone_from(&sqp.iterate.forces);
+        self.multipliers.clone_from(&sqp.multipliers);
     }
 
-    fn keep_posture(&mut self, descent: &Sqp) {
-        self.posture.values_mut().copy_from_slice(descent.at.posture.values());
+    fn keep_posture(&mut self, sqp: &Sqp) {
+        self.posture.values_mut().copy_from_slice(sqp.iterate.posture.values());
     }
 }
 
-impl Perturbations {
-    /// Moves `lowest` to the lowest of so many valleys and returns the number of steps that took.
+impl Hop {
+    /// Moves `lowest` to the lowest of `count` local minima, itself included; returns the number of steps.
     fn search(
         &mut self,
-        ask: &EffortProblem<'_>,
-        descent: &mut Sqp,
+        problem: &EffortProblem<'_>,
+        sqp: &mut Sqp,
         lowest: &mut Candidate,
         count: usize,
     ) -> Result<usize, BodyError> {
-        descent.begin(ask, &lowest.posture, &lowest.forces)?;
-        let parts = DecoupledSubtrees::of(ask, &descent.at);
-        let mut efforts = parts.efforts(&descent.at.errors);
-        let (mut best, mut steps, mut random) = (descent.at.effort, 0, 0);
+        sqp.start_at(problem, &lowest.posture, &lowest.forces)?;
+        let subtrees = DecoupledSubtrees::of(problem, &sqp.iterate);
+        let mut objectives = subtrees.objectives(&sqp.iterate.residual);
+        let (mut best, mut steps, mut random) = (sqp.iterate.objective, 0, 0);
         for _ in 1..count {
-            self.wish(ask, &mut random);
-            if descent.aside(ask, &lowest.posture, &lowest.forces, &self.wish).is_err() {
+            self.draw_perturbation(problem, &mut random);
+            if sqp.perturb(problem, &lowest.posture, &lowest.forces, &self.perturbation).is_err() {
                 continue;
             }
-            self.aside.keep(descent);
-            let Ok(bottom) = descent.go(ask, &self.aside.posture, &self.aside.forces, &[], &ASIDE) else { continue };
-            steps += bottom.steps;
-            if bottom.violation > ROUGH {
+            self.perturbed.keep(sqp);
+            let (start, forces) = (&self.perturbed.posture, &self.perturbed.forces);
+            let Ok(found) = sqp.descend(problem, start, forces, &[], &FROM_PERTURBED) else { continue };
+            steps += found.steps;
+            if found.violation > SEARCH_VIOLATION {
                 continue;
             }
-            let found = parts.efforts(&descent.at.errors);
-            let mixed: f64 = efforts.iter().zip(&found).map(|(a, b)| a.min(*b)).sum();
-            self.aside.posture.values_mut().copy_from_slice(lowest.posture.values());
-            parts.mix(ask, &mut self.aside.posture, &efforts, &descent.at.posture, &found);
-            self.aside.forces.clone_from(&descent.at.forces);
-            if bottom.effort < best * (1.0 - LOWER) {
-                (best, efforts) = (bottom.effort, found);
-                lowest.keep(descent);
+            let others = subtrees.objectives(&sqp.iterate.residual);
+            let mixed: f64 = objectives.iter().zip(&others).map(|(a, b)| a.min(*b)).sum();
+            self.perturbed.posture.values_mut().copy_from_slice(lowest.posture.values());
+            subtrees.mix(problem, &mut self.perturbed.posture, &objectives, &sqp.iterate.posture, &others);
+            self.perturbed.forces.clone_from(&sqp.iterate.forces);
+            let lower = best * (1.0 - LEAST_IMPROVEMENT);
+            if found.objective < lower {
+                (best, objectives) = (found.objective, others);
+                lowest.keep(sqp);
             }
-            if mixed < best * (1.0 - LOWER) {
-                let Ok(bottom) = descent.go(ask, &self.aside.posture, &self.aside.forces, &[], &MIXED) else {
-                    continue;
-                };
-                steps += bottom.steps;
-                if bottom.violation <= ROUGH && bottom.effort < best * (1.0 - LOWER) {
-                    (best, efforts) = (bottom.effort, parts.efforts(&descent.at.errors));
-                    lowest.keep(descent);
-                }
+            let lower = best * (1.0 - LEAST_IMPROVEMENT);
+            if mixed >= lower {
+                continue;
+            }
+            let (start, forces) = (&self.perturbed.posture, &self.perturbed.forces);
+            let Ok(found) = sqp.descend(problem, start, forces, &[], &FROM_MIXED) else { continue };
+            steps += found.steps;
+            if found.violation <= SEARCH_VIOLATION && found.objective < lower {
+                (best, objectives) = (found.objective, subtrees.objectives(&sqp.iterate.residual));
+                lowest.keep(sqp);
             }
         }
         Ok(steps)
     }
 
-    /// A direction for every unknown: numbers from -1 to 1, times how far each coordinate of a part of the body may go.
-    fn wish(&mut self, ask: &EffortProblem<'_>, random: &mut u64) {
-        self.wish.clear();
-        let count = ask.free.len() as f64;
-        let start = 0.5 * (1.0 + number(random));
-        self.wish.extend(ask.free.iter().enumerate().map(|(i, &rate)| {
-            let by = number(random);
-            let inside = (i as f64 / count - start).rem_euclid(1.0) < PART;
-            let range = ask.model.rates()[rate].coordinate.map(|c| ask.model.coordinates()[c].range);
-            let wide = range.map_or(0.0, |(lower, upper)| upper - lower);
-            if inside && wide.is_finite() { FAR * wide.min(WIDE) * by } else { 0.0 }
+    /// Draws a change of every unknown: numbers from -1 to 1 times the perturbed share of each coordinate's range, for neighbouring
+    /// coordinates in the model's order; 0 for the others and for the forces.
+    fn draw_perturbation(&mut self, problem: &EffortProblem<'_>, random: &mut u64) {
+        self.perturbation.clear();
+        let count = problem.free.len() as f64;
+        let first = 0.5 * (1.0 + next_number(random));
+        self.perturbation.extend(problem.free.iter().enumerate().map(|(i, &rate)| {
+            let by = next_number(random);
+            let perturbed = (i as f64 / count - first).rem_euclid(1.0) < PERTURBED_COORDINATES;
+            let range = problem.model.rates()[rate].coordinate.map(|c| problem.model.coordinates()[c].range);
+            let width = range.map_or(0.0, |(lower, upper)| upper - lower);
+            if perturbed && width.is_finite() { PERTURBED_SHARE * width.min(LARGEST_RANGE) * by } else { 0.0 }
         }));
-        self.wish.resize(ask.unknowns(), 0.0);
+        self.perturbation.resize(problem.unknowns(), 0.0);
     }
 }
 
 /// The next number from -1 to 1 (Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators").
-fn number(state: &mut u64) -> f64 {
+fn next_number(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,21 +1,21 @@
-//! How does effort bend along posture and contact forces? The second derivative of the Lagrangian of a least-effort posture.
+//! Computes the second derivative of the Lagrangian of a problem of least effort, by posture and contact forces.
 //!
-//! `L = |e|^2/2 + sum y_r c_r` with the errors `c_r` of all rows above and their multipliers. Beside `J^T J` its second
-//! derivative has what the tasks above add (`sum y_r c_r''`, the gradient of external torque under pulls, see [`Task::pull`])
-//! and `sum_i w_i tau_i''` with `w_i = -e_i / S_i` for muscles and `w_r = y_r` for the root's equilibrium. External torque is the
-//! gradient of a potential, whose third derivatives are symmetric: so that sum is how the gradient matrix changes when the body
-//! moves along `w`, and its mixed part how the torques of each force change, since these too are gradients of a potential (the
-//! work of a force fixed in the ground). One difference gives both. Coupled laws, which have no potential, and strength that
-//! changes with the angle have closed forms of their own.
+//! `L = 1/2 |r|^2 + sum_k y_k c_k` with the relative loads `r`, the errors `c_k` of all constraints and their multipliers `y_k`.
+//! Beyond `J^T J` its second derivative has `sum_k y_k c_k''` of the tasks (the gradient of external torque under pulls, see
+//! [`Task::pull`]) and `sum_i w_i tau_i''` with `w_i = -r_i / S_i` for muscles and `w_k = y_k` for the root's equilibrium. External
+//! torque is the gradient of a potential, whose third derivatives are symmetric: that sum is the change of the gradient matrix when
+//! the body moves along `w`, and its mixed part is the change of the torques of each contact force, since these too are gradients
+//! of a potential. One difference gives both. Coupled passive laws, which have no potential, and strength that changes with the
+//! angle have closed forms.
 //!
-//! Scouts that look for valleys are to pass over dips (an arm that balances overhead costs no muscle anything): they know of
-//! tasks, weight, loads and single joints' passive torque only ([`HessianModel::Partial`]).
+//! Exploratory solves omit forces, coupled laws and strength ([`HessianModel::Partial`]), to escape shallow minima.
 //!
-//! Forces that cancel each other within one support do no work while it stays; their mixed part lies in the motions that turn
-//! the support. These are taken out of the mixed part, which changes the multipliers of the supports and nothing else: else the
-//! matrix would bend down where no step may go.
+//! Forces that cancel each other within one support do no work while it stays; their mixed part lies in the motions that turn the
+//! support. These are projected out of the mixed part, which changes only the multipliers of the supports: otherwise the matrix
+//! would have negative curvature in directions in which no step may go.
 
-use super::problem::{EffortProblem, contact_columns};
+use super::problem::EffortProblem;
+use super::tolerances::{DIFFERENCE_STEP, INDEPENDENT_ROW, PASSIVE_DIFFERENCE_STEP};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
@@ -24,14 +24,7 @@ use crate::tasks::body::{Body, Needs};
 use crate::tasks::{Task, share_of_strength};
 use hierarchical_least_squares::linalg::{add_scaled, dot};
 
-/// How far the body moves along `w` for the difference, rad or m.
-const MOVE: f64 = 1e-5;
-/// The same for passive torque.
-const MOVE_JOINT: f64 = 1e-4;
-/// What is left of a row, relative to it, when it says nothing new.
-const NEW: f64 = 1e-6;
-
-/// What is known of the posture and the forces in which effort bends.
+/// Body, loads and first derivatives at the iterate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FirstOrder<'a> {
     pub(crate) body: &'a Body,
@@ -39,23 +32,23 @@ pub(crate) struct FirstOrder<'a> {
     pub(crate) loads: &'a [Load],
     /// As [`crate::contact::ContactForces::columns`].
     pub(crate) columns: &'a [f64],
-    /// Errors of the effort level, and their rows over the unknowns.
-    pub(crate) errors: &'a [f64],
-    pub(crate) slopes: &'a [f64],
-    /// Rows of the supports' places over the unknowns.
-    pub(crate) places: &'a [f64],
+    /// Relative loads, and their derivatives by the unknowns, row after row.
+    pub(crate) residual: &'a [f64],
+    pub(crate) jacobian: &'a [f64],
+    /// Rows of the supports' placements over the unknowns.
+    pub(crate) support_rows: &'a [f64],
 }
 
-/// How much of that is to be seen?
+/// Which terms of the second derivative count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HessianModel {
     /// All.
     Full,
-    /// Tasks, weight, loads and single joints.
+    /// Tasks, weight, loads, and passive torque of single joints.
     Partial,
 }
 
-/// Keeps its space.
+/// Workspace of the second derivative.
 #[derive(Clone, Debug)]
 pub(crate) struct Hessian {
     pulls: ExternalTorque,
@@ -90,63 +83,65 @@ impl Hessian {
         }
     }
 
-    /// Adds to the upper triangle of `matrix` what goes beyond first derivatives, with the multipliers of the root's equilibrium
-    /// and of the tasks above effort.
-    pub(crate) fn bend(
+    /// Adds to the upper triangle of `matrix` the terms beyond `J^T J`, with the multipliers of the root's equilibrium and of the
+    /// constraint levels.
+    pub(crate) fn add_second_derivative(
         &mut self,
-        ask: &EffortProblem<'_>,
+        problem: &EffortProblem<'_>,
         at: &FirstOrder<'_>,
         multipliers: &[f64],
-        sight: HessianModel,
+        terms: HessianModel,
         matrix: &mut [f64],
     ) {
-        self.weigh(ask, at, multipliers);
-        self.bend_of_tasks(ask, at, multipliers, matrix);
-        let moved = self.bend_of_torques(ask, at, matrix);
-        self.bend_of_passive(ask, at, matrix);
-        if sight == HessianModel::Full {
+        self.weigh(problem, at, multipliers);
+        self.add_tasks(problem, at, multipliers, matrix);
+        let moved = self.add_torques(problem, at, matrix);
+        self.add_passive(problem, at, matrix);
+        if terms == HessianModel::Full {
             if let Some(moved) = moved {
-                self.bend_of_forces(ask, at, moved, matrix);
+                self.add_forces(problem, at, moved, matrix);
             }
-            self.bend_of_coupled(ask, at, matrix);
-            self.bend_of_strength(ask, at, matrix);
+            self.add_coupled(problem, at, matrix);
+            self.add_strength(problem, at, matrix);
         }
     }
 
-    fn weigh(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, multipliers: &[f64]) {
+    /// Sets `w`.
+    fn weigh(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, multipliers: &[f64]) {
         self.weights.fill(0.0);
-        for (rate, y) in ask.contact.root().iter().zip(multipliers) {
-            self.weights[*rate] = y / ask.contact.weight();
+        for (rate, y) in problem.contact.root().iter().zip(multipliers) {
+            self.weights[*rate] = y / problem.contact.weight();
         }
-        for (coordinate, rate, error, _) in efforts(ask, at) {
-            self.weights[rate] = -error * share_of_strength(ask.model, at.body, coordinate, error);
+        for (coordinate, rate, residual, _) in relative_loads(problem, at) {
+            self.weights[rate] = -residual * share_of_strength(problem.model, at.body, coordinate, residual);
         }
     }
 
-    fn bend_of_tasks(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, multipliers: &[f64], matrix: &mut [f64]) {
-        let Some(mut multipliers) = multipliers.get(ask.contact.root().len()..) else { return };
+    /// Adds `sum_k y_k c_k''` of the tasks.
+    fn add_tasks(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, multipliers: &[f64], matrix: &mut [f64]) {
+        let Some(mut multipliers) = multipliers.get(problem.contact.root().len()..) else { return };
         self.loads.clear();
-        for task in ask.goals().flat_map(|goal| &goal.tasks) {
+        for task in problem.constraint_levels().flat_map(|level| &level.tasks) {
             let Some((own, rest)) = multipliers.split_at_checked(task.rows()) else { return };
-            task.pull(ask.model, own, &mut self.loads);
+            task.pull(problem.model, own, &mut self.loads);
             multipliers = rest;
         }
         // Loads beyond what the model accepts leave the matrix without them.
-        if self.pulls.update_weightless(ask.model, at.body.kinematics(), &self.loads).is_err() {
+        if self.pulls.update_weightless(problem.model, at.body.kinematics(), &self.loads).is_err() {
             return;
         }
-        self.pulls.gradient(ask.model, at.body.kinematics(), &mut self.gradient);
-        add_gradient(ask, 1.0, &self.gradient, None, matrix);
+        self.pulls.gradient(problem.model, at.body.kinematics(), &mut self.gradient);
+        add_gradient(problem, 1.0, &self.gradient, None, matrix);
     }
 
-    /// Gives how far along `w` the body has moved for it.
-    fn bend_of_torques(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) -> Option<f64> {
-        let model = ask.model;
+    /// Adds the change of the torque gradient along `w`; returns how far along `w` the body has moved for the difference.
+    fn add_torques(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) -> Option<f64> {
+        let model = problem.model;
         let size = self.weights.iter().fold(0.0, |size: f64, w| size.max(w.abs()));
         if size.is_nan() || size <= 0.0 {
             return None;
         }
-        let h = MOVE / size;
+        let h = DIFFERENCE_STEP / size;
         self.step.iter_mut().zip(&self.weights).for_each(|(step, w)| *step = h * w);
         self.moved.values_mut().copy_from_slice(at.body.posture().values());
         self.moved.displace(model, &self.step);
@@ -154,30 +149,31 @@ impl Hessian {
         if self.body.update(model, &self.moved, at.loads, needs).is_err() {
             return None;
         }
-        add_gradient(ask, 1.0 / h, self.body.gradient(), Some(at.body.gradient()), matrix);
+        add_gradient(problem, 1.0 / h, self.body.gradient(), Some(at.body.gradient()), matrix);
         Some(h)
     }
 
     /// `sum_i w_i tau_p,i''` of joints whose passive torque depends on their own angle.
-    fn bend_of_passive(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
-        let (model, n, values) = (ask.model, ask.unknowns(), at.body.kinematics().values());
-        for (i, &rate) in ask.free.iter().enumerate() {
+    fn add_passive(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
+        let (model, n, values) = (problem.model, problem.unknowns(), at.body.kinematics().values());
+        for (i, &rate) in problem.free.iter().enumerate() {
             let Some(own) = model.rates()[rate].coordinate else { continue };
             let slope = |slope: &dyn Fn(f64) -> f64| {
-                (slope(values[own] + MOVE_JOINT) - slope(values[own] - MOVE_JOINT)) / (2.0 * MOVE_JOINT)
+                (slope(values[own] + PASSIVE_DIFFERENCE_STEP) - slope(values[own] - PASSIVE_DIFFERENCE_STEP))
+                    / (2.0 * PASSIVE_DIFFERENCE_STEP)
             };
-            let bend = match &model.coordinates()[own].passive {
+            let curvature = match &model.coordinates()[own].passive {
                 Some(PassiveLaw::Curve(curve)) => slope(&|q| curve.torque_and_slope(q).1),
                 Some(PassiveLaw::Sum(terms)) => slope(&|q| terms.iter().map(|term| term.torque_and_slope(q).1).sum()),
                 _ => 0.0,
             };
-            matrix[i * n + i] += self.weights[rate] * bend;
+            matrix[i * n + i] += self.weights[rate] * curvature;
         }
     }
 
-    /// The same of coupled laws.
-    fn bend_of_coupled(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
-        let (model, n, values) = (ask.model, ask.unknowns(), at.body.kinematics().values());
+    /// `sum_i w_i tau_p,i''` of coupled laws.
+    fn add_coupled(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
+        let (model, n, values) = (problem.model, problem.unknowns(), at.body.kinematics().values());
         for (own, coordinate) in model.coordinates().iter().enumerate() {
             let (Some(PassiveLaw::Coupled(law)), Some(rate)) = (&coordinate.passive, coordinate.rate) else { continue };
             if model.is_dependent(own) {
@@ -185,7 +181,7 @@ impl Hessian {
             }
             let places = law.neighbours.map(|n| {
                 let rate = model.coordinates()[n?.0].rate?;
-                ask.free.iter().position(|free| *free == rate)
+                problem.free.iter().position(|free| *free == rate)
             });
             for (a, row) in places.into_iter().zip(law.curvature(values)) {
                 for (b, entry) in places.into_iter().zip(row) {
@@ -199,47 +195,48 @@ impl Hessian {
         }
     }
 
-    /// Strength changes with the angle. With `e = tau_a / S` this adds `(J^T k + k^T J) e - e^2 S''/S` at the joint, where `J` is
-    /// the row of `e` and `k = -S'/S`.
-    fn bend_of_strength(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
-        let n = ask.unknowns();
-        for (coordinate, rate, error, row) in efforts(ask, at) {
-            let Some(groups) = &ask.model.coordinates()[coordinate].groups else { continue };
-            let strength = &groups[Side::of(error).index()].strength;
+    /// Adds `(J^T k + k^T J) r - r^2 S''/S` at each joint whose strength `S` changes with the angle, where `J` is the row of the
+    /// relative load `r` and `k = -S'/S`.
+    fn add_strength(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
+        let n = problem.unknowns();
+        for (coordinate, rate, residual, row) in relative_loads(problem, at) {
+            let Some(groups) = &problem.model.coordinates()[coordinate].groups else { continue };
+            let strength = &groups[Side::of(residual).index()].strength;
             let angle = at.body.kinematics().values()[coordinate];
             let ((torque, slope), curvature) = (strength.torque_and_slope(angle), strength.curvature(angle));
             if slope == 0.0 && curvature == 0.0 {
                 continue;
             }
-            let Some(own) = ask.free.iter().position(|free| *free == rate) else { continue };
-            let by = -error * slope / torque;
+            let Some(own) = problem.free.iter().position(|free| *free == rate) else { continue };
+            let by = -residual * slope / torque;
             for (other, entry) in row.iter().enumerate() {
                 matrix[own.min(other) * n + own.max(other)] += by * entry;
             }
-            matrix[own * n + own] += by * row[own] - error * error * curvature / torque;
+            matrix[own * n + own] += by * row[own] - residual * residual * curvature / torque;
         }
     }
 
-    fn bend_of_forces(&mut self, ask: &EffortProblem<'_>, at: &FirstOrder<'_>, h: f64, matrix: &mut [f64]) {
+    /// Adds the mixed second derivatives of posture and contact forces.
+    fn add_forces(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, h: f64, matrix: &mut [f64]) {
         if at.columns.is_empty() {
             return;
         }
-        let (rates, n, k) = (ask.model.rates().len(), ask.unknowns(), ask.free.len());
-        contact_columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
+        let (rates, n, k) = (problem.model.rates().len(), problem.unknowns(), problem.free.len());
+        problem.contact_columns(&self.body, &mut self.jacobian, &mut self.columns);
         self.basis.clear();
         self.mixed.resize(k, 0.0);
-        for row in at.places.chunks_exact(n) {
+        for row in at.support_rows.chunks_exact(n) {
             let row = &row[..k];
             self.mixed.copy_from_slice(row);
-            remove(&mut self.mixed, &self.basis);
+            project_out(&mut self.mixed, &self.basis);
             let left = dot(&self.mixed, &self.mixed).sqrt();
-            if left > NEW * dot(row, row).sqrt() {
+            if left > INDEPENDENT_ROW * dot(row, row).sqrt() {
                 self.basis.extend(self.mixed.iter().map(|entry| entry / left));
             }
         }
         for (force, (to, from)) in self.columns.chunks_exact(rates).zip(at.columns.chunks_exact(rates)).enumerate() {
-            self.mixed.iter_mut().zip(ask.free).for_each(|(entry, rate)| *entry = (to[*rate] - from[*rate]) / h);
-            remove(&mut self.mixed, &self.basis);
+            self.mixed.iter_mut().zip(problem.free).for_each(|(entry, rate)| *entry = (to[*rate] - from[*rate]) / h);
+            project_out(&mut self.mixed, &self.basis);
             for (i, entry) in self.mixed.iter().enumerate() {
                 matrix[i * n + k + force] += entry;
             }
@@ -248,13 +245,13 @@ impl Hessian {
 }
 
 /// Adds `share` times the symmetric part of a gradient, less that of another one.
-fn add_gradient(ask: &EffortProblem<'_>, share: f64, of: &Gradient, less: Option<&Gradient>, matrix: &mut [f64]) {
-    let n = ask.unknowns();
+fn add_gradient(problem: &EffortProblem<'_>, share: f64, of: &Gradient, less: Option<&Gradient>, matrix: &mut [f64]) {
+    let n = problem.unknowns();
     let symmetric = of.is_symmetric() && less.is_none_or(Gradient::is_symmetric);
-    for (i, &a) in ask.free.iter().enumerate() {
+    for (i, &a) in problem.free.iter().enumerate() {
         let (row, rest) = (of.row(a), less.map(|less| less.row(a)));
-        let to = &mut matrix[i * n + i..i * n + ask.free.len()];
-        for (entry, &b) in to.iter_mut().zip(&ask.free[i..]) {
+        let to = &mut matrix[i * n + i..i * n + problem.free.len()];
+        for (entry, &b) in to.iter_mut().zip(&problem.free[i..]) {
             let mut sum = row[b] - rest.map_or(0.0, |rest| rest[b]);
             if !symmetric {
                 sum = 0.5 * (sum + of.get(b, a) - less.map_or(0.0, |less| less.get(b, a)));
@@ -264,20 +261,20 @@ fn add_gradient(ask: &EffortProblem<'_>, share: f64, of: &Gradient, less: Option
     }
 }
 
-/// Of every coordinate whose effort counts: its rate, its error and the row of that.
-fn efforts<'a>(
-    ask: &'a EffortProblem<'_>,
+/// Every effort coordinate with its rate, its relative load and the row of the Jacobian.
+fn relative_loads<'a>(
+    problem: &'a EffortProblem<'_>,
     at: &FirstOrder<'a>,
 ) -> impl Iterator<Item = (usize, usize, f64, &'a [f64])> {
     let effort =
-        ask.effort.tasks.iter().map_while(|task| if let Task::Effort(effort) = task { Some(effort) } else { None });
-    let rows = at.errors.iter().zip(at.slopes.chunks_exact(ask.unknowns()));
+        problem.effort.tasks.iter().map_while(|task| if let Task::Effort(effort) = task { Some(effort) } else { None });
+    let rows = at.residual.iter().zip(at.jacobian.chunks_exact(problem.unknowns()));
     let coordinates = effort.flat_map(|effort| &effort.coordinates).zip(rows);
-    coordinates.filter_map(|(&c, (error, row))| Some((c, ask.model.coordinates()[c].rate?, *error, row)))
+    coordinates.filter_map(|(&c, (residual, row))| Some((c, problem.model.coordinates()[c].rate?, *residual, row)))
 }
 
-/// Takes the part along each row of an orthonormal basis away.
-fn remove(v: &mut [f64], basis: &[f64]) {
+/// Projects the rows of an orthonormal basis out of `v`.
+fn project_out(v: &mut [f64], basis: &[f64]) {
     for row in basis.chunks_exact(v.len()) {
         let along = dot(row, v);
         add_scaled(v, -along, row);
@@ -291,7 +288,7 @@ mod tests {
 
     use super::super::iterate::Iterate;
     use super::super::qp::QuadraticProgram;
-    use super::super::standing_adult::{StandingAdult, alike, moved};
+    use super::super::standing_adult::{StandingAdult, displaced, same_groups};
     use super::*;
     use crate::tasks::PriorityLevel;
 
@@ -299,45 +296,51 @@ mod tests {
     /// Step of the second difference, rad, m or body weights.
     const STEP: f64 = 2e-4;
 
-    /// The matrix along a motion that leaves the feet where they are, against second differences of the Lagrangian along it,
-    /// relative to what lies beyond first derivatives.
+    /// The matrix along random motions that leave the feet in place is the second difference of the Lagrangian, relative to the
+    /// terms beyond `J^T J`.
     #[test]
-    fn the_matrix_is_the_second_derivative_of_the_lagrangian() {
-        let ground = StandingAdult::new();
-        let mut hessian = Hessian::new(&ground.model);
+    fn matrix_along_random_motions_is_the_second_difference_of_the_lagrangian() {
+        let adult = StandingAdult::new();
+        let mut hessian = Hessian::new(&adult.model);
         let (mut worst, mut compared) = (0f64, 0);
-        ground.each(&mut Pcg64Mcg::new(SEED.into()), 40, |random, ask, site| {
-            let (n, k, root) = (ask.unknowns(), ask.free.len(), ask.contact.root().len());
-            let multipliers: Vec<f64> = site.lower.iter().map(|_| random.random_range(-0.3..0.3)).collect();
+        adult.each_posture(&mut Pcg64Mcg::new(SEED.into()), 40, |random, problem, iterate| {
+            let (n, k, root) = (problem.unknowns(), problem.free.len(), problem.contact.root().len());
+            let multipliers: Vec<f64> = iterate.lower.iter().map(|_| random.random_range(-0.3..0.3)).collect();
             let mut direction: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
             let mut basis: Vec<f64> = vec![];
-            for row in site.rows.chunks_exact(n).skip(root).take(ask.places.rows()) {
+            for row in iterate.constraints.chunks_exact(n).skip(root).take(problem.places.rows()) {
                 let mut row = row[..k].to_vec();
-                remove(&mut row, &basis);
+                project_out(&mut row, &basis);
                 let length = dot(&row, &row).sqrt();
                 basis.extend(row.iter().map(|entry| entry / length));
             }
-            remove(&mut direction[..k], &basis);
+            project_out(&mut direction[..k], &basis);
 
-            let mut problem = QuadraticProgram::default();
-            (problem.n, problem.shifted) = (n, k);
-            site.write(1.0, &mut problem);
+            let mut program = QuadraticProgram::default();
+            (program.n, program.rates) = (n, k);
+            iterate.write(1.0, &mut program);
             let along = |matrix: &[f64]| -> f64 {
                 let upper = |i: usize, j: usize| matrix[i.min(j) * n + i.max(j)];
                 (0..n * n).map(|e| direction[e / n] * upper(e / n, e % n) * direction[e % n]).sum()
             };
-            let squares = along(&problem.matrix);
-            hessian.bend(ask, &site.seen(ask), &multipliers, HessianModel::Full, &mut problem.matrix);
-            let exact = along(&problem.matrix);
+            let squares = along(&program.matrix);
+            hessian.add_second_derivative(
+                problem,
+                &iterate.first_order(problem),
+                &multipliers,
+                HessianModel::Full,
+                &mut program.matrix,
+            );
+            let exact = along(&program.matrix);
 
-            let equations = root + ask.goals().map(PriorityLevel::rows).sum::<usize>();
-            let lagrangian = |site: &Iterate| {
-                let rows = multipliers.iter().zip(&site.lower).take(equations);
-                site.effort - rows.map(|(y, rest)| y * rest).sum::<f64>()
+            let equations = root + problem.constraint_levels().map(PriorityLevel::rows).sum::<usize>();
+            let lagrangian = |at: &Iterate| {
+                let rows = multipliers.iter().zip(&at.lower).take(equations);
+                at.objective - rows.map(|(y, rest)| y * rest).sum::<f64>()
             };
-            let [before, after] = [-STEP, STEP].map(|h| moved(site, ask, &direction, h));
-            if alike(site, &before) && alike(site, &after) {
-                let numeric = (lagrangian(&before) + lagrangian(&after) - 2.0 * lagrangian(site)) / (STEP * STEP);
+            let [before, after] = [-STEP, STEP].map(|h| displaced(iterate, problem, &direction, h));
+            if same_groups(iterate, &before) && same_groups(iterate, &after) {
+                let numeric = (lagrangian(&before) + lagrangian(&after) - 2.0 * lagrangian(iterate)) / (STEP * STEP);
                 worst = worst.max((numeric - exact).abs() / (1.0 + (numeric - squares).abs()));
                 compared += 1;
             }

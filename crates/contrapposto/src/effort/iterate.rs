@@ -1,9 +1,12 @@
-//! What do effort, contact forces and goals look like in one posture with given forces?
+//! Evaluates objective and constraints of a problem of least effort, with first derivatives, in a posture with given contact forces.
+//!
+//! The objective is `1/2 |r|^2` with `r_i = tau_a,i / S_i`; a constraint is a row `a` with `lower <= a . d <= upper` for the change
+//! `d` of the unknowns: equilibrium of the root, placements and levels above effort, half-spaces, friction, shares of supports.
 
 use nalgebra::Vector3;
 
 use super::hessian::FirstOrder;
-use super::problem::{EffortProblem, contact_columns, fill_force_columns};
+use super::problem::{EffortProblem, fill_force_columns};
 use super::qp::QuadraticProgram;
 use crate::contact::{Unknowns, friction_rows, share_row};
 use crate::model::Model;
@@ -14,31 +17,32 @@ use crate::tasks::body::{Body, BodyError, Needs};
 use hierarchical_least_squares::Level;
 use hierarchical_least_squares::linalg::{add_outer_products, add_scaled};
 
-/// Posture, forces, and all that follows from them. Keeps its space.
+/// Posture and forces, and what follows from them.
 #[derive(Clone, Debug)]
 pub(crate) struct Iterate {
     pub(crate) posture: Posture,
-    /// As [`ContactForces::forces`].
+    /// As [`crate::contact::ContactForces::forces`].
     pub(crate) forces: Vec<f64>,
     pub(crate) body: Body,
-    /// Of a body with a root that supports must hold.
+    /// Filled where supports hold a free root.
     passive: PassiveTorque,
     /// Loads of the scenario, then one a corner.
     pub(crate) loads: Vec<Load>,
-    /// As [`ContactForces::columns`].
+    /// As [`crate::contact::ContactForces::columns`].
     pub(crate) columns: Vec<f64>,
-    /// Errors of the effort level, and their rows over the unknowns.
-    pub(crate) errors: Vec<f64>,
-    pub(crate) slopes: Vec<f64>,
-    /// Half the sum of squares of the errors.
-    pub(crate) effort: f64,
-    /// Rows of what must hold: the root's equilibrium, goals, half-spaces, friction and shares.
-    pub(crate) rows: Vec<f64>,
+    /// Relative loads, and their derivatives by the unknowns, row after row.
+    pub(crate) residual: Vec<f64>,
+    pub(crate) jacobian: Vec<f64>,
+    /// Half the sum of squares of the residual.
+    pub(crate) objective: f64,
+    /// Rows of the constraints, and their limits.
+    pub(crate) constraints: Vec<f64>,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
-    narrow: Level,
+    // Scratch.
+    level: Level,
     row: Vec<f64>,
-    jacobian: Vec<f64>,
+    point_jacobian: Vec<f64>,
 }
 
 impl Iterate {
@@ -50,159 +54,157 @@ impl Iterate {
             passive: PassiveTorque::new(model),
             loads: vec![],
             columns: vec![],
-            errors: vec![],
-            slopes: vec![],
-            effort: 0.0,
-            rows: vec![],
+            residual: vec![],
+            jacobian: vec![],
+            objective: 0.0,
+            constraints: vec![],
             lower: vec![],
             upper: vec![],
-            narrow: Level::default(),
+            level: Level::default(),
             row: vec![],
-            jacobian: vec![0.0; 3 * model.rates().len()],
+            point_jacobian: vec![0.0; 3 * model.rates().len()],
         }
     }
 
-    /// Sum of sizes of what does not hold.
+    /// Sum of the violations of all constraints.
     pub(crate) fn violation(&self) -> f64 {
         self.lower.iter().zip(&self.upper).map(|(lower, upper)| lower.max(0.0) - upper.min(0.0)).sum()
     }
 
     /// Computes everything for `posture` and `forces`.
-    pub(crate) fn see(&mut self, ask: &EffortProblem<'_>) -> Result<(), BodyError> {
-        let (model, contact) = (ask.model, ask.contact);
+    pub(crate) fn evaluate(&mut self, problem: &EffortProblem<'_>) -> Result<(), BodyError> {
+        let (model, contact) = (problem.model, problem.contact);
         self.loads.clear();
-        self.loads.extend_from_slice(ask.loads);
+        self.loads.extend_from_slice(problem.loads);
         for ((load, axes), shares) in contact.loads().iter().zip(contact.axes()).zip(self.forces.chunks_exact(3)) {
             let force: Vector3<f64> = axes.iter().zip(shares).map(|(axis, share)| *share * *axis).sum();
             let kind = LoadKind::Force(contact.weight() * force, FixedIn::World);
             self.loads.push(Load { kind, ..*load });
         }
+        let tasks = problem.constraint_levels().flat_map(|level| &level.tasks);
         let needs = Needs { torque: true, center_of_mass: false };
-        let needs = ask.goals().flat_map(|goal| &goal.tasks).fold(needs, |needs, task| needs.with(task.needs()));
+        let needs = tasks.fold(needs, |needs, task| needs.with(task.needs()));
         self.body.update(model, &self.posture, &self.loads, needs)?;
         if !contact.root().is_empty() {
             self.passive.update(model, self.body.kinematics())?;
         }
-        contact_columns(ask, &self.body, &mut self.jacobian, &mut self.columns);
-        self.effort_rows(ask);
-        self.rows.clear();
+        problem.contact_columns(&self.body, &mut self.point_jacobian, &mut self.columns);
+        self.evaluate_residual(problem);
+        self.constraints.clear();
         self.lower.clear();
         self.upper.clear();
-        self.root_rows(ask);
-        self.goal_rows(ask);
-        self.force_rows(ask);
+        self.add_equilibrium_rows(problem);
+        self.add_level_rows(problem);
+        self.add_force_rows(problem);
         Ok(())
     }
 
-    /// What a second derivative needs of it.
-    pub(crate) fn seen(&self, ask: &EffortProblem<'_>) -> FirstOrder<'_> {
-        let (n, root) = (ask.unknowns(), ask.contact.root().len());
+    /// What the second derivative needs.
+    pub(crate) fn first_order(&self, problem: &EffortProblem<'_>) -> FirstOrder<'_> {
+        let (n, root) = (problem.unknowns(), problem.contact.root().len());
         FirstOrder {
             body: &self.body,
             loads: &self.loads,
             columns: &self.columns,
-            errors: &self.errors,
-            slopes: &self.slopes,
-            places: &self.rows[root * n..(root + ask.places.rows()) * n],
+            residual: &self.residual,
+            jacobian: &self.jacobian,
+            support_rows: &self.constraints[root * n..(root + problem.places.rows()) * n],
         }
     }
 
-    fn effort_rows(&mut self, ask: &EffortProblem<'_>) {
-        let n = ask.model.rates().len();
-        self.errors.clear();
-        self.slopes.clear();
-        for task in &ask.effort.tasks {
-            self.narrow.clear();
-            task.evaluate(ask.model, &self.body, &mut self.narrow);
-            for (i, row) in self.narrow.matrix.chunks_exact(n).enumerate() {
-                self.errors.push(-self.narrow.upper[i]);
-                self.slopes.extend(ask.free.iter().map(|rate| row[*rate]));
-                let start = self.slopes.len();
-                self.slopes.resize(start + self.forces.len(), 0.0);
+    fn evaluate_residual(&mut self, problem: &EffortProblem<'_>) {
+        let n = problem.model.rates().len();
+        self.residual.clear();
+        self.jacobian.clear();
+        for task in &problem.effort.tasks {
+            self.level.clear();
+            task.evaluate(problem.model, &self.body, &mut self.level);
+            for (i, row) in self.level.matrix.chunks_exact(n).enumerate() {
+                let residual = -self.level.upper[i];
+                self.residual.push(residual);
+                self.jacobian.extend(problem.free.iter().map(|rate| row[*rate]));
+                let start = self.jacobian.len();
+                self.jacobian.resize(start + self.forces.len(), 0.0);
                 if let (Task::Effort(effort), false) = (task, self.forces.is_empty()) {
-                    let to = &mut self.slopes[start..];
-                    let (coordinate, error) = (effort.coordinates[i], -self.narrow.upper[i]);
-                    fill_force_columns(ask.model, &self.body, &self.columns, coordinate, error, to);
+                    let to = &mut self.jacobian[start..];
+                    let coordinate = effort.coordinates[i];
+                    fill_force_columns(problem.model, &self.body, &self.columns, coordinate, residual, to);
                 }
             }
         }
-        self.effort = 0.5 * self.errors.iter().map(|e| e * e).sum::<f64>();
+        self.objective = 0.5 * self.residual.iter().map(|r| r * r).sum::<f64>();
     }
 
-    fn root_rows(&mut self, ask: &EffortProblem<'_>) {
-        let (n, weight) = (ask.model.rates().len(), ask.contact.weight());
-        for &rate in ask.contact.root() {
+    fn add_equilibrium_rows(&mut self, problem: &EffortProblem<'_>) {
+        let (n, weight) = (problem.model.rates().len(), problem.contact.weight());
+        for &rate in problem.contact.root() {
             let slopes = self.body.gradient().row(rate);
-            self.rows.extend(ask.free.iter().map(|by| slopes[*by] / weight));
-            self.rows.extend(self.columns.chunks_exact(n).map(|column| column[rate] / weight));
-            let rest = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]) / weight;
-            self.lower.push(rest);
-            self.upper.push(rest);
+            self.constraints.extend(problem.free.iter().map(|by| slopes[*by] / weight));
+            self.constraints.extend(self.columns.chunks_exact(n).map(|column| column[rate] / weight));
+            let missing = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]) / weight;
+            self.lower.push(missing);
+            self.upper.push(missing);
         }
     }
 
-    fn goal_rows(&mut self, ask: &EffortProblem<'_>) {
-        let n = ask.model.rates().len();
-        let forces = self.forces.len();
-        for goal in ask.goals() {
-            for task in &goal.tasks {
-                self.narrow.clear();
-                task.evaluate(ask.model, &self.body, &mut self.narrow);
-                for row in self.narrow.matrix.chunks_exact(n) {
-                    self.rows.extend(ask.free.iter().map(|rate| row[*rate]));
-                    self.rows.resize(self.rows.len() + forces, 0.0);
-                }
-                self.lower.extend_from_slice(&self.narrow.lower);
-                self.upper.extend_from_slice(&self.narrow.upper);
+    fn add_level_rows(&mut self, problem: &EffortProblem<'_>) {
+        let (rates, forces) = (problem.model.rates(), self.forces.len());
+        for task in problem.constraint_levels().flat_map(|level| &level.tasks) {
+            self.level.clear();
+            task.evaluate(problem.model, &self.body, &mut self.level);
+            for row in self.level.matrix.chunks_exact(rates.len()) {
+                self.constraints.extend(problem.free.iter().map(|rate| row[*rate]));
+                self.constraints.resize(self.constraints.len() + forces, 0.0);
             }
+            self.lower.extend_from_slice(&self.level.lower);
+            self.upper.extend_from_slice(&self.level.upper);
         }
-        for space in ask.goals().flat_map(|goal| &goal.half_spaces) {
-            let rates = ask.model.rates();
-            self.rows.extend(ask.free.iter().map(|rate| rates[*rate].coordinate.map_or(0.0, |c| space.normal[c])));
-            self.rows.resize(self.rows.len() + forces, 0.0);
+        for space in problem.constraint_levels().flat_map(|level| &level.half_spaces) {
+            let entry = |rate: &usize| rates[*rate].coordinate.map_or(0.0, |c| space.normal[c]);
+            self.constraints.extend(problem.free.iter().map(entry));
+            self.constraints.resize(self.constraints.len() + forces, 0.0);
             self.lower.push(f64::NEG_INFINITY);
             self.upper.push(-space.violation(self.posture.values()));
         }
     }
 
-    fn force_rows(&mut self, ask: &EffortProblem<'_>) {
-        self.narrow.clear();
-        self.row.resize(ask.unknowns(), 0.0);
-        let unknowns = Unknowns { first: ask.free.len(), now: Some(&self.forces) };
-        for (i, support) in ask.contact.supports().iter().enumerate() {
-            let corners = ask.contact.corners(i);
-            friction_rows(&mut self.narrow, &mut self.row, support, corners.clone(), unknowns);
-            share_row(&mut self.narrow, &mut self.row, support, corners, unknowns);
+    fn add_force_rows(&mut self, problem: &EffortProblem<'_>) {
+        self.level.clear();
+        self.row.resize(problem.unknowns(), 0.0);
+        let unknowns = Unknowns { first: problem.free.len(), now: Some(&self.forces) };
+        for (i, support) in problem.contact.supports().iter().enumerate() {
+            let corners = problem.contact.corners(i);
+            friction_rows(&mut self.level, &mut self.row, support, corners.clone(), unknowns);
+            share_row(&mut self.level, &mut self.row, support, corners, unknowns);
         }
-        self.rows.extend_from_slice(&self.narrow.matrix);
-        self.lower.extend_from_slice(&self.narrow.lower);
-        self.upper.extend_from_slice(&self.narrow.upper);
+        self.constraints.extend_from_slice(&self.level.matrix);
+        self.lower.extend_from_slice(&self.level.lower);
+        self.upper.extend_from_slice(&self.level.upper);
     }
 
-    /// Gives `problem` the rows, taken on by `share`, and what effort bends by first derivatives; returns the largest diagonal
-    /// entry of the posture.
-    pub(crate) fn write(&self, share: f64, problem: &mut QuadraticProgram) -> f64 {
-        let n = problem.n;
-        problem.rows.clone_from(&self.rows);
-        problem.lower.clear();
-        problem.upper.clear();
+    /// Writes the Gauss-Newton program of the next step, which corrects the share `share` of each violation; returns the largest
+    /// diagonal entry among the rates.
+    pub(crate) fn write(&self, share: f64, program: &mut QuadraticProgram) -> f64 {
+        let n = program.n;
+        program.rows.clone_from(&self.constraints);
+        program.lower.clear();
+        program.upper.clear();
         for (lower, upper) in self.lower.iter().zip(&self.upper) {
-            // Only what does not hold is taken on by and by; equations keep being equations.
-            let (below, above) = (lower.max(0.0), upper.min(0.0));
-            let missing = below + above;
-            let rest = (share - 1.0) * missing;
-            problem.lower.push(if missing != 0.0 { lower + rest } else { *lower });
-            problem.upper.push(if missing != 0.0 { upper + rest } else { *upper });
+            // Only violated rows are scaled; equations remain equations.
+            let violation = lower.max(0.0) + upper.min(0.0);
+            let rest = (share - 1.0) * violation;
+            program.lower.push(if violation != 0.0 { lower + rest } else { *lower });
+            program.upper.push(if violation != 0.0 { upper + rest } else { *upper });
         }
-        problem.matrix.clear();
-        problem.matrix.resize(n * n, 0.0);
-        problem.slope.clear();
-        problem.slope.resize(n, 0.0);
-        add_outer_products(&mut problem.matrix, n, &self.slopes, |_| 1.0);
-        for (row, error) in self.slopes.chunks_exact(n).zip(&self.errors) {
-            add_scaled(&mut problem.slope, *error, row);
+        program.matrix.clear();
+        program.matrix.resize(n * n, 0.0);
+        program.gradient.clear();
+        program.gradient.resize(n, 0.0);
+        add_outer_products(&mut program.matrix, n, &self.jacobian, |_| 1.0);
+        for (row, residual) in self.jacobian.chunks_exact(n).zip(&self.residual) {
+            add_scaled(&mut program.gradient, *residual, row);
         }
-        (0..problem.shifted).fold(0.0, |size: f64, i| size.max(problem.matrix[i * n + i]))
+        (0..program.rates).fold(0.0, |size: f64, i| size.max(program.matrix[i * n + i]))
     }
 }
 
@@ -211,26 +213,27 @@ mod tests {
     use rand::RngExt;
     use rand_pcg::Pcg64Mcg;
 
-    use super::super::standing_adult::{StandingAdult, alike, moved};
+    use super::super::standing_adult::{StandingAdult, displaced, same_groups};
 
     const SEED: u64 = 29;
     /// Step of the difference, rad, m or body weights.
     const STEP: f64 = 1e-5;
 
-    /// Rows of effort and of what must hold along a motion of posture and forces, and along forces alone.
+    /// The Jacobian and the constraint rows along random motions of posture and forces, and along forces alone, are the central
+    /// differences of residual and limits.
     #[test]
-    fn rows_are_the_derivatives_of_what_they_belong_to() {
-        let ground = StandingAdult::new();
+    fn rows_along_random_motions_are_central_differences() {
+        let adult = StandingAdult::new();
         let (mut worst, mut compared) = ([0f64; 2], 0);
-        ground.each(&mut Pcg64Mcg::new(SEED.into()), 40, |random, ask, site| {
-            let n = ask.unknowns();
+        adult.each_posture(&mut Pcg64Mcg::new(SEED.into()), 40, |random, problem, iterate| {
+            let n = problem.unknowns();
             for (kind, worst) in worst.iter_mut().enumerate() {
                 let mut step: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
                 if kind == 1 {
-                    step[..ask.free.len()].fill(0.0);
+                    step[..problem.free.len()].fill(0.0);
                 }
-                let [before, after] = [-STEP, STEP].map(|by| moved(site, ask, &step, by));
-                if !alike(&before, &after) {
+                let [before, after] = [-STEP, STEP].map(|by| displaced(iterate, problem, &step, by));
+                if !same_groups(&before, &after) {
                     continue;
                 }
                 compared += 1;
@@ -244,9 +247,9 @@ mod tests {
                         }
                     }
                 };
-                compare(&site.slopes, &before.errors, &after.errors, 1.0);
-                compare(&site.rows, &before.lower, &after.lower, -1.0);
-                compare(&site.rows, &before.upper, &after.upper, -1.0);
+                compare(&iterate.jacobian, &before.residual, &after.residual, 1.0);
+                compare(&iterate.constraints, &before.lower, &after.lower, -1.0);
+                compare(&iterate.constraints, &before.upper, &after.upper, -1.0);
             }
         });
         println!("seed {SEED}: {compared} motions, off by {:.1e} at most, by forces alone {:.1e}", worst[0], worst[1]);

@@ -1,4 +1,8 @@
-//! States the problem of least effort: posture and contact forces that minimise `sum_i (tau_a,i / S_i)^2` under constraints.
+//! States the problem of least effort in posture and contact forces.
+//!
+//! `min 1/2 sum_i (tau_a,i / S_i)^2` over the free rates and the contact forces, while the root is in equilibrium, supports stay in
+//! place, levels above effort are reached, and contact forces lie in their friction pyramids. The unknowns are the changes of the
+//! free rates, then the three components of each contact force in body weights.
 
 use crate::contact::ContactForces;
 use crate::model::Model;
@@ -7,31 +11,31 @@ use crate::tasks::PriorityLevel;
 use crate::tasks::body::Body;
 use crate::tasks::{Task, share_of_strength};
 
-/// What is asked of posture and contact forces.
+/// A problem of least effort.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EffortProblem<'b> {
     pub(crate) model: &'b Model,
-    /// Where supports are to stay.
+    /// Placements of the supports.
     pub(crate) places: &'b PriorityLevel,
-    /// Goals above effort.
+    /// Levels above effort.
     pub(crate) above: &'b [PriorityLevel],
     /// The level of effort.
     pub(crate) effort: &'b PriorityLevel,
     pub(crate) loads: &'b [Load],
     /// Rates that move.
     pub(crate) free: &'b [usize],
-    /// Where the supports push; its forces are where a descent begins.
+    /// Corners, axes and limits of the contact forces; its forces are the start of a descent.
     pub(crate) contact: &'b ContactForces,
 }
 
 impl EffortProblem<'_> {
-    /// What must hold, besides the root's equilibrium and friction: places of supports, and goals above effort.
-    pub(crate) fn goals(&self) -> impl Iterator<Item = &PriorityLevel> {
+    /// Levels of constraints on the posture: placements of supports, then the levels above effort.
+    pub(crate) fn constraint_levels(&self) -> impl Iterator<Item = &PriorityLevel> {
         std::iter::once(self.places).chain(self.above)
     }
 
-    /// Coordinates whose effort counts, in the order of the errors.
-    pub(crate) fn efforts(&self) -> impl Iterator<Item = usize> {
+    /// Coordinates whose relative loads count as effort, in the order of the residual.
+    pub(crate) fn effort_coordinates(&self) -> impl Iterator<Item = usize> {
         let coordinates = self.effort.tasks.iter().filter_map(|task| match task {
             Task::Effort(effort) => Some(&effort.coordinates),
             _ => None,
@@ -39,38 +43,38 @@ impl EffortProblem<'_> {
         coordinates.flatten().copied()
     }
 
-    /// Number of unknowns: rates that move, then forces.
+    /// Number of unknowns: free rates, then forces.
     pub(crate) fn unknowns(&self) -> usize {
         self.free.len() + self.contact.forces().len()
     }
-}
 
-/// Torque of every rate at one body weight of each unknown force.
-pub(crate) fn contact_columns(ask: &EffortProblem<'_>, body: &Body, jacobian: &mut [f64], columns: &mut Vec<f64>) {
-    let n = ask.model.rates().len();
-    columns.clear();
-    for (load, axes) in ask.contact.loads().iter().zip(ask.contact.axes()) {
-        body.kinematics().point_jacobian(ask.model, load.segment, load.point, jacobian);
-        for axis in axes {
-            let force = ask.contact.weight() * axis;
-            columns.extend(
-                (0..n).map(|k| force.x * jacobian[k] + force.y * jacobian[n + k] + force.z * jacobian[2 * n + k]),
-            );
+    /// Fills `columns` with the torque of every rate at one body weight of each unknown force.
+    pub(crate) fn contact_columns(&self, body: &Body, jacobian: &mut [f64], columns: &mut Vec<f64>) {
+        let n = self.model.rates().len();
+        columns.clear();
+        for (load, axes) in self.contact.loads().iter().zip(self.contact.axes()) {
+            body.kinematics().point_jacobian(self.model, load.segment, load.point, jacobian);
+            for axis in axes {
+                let force = self.contact.weight() * axis;
+                columns.extend(
+                    (0..n).map(|k| force.x * jacobian[k] + force.y * jacobian[n + k] + force.z * jacobian[2 * n + k]),
+                );
+            }
         }
     }
 }
 
-/// What contact forces do to the effort of a coordinate, now `error`.
+/// Fills `row` with the derivative of a coordinate's relative load, now `residual`, by the contact forces.
 pub(crate) fn fill_force_columns(
     model: &Model,
     body: &Body,
     columns: &[f64],
     coordinate: usize,
-    error: f64,
+    residual: f64,
     row: &mut [f64],
 ) {
     let Some(rate) = model.coordinates()[coordinate].rate else { return };
-    let share = share_of_strength(model, body, coordinate, error);
+    let share = share_of_strength(model, body, coordinate, residual);
     for (entry, column) in row.iter_mut().zip(columns.chunks_exact(model.rates().len())) {
         *entry = -column[rate] * share;
     }

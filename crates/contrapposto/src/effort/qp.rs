@@ -1,230 +1,224 @@
-//! Which step is best where effort is a quadratic function and what must hold is linear?
+//! Solves quadratic programs that need not be convex, by an active-set method.
 //!
-//! `min g.d + d^T H d / 2` with `lower <= A d <= upper` and bounds on `d`. Of inequalities a guess is held as equations, then
-//! solved, then put right: what is violated is added, what pulls is let go (Nocedal & Wright 2006, "Numerical Optimization",
-//! ch. 16.5). Each solution is one Cholesky factorisation of `[M A^T; A 0]`, `M` being `H` with the squares of the held rows
-//! added: directions that they forbid must not look as if effort bent down there. What is still not positive gets a shift.
+//! `min g.d + d^T H d / 2` with `lower <= A d <= upper` and bounds on `d`. The working set of inequalities is solved as equations,
+//! then changed: violated rows join, rows with multipliers of the wrong sign leave (Nocedal & Wright 2006, "Numerical
+//! Optimization", ch. 16.5). Each solution is one Cholesky factorisation of `[M A^T; A 0]`, where `M` is `H` with the squares of the
+//! working-set rows added, which removes negative curvature in directions that they forbid. Where `M` is not positive definite,
+//! the diagonal is regularised.
 //!
-//! The guess is put right a few times only. Where most unknowns lie at bounds it may still be wrong then (one in ten of small
-//! random problems): bounds hold, rows may be missed, and a descent, which judges every step by what comes of it, goes on.
+//! The number of changes of the working set is limited. Where most unknowns lie at bounds it may still be wrong at the end (one in
+//! ten of small random programs): bounds hold, rows may be violated, and the descent, which judges every step by its merit, goes on.
 
+use super::tolerances::{
+    DIAGONAL_SHARE, FIRST_REGULARISATION, JOINING_SHARE, LARGEST_REGULARISATION, LEAVING_MULTIPLIER, QP_ZERO,
+    REGULARISATION_FACTOR, WORKING_SET_CHANGES, WORKING_SET_WEIGHT, ZERO_ROW,
+};
 use hierarchical_least_squares::linalg::{
     add_outer_products, add_scaled, add_symmetric_column, block_start, blocked_cholesky, dot, padded_width,
     solve_upper, solve_upper_transposed,
 };
 
-/// Weight of held rows in `M`, against the largest diagonal entry.
-const FAST: f64 = 10.0;
-/// Share of the largest diagonal entry of each kind that is always added.
-const FLAT: f64 = 1e-10;
-/// How often the guess is put right; in the second half nothing is let go any more.
-const ROUNDS: usize = 14;
-/// Of what is violated, all that is violated by this share of the worst is added at once.
-const WORST: f64 = 0.3;
-/// Relative size of a violation or multiplier that counts as zero.
-const NOTHING: f64 = 1e-12;
-/// The first shift that is tried, and by what it grows until it is enough: too much of it makes steps short.
-const LEAST: f64 = 1e-4;
-const MORE: f64 = 3.0;
-/// Rows shorter than this count as zero.
-const SHORT: f64 = 1e-12;
-
-/// The problem, its answer, and the factors, which serve for corrections. Keeps its space.
+/// A program, its solution, and the factors, which also serve for corrections.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct QuadraticProgram {
     /// Number of unknowns.
     pub(crate) n: usize,
     /// `H`; the upper triangle is read.
     pub(crate) matrix: Vec<f64>,
-    pub(crate) slope: Vec<f64>,
+    /// `g`.
+    pub(crate) gradient: Vec<f64>,
     /// `A`, row after row.
     pub(crate) rows: Vec<f64>,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
     /// Bounds of each unknown.
-    pub(crate) least: Vec<f64>,
-    pub(crate) most: Vec<f64>,
-    /// The first unknowns, which the shift is added to; the others only get a trace.
-    pub(crate) shifted: usize,
-    /// What one of shift adds to the diagonal.
+    pub(crate) lower_bounds: Vec<f64>,
+    pub(crate) upper_bounds: Vec<f64>,
+    /// Number of rates: the first unknowns, which are regularised; the others get [`DIAGONAL_SHARE`] only.
+    pub(crate) rates: usize,
+    /// Diagonal entry that one unit of regularisation adds.
     pub(crate) unit: f64,
-    /// The answer, and the multipliers of the rows.
+    /// `d` of the solution, and the multipliers of the rows.
     pub(crate) step: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
-    /// `H` with the squares of equations added, upper triangle, the weight of each, and `g` with their pulls.
-    stiff: Vec<f64>,
+    /// `H` with the squares of equations added, upper triangle; the weight of the square of each row; `g` less the equations'.
+    stiffened: Vec<f64>,
     weights: Vec<f64>,
-    pull: Vec<f64>,
-    /// Is each unknown held at a bound, each row at a limit: -1, 0 or 1?
-    held: Vec<i8>,
-    kept: Vec<i8>,
+    stiffened_gradient: Vec<f64>,
+    /// Side at which each unknown lies at its bound, each row at its limit: -1, 1, or 0 for neither.
+    at_bound: Vec<i8>,
+    at_limit: Vec<i8>,
+    /// Unknowns between their bounds.
     free: Vec<usize>,
-    on: Vec<usize>,
+    /// Rows solved as equations.
+    working_set: Vec<usize>,
     /// `[R V z]` over `[. S -]`, see [`QuadraticProgram::factorise`].
     factor: Vec<f64>,
-    table: Vec<f64>,
-    /// `H d`, or `M d` of what is held.
-    bent: Vec<f64>,
-    answer: Vec<f64>,
+    /// `H d`; during a solve `M d` of the unknowns at bounds.
+    product: Vec<f64>,
+    // Scratch.
+    of_rows: Vec<f64>,
+    of_unknowns: Vec<f64>,
 }
 
 impl QuadraticProgram {
-    /// Forgets what was held.
+    /// Empties the working set.
     pub(crate) fn forget(&mut self) {
-        self.held.clear();
-        self.kept.clear();
+        self.at_bound.clear();
+        self.at_limit.clear();
     }
 
-    /// Solves with at least `shift`; returns the shift that was needed. `false` if no shift helps.
-    pub(crate) fn solve(&mut self, mut shift: f64) -> Option<f64> {
+    /// Solves with at least this regularisation; returns the one that was needed. `None` if none up to
+    /// [`LARGEST_REGULARISATION`] makes the matrix positive definite, or the solution is not finite.
+    pub(crate) fn solve(&mut self, mut regularisation: f64) -> Option<f64> {
         let (n, m) = (self.n, self.lower.len());
-        self.held.resize(n, 0);
-        self.kept.resize(m, 0);
+        self.at_bound.resize(n, 0);
+        self.at_limit.resize(m, 0);
         self.step.resize(n, 0.0);
-        self.bent.resize(n, 0.0);
+        self.product.resize(n, 0.0);
         self.stiffen();
-        for round in 0..ROUNDS {
-            self.choose();
+        for round in 0..WORKING_SET_CHANGES {
+            self.list_working_set();
             loop {
                 self.fill();
-                if self.factorise(shift) {
+                if self.factorise(regularisation) {
                     break;
                 }
-                shift = (MORE * shift).max(LEAST);
-                if shift > 1e6 {
+                regularisation = (REGULARISATION_FACTOR * regularisation).max(FIRST_REGULARISATION);
+                if regularisation > LARGEST_REGULARISATION {
                     return None;
                 }
             }
-            self.answer();
-            if !self.put_right(2 * round < ROUNDS) {
+            self.back_substitute();
+            if !self.change_working_set(2 * round < WORKING_SET_CHANGES) {
                 break;
             }
         }
-        for (d, (least, most)) in self.step.iter_mut().zip(self.least.iter().zip(&self.most)) {
+        for (d, (least, most)) in self.step.iter_mut().zip(self.lower_bounds.iter().zip(&self.upper_bounds)) {
             *d = d.clamp(*least, *most);
         }
-        self.bent.fill(0.0);
+        self.product.fill(0.0);
         for (j, d) in self.step.iter().enumerate() {
-            add_symmetric_column(&mut self.bent, *d, &self.matrix, j);
+            add_symmetric_column(&mut self.product, *d, &self.matrix, j);
         }
         let finite = self.step.iter().chain(&self.multipliers).all(|number| number.is_finite());
-        finite.then_some(shift)
+        finite.then_some(regularisation)
     }
 
-    /// The least change of the last answer, measured by `M`, that changes the rows that are held by `change`.
+    /// The least change of the last solution, measured by `M`, that changes the working-set rows by `change`.
     pub(crate) fn correct(&mut self, change: impl Fn(usize) -> f64, correction: &mut [f64]) {
-        let (k, q) = (self.free.len(), self.on.len());
+        let (k, q) = (self.free.len(), self.working_set.len());
         let w = padded_width(k + q + 1);
-        self.answer.clear();
-        self.answer.extend(self.on.iter().map(|row| change(*row)));
+        self.of_rows.clear();
+        self.of_rows.extend(self.working_set.iter().map(|row| change(*row)));
         self.solve_schur();
-        let mut z = std::mem::take(&mut self.table);
+        let mut z = std::mem::take(&mut self.of_unknowns);
         z.clear();
-        z.extend((0..k).map(|i| dot(&self.factor[i * w + k..i * w + k + q], &self.answer)));
+        z.extend((0..k).map(|i| dot(&self.factor[i * w + k..i * w + k + q], &self.of_rows)));
         solve_upper(&self.factor, w, &mut z);
         correction.fill(0.0);
         self.free.iter().zip(&z).for_each(|(i, z)| correction[*i] = *z);
-        self.table = z;
+        self.of_unknowns = z;
     }
 
-    /// Is the row an equation, or held at a limit?
-    pub(crate) fn holds(&self, row: usize) -> bool {
-        self.lower[row] == self.upper[row] || self.kept[row] != 0
+    /// Whether the row is an equation or at a limit.
+    pub(crate) fn in_working_set(&self, row: usize) -> bool {
+        self.lower[row] == self.upper[row] || self.at_limit[row] != 0
     }
 
-    /// How often the answer can be taken before a bound or a row's limit is met, other than those it stays at; at least once.
-    pub(crate) fn room(&self) -> f64 {
+    /// Largest multiple of the step, at least 1, that violates no further bound or row.
+    pub(crate) fn longest(&self) -> f64 {
         let limit = |least: f64, most: f64, d: f64| match d {
-            d if d > NOTHING => most / d,
-            d if d < -NOTHING => least / d,
+            d if d > QP_ZERO => most / d,
+            d if d < -QP_ZERO => least / d,
             _ => f64::INFINITY,
         };
-        let bounds = self.step.iter().zip(self.least.iter().zip(&self.most));
-        let room = bounds.fold(f64::INFINITY, |room, (d, (least, most))| room.min(limit(*least, *most, *d)));
+        let bounds = self.step.iter().zip(self.lower_bounds.iter().zip(&self.upper_bounds));
+        let longest = bounds.fold(f64::INFINITY, |longest, (d, (least, most))| longest.min(limit(*least, *most, *d)));
         let rows = self.rows.chunks_exact(self.n).zip(self.lower.iter().zip(&self.upper));
         let rows = rows.filter(|(_, (lower, upper))| lower != upper);
-        let room = rows.fold(room, |room, (row, (l, u))| room.min(limit(*l, *u, dot(row, &self.step))));
-        room.max(1.0)
+        let longest = rows.fold(longest, |longest, (row, (l, u))| longest.min(limit(*l, *u, dot(row, &self.step))));
+        longest.max(1.0)
     }
 
-    /// `d^T H d` of the answer.
-    pub(crate) fn bend(&self) -> f64 {
-        dot(&self.bent, &self.step)
+    /// `d^T H d` of the solution.
+    pub(crate) fn curvature(&self) -> f64 {
+        dot(&self.product, &self.step)
     }
 
-    /// What serves every guess: equations are always held.
+    /// Adds the squares of the equations, which every working set contains.
     fn stiffen(&mut self) {
         let n = self.n;
         let size = (0..n).fold(0.0, |size: f64, i| size.max(self.matrix[i * n + i].abs()));
-        self.stiff.clone_from(&self.matrix);
-        self.pull.clone_from(&self.slope);
+        self.stiffened.clone_from(&self.matrix);
+        self.stiffened_gradient.clone_from(&self.gradient);
         self.weights.clear();
         for (r, row) in self.rows.chunks_exact(n).enumerate() {
             let square = dot(row, row);
-            let weight = if square > SHORT { FAST * size / square } else { 0.0 };
+            let weight = if square > ZERO_ROW { WORKING_SET_WEIGHT * size / square } else { 0.0 };
             self.weights.push(weight);
             if self.lower[r] == self.upper[r] {
-                add_scaled(&mut self.pull, -weight * self.lower[r], row);
+                add_scaled(&mut self.stiffened_gradient, -weight * self.lower[r], row);
             }
         }
         let (lower, upper, weights) = (&self.lower, &self.upper, &self.weights);
-        add_outer_products(&mut self.stiff, n, &self.rows, |r| if lower[r] == upper[r] { weights[r] } else { 0.0 });
+        add_outer_products(&mut self.stiffened, n, &self.rows, |r| if lower[r] == upper[r] { weights[r] } else { 0.0 });
     }
 
-    /// What is free, what is held.
-    fn choose(&mut self) {
+    /// Lists free unknowns and working-set rows; sets the other unknowns to their bounds.
+    fn list_working_set(&mut self) {
         self.free.clear();
-        self.free.extend((0..self.n).filter(|i| self.held[*i] == 0));
+        self.free.extend((0..self.n).filter(|i| self.at_bound[*i] == 0));
         if 2 * self.free.len() < self.n {
-            self.held.fill(0);
+            self.at_bound.fill(0);
             self.free.clear();
             self.free.extend(0..self.n);
         }
-        for (i, held) in self.held.iter().enumerate() {
-            self.step[i] = match held {
+        for (i, side) in self.at_bound.iter().enumerate() {
+            self.step[i] = match side {
                 0 => 0.0,
-                -1 => self.least[i],
-                _ => self.most[i],
+                -1 => self.lower_bounds[i],
+                _ => self.upper_bounds[i],
             };
         }
-        self.on.clear();
+        self.working_set.clear();
         for row in 0..self.lower.len() {
-            if self.lower[row] == self.upper[row] || self.kept[row] != 0 {
-                self.on.push(row);
+            if self.lower[row] == self.upper[row] || self.at_limit[row] != 0 {
+                self.working_set.push(row);
             }
         }
     }
 
-    /// `[M A^T -g; 0 0 c]` over what is free and held.
+    /// Writes `[M A^T -g; 0 0 c]` over free unknowns and working-set rows.
     fn fill(&mut self) {
-        let (n, k, q) = (self.n, self.free.len(), self.on.len());
+        let (n, k, q) = (self.n, self.free.len(), self.working_set.len());
         let w = padded_width(k + q + 1);
         self.factor.resize((k + q) * w, 0.0);
         let all = k == n;
-        self.bent.fill(0.0);
-        for (j, held) in self.held.iter().enumerate() {
-            if *held != 0 {
-                add_symmetric_column(&mut self.bent, self.step[j], &self.stiff, j);
+        self.product.fill(0.0);
+        for (j, side) in self.at_bound.iter().enumerate() {
+            if *side != 0 {
+                add_symmetric_column(&mut self.product, self.step[j], &self.stiffened, j);
             }
         }
         for (a, &i) in self.free.iter().enumerate() {
-            let (from, to) = (&self.stiff[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
-            let pull = self.pull[i] + self.bent[i];
+            let (from, to) = (&self.stiffened[i * n..(i + 1) * n], &mut self.factor[a * w..(a + 1) * w]);
+            let gradient = self.stiffened_gradient[i] + self.product[i];
             to[block_start(a)..a].fill(0.0);
             if all {
                 to[a..k].copy_from_slice(&from[a..]);
             } else {
                 to[a..k].iter_mut().zip(&self.free[a..]).for_each(|(to, j)| *to = from[*j]);
             }
-            for (to, row) in to[k..].iter_mut().zip(&self.on) {
+            for (to, row) in to[k..].iter_mut().zip(&self.working_set) {
                 *to = self.rows[row * n + i];
             }
-            to[k + q] = -pull;
+            to[k + q] = -gradient;
             to[k + q + 1..].fill(0.0);
         }
-        for (r, &row) in self.on.iter().enumerate() {
+        for (r, &row) in self.working_set.iter().enumerate() {
             let from = &self.rows[row * n..(row + 1) * n];
-            let target = if self.kept[row] > 0 { self.upper[row] } else { self.lower[row] };
+            let target = if self.at_limit[row] > 0 { self.upper[row] } else { self.lower[row] };
             let target = target - if all { 0.0 } else { dot(from, &self.step) };
             let line = &mut self.factor[(k + r) * w..(k + r + 1) * w];
             line.fill(0.0);
@@ -232,7 +226,7 @@ impl QuadraticProgram {
             if self.lower[row] == self.upper[row] {
                 continue;
             }
-            // The square of a limit that is held.
+            // The square of an inequality at its limit.
             let weight = self.weights[row];
             for (a, &i) in self.free.iter().enumerate().filter(|(_, i)| from[**i] != 0.0) {
                 let line = &mut self.factor[a * w..(a + 1) * w];
@@ -244,23 +238,27 @@ impl QuadraticProgram {
     }
 
     /// `M = R^T R`, `V = R^-T A^T`, `z = R^-T(-g)`, and `S = V^T V` by a second factorisation.
-    fn factorise(&mut self, shift: f64) -> bool {
-        let (k, q) = (self.free.len(), self.on.len());
+    fn factorise(&mut self, regularisation: f64) -> bool {
+        let (k, q) = (self.free.len(), self.working_set.len());
         let w = padded_width(k + q + 1);
-        let (mut posture, mut forces) = (0f64, 0f64);
+        let (mut rates, mut forces) = (0f64, 0f64);
         for (a, &i) in self.free.iter().enumerate() {
             let size = self.factor[a * w + a].abs();
-            if i < self.shifted { posture = posture.max(size) } else { forces = forces.max(size) }
+            if i < self.rates { rates = rates.max(size) } else { forces = forces.max(size) }
         }
         for (a, &i) in self.free.iter().enumerate() {
-            let more = if i < self.shifted { shift * self.unit + FLAT * posture } else { FLAT * forces };
+            let more = if i < self.rates {
+                regularisation * self.unit + DIAGONAL_SHARE * rates
+            } else {
+                DIAGONAL_SHARE * forces
+            };
             self.factor[a * w + a] += more;
         }
         if !blocked_cholesky(&mut self.factor, w, 0, k) {
             return false;
         }
-        // Rows that say the same twice.
-        let trace = (k..k + q).fold(0.0, |most: f64, r| most.max(-self.factor[r * w + r])) * NOTHING;
+        // Linearly dependent rows.
+        let trace = (k..k + q).fold(0.0, |most: f64, r| most.max(-self.factor[r * w + r])) * QP_ZERO;
         for r in k..k + q {
             let line = &mut self.factor[r * w..(r + 1) * w];
             line[k..].iter_mut().for_each(|entry| *entry = -*entry);
@@ -269,82 +267,101 @@ impl QuadraticProgram {
         blocked_cholesky(&mut self.factor, w, k, k + q)
     }
 
-    /// Step and multipliers from the factors.
-    fn answer(&mut self) {
-        let (k, q) = (self.free.len(), self.on.len());
+    /// Solves for step and multipliers with the factors.
+    fn back_substitute(&mut self) {
+        let (k, q) = (self.free.len(), self.working_set.len());
         let w = padded_width(k + q + 1);
-        self.answer.clear();
-        self.answer.extend((k..k + q).map(|r| self.factor[r * w + k + q]));
-        solve_upper(self.factor.get(k * w + k..).unwrap_or_default(), w, &mut self.answer);
-        let mut z = std::mem::take(&mut self.table);
+        self.of_rows.clear();
+        self.of_rows.extend((k..k + q).map(|r| self.factor[r * w + k + q]));
+        solve_upper(self.factor.get(k * w + k..).unwrap_or_default(), w, &mut self.of_rows);
+        let mut z = std::mem::take(&mut self.of_unknowns);
         z.clear();
         z.extend((0..k).map(|i| {
             let line = &self.factor[i * w..(i + 1) * w];
-            line[k + q] - dot(&line[k..k + q], &self.answer)
+            line[k + q] - dot(&line[k..k + q], &self.of_rows)
         }));
         solve_upper(&self.factor, w, &mut z);
         self.free.iter().zip(&z).for_each(|(i, z)| self.step[*i] = *z);
-        self.table = z;
+        self.of_unknowns = z;
         self.multipliers.clear();
         self.multipliers.resize(self.lower.len(), 0.0);
-        self.on.iter().zip(&self.answer).for_each(|(row, y)| self.multipliers[*row] = *y);
+        self.working_set.iter().zip(&self.of_rows).for_each(|(row, y)| self.multipliers[*row] = *y);
     }
 
-    /// `S^-1` of what stands in `answer`.
+    /// Replaces `of_rows` by `S^-1` times it.
     fn solve_schur(&mut self) {
-        let (k, q) = (self.free.len(), self.on.len());
+        let (k, q) = (self.free.len(), self.working_set.len());
         let w = padded_width(k + q + 1);
         let schur = self.factor.get(k * w + k..).unwrap_or_default();
-        solve_upper_transposed(schur, w, &mut self.answer);
-        solve_upper(schur, w, &mut self.answer);
+        solve_upper_transposed(schur, w, &mut self.of_rows);
+        solve_upper(schur, w, &mut self.of_rows);
     }
 
-    /// Adds what is violated, lets go what pulls; `true` if anything changed.
-    fn put_right(&mut self, let_go: bool) -> bool {
+    /// Changes the working set and the unknowns at bounds; returns whether anything changed. Rows and bounds leave if `leaving`.
+    fn change_working_set(&mut self, leaving: bool) -> bool {
+        let left = leaving && self.leave_bounds();
+        let joined = self.join_bounds();
+        self.change_rows(leaving) || left || joined
+    }
+
+    /// Frees unknowns whose bound has a multiplier of the wrong sign.
+    fn leave_bounds(&mut self) -> bool {
         let n = self.n;
         let mut changed = false;
-        if let_go {
-            for i in 0..n {
-                if self.held[i] == 0 {
-                    continue;
-                }
-                let above: f64 = (0..i).map(|j| self.matrix[j * n + i] * self.step[j]).sum();
-                let mut pull = self.slope[i] + above + dot(&self.matrix[i * n + i..(i + 1) * n], &self.step[i..]);
-                for &row in &self.on {
-                    pull += self.multipliers[row] * self.rows[row * n + i];
-                }
-                if pull * f64::from(self.held[i]) > 1e3 * NOTHING * self.slope[i].abs() {
-                    self.held[i] = 0;
-                    changed = true;
-                }
+        for i in 0..n {
+            if self.at_bound[i] == 0 {
+                continue;
+            }
+            let above: f64 = (0..i).map(|j| self.matrix[j * n + i] * self.step[j]).sum();
+            let mut multiplier = self.gradient[i] + above + dot(&self.matrix[i * n + i..(i + 1) * n], &self.step[i..]);
+            for &row in &self.working_set {
+                multiplier += self.multipliers[row] * self.rows[row * n + i];
+            }
+            if multiplier * f64::from(self.at_bound[i]) > LEAVING_MULTIPLIER * self.gradient[i].abs() {
+                self.at_bound[i] = 0;
+                changed = true;
             }
         }
-        let excess = |i: usize| (self.least[i] - self.step[i]).max(self.step[i] - self.most[i]);
-        let worst = self.free.iter().fold(0.0, |worst: f64, i| worst.max(excess(*i)));
-        if worst > NOTHING {
-            for &i in &self.free {
-                if excess(i) >= WORST * worst {
-                    self.held[i] = if self.step[i] < self.least[i] { -1 } else { 1 };
-                    changed = true;
-                }
+        changed
+    }
+
+    /// Holds the unknowns at the bounds that they violate most.
+    fn join_bounds(&mut self) -> bool {
+        let violation = |i: usize| (self.lower_bounds[i] - self.step[i]).max(self.step[i] - self.upper_bounds[i]);
+        let worst = self.free.iter().fold(0.0, |worst: f64, i| worst.max(violation(*i)));
+        if worst <= QP_ZERO {
+            return false;
+        }
+        let mut changed = false;
+        for &i in &self.free {
+            let violation = (self.lower_bounds[i] - self.step[i]).max(self.step[i] - self.upper_bounds[i]);
+            if violation >= JOINING_SHARE * worst {
+                self.at_bound[i] = if self.step[i] < self.lower_bounds[i] { -1 } else { 1 };
+                changed = true;
             }
         }
+        changed
+    }
+
+    /// Lets rows leave whose multiplier has the wrong sign, and violated rows join.
+    fn change_rows(&mut self, leaving: bool) -> bool {
+        let n = self.n;
+        let mut changed = false;
         for row in 0..self.lower.len() {
             if self.lower[row] == self.upper[row] {
                 continue;
             }
-            let pull = self.multipliers[row];
-            if self.kept[row] != 0 {
-                if let_go && pull * f64::from(self.kept[row]) < 0.0 {
-                    self.kept[row] = 0;
+            if self.at_limit[row] != 0 {
+                if leaving && self.multipliers[row] * f64::from(self.at_limit[row]) < 0.0 {
+                    self.at_limit[row] = 0;
                     changed = true;
                 }
                 continue;
             }
             let value = dot(&self.rows[row * n..(row + 1) * n], &self.step);
-            let side = i8::from(value > self.upper[row] + NOTHING) - i8::from(value < self.lower[row] - NOTHING);
+            let side = i8::from(value > self.upper[row] + QP_ZERO) - i8::from(value < self.lower[row] - QP_ZERO);
             changed |= side != 0;
-            self.kept[row] = side;
+            self.at_limit[row] = side;
         }
         changed
     }
@@ -363,73 +380,73 @@ mod tests {
 
     const SEED: u64 = 31;
 
-    /// A problem as a descent meets it: the step 0 need not hold, but some step does.
-    fn random_problem(random: &mut Pcg64Mcg, bent_down: bool) -> QuadraticProgram {
+    /// A program such as a descent builds: some step satisfies all rows, the step 0 need not.
+    fn random_program(random: &mut Pcg64Mcg, negative_curvature: bool) -> QuadraticProgram {
         let n = random.random_range(20..70);
         let equations = random.random_range(0..=n / 3);
         let rows = equations + random.random_range(0..=n / 2);
         let mut numbers = |count: usize| (0..count).map(|_| random.random_range(-1.0..1.0)).collect::<Vec<f64>>();
-        let mut problem = QuadraticProgram { n, shifted: n, unit: 1.0, ..QuadraticProgram::default() };
-        problem.slope = numbers(n);
-        problem.rows = numbers(rows * n);
-        problem.matrix = vec![0.0; n * n];
+        let mut program = QuadraticProgram { n, rates: n, unit: 1.0, ..QuadraticProgram::default() };
+        program.gradient = numbers(n);
+        program.rows = numbers(rows * n);
+        program.matrix = vec![0.0; n * n];
         for (k, row) in numbers(2 * n * n).chunks_exact(n).enumerate() {
-            // From stiff to soft, as effort is.
+            // Eigenvalues over three decades, as of effort.
             let weight = 10f64.powf(-3.0 * k as f64 / (2 * n) as f64);
             for i in 0..n {
-                add_scaled(&mut problem.matrix[i * n + i..(i + 1) * n], weight * row[i], &row[i..]);
+                add_scaled(&mut program.matrix[i * n + i..(i + 1) * n], weight * row[i], &row[i..]);
             }
         }
         let (inside, room) = (numbers(n), numbers(rows + 2 * n));
         let room: Vec<f64> = room.iter().map(|x| if *x < -0.5 { 0.0 } else { x.abs() }).collect();
-        for (r, row) in problem.rows.chunks_exact(n).enumerate() {
+        for (r, row) in program.rows.chunks_exact(n).enumerate() {
             let value = dot(row, &inside);
             let (lower, upper) = match r {
                 r if r < equations => (value, value),
                 r if r % 2 == 0 => (value - room[r], f64::INFINITY),
                 _ => (f64::NEG_INFINITY, value + room[r]),
             };
-            problem.lower.push(lower);
-            problem.upper.push(upper);
+            program.lower.push(lower);
+            program.upper.push(upper);
         }
         for (i, x) in inside.iter().enumerate() {
             let bounded = i % 3 == 0;
-            problem.least.push(if bounded { x.min(0.0) - room[rows + 2 * i] } else { f64::NEG_INFINITY });
-            problem.most.push(if bounded { x.max(0.0) + room[rows + 2 * i + 1] } else { f64::INFINITY });
+            program.lower_bounds.push(if bounded { x.min(0.0) - room[rows + 2 * i] } else { f64::NEG_INFINITY });
+            program.upper_bounds.push(if bounded { x.max(0.0) + room[rows + 2 * i + 1] } else { f64::INFINITY });
         }
-        if bent_down {
-            // Along what equations hold fast, effort may bend down as it likes.
-            for row in problem.rows[..equations * n].chunks_exact(n) {
+        if negative_curvature {
+            // Negative curvature only in directions that the equations forbid.
+            for row in program.rows[..equations * n].chunks_exact(n) {
                 for i in 0..n {
-                    add_scaled(&mut problem.matrix[i * n + i..(i + 1) * n], -0.5 * row[i], &row[i..]);
+                    add_scaled(&mut program.matrix[i * n + i..(i + 1) * n], -0.5 * row[i], &row[i..]);
                 }
-                add_scaled(&mut problem.slope, 0.5 * dot(row, &inside), row);
+                add_scaled(&mut program.gradient, 0.5 * dot(row, &inside), row);
             }
         }
-        problem
+        program
     }
 
-    /// The same by an interior-point method; where the matrix bends down it is given the square of each equation.
-    fn clarabel(problem: &QuadraticProgram, bent_down: bool) -> Option<Vec<f64>> {
-        let (n, m) = (problem.n, problem.lower.len());
-        let (mut matrix, mut slope) = (problem.matrix.clone(), problem.slope.clone());
-        let equation = |r: &usize| problem.lower[*r] == problem.upper[*r];
-        let row = |r: usize| &problem.rows[r * n..(r + 1) * n];
+    /// The solution by an interior-point method; a matrix of negative curvature gets the square of each equation first.
+    fn clarabel(program: &QuadraticProgram, negative_curvature: bool) -> Option<Vec<f64>> {
+        let (n, m) = (program.n, program.lower.len());
+        let (mut matrix, mut gradient) = (program.matrix.clone(), program.gradient.clone());
+        let equation = |r: &usize| program.lower[*r] == program.upper[*r];
+        let row = |r: usize| &program.rows[r * n..(r + 1) * n];
         let (mut lines, mut limits): (Vec<Vec<f64>>, Vec<f64>) = (vec![], vec![]);
         for r in (0..m).filter(equation) {
             lines.push(row(r).to_vec());
-            limits.push(problem.upper[r]);
-            if bent_down {
+            limits.push(program.upper[r]);
+            if negative_curvature {
                 for i in 0..n {
                     add_scaled(&mut matrix[i * n + i..(i + 1) * n], 0.5 * row(r)[i], &row(r)[i..]);
                 }
-                add_scaled(&mut slope, -0.5 * problem.upper[r], row(r));
+                add_scaled(&mut gradient, -0.5 * program.upper[r], row(r));
             }
         }
         let equations = lines.len();
         let unit = |i: usize, sign: f64| (0..n).map(|j| if i == j { sign } else { 0.0 }).collect::<Vec<f64>>();
-        let sides = (0..m).filter(|r| !equation(r)).map(|r| (row(r).to_vec(), problem.lower[r], problem.upper[r]));
-        let bounds = (0..n).map(|i| (unit(i, 1.0), problem.least[i], problem.most[i]));
+        let sides = (0..m).filter(|r| !equation(r)).map(|r| (row(r).to_vec(), program.lower[r], program.upper[r]));
+        let bounds = (0..n).map(|i| (unit(i, 1.0), program.lower_bounds[i], program.upper_bounds[i]));
         for (line, lower, upper) in sides.chain(bounds) {
             if upper.is_finite() {
                 lines.push(line.clone());
@@ -451,59 +468,63 @@ mod tests {
             .build()
             .unwrap();
         let (p, a) = (CscMatrix::from(&matrix), CscMatrix::from(&lines));
-        let mut solver = DefaultSolver::new(&p, &slope, &a, &limits, &cones, settings).unwrap();
+        let mut solver = DefaultSolver::new(&p, &gradient, &a, &limits, &cones, settings).unwrap();
         solver.solve();
         matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved)
             .then(|| solver.solution.x.clone())
     }
 
-    fn compare(bent_down: bool) {
+    fn compare(negative_curvature: bool) {
         let mut random = Pcg64Mcg::new(SEED.into());
         let (mut compared, mut worst, mut off) = (0, 0f64, 0f64);
         for _ in 0..600 {
-            let mut problem = random_problem(&mut random, bent_down);
-            let Some(peer) = clarabel(&problem, bent_down) else { continue };
-            assert_eq!(problem.solve(0.0), Some(0.0));
+            let mut program = random_program(&mut random, negative_curvature);
+            let Some(peer) = clarabel(&program, negative_curvature) else { continue };
+            assert_eq!(program.solve(0.0), Some(0.0));
             compared += 1;
-            let n = problem.n;
+            let n = program.n;
             let value = |d: &[f64]| {
-                let upper = |i: usize, j: usize| problem.matrix[i.min(j) * n + i.max(j)];
-                dot(&problem.slope, d)
+                let upper = |i: usize, j: usize| program.matrix[i.min(j) * n + i.max(j)];
+                dot(&program.gradient, d)
                     + 0.5 * (0..n * n).map(|e| d[e / n] * upper(e / n, e % n) * d[e % n]).sum::<f64>()
             };
-            let missing = problem.rows.chunks_exact(n).enumerate().fold(0.0, |most: f64, (r, row)| {
-                let value = dot(row, &problem.step);
-                most.max(problem.lower[r] - value).max(value - problem.upper[r])
+            let missing = program.rows.chunks_exact(n).enumerate().fold(0.0, |most: f64, (r, row)| {
+                let value = dot(row, &program.step);
+                most.max(program.lower[r] - value).max(value - program.upper[r])
             });
             off = off.max(missing);
-            let more = (value(&problem.step) - value(&peer)) / (1.0 + value(&peer).abs());
+            let more = (value(&program.step) - value(&peer)) / (1.0 + value(&peer).abs());
             worst = worst.max(more.abs());
-            let limits = problem.least.iter().zip(&problem.most);
-            assert!(problem.step.iter().zip(limits).all(|(d, (least, most))| d >= least && d <= most));
+            let limits = program.lower_bounds.iter().zip(&program.upper_bounds);
+            assert!(program.step.iter().zip(limits).all(|(d, (least, most))| d >= least && d <= most));
         }
         println!("seed {SEED}: {compared} problems, off by {worst:.1e} at most, rows missed by {off:.1e}");
         assert!(compared > 550 && worst < 1e-6 && off < 1e-9, "{compared} {worst} {off}");
     }
 
-    /// With limits moved away from where the answer met them: taken as often as there is room, it meets one and passes none.
+    /// Limits are moved away from the solution of random programs first.
     #[test]
-    fn a_step_with_room_meets_a_limit() {
+    fn longest_multiple_of_a_step_meets_a_limit_and_passes_none() {
         let mut random = Pcg64Mcg::new(SEED.into());
         let mut longer = 0;
         for _ in 0..200 {
-            let mut problem = random_problem(&mut random, false);
-            problem.solve(0.0).unwrap();
-            for limits in [&mut problem.least, &mut problem.most, &mut problem.lower, &mut problem.upper] {
+            let mut program = random_program(&mut random, false);
+            program.solve(0.0).unwrap();
+            for limits in [&mut program.lower_bounds, &mut program.upper_bounds, &mut program.lower, &mut program.upper]
+            {
                 limits.iter_mut().for_each(|limit| *limit *= 3.0);
             }
-            let room = problem.room();
+            let room = program.longest();
             longer += usize::from(room > 1.0);
-            let n = problem.n;
-            let bounds =
-                problem.step.iter().zip(problem.least.iter().zip(&problem.most)).map(|(d, (l, u))| (*d, *l, *u));
-            let rows = problem.rows.chunks_exact(n).zip(problem.lower.iter().zip(&problem.upper));
+            let n = program.n;
+            let bounds = program
+                .step
+                .iter()
+                .zip(program.lower_bounds.iter().zip(&program.upper_bounds))
+                .map(|(d, (l, u))| (*d, *l, *u));
+            let rows = program.rows.chunks_exact(n).zip(program.lower.iter().zip(&program.upper));
             let rows = rows
-                .map(|(row, (l, u))| (dot(row, &problem.step), *l, *u))
+                .map(|(row, (l, u))| (dot(row, &program.step), *l, *u))
                 .filter(|(_, l, u)| *l <= 0.0 && *u >= 0.0 && l != u);
             let passed: Vec<f64> = bounds.chain(rows).map(|(d, l, u)| (l - room * d).max(room * d - u)).collect();
             let most = passed.iter().fold(f64::NEG_INFINITY, |most, by| most.max(*by));
@@ -513,7 +534,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_those_of_an_interior_point_method() {
+    fn random_programs_have_the_objective_of_an_interior_point_method() {
         compare(false);
         compare(true);
     }

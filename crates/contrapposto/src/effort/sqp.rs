@@ -1,290 +1,370 @@
-//! How does a body come down into a valley of little effort?
+//! Descends to a local minimum of effort by sequential quadratic programming on posture and contact forces together.
 //!
-//! Sequential quadratic programming on posture and contact forces together, with the second derivative of the Lagrangian
-//! ([`super::hessian`]): `min |e|^2/2` while the root is in equilibrium, supports stay, goals above effort are reached. A step
-//! counts if it lowers `|e|^2/2 + price sum |what does not hold|`; the shift of the second derivative follows the ratio of what
-//! was gained and foreseen (Nielsen 1999, "Damping parameter in Marquardt's method"). Where effort bends down along what is free,
-//! the shift that makes the matrix positive also keeps steps short; as long as they keep what they foresaw, each may be twice as
-//! long as the one before. What bends away from a long step is corrected with the factors at hand before it is judged (Fletcher
-//! 1982, "Second order corrections for non-differentiable optimization"), or feet that turn would keep steps short.
+//! Every step minimises the quadratic model with the second derivative of the Lagrangian ([`super::hessian`]) under linearised
+//! constraints ([`super::qp`]; Nocedal & Wright 2006, "Numerical Optimization", ch. 18). A step is accepted if it lowers the merit
+//! `1/2 |r|^2 + penalty sum |violations|`. The regularisation of the second derivative follows the ratio of actual and predicted
+//! decrease (Nielsen 1999, "Damping parameter in Marquardt's method"). Where the curvature is negative in free directions,
+//! regularisation also keeps steps short; while their predictions come true, each step may be twice as long as the one before.
+//! Constraint violations of second order are corrected with the factors at hand before a step is judged (Fletcher 1982, "Second
+//! order corrections for non-differentiable optimization"): otherwise rotating feet shorten the steps (the Maratos effect).
 
 use super::hessian::{Hessian, HessianModel};
 use super::iterate::Iterate;
 use super::problem::EffortProblem;
 use super::qp::QuadraticProgram;
+use super::tolerances::{
+    ACCEPTED_SHARE, FIRST_REGULARISATION, GOOD_AGREEMENT, LEAST_STEP, NO_REGULARISATION, PENALTY_DECAY, PENALTY_MARGIN,
+    PREDICTED_ROUNDING, RAISED_REGULARISATION, ROUNDING_SHARE, WORTH_CORRECTING,
+};
 use crate::contact::bounds;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::tasks::body::BodyError;
 use hierarchical_least_squares::linalg::dot;
 
-/// How to go down.
+/// Settings of a descent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SqpOptions {
-    /// Length of what does not hold that one step takes on: on the way to a far goal the body stays where effort is little.
-    pub(crate) pace: f64,
-    /// Steps at the beginning that use first derivatives only.
-    pub(crate) plain: usize,
-    /// Largest change of any rate in one step.
-    pub(crate) reach: f64,
-    /// Steps lengthen where effort bends down.
-    pub(crate) longer: bool,
-    pub(crate) steps: usize,
-    /// It ends when a step is foreseen to gain less than this share of the merit.
-    pub(crate) gain: f64,
+    /// Length of the constraint violation that one step corrects, in units of the rows: on the way to a far target effort stays
+    /// low.
+    pub(crate) feasibility_step: f64,
+    /// First steps that use first derivatives only.
+    pub(crate) gauss_newton_steps: usize,
+    /// Largest change of any rate in one step, rad or m.
+    pub(crate) trust_radius: f64,
+    /// Whether steps lengthen where the curvature is negative.
+    pub(crate) extrapolates: bool,
+    pub(crate) max_steps: usize,
+    /// The descent ends when two steps in a row predict a smaller decrease than this share of the merit.
+    pub(crate) least_gain: f64,
 }
 
-/// Where it came to.
+/// Where a descent ended.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalMinimum {
-    /// Half the sum of squares of the effort level.
-    pub(crate) effort: f64,
-    /// Sum of sizes of what does not hold.
+    /// Half the effort.
+    pub(crate) objective: f64,
+    /// Sum of all constraint violations.
     pub(crate) violation: f64,
     pub(crate) steps: usize,
-    /// It ended for want of gain.
-    pub(crate) settled: bool,
+    /// Whether the descent ended because no more decrease was predicted.
+    pub(crate) converged: bool,
 }
 
-/// Shift after a step that was taken back, at least.
-const LEAST: f64 = 1e-4;
-/// No rate changes by more any longer, rad or m.
-const STILL: f64 = 1e-10;
-/// A corrected step is tried when less of what was foreseen came true, a longer one next when more did.
-const AGREES: f64 = 0.7;
-
-/// Posture and forces on their way down. Keeps its space.
+/// Workspace of a descent.
 #[derive(Clone, Debug)]
 pub(crate) struct Sqp {
-    pub(crate) at: Iterate,
-    next: Iterate,
+    pub(crate) iterate: Iterate,
+    /// Multipliers of the constraint rows at the iterate.
+    pub(crate) multipliers: Vec<f64>,
+    // Scratch.
+    candidate: Iterate,
     hessian: Hessian,
-    problem: QuadraticProgram,
+    program: QuadraticProgram,
     correction: Vec<f64>,
     by_rate: Vec<f64>,
-    /// Of the rows of `at`.
-    pub(crate) multipliers: Vec<f64>,
+}
+
+/// A step to be tried.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// Share of the constraint violation that the whole step corrects.
+    share: f64,
+    /// Regularisation that the program needed.
+    regularisation: f64,
+    /// Largest change of a rate in the whole step.
+    largest: f64,
+    /// Multiple of the step that is taken.
+    length: f64,
+    /// Merit before the step, and its predicted decrease.
+    merit: f64,
+    predicted: f64,
+}
+
+/// Quantities that control a descent from step to step.
+#[derive(Clone, Copy, Debug)]
+struct Control {
+    regularisation: f64,
+    /// Factor of the regularisation after the next rejected step.
+    growth: f64,
+    penalty: f64,
+    trust_radius: f64,
+    /// Largest multiple of the next step.
+    extrapolation: f64,
+    /// Steps in a row that predicted little decrease.
+    small_gains: usize,
+}
+
+impl Control {
+    fn new(options: &SqpOptions) -> Self {
+        Self {
+            regularisation: 0.0,
+            growth: 2.0,
+            penalty: 0.0,
+            trust_radius: options.trust_radius,
+            extrapolation: 1.0,
+            small_gains: 0,
+        }
+    }
+
+    /// Raises the regularisation after a step that needed `used`.
+    fn raise_regularisation(&mut self, used: f64) {
+        self.regularisation = (self.growth * used).max(FIRST_REGULARISATION);
+        self.growth *= 2.0;
+    }
+
+    /// Decides from the merit after a step whether it is accepted, and prepares the next one.
+    fn judge(&mut self, step: &Step, after: f64, options: &SqpOptions) -> bool {
+        let actual = step.merit - after;
+        let rounding = actual.abs() <= ROUNDING_SHARE * step.merit;
+        let ratio = if step.predicted > 0.0 { actual / step.predicted } else { -1.0 };
+        let accepted = ratio > ACCEPTED_SHARE || rounding;
+        if accepted {
+            let was_raised = step.regularisation > self.regularisation;
+            let agreement = if rounding { 1.0 } else { ratio.min(1.5) };
+            let factor = (1.0 - (2.0 * agreement - 1.0).powi(3)).clamp(1.0 / 3.0, 3.0);
+            self.regularisation = if factor > 1.0 {
+                (factor * step.regularisation).max(RAISED_REGULARISATION)
+            } else {
+                factor * step.regularisation.min(self.regularisation)
+            };
+            if self.regularisation < NO_REGULARISATION {
+                self.regularisation = 0.0;
+            }
+            self.growth = 2.0;
+            self.trust_radius = (2.0 * self.trust_radius).min(options.trust_radius);
+            let lengthens = options.extrapolates && was_raised && ratio > GOOD_AGREEMENT;
+            self.extrapolation = if lengthens { 2.0 * step.length.max(1.0) } else { 1.0 };
+        } else if step.length > 1.0 {
+            self.extrapolation = 1.0;
+        } else {
+            self.raise_regularisation(step.regularisation);
+            self.trust_radius = 0.5 * step.length * step.largest;
+        }
+        let small = step.predicted <= options.least_gain * step.merit && step.share == 1.0;
+        self.small_gains = if small { self.small_gains + 1 } else { 0 };
+        accepted
+    }
+
+    /// Whether the descent has converged with this step.
+    fn converged(&self, step: &Step) -> bool {
+        self.small_gains >= 2
+            || step.length * step.largest <= LEAST_STEP
+            || (self.small_gains > 0 && step.predicted < PREDICTED_ROUNDING * step.merit)
+    }
 }
 
 impl Sqp {
     pub(crate) fn new(model: &Model) -> Self {
         Self {
-            at: Iterate::new(model),
-            next: Iterate::new(model),
+            iterate: Iterate::new(model),
+            multipliers: vec![],
+            candidate: Iterate::new(model),
             hessian: Hessian::new(model),
-            problem: QuadraticProgram::default(),
+            program: QuadraticProgram::default(),
             correction: vec![],
             by_rate: vec![0.0; model.rates().len()],
-            multipliers: vec![],
         }
     }
 
-    /// Goes down from `start` with `forces` and the multipliers of what must hold, if known; the end is in `at`.
-    pub(crate) fn go(
+    /// Descends from `start` with `forces` and the multipliers of the constraints (empty if unknown) to `iterate`.
+    pub(crate) fn descend(
         &mut self,
-        ask: &EffortProblem<'_>,
+        problem: &EffortProblem<'_>,
         start: &Posture,
         forces: &[f64],
         multipliers: &[f64],
-        manner: &SqpOptions,
+        options: &SqpOptions,
     ) -> Result<LocalMinimum, BodyError> {
-        self.begin(ask, start, forces)?;
+        self.start_at(problem, start, forces)?;
         self.multipliers.extend_from_slice(multipliers);
-        let (mut shift, mut raise, mut price, mut reach) = (0f64, 2f64, 0f64, manner.reach);
-        let mut stretch = 1f64;
-        let (mut steps, mut settled, mut little) = (0, false, 0);
-        while steps < manner.steps && !settled {
+        let mut control = Control::new(options);
+        let (mut steps, mut converged) = (0, false);
+        while steps < options.max_steps && !converged {
             steps += 1;
-            let share = self.share(manner.pace);
-            self.problem.unit = self.at.write(share, &mut self.problem);
-            if steps > manner.plain {
-                self.hessian.bend(
-                    ask,
-                    &self.at.seen(ask),
-                    &self.multipliers,
-                    HessianModel::Full,
-                    &mut self.problem.matrix,
-                );
-            }
-            self.bound(ask);
-            let Some(needed) = self.problem.solve(shift) else { break };
-            let rates = ask.free.len();
-            let largest = self.problem.step[..rates].iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-            let most = self.problem.multipliers.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
-            price = (0.7 * price).max(1.5 * most);
-            let violation = self.at.violation();
-            let slope = dot(&self.problem.slope, &self.problem.step);
-            let bend = self.problem.bend();
-            let foresee = |length: f64| {
-                let held = 1.0 - (1.0 - length * share).abs();
-                price * held * violation - length * (slope + 0.5 * length * bend)
-            };
-            let mut length = (reach / largest).min(1.0);
-            if stretch > 1.0 {
-                let long = (reach / largest).min(stretch).min(self.problem.room());
-                length = if foresee(long) > foresee(length) { long } else { length };
-            }
-            let foreseen = foresee(length);
-            if foreseen <= 0.0 && largest > STILL {
-                // What is held was not the right choice: again, with a shorter step and a fresh choice.
-                self.problem.forget();
-                shift = (raise * needed).max(LEAST);
-                raise *= 2.0;
+            let share = self.corrected_share(options.feasibility_step);
+            let second_order = steps > options.gauss_newton_steps;
+            let Some(step) = self.solve_step(problem, share, second_order, &mut control) else { break };
+            if step.predicted <= 0.0 && step.largest > LEAST_STEP {
+                // The working set was wrong: an empty one and a shorter step.
+                self.program.forget();
+                control.raise_regularisation(step.regularisation);
                 continue;
             }
-            let before = self.at.effort + price * violation;
-            let after = self.try_step(ask, length, share, price, (before, foreseen))?;
-            let gained = before - after;
-            let noise = gained.abs() <= 1e-11 * before;
-            let forced = needed > shift;
-            let ratio = if foreseen > 0.0 { gained / foreseen } else { -1.0 };
-            if ratio > 1e-4 || noise {
-                std::mem::swap(&mut self.at, &mut self.next);
-                self.multipliers.clone_from(&self.problem.multipliers);
-                let agreement = if noise { 1.0 } else { ratio.min(1.5) };
-                let factor = (1.0 - (2.0 * agreement - 1.0).powi(3)).clamp(1.0 / 3.0, 3.0);
-                shift = if factor > 1.0 { (factor * needed).max(1e-5) } else { factor * needed.min(shift) };
-                if shift < 1e-7 {
-                    shift = 0.0;
-                }
-                (raise, reach) = (2.0, (2.0 * reach).min(manner.reach));
-                stretch = if manner.longer && forced && ratio > AGREES { 2.0 * length.max(1.0) } else { 1.0 };
-            } else if length > 1.0 {
-                stretch = 1.0;
-            } else {
-                shift = (raise * needed).max(LEAST);
-                raise *= 2.0;
-                reach = 0.5 * length * largest;
+            let after = self.try_step(problem, &step, control.penalty)?;
+            if control.judge(&step, after, options) {
+                std::mem::swap(&mut self.iterate, &mut self.candidate);
+                self.multipliers.clone_from(&self.program.multipliers);
             }
-            little = if foreseen <= manner.gain * before && share == 1.0 { little + 1 } else { 0 };
-            settled = little >= 2 || length * largest <= STILL || (little > 0 && foreseen < 1e-13 * before);
+            converged = control.converged(&step);
         }
-        Ok(LocalMinimum { effort: self.at.effort, violation: self.at.violation(), steps, settled })
+        let (objective, violation) = (self.iterate.objective, self.iterate.violation());
+        Ok(LocalMinimum { objective, violation, steps, converged })
     }
 
-    /// Moves `at` from `start` as near to `wish` as what must hold allows to first order.
-    pub(crate) fn aside(
+    /// Moves the iterate from `start` by the change of the unknowns that is nearest to `perturbation` and keeps the constraints to
+    /// first order.
+    pub(crate) fn perturb(
         &mut self,
-        ask: &EffortProblem<'_>,
+        problem: &EffortProblem<'_>,
         start: &Posture,
         forces: &[f64],
-        wish: &[f64],
+        perturbation: &[f64],
     ) -> Result<(), BodyError> {
-        self.begin(ask, start, forces)?;
-        self.at.write(1.0, &mut self.problem);
-        let n = self.problem.n;
-        self.problem.matrix.fill(0.0);
-        self.problem.slope.fill(0.0);
-        self.problem.unit = 1.0;
-        (0..n).for_each(|i| self.problem.matrix[i * n + i] = 1.0);
-        self.problem.slope.iter_mut().zip(wish).for_each(|(slope, wish)| *slope = -wish);
-        self.bound(ask);
-        if self.problem.solve(0.0).is_some() {
-            self.move_next(ask, 1.0);
-            std::mem::swap(&mut self.at, &mut self.next);
+        self.start_at(problem, start, forces)?;
+        self.iterate.write(1.0, &mut self.program);
+        let n = self.program.n;
+        self.program.matrix.fill(0.0);
+        self.program.gradient.fill(0.0);
+        self.program.unit = 1.0;
+        (0..n).for_each(|i| self.program.matrix[i * n + i] = 1.0);
+        self.program.gradient.iter_mut().zip(perturbation).for_each(|(entry, by)| *entry = -by);
+        self.write_bounds(problem);
+        if self.program.solve(0.0).is_some() {
+            self.move_candidate(problem, 1.0);
+            std::mem::swap(&mut self.iterate, &mut self.candidate);
         }
         Ok(())
     }
 
-    pub(crate) fn begin(&mut self, ask: &EffortProblem<'_>, start: &Posture, forces: &[f64]) -> Result<(), BodyError> {
-        self.at.posture.values_mut().copy_from_slice(start.values());
-        for site in [&mut self.at, &mut self.next] {
-            site.forces.clear();
-            site.forces.extend_from_slice(forces);
+    /// Evaluates the iterate at `start` and forgets earlier descents.
+    pub(crate) fn start_at(
+        &mut self,
+        problem: &EffortProblem<'_>,
+        start: &Posture,
+        forces: &[f64],
+    ) -> Result<(), BodyError> {
+        self.iterate.posture.values_mut().copy_from_slice(start.values());
+        for iterate in [&mut self.iterate, &mut self.candidate] {
+            iterate.forces.clear();
+            iterate.forces.extend_from_slice(forces);
         }
-        self.at.see(ask)?;
-        self.problem.n = ask.unknowns();
-        self.problem.shifted = ask.free.len();
-        self.problem.forget();
+        self.iterate.evaluate(problem)?;
+        self.program.n = problem.unknowns();
+        self.program.rates = problem.free.len();
+        self.program.forget();
         self.multipliers.clear();
         Ok(())
     }
 
-    /// The share of what does not hold that the next step takes on.
-    fn share(&self, pace: f64) -> f64 {
-        let missing = self.at.lower.iter().zip(&self.at.upper).map(|(lower, upper)| lower.max(0.0) + upper.min(0.0));
-        let length = missing.map(|m| m * m).sum::<f64>().sqrt();
-        if length > pace { pace / length } else { 1.0 }
+    /// Share of the constraint violation that the next step corrects.
+    fn corrected_share(&self, feasibility_step: f64) -> f64 {
+        let limits = self.iterate.lower.iter().zip(&self.iterate.upper);
+        let violations = limits.map(|(lower, upper)| lower.max(0.0) + upper.min(0.0));
+        let length = violations.map(|v| v * v).sum::<f64>().sqrt();
+        if length > feasibility_step { feasibility_step / length } else { 1.0 }
     }
 
-    /// Ranges, and forces that only push.
-    fn bound(&mut self, ask: &EffortProblem<'_>) {
-        let problem = &mut self.problem;
-        problem.least.clear();
-        problem.most.clear();
-        for &rate in ask.free {
-            let range = ask.model.rates()[rate].coordinate.map(|c| {
-                let (lower, upper) = ask.model.coordinates()[c].range;
-                let value = self.at.posture.values()[c];
+    /// Solves the quadratic program at the iterate, and updates the penalty. `None` if the program has no solution.
+    fn solve_step(
+        &mut self,
+        problem: &EffortProblem<'_>,
+        share: f64,
+        second_order: bool,
+        control: &mut Control,
+    ) -> Option<Step> {
+        self.program.unit = self.iterate.write(share, &mut self.program);
+        if second_order {
+            let (at, matrix) = (self.iterate.first_order(problem), &mut self.program.matrix);
+            self.hessian.add_second_derivative(problem, &at, &self.multipliers, HessianModel::Full, matrix);
+        }
+        self.write_bounds(problem);
+        let program = &mut self.program;
+        let regularisation = program.solve(control.regularisation)?;
+        let largest = program.step[..problem.free.len()].iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        let multiplier = program.multipliers.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        control.penalty = (PENALTY_DECAY * control.penalty).max(PENALTY_MARGIN * multiplier);
+        let violation = self.iterate.violation();
+        let slope = dot(&program.gradient, &program.step);
+        let curvature = program.curvature();
+        let predict = |length: f64| {
+            let corrected = 1.0 - (1.0 - length * share).abs();
+            control.penalty * corrected * violation - length * (slope + 0.5 * length * curvature)
+        };
+        let mut length = (control.trust_radius / largest).min(1.0);
+        if control.extrapolation > 1.0 {
+            let long = (control.trust_radius / largest).min(control.extrapolation).min(program.longest());
+            length = if predict(long) > predict(length) { long } else { length };
+        }
+        let merit = self.iterate.objective + control.penalty * violation;
+        Some(Step { share, regularisation, largest, length, merit, predicted: predict(length) })
+    }
+
+    /// Writes the bounds of the unknowns: ranges of coordinates, and forces that only push.
+    fn write_bounds(&mut self, problem: &EffortProblem<'_>) {
+        let program = &mut self.program;
+        program.lower_bounds.clear();
+        program.upper_bounds.clear();
+        for &rate in problem.free {
+            let range = problem.model.rates()[rate].coordinate.map(|c| {
+                let (lower, upper) = problem.model.coordinates()[c].range;
+                let value = self.iterate.posture.values()[c];
                 ((lower - value).min(0.0), (upper - value).max(0.0))
             });
             let (lower, upper) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            problem.least.push(lower);
-            problem.most.push(upper);
+            program.lower_bounds.push(lower);
+            program.upper_bounds.push(upper);
         }
-        for (i, force) in self.at.forces.iter().enumerate() {
+        for (i, force) in self.iterate.forces.iter().enumerate() {
             let (lower, upper) = bounds(i);
-            problem.least.push((lower - force).min(0.0));
-            problem.most.push((upper - force).max(0.0));
+            program.lower_bounds.push((lower - force).min(0.0));
+            program.upper_bounds.push((upper - force).max(0.0));
         }
     }
 
-    /// Puts `next` where the step leads.
-    fn move_next(&mut self, ask: &EffortProblem<'_>, length: f64) {
-        self.next.posture.values_mut().copy_from_slice(self.at.posture.values());
-        self.next.forces.copy_from_slice(&self.at.forces);
-        displace(&mut self.next, ask, &self.problem.step, length, &mut self.by_rate);
+    /// Places the candidate at `length` times the step.
+    fn move_candidate(&mut self, problem: &EffortProblem<'_>, length: f64) {
+        self.candidate.posture.values_mut().copy_from_slice(self.iterate.posture.values());
+        self.candidate.forces.copy_from_slice(&self.iterate.forces);
+        displace(&mut self.candidate, problem, &self.program.step, length, &mut self.by_rate);
     }
 
-    /// The merit after the step, corrected where that helps; `next` is there.
-    fn try_step(
-        &mut self,
-        ask: &EffortProblem<'_>,
-        length: f64,
-        share: f64,
-        price: f64,
-        (before, foreseen): (f64, f64),
-    ) -> Result<f64, BodyError> {
-        self.move_next(ask, length);
-        if self.next.see(ask).is_err() {
-            return Ok(f64::INFINITY); // so far away that numbers end
+    /// Evaluates the candidate after the step, with a second-order correction where that lowers the merit; returns the merit.
+    fn try_step(&mut self, problem: &EffortProblem<'_>, step: &Step, penalty: f64) -> Result<f64, BodyError> {
+        self.move_candidate(problem, step.length);
+        if self.candidate.evaluate(problem).is_err() {
+            return Ok(f64::INFINITY); // numbers overflow that far away
         }
-        let after = self.next.effort + price * self.next.violation();
-        let (at, next, problem) = (&self.at, &self.next, &mut self.problem);
-        let left = 1.0 - length * share;
-        // What is missing beyond what the step was to leave.
-        let bent = |row: usize| {
-            let missing = |site: &Iterate| site.lower[row].max(0.0) + site.upper[row].min(0.0);
-            missing(next) - left * missing(at)
+        let after = self.candidate.objective + penalty * self.candidate.violation();
+        let (iterate, candidate, program) = (&self.iterate, &self.candidate, &mut self.program);
+        let left = 1.0 - step.length * step.share;
+        // Violation beyond the predicted one.
+        let excess = |row: usize| {
+            let violation = |at: &Iterate| at.lower[row].max(0.0) + at.upper[row].min(0.0);
+            violation(candidate) - left * violation(iterate)
         };
-        let sum: f64 = (0..next.lower.len()).filter(|row| problem.holds(*row)).map(|row| bent(row).abs()).sum();
-        if before - after >= AGREES * foreseen || price * sum <= 0.2 * foreseen {
+        let rows = (0..candidate.lower.len()).filter(|row| program.in_working_set(*row));
+        let sum: f64 = rows.map(|row| excess(row).abs()).sum();
+        let agrees = step.merit - after >= GOOD_AGREEMENT * step.predicted;
+        if agrees || penalty * sum <= WORTH_CORRECTING * step.predicted {
             return Ok(after);
         }
-        self.correction.resize(problem.n, 0.0);
-        problem.correct(bent, &mut self.correction);
-        displace(&mut self.next, ask, &self.correction, 1.0, &mut self.by_rate);
-        let seen = self.next.see(ask).is_ok();
-        let corrected = if seen { self.next.effort + price * self.next.violation() } else { f64::INFINITY };
+        self.correction.resize(program.n, 0.0);
+        program.correct(excess, &mut self.correction);
+        displace(&mut self.candidate, problem, &self.correction, 1.0, &mut self.by_rate);
+        let corrected = match self.candidate.evaluate(problem) {
+            Ok(()) => self.candidate.objective + penalty * self.candidate.violation(),
+            Err(_) => f64::INFINITY,
+        };
         if corrected < after {
             return Ok(corrected);
         }
-        if after < before {
-            self.move_next(ask, length);
-            self.next.see(ask)?;
+        if after < step.merit {
+            self.move_candidate(problem, step.length);
+            self.candidate.evaluate(problem)?;
         }
         Ok(after)
     }
 }
 
 /// Moves posture and forces by `length` times the step.
-fn displace(site: &mut Iterate, ask: &EffortProblem<'_>, step: &[f64], length: f64, by_rate: &mut [f64]) {
+fn displace(iterate: &mut Iterate, problem: &EffortProblem<'_>, step: &[f64], length: f64, by_rate: &mut [f64]) {
     by_rate.fill(0.0);
-    for (rate, d) in ask.free.iter().zip(step) {
+    for (rate, d) in problem.free.iter().zip(step) {
         by_rate[*rate] = length * d;
     }
-    site.posture.displace(ask.model, by_rate);
-    for (force, d) in site.forces.iter_mut().zip(&step[ask.free.len()..]) {
+    iterate.posture.displace(problem.model, by_rate);
+    for (force, d) in iterate.forces.iter_mut().zip(&step[problem.free.len()..]) {
         *force += length * d;
     }
 }

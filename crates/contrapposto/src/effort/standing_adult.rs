@@ -1,5 +1,5 @@
-//! What do tests of a descent stand on? The adult on both feet with a load in a hand that is on its way, in one posture after
-//! the other, with some joints locked and any contact forces.
+//! Provides problems of least effort to the tests: the adult on both feet with a load in a hand that reaches, in random postures
+//! with random contact forces, some joints locked.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -11,6 +11,7 @@ use super::iterate::Iterate;
 use super::problem::EffortProblem;
 use crate::contact::{ContactForces, Support};
 use crate::model::{Adult, Model, adult};
+use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind};
 use crate::tasks::PriorityLevel;
 use crate::tasks::body::{Body, Needs};
@@ -44,12 +45,12 @@ impl StandingAdult {
         Self { contact, effort, above, loads, free, model }
     }
 
-    /// Shows `look` so many postures inside all ranges; feet are to stay where they are in each.
-    pub(crate) fn each(
+    /// Calls `test` with `count` random postures inside all ranges; in each the feet are to stay where they are.
+    pub(crate) fn each_posture(
         &self,
         random: &mut Pcg64Mcg,
         count: usize,
-        mut look: impl FnMut(&mut Pcg64Mcg, &EffortProblem<'_>, &Iterate),
+        mut test: impl FnMut(&mut Pcg64Mcg, &EffortProblem<'_>, &Iterate),
     ) {
         for _ in 0..count {
             let mut posture = self.model.default_posture();
@@ -67,7 +68,7 @@ impl StandingAdult {
                 let task = Placement { segment: support.segment, point: Vector3::zeros(), target };
                 places.tasks.push(Task::Placement(task));
             }
-            let ask = EffortProblem {
+            let problem = EffortProblem {
                 model: &self.model,
                 places: &places,
                 above: std::slice::from_ref(&self.above),
@@ -76,28 +77,37 @@ impl StandingAdult {
                 free: &self.free,
                 contact: &self.contact,
             };
-            let mut site = Iterate::new(&self.model);
-            site.posture = posture;
+            let mut iterate = Iterate::new(&self.model);
+            iterate.posture = posture;
             let force = |i: usize| if i.is_multiple_of(3) { 0.0..0.25 } else { -0.05..0.05 };
-            site.forces = (0..self.contact.forces().len()).map(|i| random.random_range(force(i))).collect();
-            site.see(&ask).unwrap();
-            look(random, &ask, &site);
+            iterate.forces = (0..self.contact.forces().len()).map(|i| random.random_range(force(i))).collect();
+            iterate.evaluate(&problem).unwrap();
+            test(random, &problem, &iterate);
         }
     }
 }
 
-/// The site after `by` times the step.
-pub(crate) fn moved(site: &Iterate, ask: &EffortProblem<'_>, step: &[f64], by: f64) -> Iterate {
-    let mut moved = site.clone();
-    let mut by_rate = vec![0.0; ask.model.rates().len()];
-    ask.free.iter().zip(step).for_each(|(rate, d)| by_rate[*rate] = by * d);
-    moved.posture.displace(ask.model, &by_rate);
-    moved.forces.iter_mut().zip(&step[ask.free.len()..]).for_each(|(force, d)| *force += by * d);
-    moved.see(ask).unwrap();
-    moved
+/// The iterate after `by` times the step.
+pub(super) fn displaced(iterate: &Iterate, problem: &EffortProblem<'_>, step: &[f64], by: f64) -> Iterate {
+    let mut displaced = iterate.clone();
+    let mut by_rate = vec![0.0; problem.model.rates().len()];
+    problem.free.iter().zip(step).for_each(|(rate, d)| by_rate[*rate] = by * d);
+    displaced.posture.displace(problem.model, &by_rate);
+    displaced.forces.iter_mut().zip(&step[problem.free.len()..]).for_each(|(force, d)| *force += by * d);
+    displaced.evaluate(problem).unwrap();
+    displaced
 }
 
-/// Did no group hand over to another? Where one does, effort has no second derivative.
-pub(crate) fn alike(a: &Iterate, b: &Iterate) -> bool {
-    a.errors.iter().zip(&b.errors).all(|(a, b)| (*a > 0.0) == (*b > 0.0))
+/// The problem evaluated in a posture without contact forces.
+pub(super) fn evaluated(problem: &EffortProblem<'_>, posture: &Posture) -> Iterate {
+    let mut iterate = Iterate::new(problem.model);
+    iterate.posture = posture.clone();
+    iterate.evaluate(problem).unwrap();
+    iterate
+}
+
+/// Whether every coordinate has the same active muscle group in both iterates. Where the group changes, effort has no second
+/// derivative.
+pub(super) fn same_groups(a: &Iterate, b: &Iterate) -> bool {
+    a.residual.iter().zip(&b.residual).all(|(a, b)| (*a > 0.0) == (*b > 0.0))
 }

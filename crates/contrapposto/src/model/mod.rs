@@ -8,11 +8,13 @@ mod builder;
 mod coordinate;
 pub mod data;
 mod joint;
+mod reduced;
 
 pub use adult::{Adult, AdultError, CoordinateSources, Part, Sex, adult};
 pub use builder::{ModelBuilder, ModelError, SegmentSpec};
 pub use coordinate::{Coordinate, CoordinateKind, CoordinateSpec, MuscleGroup, Side};
 pub use joint::{Drive, JointKind, Motion};
+pub(crate) use reduced::reduced;
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 

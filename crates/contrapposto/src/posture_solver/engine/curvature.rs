@@ -89,11 +89,11 @@ impl Curvature {
             body,
             loads,
             columns: ask.contact.columns(),
-            errors: &self.errors,
-            slopes: &self.level.matrix,
-            places: &problem.levels[1].matrix,
+            residual: &self.errors,
+            jacobian: &self.level.matrix,
+            support_rows: &problem.levels[1].matrix,
         };
-        self.hessian.bend(ask, &seen, &self.multipliers, self.sight, &mut self.matrix);
+        self.hessian.add_second_derivative(ask, &seen, &self.multipliers, self.sight, &mut self.matrix);
         for row in self.level.matrix.chunks_exact(m) {
             add_outer_product(&mut self.matrix, row, 1.0);
         }

@@ -18,10 +18,10 @@ impl Engine<'_> {
         self.evaluate(posture)?;
         let count = self.options.local_minima;
         let (ask, valleys) = self.ask();
-        let Some(bottom) = valleys.find(&ask, posture, count)? else { return Ok((false, 0)) };
+        let Some(bottom) = valleys.minimise(&ask, posture, count)? else { return Ok((false, 0)) };
         self.evaluate(posture)?;
         let held = self.contact.balance() == Balance::Held;
-        Ok((bottom.settled && held && self.effort_goal == Some(self.goals.len() - 1), bottom.steps))
+        Ok((bottom.converged && held && self.effort_goal == Some(self.goals.len() - 1), bottom.steps))
     }
 
     /// Moves `posture` to the bottom of the valley of effort in which it lies, while supports and the goals above effort hold, and
@@ -36,7 +36,7 @@ impl Engine<'_> {
         self.evaluate(posture)?;
         let most = self.options.max_step;
         let (ask, valleys) = self.ask();
-        let there = valleys.sink(&ask, posture, most)?;
+        let there = valleys.descend(&ask, posture, most)?;
         self.keep_ranges(posture);
         Ok(there)
     }
