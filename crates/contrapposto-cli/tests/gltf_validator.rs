@@ -40,12 +40,10 @@ fn validate(folder: &Path, files: &[std::path::PathBuf]) -> Vec<Value> {
 }
 
 #[test]
+#[ignore = "needs npm: the Khronos glTF validator from its registry"]
 fn khronos_finds_nothing_wrong() {
     let folder = tempfile::tempdir().unwrap();
-    if !install(folder.path()) {
-        println!("skipped: no validator of glTF, which node, npm and its registry would give");
-        return;
-    }
+    assert!(install(folder.path()), "npm cannot install the glTF validator");
     let mut files = vec![];
     for name in ["figure-08", "stand-relaxed", "stand-osim", "sit-and-type"] {
         let out = folder.path().join(name);

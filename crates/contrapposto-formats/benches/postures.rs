@@ -1,5 +1,5 @@
 //! How long does a step of the published peer problem take, and a posture of each of its targets until the success rule of its
-//! file holds? Thread time by the wall clock, the least of several runs. Left out where the problem is not beside the project.
+//! file holds? Thread time by the wall clock, the least of several runs. Needs the problem in `../shared`.
 //! `cargo bench -p contrapposto-formats --bench postures [-- TARGET]`; with a target, only its runs, for a profiler.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark prints")]
@@ -19,7 +19,7 @@ const RUNS: usize = 30;
 const STEPS: usize = 60;
 
 fn main() {
-    let Some(peer) = Peer::read() else { return };
+    let peer = Peer::read();
     let only: Option<usize> = std::env::args().find_map(|a| a.parse().ok());
     let (mut times, mut steps, mut all) = (vec![], vec![], vec![]);
     for (i, case) in peer.file["tuning"].as_array().unwrap().iter().enumerate() {

@@ -26,10 +26,7 @@ fn median(values: &[f64]) -> f64 {
 }
 
 fn run(file: &Path, name: &str, standing: bool, options: Options) {
-    let Some(problem) = effort::Problem::read(standing) else {
-        println!("left out: the peer's model is not on this machine");
-        return;
-    };
+    let problem = effort::Problem::read(standing);
     let (mut ours, mut peers, mut shares, mut steps) = (vec![], vec![], vec![], vec![]);
     let (mut no_worse, mut held, mut worst) = (0, 0, 0f64);
     let targets = effort::targets(file, name);

@@ -1,10 +1,11 @@
-//! Do published models give the torques that the field's own tools compute? Numbers by Pinocchio, MuJoCo and OpenSim on
-//! the models beside the project; without them these tests skip and say so. Conventions are converted here: the tools print
-//! what actuators must supply, our external torque is minus that.
+//! Compares torques, gradients and Jacobians of published models with numbers of Pinocchio, MuJoCo and OpenSim.
+//!
+//! The tools print the torques that actuators must supply; our external torque is minus that.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
-use std::path::PathBuf;
+#[path = "common/shared.rs"]
+mod shared;
 
 use contrapposto::kinematics::{CenterOfMass, Kinematics};
 use contrapposto::model::Model;
@@ -15,13 +16,8 @@ use contrapposto_formats::{mjcf, osim, urdf};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
-fn shared(path: &str) -> Option<Vec<u8>> {
-    let full = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(path);
-    let bytes = std::fs::read(&full).ok();
-    if bytes.is_none() {
-        println!("skipped: shared/{path} is not on this machine");
-    }
-    bytes
+fn bytes(path: &str) -> Vec<u8> {
+    std::fs::read(shared::shared(path)).unwrap()
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -115,7 +111,7 @@ fn gradient_to_local(rotation: &Matrix3<f64>, torque: &[f64], ours: &[Vec<f64>])
 }
 
 fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
-    let (Some(vectors), Some(file_bytes)) = (shared(vectors), shared(file)) else { return };
+    let (vectors, file_bytes) = (bytes(vectors), bytes(file));
     let vectors: Value = serde_json::from_slice(&vectors).unwrap();
     let options = urdf::Options { root, ..urdf::Options::default() };
     let imported = urdf::read(&file_bytes, file, &options).unwrap().model().unwrap();
@@ -222,6 +218,7 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
 }
 
 #[test]
+#[ignore = "needs ../shared: published models with torques by Pinocchio"]
 fn pinocchio_human48_fixed() {
     pinocchio(
         "vectors/pinocchio_human48_fixed_first5.json",
@@ -231,6 +228,7 @@ fn pinocchio_human48_fixed() {
 }
 
 #[test]
+#[ignore = "needs ../shared: published models with torques by Pinocchio"]
 fn pinocchio_human48_free() {
     pinocchio(
         "vectors/pinocchio_human48_free_first5.json",
@@ -240,6 +238,7 @@ fn pinocchio_human48_free() {
 }
 
 #[test]
+#[ignore = "needs ../shared: published models with torques by Pinocchio"]
 fn pinocchio_human66_free() {
     pinocchio(
         "vectors/pinocchio_human66_free_first5.json",
@@ -249,12 +248,10 @@ fn pinocchio_human66_free() {
 }
 
 #[test]
+#[ignore = "needs ../shared: published models with torques by MuJoCo"]
 fn mujoco_cmu_suite() {
-    let (Some(vectors), Some(file)) =
-        (shared("vectors/mujoco_cmu_suite_free_first5.json"), shared("models/cmu/cmu_suite_free_saved.xml"))
-    else {
-        return;
-    };
+    let vectors = bytes("vectors/mujoco_cmu_suite_free_first5.json");
+    let file = bytes("models/cmu/cmu_suite_free_saved.xml");
     let vectors: Value = serde_json::from_slice(&vectors).unwrap();
     let mut include = |_: &str| Err("no includes here".to_owned());
     let read = mjcf::read(&file, "cmu_suite_free_saved.xml", &mut include, &mjcf::Options::default()).unwrap();
@@ -302,9 +299,8 @@ fn mujoco_cmu_suite() {
 }
 
 fn opensim(vectors: &str, file: &str) {
-    let (Some(vectors), Some(bytes)) = (shared(vectors), shared(file)) else { return };
-    let vectors: Value = serde_json::from_slice(&vectors).unwrap();
-    let mut body = Body::new(osim::read(&bytes, file).unwrap().model().unwrap().model);
+    let vectors: Value = serde_json::from_slice(&bytes(vectors)).unwrap();
+    let mut body = Body::new(osim::read(&bytes(file), file).unwrap().model().unwrap().model);
     let model = body.model.clone();
     let names: Vec<&str> = vectors["coordinates"].as_array().unwrap().iter().map(|x| x.as_str().unwrap()).collect();
     let (mut worst, mut limits, mut mass, mut moves) = (0f64, 0f64, 0f64, 0f64);
@@ -348,11 +344,13 @@ fn opensim(vectors: &str, file: &str) {
 }
 
 #[test]
+#[ignore = "needs ../shared: published models with torques by OpenSim"]
 fn opensim_gait2392() {
     opensim("vectors/opensim_gait2392_first5.json", "models/opensim/gait2392_thelen2003muscle.osim");
 }
 
 #[test]
+#[ignore = "needs ../shared: published models with torques by OpenSim"]
 fn opensim_arm26() {
     opensim("vectors/opensim_arm26.json", "models/opensim/arm26.osim");
 }

@@ -49,7 +49,7 @@ fn look(page: &Path, pictures: &Path) {
     let data = text.split("id=\"data\">").nth(1).and_then(|rest| rest.split("</script>").next()).unwrap().len();
     let mut times = vec![];
     for _ in 0..OPENINGS {
-        let Some(mut browser) = Chromium::start_quietly() else { return println!("no Chromium on this machine") };
+        let mut browser = Chromium::start_quietly();
         size(&mut browser, 1280, 900, 1);
         // Besides the clock, the processor time of the page's own thread: it hardly depends on who else uses the machine.
         browser.call("Performance.enable", json!({ "timeDomain": "threadTicks" }));
@@ -59,7 +59,7 @@ fn look(page: &Path, pictures: &Path) {
         times.push([moment("drawn"), moment("ready"), busy(&mut browser)]);
     }
     let [drawn, ready, opening] = [0, 1, 2].map(|k| middle(times.iter().map(|time| time[k])));
-    let Some(mut browser) = Chromium::start() else { return };
+    let mut browser = Chromium::start();
     size(&mut browser, 1280, 900, 1);
     browser.call("Performance.enable", json!({ "timeDomain": "threadTicks" }));
     browser.open(page);

@@ -133,19 +133,16 @@ pub fn refused(arguments: &[&str]) -> String {
     answer.stderr
 }
 
-/// A file beside the project, if it is on this machine.
-pub fn shared(path: &str) -> Option<PathBuf> {
+/// Path of a file of `../shared`. Panics without it: tests that need it are `#[ignore = "needs ../shared: ..."]`.
+pub fn shared(path: &str) -> PathBuf {
     let full = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(path);
-    if full.exists() {
-        return Some(full);
-    }
-    println!("skipped: shared/{path} is not on this machine");
-    None
+    assert!(full.exists(), "{} is missing; this test needs the folder `shared` beside the repository", full.display());
+    full
 }
 
-/// The JSON of a file beside the project.
-pub fn vectors(path: &str) -> Option<Value> {
-    shared(path).map(|path| serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap())
+/// The JSON of a file of `../shared`.
+pub fn vectors(path: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(shared(path)).unwrap()).unwrap()
 }
 
 /// Writes a file; its name as an argument.

@@ -1,13 +1,15 @@
 //! What the readers' tests share: files, and forward kinematics of a [`Body`] written from its description alone.
-#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "tests say what they skip, and may stop")]
+#![allow(dead_code, unreachable_pub, unused_imports, reason = "each test uses a part")]
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "tests print their figures, and may stop")]
 
+mod shared;
 pub mod toml;
 
+pub use self::shared::shared;
 use contrapposto_formats::InputError;
 use contrapposto_formats::body::{Body, BodyMotion, Drive};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Everything that a reader says about what it refuses. Printing it must not panic either.
@@ -19,16 +21,6 @@ pub fn complaint(error: &InputError) -> String {
 
 pub fn here() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// A published model beside the repository; says so and gives none if it is missing.
-pub fn shared(path: &str) -> Option<PathBuf> {
-    let path = here().join("../../../shared").join(path);
-    if path.exists() {
-        return Some(path);
-    }
-    println!("skipped: {} is missing", path.display());
-    None
 }
 
 /// Frames of all segments, given all coordinates (couplings are the caller's).

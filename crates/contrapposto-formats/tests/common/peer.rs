@@ -2,7 +2,8 @@
 //! the centre of mass over them, the right hand on a target, the head upright, the rest posture: five strict levels.
 #![allow(dead_code, unreachable_pub, reason = "each user uses a part")]
 
-use std::path::PathBuf;
+#[path = "shared.rs"]
+mod files;
 
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::model::{Model, Placement};
@@ -14,6 +15,8 @@ use contrapposto_formats::urdf;
 use hierarchical_least_squares::{Level, Problem, Solver};
 use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
 use serde_json::Value;
+
+use self::files::shared;
 
 pub struct Peer {
     pub model: Model,
@@ -31,16 +34,10 @@ fn rotation(value: &Value) -> UnitQuaternion<f64> {
 }
 
 impl Peer {
-    /// The problem, if it is beside the project.
-    pub fn read() -> Option<Self> {
-        let shared = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-        let path = shared.join("models/human-gazebo/humanSubject01_48dof.urdf");
-        let (Ok(bytes), Ok(text)) =
-            (std::fs::read(&path), std::fs::read(shared.join("vectors/ik_targets_human48.json")))
-        else {
-            println!("skipped: the peer problem is not on this machine");
-            return None;
-        };
+    /// Reads the problem from `../shared`.
+    pub fn read() -> Self {
+        let bytes = std::fs::read(shared("models/human-gazebo/humanSubject01_48dof.urdf")).unwrap();
+        let text = std::fs::read(shared("vectors/ik_targets_human48.json")).unwrap();
         let options = urdf::Options { root: BodyRoot::Free, ..urdf::Options::default() };
         let model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
         let file: Value = serde_json::from_slice(&text).unwrap();
@@ -59,7 +56,7 @@ impl Peer {
             joint => 7 + names.iter().position(|n| *n == joint).unwrap(),
         };
         let rest = Posture::new(model.coordinates().iter().map(|c| q[place(&c.name)]).collect());
-        Some(Self { model, file, rest })
+        Self { model, file, rest }
     }
 
     fn segment(&self, name: &str) -> usize {

@@ -3,9 +3,12 @@
 //! passive torque of every joint, unit strengths. Either the upper body on a fixed pelvis, or standing on both feet without a
 //! limit of friction.
 
-#![allow(dead_code, reason = "a test and a benchmark use different parts")]
+#![allow(dead_code, unreachable_pub, reason = "a test and a benchmark use different parts")]
 
-use std::path::{Path, PathBuf};
+#[path = "../common/shared.rs"]
+mod files;
+
+use std::path::Path;
 
 use contrapposto::contact::{Balance, Support};
 use contrapposto::model::{Adult, Model, MuscleGroup, adult};
@@ -20,6 +23,8 @@ use contrapposto_formats::body::BodyRoot;
 use contrapposto_formats::urdf;
 use nalgebra::Vector3;
 use serde_json::Value;
+
+use self::files::shared;
 
 /// Sole of a foot in the frame of the peer's foot: centre and half length, half width, height, m.
 const SOLE: [f64; 4] = [0.054652, 0.0899, 0.0374, 0.0785085];
@@ -46,16 +51,11 @@ pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
-/// The files beside the project.
-fn shared() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared")
-}
-
 impl Problem {
-    /// `None` where the peer's files are not on this machine.
-    pub(crate) fn read(standing: bool) -> Option<Self> {
-        let bytes = std::fs::read(shared().join("models/human-gazebo/humanSubject01_48dof.urdf")).ok()?;
-        let text = std::fs::read(shared().join("vectors/ik_targets_human48.json")).ok()?;
+    /// Reads the peer's files in `../shared`.
+    pub(crate) fn read(standing: bool) -> Self {
+        let bytes = std::fs::read(shared("models/human-gazebo/humanSubject01_48dof.urdf")).unwrap();
+        let text = std::fs::read(shared("vectors/ik_targets_human48.json")).unwrap();
         let root = if standing { BodyRoot::Free } else { BodyRoot::Fixed };
         let options = urdf::Options { root, ..urdf::Options::default() };
         let mut model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
@@ -96,7 +96,7 @@ impl Problem {
         let supports = if standing { ["LeftFoot", "RightFoot"].map(support).to_vec() } else { vec![] };
         let weight = LoadKind::Force(Vector3::new(0.0, 0.0, -2.0 * 9.81), FixedIn::World);
         let load = Load { segment: model.segment("RightHandCOM").unwrap(), point: Vector3::zeros(), kind: weight };
-        Some(Self { rest, supports, load, locked, model })
+        Self { rest, supports, load, locked, model }
     }
 
     /// The engine for a target.

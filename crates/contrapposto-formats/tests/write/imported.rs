@@ -1,24 +1,18 @@
 //! Model files are read, written and read again: the same model.
 
+use std::path::PathBuf;
+
 use contrapposto::model::Model;
 use contrapposto_formats::{mjcf, osim, urdf};
 
-use super::common::here;
+use super::common::{here, shared};
 use super::{Format, Mjcf, Osim, Urdf, difference, read, write};
 
-/// Our own model files and, where they are, published ones (`true`).
-fn imported() -> Vec<(String, bool, Format, Model)> {
-    let shared = here().join("../../../shared/models");
+/// The models that are read from the model files of the folders.
+fn imported(folders: &[PathBuf]) -> Vec<(String, Format, Model)> {
     let mut all = vec![];
-    for folder in [
-        here().join("tests/models"),
-        shared.join("opensim"),
-        shared.join("human-gazebo"),
-        shared.join("cmu"),
-        shared.join("gepetto"),
-    ] {
-        let Ok(entries) = std::fs::read_dir(&folder) else { continue };
-        let mut paths: Vec<_> = entries.map(|e| e.unwrap().path()).collect();
+    for folder in folders {
+        let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
         paths.sort();
         for path in paths {
             let format = match path.extension().and_then(|e| e.to_str()) {
@@ -35,8 +29,7 @@ fn imported() -> Vec<(String, bool, Format, Model)> {
                 Mjcf => mjcf::read(&bytes, "m", &mut include, &mjcf::Options::default()).ok(),
             };
             let Some(Ok(imported)) = body.map(|b| b.model()) else { continue };
-            let published = folder.starts_with(&shared);
-            all.push((path.file_name().unwrap().to_string_lossy().into_owned(), published, format, imported.model));
+            all.push((path.file_name().unwrap().to_string_lossy().into_owned(), format, imported.model));
         }
     }
     all
@@ -60,10 +53,11 @@ fn skeleton(model: &Model) -> (String, Vec<f64>) {
     (words, numbers)
 }
 
-#[test]
-fn imported_models_survive_their_own_format() {
+/// Writes and reads each model in its own format; the number of models that can be written. At most so many numbers of a
+/// model change.
+fn survivors(folders: &[PathBuf], most_changed: usize) -> usize {
     let mut seen = 0;
-    for (name, published, format, model) in imported() {
+    for (name, format, model) in imported(folders) {
         let written = match write(&model, format) {
             Ok(written) => written,
             Err(error) => {
@@ -86,10 +80,22 @@ fn imported_models_survive_their_own_format() {
         seen += 1;
         // What no text gives exactly (products of rotations, multiples of splines) differs in the last digit, and once only.
         assert!(words == words_back && worst < 1e-15, "{name}");
-        assert!(!published || changed == 0, "{name}: {changed} numbers");
+        assert!(changed <= most_changed, "{name}: {changed} numbers");
         assert!(torque < 1e-15, "{name}: {torque:e}");
         let again = read(&write(&back, format).unwrap().text, format);
         assert_eq!(skeleton(&again), (words_back, numbers_back), "{name} again");
     }
-    assert!(seen >= 5);
+    seen
+}
+
+#[test]
+fn imported_models_survive_their_own_format() {
+    assert!(survivors(&[here().join("tests/models")], usize::MAX) >= 5);
+}
+
+#[test]
+#[ignore = "needs ../shared: published models"]
+fn published_models_survive_their_own_format_unchanged() {
+    let folders = ["opensim", "human-gazebo", "cmu", "gepetto"].map(|folder| shared("models").join(folder));
+    assert!(survivors(&folders, 0) >= 11);
 }

@@ -18,32 +18,33 @@ pub(crate) struct Chromium {
     _profile: tempfile::TempDir,
 }
 
-/// Where a browser stands, if there is one.
-fn program() -> Option<String> {
+/// Path of a browser. Panics without one: tests that need it are `#[ignore = "needs a browser: ..."]`.
+fn program() -> String {
     let named = std::env::var("CONTRAPPOSTO_CHROMIUM").ok();
     let known = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].map(str::to_owned);
-    named.into_iter().chain(known).find(|path| Path::new(path).exists())
+    let found = named.into_iter().chain(known).find(|path| Path::new(path).exists());
+    found.expect("a Chromium in its usual place, or named by CONTRAPPOSTO_CHROMIUM")
 }
 
 impl Chromium {
-    /// Starts one that tells what goes wrong; `None` without a browser on the machine.
-    pub(crate) fn start() -> Option<Self> {
-        let mut page = Self::start_quietly()?;
+    /// Starts a browser that reports errors and requests.
+    pub(crate) fn start() -> Self {
+        let mut page = Self::start_quietly();
         for domain in ["Runtime.enable", "Network.enable", "Log.enable"] {
             page.call(domain, json!({}));
         }
-        Some(page)
+        page
     }
 
     /// Starts one that tells nothing, and so is as fast as the browser of a person: a browser that is listened to notes where
     /// in the source everything stands, which for a large script takes longer than to run it.
-    pub(crate) fn start_quietly() -> Option<Self> {
+    pub(crate) fn start_quietly() -> Self {
         let profile = tempfile::tempdir().unwrap();
         // Chromium reads its pipe from descriptor 3 and writes to 4.
         let mut child = Command::new("sh")
             .arg("-c")
             .arg("exec \"$0\" \"$@\" 3<&0 4>&1 0</dev/null 1>/dev/null 2>/dev/null")
-            .arg(program()?)
+            .arg(program())
             .args(["--headless", "--no-sandbox", "--remote-debugging-pipe", "--no-first-run", "--disable-quic"])
             .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
             .args(["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars"])
@@ -58,7 +59,7 @@ impl Chromium {
         let attach = json!({ "targetId": target["targetId"], "flatten": true });
         page.session = page.call("Target.attachToTarget", attach)["sessionId"].as_str().unwrap().to_owned();
         page.call("Page.enable", json!({}));
-        Some(page)
+        page
     }
 
     /// Sends a command and waits for its answer.
