@@ -39,7 +39,7 @@ def by_pinocchio(path, right, left, free):
     model = pinocchio.buildModelFromUrdf(str(path), *([pinocchio.JointModelFreeFlyer()] if free else []))
     data = model.createData()
     random = numpy.random.RandomState(48)
-    frames = {side: model.getFrameId(name) for side, name in [("right", right), ("left", left)]}
+    frames = {side: model.getFrameId(name, pinocchio.FrameType.BODY) for side, name in [("right", right), ("left", left)]}
 
     def gravity(q):
         return pinocchio.computeGeneralizedGravity(model, data, q).copy()
@@ -105,6 +105,7 @@ def by_pinocchio(path, right, left, free):
         "root": "free" if free else "fixed",
         "nv": model.nv,
         "root_link_mass_at_universe": model.inertias[0].mass,
+        "center_of_mass_at_universe": lists(model.inertias[0].lever),
         "joint_names": list(model.names),
         "force_frame": right,
         "right_hand_frame": right,

@@ -1,4 +1,5 @@
-//! Compares torques, gradients and Jacobians of published models with numbers of Pinocchio, MuJoCo and OpenSim.
+//! Compares torques, gradients and Jacobians with numbers of Pinocchio, MuJoCo and OpenSim: of small models that our writers
+//! wrote (`written/`, made by `scripts/written_models.py`) and of published models (`../shared`).
 //!
 //! The tools print the torques that actuators must supply; our external torque is minus that.
 
@@ -6,6 +7,8 @@
 
 #[path = "common/shared.rs"]
 mod shared;
+
+use std::path::Path;
 
 use contrapposto::kinematics::{CenterOfMass, Kinematics};
 use contrapposto::model::Model;
@@ -16,8 +19,10 @@ use contrapposto_formats::{mjcf, osim, urdf};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
+/// A file of `written/` beside this one or, with a folder in its path, of `../shared`.
 fn bytes(path: &str) -> Vec<u8> {
-    std::fs::read(shared::shared(path)).unwrap()
+    let written = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/written").join(path);
+    std::fs::read(if path.contains('/') { shared::shared(path) } else { written }).unwrap()
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -167,13 +172,15 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
         torque = torque.max(relative(&convert(body.external.torques()), &numbers(&case["g"])));
         let ours = convert_gradient(body.external.torques(), &body.gradient());
         slope = slope.max(relative(&ours, &matrix(&case["dg_dq"]).concat()));
-        // Centre of mass; Pinocchio leaves a fixed root link out.
+        // Centre of mass; Pinocchio leaves out what is fixed to the ground.
         let total = model.mass();
         let root_mass = vectors["root_link_mass_at_universe"].as_f64().unwrap();
         let root = &model.segments()[0];
         let mut center = body.kinematics.center_of_mass(&model).unwrap() * total;
         if root_mass > 0.0 {
-            center -= root_mass * body.kinematics.station(&model, 0, root.center_of_mass);
+            let fixed = &vectors["center_of_mass_at_universe"];
+            let station = body.kinematics.station(&model, 0, root.center_of_mass);
+            center -= root_mass * if fixed.is_null() { station } else { vector(fixed) };
         }
         center /= total - root_mass;
         mass = mass.max((center - vector(&case["com"])).norm());
@@ -218,6 +225,30 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
 }
 
 #[test]
+fn written_models_with_a_fixed_root_are_pinocchios() {
+    pinocchio("right_arm_pinocchio_fixed.json", "right_arm.urdf", BodyRoot::Fixed);
+    pinocchio("hinges_and_slides_pinocchio_fixed.json", "hinges_and_slides.urdf", BodyRoot::Fixed);
+}
+
+#[test]
+fn written_models_with_a_free_root_are_pinocchios() {
+    pinocchio("right_arm_pinocchio_free.json", "right_arm.urdf", BodyRoot::Free);
+    pinocchio("hinges_and_slides_pinocchio_free.json", "hinges_and_slides.urdf", BodyRoot::Free);
+}
+
+#[test]
+fn written_models_are_mujocos() {
+    mujoco("right_arm_mujoco.json", "right_arm.xml");
+    mujoco("hinges_and_slides_mujoco.json", "hinges_and_slides.xml");
+}
+
+#[test]
+fn written_models_are_opensims() {
+    opensim("right_arm_opensim.json", "right_arm.osim");
+    opensim("hinges_and_slides_opensim.json", "hinges_and_slides.osim");
+}
+
+#[test]
 #[ignore = "needs ../shared: published models with torques by Pinocchio"]
 fn pinocchio_human48_fixed() {
     pinocchio(
@@ -247,32 +278,32 @@ fn pinocchio_human66_free() {
     );
 }
 
-#[test]
-#[ignore = "needs ../shared: published models with torques by MuJoCo"]
-fn mujoco_cmu_suite() {
-    let vectors = bytes("vectors/mujoco_cmu_suite_free_first5.json");
-    let file = bytes("models/cmu/cmu_suite_free_saved.xml");
+fn mujoco(vectors: &str, file: &str) {
+    let (vectors, file_bytes) = (bytes(vectors), bytes(file));
     let vectors: Value = serde_json::from_slice(&vectors).unwrap();
     let mut include = |_: &str| Err("no includes here".to_owned());
-    let read = mjcf::read(&file, "cmu_suite_free_saved.xml", &mut include, &mjcf::Options::default()).unwrap();
+    let read = mjcf::read(&file_bytes, file, &mut include, &mjcf::Options::default()).unwrap();
     let mut body = Body::new(read.model().unwrap().model);
     let model = body.model.clone();
-    let joints: Vec<&str> =
-        vectors["joints"].as_array().unwrap().iter().skip(1).map(|j| j["name"].as_str().unwrap()).collect();
+    let joints = vectors["joints"].as_array().unwrap();
+    // Coordinates and rates of a free root.
+    let (free, root) = if joints[0]["type"] == "free" { (7, 6) } else { (0, 0) };
+    let names = joints.iter().filter(|j| j["type"] != "free").map(|j| j["name"].as_str().unwrap());
+    let joints: Vec<&str> = names.collect();
     let (mut worst, mut springs, mut mass, mut moves) = (0f64, 0f64, 0f64, 0f64);
     for case in vectors["cases"].as_array().unwrap() {
         let q = numbers(&case["qpos"]);
         let mut values = model.default_posture().values().to_vec();
-        values[..7].copy_from_slice(&q[..7]);
-        for (name, &angle) in joints.iter().zip(&q[7..]) {
+        values[..free].copy_from_slice(&q[..free]);
+        for (name, &angle) in joints.iter().zip(&q[free..]) {
             values[model.coordinate(name).unwrap()] = angle;
         }
         body.set(values.clone(), &[]);
         let rate = |name: &str| model.coordinates()[model.coordinate(name).unwrap()].rate.unwrap();
-        let rates: Vec<usize> = (0..6).chain(joints.iter().map(|name| rate(name))).collect();
+        let rates: Vec<usize> = (0..root).chain(joints.iter().map(|name| rate(name))).collect();
         let ours: Vec<f64> = rates.iter().map(|&rate| -body.external.torques()[rate]).collect();
         worst = worst.max(relative(&ours, &numbers(&case["qfrc_bias"])));
-        let passive: Vec<f64> = (0..6)
+        let passive: Vec<f64> = (0..root)
             .map(|_| 0.0)
             .chain(joints.iter().map(|name| {
                 let i = model.coordinate(name).unwrap();
@@ -292,10 +323,14 @@ fn mujoco_cmu_suite() {
             compare(body.rotation_jacobian(hand), &case[format!("J_{side}_hand_rot")]);
         }
     }
-    println!(
-        "CMU suite: torque {worst:.1e}, springs {springs:.1e}, centre of mass {mass:.1e} m, Jacobians {moves:.1e}"
-    );
+    println!("{file}: torque {worst:.1e}, springs {springs:.1e}, centre of mass {mass:.1e} m, Jacobians {moves:.1e}");
     assert!(worst < 1e-9 && springs < 1e-9 && mass < 1e-9 && moves < 1e-12);
+}
+
+#[test]
+#[ignore = "needs ../shared: published models with torques by MuJoCo"]
+fn mujoco_cmu_suite() {
+    mujoco("vectors/mujoco_cmu_suite_free_first5.json", "models/cmu/cmu_suite_free_saved.xml");
 }
 
 fn opensim(vectors: &str, file: &str) {

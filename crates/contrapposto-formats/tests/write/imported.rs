@@ -6,6 +6,7 @@ use contrapposto::model::Model;
 use contrapposto_formats::{mjcf, osim, urdf};
 
 use super::common::{here, shared};
+use super::peers::asked;
 use super::{Format, Mjcf, Osim, Urdf, difference, read, write};
 
 /// The models that are read from the model files of the folders.
@@ -98,4 +99,23 @@ fn imported_models_survive_their_own_format() {
 fn published_models_survive_their_own_format_unchanged() {
     let folders = ["opensim", "human-gazebo", "cmu", "gepetto"].map(|folder| shared("models").join(folder));
     assert!(survivors(&folders, 0) >= 11);
+}
+
+/// The files of `written/` are those that the writers write now, up to the last digits of another processor.
+#[test]
+fn stored_models_are_what_the_writers_write() {
+    let models = asked();
+    for (name, model) in [("right_arm", &models[2].1), ("hinges_and_slides", &models[3].1)] {
+        for (format, ending) in [(Osim, "osim"), (Urdf, "urdf"), (Mjcf, "xml")] {
+            let path = here().join(format!("tests/written/{name}.{ending}"));
+            let stored = read(&std::fs::read_to_string(&path).unwrap(), format);
+            let now = read(&write(model, format).unwrap().text, format);
+            let ((words, numbers), (words_now, numbers_now)) = (skeleton(&stored), skeleton(&now));
+            let again = format!("{} has changed: run scripts/written_models.py again", path.display());
+            assert!(words == words_now, "{again}");
+            let pairs = numbers.iter().zip(&numbers_now);
+            let worst = pairs.fold(0.0_f64, |w, (a, b)| w.max((a - b).abs() / a.abs().max(1.0)));
+            assert!(worst < 1e-13, "{again}: {worst:e}");
+        }
+    }
 }

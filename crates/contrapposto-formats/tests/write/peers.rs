@@ -35,7 +35,7 @@ fn external_and_passive(model: &Model, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// Models that other programs are asked about.
-fn asked() -> Vec<(&'static str, Model)> {
+pub(crate) fn asked() -> Vec<(&'static str, Model)> {
     let names = ["adult:male", "adult:female,stature=1.52,mass=50", "adult:right_arm"];
     let adults = names.into_iter().zip(adults().into_iter().map(|size| adult(&size).unwrap()));
     adults.chain([("every joint of hinges and slides", build(hinges_and_slides()))]).collect()
