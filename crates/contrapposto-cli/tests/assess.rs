@@ -9,9 +9,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use contrapposto::contact::{Balance, ContactForces, Support};
-use contrapposto::kinematics::Kinematics;
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::model::{Adult, Model, Side, adult};
-use contrapposto::statics::{ExternalTorque, LoadKind, PassiveTorque};
+use contrapposto::statics::LoadKind;
 use contrapposto_formats::motion::{Table, read_table};
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -99,19 +99,16 @@ fn standing(model: &Model, supports: &[Support]) -> (String, String) {
     }
     ground.push('\n');
     let mut contact = ContactForces::new(model, supports.to_vec()).unwrap();
-    let (mut kinematics, mut external) = (Kinematics::new(model), ExternalTorque::new(model));
-    let mut passive = PassiveTorque::new(model);
+    let mut body = JointTorques::new(model);
     for (time, back, arm) in [(0.0, 0.0, 0.0), (10.0, -4.0, 20.0), (20.0, 2.0, 40.0)] {
         writeln!(motion, "{time},{back},{arm}").unwrap();
         let mut posture = model.default_posture();
         for (name, angle) in [("lumbar_extension", back), ("arm_flex_r", arm)] {
             posture.values_mut()[model.coordinate(name).unwrap()] = f64::to_radians(angle);
         }
-        kinematics.update(model, &posture).unwrap();
-        external.update(model, &kinematics, &[]).unwrap();
-        passive.update(model, &kinematics).unwrap();
-        let balance = contact.update(model, &kinematics, external.torques(), passive.torques());
-        assert_eq!(balance, Balance::Held, "at {time} s");
+        body.update_with_contact(model, &posture, &[], &mut contact, Quantities::TORQUES).unwrap();
+        let kinematics = body.kinematics();
+        assert_eq!(contact.balance(), Balance::Held, "at {time} s");
         write!(ground, "{time}").unwrap();
         for (number, support) in supports.iter().enumerate() {
             let at = kinematics.station(model, support.segment, support.corners[0]);

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use contrapposto::hybrid::Case;
+use contrapposto::joint_torques::active_torque;
 use contrapposto::model::{CoordinateKind, Model};
 
 /// What stands in a row, one entry a coordinate.
@@ -54,7 +55,7 @@ pub fn csv_row(model: &Model, row: &TableRow, line: &mut String) {
             shown(row.posture[i]),
             row.external[i],
             row.passive[i],
-            -(row.passive[i] + row.external[i]),
+            active_torque(row.external[i], row.passive[i]),
         );
         if let Some((case, _)) = row.asked[i] {
             line.push_str(case.number());

@@ -39,6 +39,7 @@ mod effort;
 pub mod equilibria;
 pub mod fatigue;
 pub mod hybrid;
+pub mod joint_torques;
 pub mod kinematics;
 pub mod math;
 pub mod model;

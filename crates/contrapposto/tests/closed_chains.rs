@@ -4,11 +4,12 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, ContactForces, Support};
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::{Engine, Options};
-use contrapposto::statics::{ExternalTorque, Load, PassiveTorque};
+use contrapposto::statics::Load;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{Point, Task};
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -21,21 +22,17 @@ const STEP: f64 = 1e-4;
 /// Torque of a rate in a posture: weight, loads, contact forces of least effort and ligaments.
 struct Scale<'a> {
     model: &'a Model,
-    kinematics: Kinematics,
-    external: ExternalTorque,
-    passive: PassiveTorque,
+    torques: JointTorques,
     contact: ContactForces,
     loads: &'a [Load],
 }
 
 impl Scale<'_> {
     fn weigh(&mut self, posture: &Posture, rate: usize) -> Option<f64> {
-        self.kinematics.update(self.model, posture).unwrap();
-        self.external.update(self.model, &self.kinematics, self.loads).unwrap();
-        self.passive.update(self.model, &self.kinematics).unwrap();
-        let (external, passive) = (self.external.torques(), self.passive.torques());
-        let balance = self.contact.update(self.model, &self.kinematics, external, passive);
-        let torque = external[rate] + passive[rate] + self.contact.torques()[rate];
+        self.torques.update(self.model, posture, self.loads, Quantities::TORQUES).unwrap();
+        let active = self.torques.active_torque();
+        let balance = self.contact.update(self.model, self.torques.kinematics(), active);
+        let torque = self.contact.torques()[rate] - active[rate];
         (balance == Balance::Held).then_some(torque)
     }
 }
@@ -93,9 +90,7 @@ fn the_slope_is_that_of_the_motion_which_feet_and_goals_allow() {
         let mut engine = Engine::new(&model, &posture, feet.clone(), goals, &loads, Options::least_effort()).unwrap();
         let mut scale = Scale {
             model: &model,
-            kinematics,
-            external: ExternalTorque::new(&model),
-            passive: PassiveTorque::new(&model),
+            torques: JointTorques::new(&model),
             contact: ContactForces::new(&model, feet.clone()).unwrap(),
             loads: &loads,
         };
@@ -120,7 +115,8 @@ fn the_slope_is_that_of_the_motion_which_feet_and_goals_allow() {
             let off = (found - slope).abs() / (1.0 + slope.abs());
             worst = worst.max(off);
             compared += 1;
-            alone = alone.max((scale.external.own_slope(&scale.kinematics, &model, rate) - slope).abs());
+            let own_slope = scale.torques.external_torque().own_slope(scale.torques.kinematics(), &model, rate);
+            alone = alone.max((own_slope - slope).abs());
         }
     }
     println!(

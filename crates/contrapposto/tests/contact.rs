@@ -6,6 +6,7 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use contrapposto::contact::{Balance, Condition, ContactForces, FACES, Support, SupportError, root_rates};
+use contrapposto::joint_torques::active_torque;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{
     Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Motion, Placement, SegmentSpec, Side, adult,
@@ -62,7 +63,9 @@ impl Stand {
         self.kinematics.update(&self.model, posture).unwrap();
         self.external.update(&self.model, &self.kinematics, &self.loads).unwrap();
         self.passive.update(&self.model, &self.kinematics).unwrap();
-        self.contact.update(&self.model, &self.kinematics, self.external.torques(), self.passive.torques())
+        let torques = self.external.torques().iter().zip(self.passive.torques());
+        let required: Vec<f64> = torques.map(|(external, passive)| active_torque(*external, *passive)).collect();
+        self.contact.update(&self.model, &self.kinematics, &required)
     }
 
     /// Torque of muscles, and of the root what is missing.

@@ -7,13 +7,12 @@ use contrapposto::contact::{Balance, ContactForces, Support};
 use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
-use contrapposto::kinematics::Kinematics;
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::math::expression::Expression;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto::posture_solver::Options;
 use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, run};
-use contrapposto::statics::{ExternalTorque, PassiveTorque};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{Effort, Task};
 use nalgebra::Vector3;
@@ -112,22 +111,19 @@ fn a_search_is_finite_or_refused_by_name() {
 #[test]
 fn contact_forces_of_no_torques_hold_nothing() {
     let model = adult(&Adult::default()).unwrap();
-    let kinematics = Kinematics::new(&model);
-    let mut external = ExternalTorque::new(&model);
-    external.update(&model, &kinematics, &[]).unwrap();
-    let mut passive = PassiveTorque::new(&model);
-    passive.update(&model, &kinematics).unwrap();
+    let mut torques = JointTorques::new(&model);
+    torques.update(&model, &model.default_posture(), &[], Quantities::TORQUES).unwrap();
+    let (kinematics, required) = (torques.kinematics(), torques.active_torque());
     let mut contact = ContactForces::new(&model, feet(&model)).unwrap();
-    let good = contact.update(&model, &kinematics, external.torques(), passive.torques());
+    let good = contact.update(&model, kinematics, required);
     assert_eq!(good, Balance::Held);
     let before = contact.forces().to_vec();
     for bad in [f64::NAN, f64::INFINITY, -1e300] {
-        let torques = vec![bad; passive.torques().len()];
-        let balance = contact.update(&model, &kinematics, external.torques(), &torques);
+        let balance = contact.update(&model, kinematics, &vec![bad; required.len()]);
         assert_eq!(balance, Balance::Short { force: f64::INFINITY, moment: f64::INFINITY }, "{bad}");
         assert!(contact.forces().iter().all(|force| *force == 0.0), "{bad}");
         contact.forget();
-        assert_eq!(contact.update(&model, &kinematics, external.torques(), passive.torques()), good);
+        assert_eq!(contact.update(&model, kinematics, required), good);
         assert_eq!(contact.forces(), before, "{bad}");
     }
 }

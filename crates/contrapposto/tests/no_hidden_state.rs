@@ -12,6 +12,7 @@ use contrapposto::contact::{ContactForces, Support};
 use contrapposto::equilibria::{Search, equilibria, stability};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::{Problem, Strategy, minimise, minimise_literal};
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture::Posture;
@@ -20,7 +21,6 @@ use contrapposto::posture_solver::inverse_kinematics as ik;
 use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, run};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind, PassiveTorque};
 use contrapposto::tasks::PriorityLevel;
-use contrapposto::tasks::body::{Body, Needs};
 use contrapposto::tasks::{Effort, Point, Task};
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -100,16 +100,18 @@ impl Setting {
 
     fn contact(&self) -> Stage<'_> {
         let model = &self.model;
-        let mut kinematics = Kinematics::new(model);
-        let (mut external, mut passive) = (ExternalTorque::new(model), PassiveTorque::new(model));
+        let mut torques = JointTorques::new(model);
         let mut contact = ContactForces::new(model, self.supports.clone()).unwrap();
         Box::new(move |posture| {
-            kinematics.update(model, posture).unwrap();
-            external.update(model, &kinematics, &self.loads).unwrap();
-            passive.update(model, &kinematics).unwrap();
             contact.forget();
-            let balance = contact.update(model, &kinematics, external.torques(), passive.torques());
-            format!("{balance:?} {:?} {:?}", contact.forces(), contact.torques())
+            torques.update_with_contact(model, posture, &self.loads, &mut contact, Quantities::TORQUES).unwrap();
+            format!(
+                "{:?} {:?} {:?} {:?}",
+                contact.balance(),
+                contact.forces(),
+                contact.torques(),
+                torques.active_torque()
+            )
         })
     }
 
@@ -169,10 +171,10 @@ impl Setting {
     }
 
     fn steadiness(&self) -> Stage<'_> {
-        let mut body = Body::new(&self.model);
+        let mut body = JointTorques::new(&self.model);
         let locked = vec![false; self.model.rates().len()];
         Box::new(move |posture| {
-            let needs = Needs { torque: true, center_of_mass: true };
+            let needs = Quantities::ALL;
             body.update(&self.model, posture, &self.loads, needs).unwrap();
             format!("{:?}", stability(&self.model, &body, &self.supports, &self.loads, &locked))
         })

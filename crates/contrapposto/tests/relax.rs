@@ -3,17 +3,17 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, Condition, Missing, Support, root_rates};
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Sex, adult};
 use contrapposto::posture::Posture;
 use contrapposto::tasks::PriorityLevel;
-use contrapposto::tasks::body::{Body, Needs};
 use contrapposto::tasks::{self, CenterOfMass, Effort, Orientation, Point, Task};
 use std::sync::OnceLock;
 
 use contrapposto::equilibria::{Equilibria, Mirror, Search, SearchError, equilibria};
 use contrapposto::posture_solver::{Engine, Options};
-use contrapposto::statics::{Load, PassiveTorque};
+use contrapposto::statics::Load;
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -95,14 +95,12 @@ impl Standing {
 fn imbalance(standing: &Standing, engine: &Engine<'_>, posture: &Posture) -> f64 {
     let model = &standing.model;
     let loads: Vec<Load> = standing.loads.iter().chain(engine.contact().loads()).copied().collect();
-    let mut body = Body::new(model);
-    body.update(model, posture, &loads, Needs { torque: true, center_of_mass: true }).unwrap();
-    let mut passive = PassiveTorque::new(model);
-    passive.update(model, body.kinematics()).unwrap();
+    let mut body = JointTorques::new(model);
+    body.update(model, posture, &loads, Quantities::ALL).unwrap();
     let weight = model.mass() * 9.81;
     let residual = |&rate: &usize| {
         let size = if model.rates()[rate].rotational { weight * 1.65 } else { weight };
-        (body.external_torque().torques()[rate] + passive.torques()[rate]).abs() / size
+        body.active_torque()[rate].abs() / size
     };
     root_rates(model).iter().map(residual).fold(0.0, f64::max)
 }

@@ -6,19 +6,19 @@
 use contrapposto::contact::{Balance, ContactForces, Support};
 use contrapposto::equilibria::{Stability, stability, stiffness};
 use contrapposto::hybrid::{Carrier, Equilibrium};
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec, adult};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind, PassiveTorque};
-use contrapposto::tasks::body::{Body, Needs};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 type V = Vector3<f64>;
 
-const NEEDS: Needs = Needs { torque: true, center_of_mass: true };
+const NEEDS: Quantities = Quantities::ALL;
 const G: f64 = 9.81;
 
 fn random(test: &str) -> Pcg64 {
@@ -54,7 +54,7 @@ fn chain(links: &[(f64, f64, f64)], up: f64) -> Model {
 
 /// Of a model at its default posture, without supports.
 fn at_rest(model: &Model) -> Stability {
-    let mut body = Body::new(model);
+    let mut body = JointTorques::new(model);
     body.update(model, &model.default_posture(), &[], NEEDS).unwrap();
     stability(model, &body, &[], &[], &vec![false; model.rates().len()])
 }
@@ -154,7 +154,7 @@ fn stiffness_is_the_central_difference_of_torque() {
             kind: LoadKind::Force(V::new(60.0, 500.0, -40.0), FixedIn::World),
         },
     ];
-    let mut body = Body::new(&model);
+    let mut body = JointTorques::new(&model);
     let mut kinematics = Kinematics::new(&model);
     let (mut external, mut passive) = (ExternalTorque::new(&model), PassiveTorque::new(&model));
     let mut worst = [0f64; 2];
@@ -217,17 +217,12 @@ fn crouched(bend: f64) -> (Model, Posture, Vec<Support>) {
 }
 
 /// The body with the contact forces that hold it, and what its muscles do.
-fn standing(model: &Model, posture: &Posture, supports: &[Support]) -> (Body, Vec<f64>) {
-    let mut body = Body::new(model);
-    body.update(model, posture, &[], NEEDS).unwrap();
-    let mut passive = PassiveTorque::new(model);
-    passive.update(model, body.kinematics()).unwrap();
+fn standing(model: &Model, posture: &Posture, supports: &[Support]) -> (JointTorques, Vec<f64>) {
+    let mut body = JointTorques::new(model);
     let mut contact = ContactForces::new(model, supports.to_vec()).unwrap();
-    let balance = contact.update(model, body.kinematics(), body.external_torque().torques(), passive.torques());
-    assert_eq!(balance, Balance::Held);
-    body.update(model, posture, contact.loads(), NEEDS).unwrap();
-    let torques = body.external_torque().torques().iter().zip(passive.torques());
-    let active = torques.map(|(external, passive)| -(external + passive)).collect();
+    body.update_with_contact(model, posture, &[], &mut contact, NEEDS).unwrap();
+    assert_eq!(contact.balance(), Balance::Held);
+    let active = body.active_torque().to_vec();
     (body, active)
 }
 

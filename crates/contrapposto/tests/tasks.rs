@@ -8,11 +8,11 @@ mod trees;
 use std::collections::BTreeMap;
 
 use contrapposto::fatigue::FatigueLaw;
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
-use contrapposto::tasks::body::{Body, Needs};
 use contrapposto::tasks::{
     CenterOfMass, CenterOfMassGoal, Distance, Effort, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task,
     half_planes,
@@ -112,14 +112,14 @@ fn tasks(rng: &mut Pcg64, model: &Model) -> Vec<Task> {
     tasks
 }
 
-fn needs() -> Needs {
-    Needs { center_of_mass: true, torque: true }
+fn needs() -> Quantities {
+    Quantities::ALL
 }
 
 /// Rows and what they are derivatives of: `-upper`, or `-lower` where there is no upper limit.
 fn evaluate(task: &Task, model: &Model, posture: &posture::Posture, loads: &[Load]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let (mut body, mut level, mut residual) = (Body::new(model), Level::default(), vec![]);
-    body.update(model, posture, loads, task.needs()).unwrap();
+    let (mut body, mut level, mut residual) = (JointTorques::new(model), Level::default(), vec![]);
+    body.update(model, posture, loads, task.quantities()).unwrap();
     task.evaluate(model, &body, &mut level);
     task.residual(model, &body, &mut residual);
     assert_eq!((level.rows(), level.matrix.len()), (task.rows(), task.rows() * model.rates().len()));
@@ -375,10 +375,10 @@ fn effort_is_active_torque_over_strength() {
     let effort = Effort::whole(&model);
     println!("{} coordinates", effort.coordinates.len());
     let task = Task::Effort(effort.clone());
-    let mut body = Body::new(&model);
+    let mut body = JointTorques::new(&model);
     for _ in 0..50 {
         let (posture, loads) = (inside(&mut rng, &model), loads(&mut rng, &model));
-        body.update(&model, &posture, &loads, task.needs()).unwrap();
+        body.update(&model, &posture, &loads, task.quantities()).unwrap();
         let mut residual = vec![];
         task.residual(&model, &body, &mut residual);
         for (&i, share) in effort.coordinates.iter().zip(&residual) {
@@ -395,9 +395,9 @@ fn effort_is_active_torque_over_strength() {
 fn rows_are_added_and_space_is_kept() {
     let mut rng = random("rows_are_added_and_space_is_kept");
     let model = whole_adult();
-    let (tasks, mut body) = (tasks(&mut rng, &model), Body::new(&model));
+    let (tasks, mut body) = (tasks(&mut rng, &model), JointTorques::new(&model));
     let (mut level, mut space) = (Level::default(), None);
-    let all = tasks.iter().fold(Needs::default(), |needs, task| needs.with(task.needs()));
+    let all = tasks.iter().fold(Quantities::default(), |needs, task| needs.with(task.quantities()));
     assert_eq!(all, needs());
     for _ in 0..5 {
         let posture = inside(&mut rng, &model);
@@ -432,7 +432,7 @@ fn inequalities_hold_where_they_should() {
     assert!((residual(&distance(0.0, length - 0.1)) - 0.1).abs() < 1e-15);
     assert!((residual(&distance(length + 0.1, f64::INFINITY)) + 0.1).abs() < 1e-15);
 
-    let mut body = Body::new(&model);
+    let mut body = JointTorques::new(&model);
     body.update(&model, &posture, &[], needs()).unwrap();
     let center = body.center_of_mass().position().unwrap();
     let square: Vec<V> =
@@ -615,11 +615,11 @@ fn wrong_tasks_are_refused_by_name() {
 #[test]
 fn a_refused_update_leaves_the_body_as_it_was() {
     let model = whole_adult();
-    let mut body = Body::new(&model);
+    let mut body = JointTorques::new(&model);
     body.update(&model, &model.default_posture(), &[], needs()).unwrap();
     let before = body.center_of_mass().position();
     let mut wrong = model.default_posture();
     wrong.values_mut()[0] = f64::NAN;
-    body.update(&model, &wrong, &[], Needs::default()).unwrap_err();
+    body.update(&model, &wrong, &[], Quantities::default()).unwrap_err();
     assert_eq!(body.center_of_mass().position(), before);
 }

@@ -18,7 +18,7 @@ use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{Shots, report_of_assessment};
 use crate::view::text::assess::{AssessText, report};
 use crate::view::text::torques::{header, row};
-use crate::view::torque_rows::{Frame, Order, Row, Torques};
+use crate::view::torque_rows::{Frame, Order};
 
 const FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
 /// Friction of a support: shoe on floor, as in scenarios.
@@ -70,7 +70,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
             if let Some(shots) = &mut shots {
                 let measured = ground.as_ref();
                 shots.take(instant, |loads| {
-                    measured.iter().for_each(|g| g.loads(instant.time, model, instant.kinematics, loads));
+                    measured.iter().for_each(|g| g.loads(instant.time, model, instant.torques.kinematics(), loads));
                 });
             }
         },
@@ -187,10 +187,8 @@ impl<'a> Tables<'a> {
     }
 
     fn take(&mut self, instant: &Instant) {
-        let Instant { index, time, values, external, passive, fatigue, load, .. } = *instant;
-        let torques = |row: &Row| Torques::new(external[row.rate], passive[row.rate]);
-        let rows = self.order.rows.iter().map(torques).collect();
-        let frame = Frame { index, time, values, rows, coupled: vec![], center_of_mass: None, gradient: None };
+        let Instant { index, time, torques, fatigue, load, .. } = *instant;
+        let frame = Frame { center_of_mass: None, ..Frame::new(torques, self.model, &self.order, (index, time)) };
         self.torques.push_str(&row(&self.order, &frame, '\t'));
         self.times.push(time);
         let working = self.working.iter();

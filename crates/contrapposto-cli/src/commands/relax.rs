@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
+use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
 use contrapposto_formats::motion::write_sto;
@@ -108,7 +109,7 @@ fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
             let (external, passive) = (posture.torques[0][rate], posture.torques[1][rate]);
             let load =
                 posture.work.iter().find(|work| work.coordinate == i).map(|work| work.relative_load().to_string());
-            let active = -(external + passive);
+            let active = active_torque(external, passive);
             let _ = writeln!(csv, ",{external},{passive},{active},{}", load.unwrap_or_default());
         }
     }

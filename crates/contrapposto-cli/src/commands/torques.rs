@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use contrapposto::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 
@@ -12,7 +13,7 @@ use crate::motion_file::{GroundReaction, loads_of, outside, read_motion};
 use crate::output::{Folder, Pending, folder_and_name, tell};
 use crate::view::residual::Residual;
 use crate::view::text::torques as text;
-use crate::view::torque_rows::{Frame, Order, Statics};
+use crate::view::torque_rows::{Frame, Order};
 
 /// What the command works on.
 struct Job {
@@ -102,11 +103,17 @@ fn table(
 }
 
 impl Job {
+    fn body(&self) -> JointTorques {
+        JointTorques::with_passive_ranges(&self.opened.model, Tissue::new(&self.opened).ranges())
+    }
+
     /// Everything that could go wrong in a frame, before the first one is printed.
     fn check(&self) -> Result<(), Fail> {
-        let mut statics = Statics::new(&self.opened.model, Tissue::new(&self.opened), false);
+        let mut body = self.body();
+        let quantities = Quantities { passive_torque: true, ..Quantities::default() };
         for (frame, (_, posture)) in self.frames.iter().enumerate() {
-            statics.place(&self.opened.model, posture).map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
+            body.update(&self.opened.model, posture, &[], quantities)
+                .map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
         }
         self.ground.as_ref().map_or(Ok(()), |ground| ground.check(self.frames.iter().map(|(time, _)| *time)))
     }
@@ -118,17 +125,22 @@ impl Job {
         residual: &mut Residual,
         mut visit: impl FnMut(&Frame<'_>) -> Result<(), Fail>,
     ) -> Result<(), Fail> {
-        let mut statics = Statics::new(&self.opened.model, Tissue::new(&self.opened), self.gradient);
+        let model = &self.opened.model;
+        let mut body = self.body();
+        let quantities = Quantities { gradient: self.gradient, ..Quantities::TORQUES };
         let mut loads = vec![];
         for (index, (time, posture)) in self.frames.iter().enumerate() {
-            let failed = |why: String| Fail::Refused(format!("frame {index}: {why}"));
-            statics.place(&self.opened.model, posture).map_err(failed)?;
+            let failed = |why: JointTorquesError| Fail::Refused(format!("frame {index}: {why}"));
+            body.place(model, posture).map_err(|error| failed(error.into()))?;
             loads.clone_from(&self.loads);
             if let Some(ground) = &self.ground {
-                ground.loads(*time, &self.opened.model, statics.kinematics(), &mut loads);
+                ground.loads(*time, model, body.kinematics(), &mut loads);
             }
-            statics.pull(&self.opened.model, &loads).map_err(failed)?;
-            let frame = statics.frame(&self.opened.model, order, index, *time);
+            body.apply(model, &loads, quantities).map_err(failed)?;
+            let mut frame = Frame::new(&body, model, order, (index, *time));
+            if self.gradient {
+                frame = frame.with_gradient(body.gradient(), order);
+            }
             residual.take(&frame);
             visit(&frame)?;
         }

@@ -1,11 +1,12 @@
 //! From scenarios and runs to the plain numbers that charts are drawn from.
 
+use contrapposto::joint_torques::{JointTorques, Quantities, active_torque};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::dichotomy;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{ReliefLog, ReliefRecord};
-use contrapposto::statics::{ExternalTorque, Load};
+use contrapposto::statics::Load;
 use contrapposto_plot::{PostureSketch, SketchRole, TimeLine, TorqueBalance};
 use nalgebra::Vector3;
 
@@ -24,33 +25,25 @@ pub(crate) struct Sweep<'a> {
     loads: &'a [Load],
     coordinate: usize,
     posture: Posture,
-    kinematics: Kinematics,
-    external: ExternalTorque,
+    body: JointTorques,
 }
 
 impl<'a> Sweep<'a> {
     pub(crate) fn new(model: &'a Model, loads: &'a [Load], coordinate: usize, posture: &[f64]) -> Self {
-        Self {
-            model,
-            loads,
-            coordinate,
-            posture: Posture::new(posture.to_vec()),
-            kinematics: Kinematics::new(model),
-            external: ExternalTorque::new(model),
-        }
+        Self { model, loads, coordinate, posture: Posture::new(posture.to_vec()), body: JointTorques::new(model) }
     }
 
     /// External and passive torque at `angle` (rad), N m.
     pub(crate) fn torques(&mut self, angle: f64) -> Result<(f64, f64), Fail> {
         self.posture.values_mut()[self.coordinate] = angle;
         let model = self.model;
-        self.kinematics.update(model, &self.posture).map_err(|error| Fail::job("posture", error))?;
-        self.external.update(model, &self.kinematics, self.loads).map_err(|error| Fail::job("load", error))?;
+        let external = Quantities { external_torque: true, ..Quantities::default() };
+        self.body.update(model, &self.posture, self.loads, external).map_err(|error| Fail::job("posture", error))?;
         let coordinate = &model.coordinates()[self.coordinate];
-        let external = coordinate.rate.map_or(0.0, |rate| self.external.torques()[rate]);
+        let external = coordinate.rate.map_or(0.0, |rate| self.body.external_torque().torques()[rate]);
         Ok((
             external,
-            coordinate.passive.as_ref().map_or(0.0, |law| law.torque(self.coordinate, self.kinematics.values())),
+            coordinate.passive.as_ref().map_or(0.0, |law| law.torque(self.coordinate, self.body.kinematics().values())),
         ))
     }
 
@@ -75,7 +68,7 @@ impl<'a> Sweep<'a> {
 
     fn active(&mut self, angle: f64) -> Result<f64, Fail> {
         let (external, passive) = self.torques(angle)?;
-        Ok(-(external + passive))
+        Ok(active_torque(external, passive))
     }
 
     /// The chart's curves; path, start, goal and sketches are the caller's.
@@ -96,7 +89,7 @@ impl<'a> Sweep<'a> {
             chart.angles_deg.push(angle.to_degrees());
             chart.external_nm.push(external);
             chart.minus_passive_nm.push(-passive);
-            chart.active_nm.push(-(external + passive));
+            chart.active_nm.push(active_torque(external, passive));
         }
         Ok(chart)
     }
@@ -106,14 +99,14 @@ impl<'a> Sweep<'a> {
         self.torques(angle_deg.to_radians())?;
         let model = self.model;
         let rate = model.coordinates()[self.coordinate].rate;
-        let axis = rate.map_or(Vector3::z(), |rate| self.kinematics.axis(model, rate));
+        let axis = rate.map_or(Vector3::z(), |rate| self.body.kinematics().axis(model, rate));
         // Look along the ground axis nearest the joint's: from the right, from behind, or from above.
         let view = |p: Vector3<f64>| match axis.iamax() {
             0 => [p.z, p.y],
             1 => [p.z, p.x],
             _ => [p.x, p.y],
         };
-        let lines = sticks(model, &self.kinematics, self.coordinate);
+        let lines = sticks(model, self.body.kinematics(), self.coordinate);
         let polylines = lines.into_iter().map(|line| line.into_iter().map(view).collect());
         Ok(PostureSketch { label: label.to_owned(), angle_deg, polylines: polylines.collect(), role })
     }

@@ -3,8 +3,9 @@
 use contrapposto::assessment::Instant;
 use contrapposto::contact::ContactForces;
 use contrapposto::equilibria::RelaxedPosture;
+use contrapposto::joint_torques::{active_torque, effort, relative_load};
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{Model, Side};
+use contrapposto::model::Model;
 use contrapposto::simulation::{Contact, Sample, Standing};
 use nalgebra::Vector3;
 
@@ -66,40 +67,37 @@ impl Frame {
             model.coordinates().iter().map(|coordinate| coordinate.rate.map_or(0.0, |rate| torques[rate])).collect()
         };
         let (external, passive) = (of(external), of(passive));
-        let load = |(i, coordinate): (usize, &contrapposto::model::Coordinate)| {
-            let (active, known) = (-(passive[i] + external[i]), !model.is_dependent(i));
-            let groups = coordinate.groups.as_ref().filter(|_| known && coordinate.rate.is_some());
-            groups.map_or(0.0, |groups| active.abs() / groups[Side::of(active).index()].strength.torque(posture[i]))
-        };
+        let load = |(i, coordinate)| relative_load(coordinate, posture[i], active_torque(external[i], passive[i]));
         let load = model.coordinates().iter().enumerate().map(load).collect();
         Self { time, posture: posture.to_vec(), external, passive, load, fatigue: None, standing: None }
     }
 
     /// A posture that was given, held at rest.
     pub(crate) fn of_instant(model: &Model, instant: &Instant) -> Self {
-        let torques = [instant.external, instant.passive];
+        let values = instant.torques.kinematics().values();
+        let torques = [instant.torques.external_torque().torques(), instant.torques.passive_torque().torques()];
         let contact = |contact: &ContactForces, i: usize| Contact {
             force: contact.force(i),
             share: contact.share(i),
-            center_of_pressure: contact.center_of_pressure(model, instant.kinematics, i),
+            center_of_pressure: contact.center_of_pressure(model, instant.torques.kinematics(), i),
             couple: Vector3::zeros(),
         };
         let standing = instant.contact.map(|forces| Standing {
             contacts: (0..forces.supports().len()).map(|i| contact(forces, i)).collect(),
-            center_of_mass: instant.kinematics.center_of_mass(model).unwrap_or_default(),
+            center_of_mass: instant.torques.kinematics().center_of_mass(model).unwrap_or_default(),
             ..Standing::default()
         });
-        Self { standing, ..Self::at(model, instant.time, instant.values, torques) }
+        Self { standing, ..Self::at(model, instant.time, values, torques) }
     }
 
     /// Active torque of a coordinate, N m.
     pub(crate) fn active(&self, i: usize) -> f64 {
-        -(self.passive[i] + self.external[i])
+        active_torque(self.external[i], self.passive[i])
     }
 
     /// Sum of squares of relative loads.
     pub(crate) fn effort(&self) -> f64 {
-        self.load.iter().map(|load| load * load).sum()
+        effort(&self.load)
     }
 
     /// How much of what pulls on a coordinate passive tissue carries, 0..=1; `None` where next to nothing pulls.

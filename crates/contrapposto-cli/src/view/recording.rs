@@ -1,6 +1,7 @@
 //! What is kept of a run for its tables and pictures, in bounded memory.
 
 use contrapposto::hybrid::Case;
+use contrapposto::joint_torques::active_torque;
 use contrapposto::simulation::{Contact, Sample, Scenario};
 use serde::{Deserialize, Serialize};
 
@@ -148,7 +149,7 @@ impl Recording {
 impl Row<'_> {
     /// Active torque of a coordinate (Eq. 1), N m.
     pub(crate) fn active(&self, coordinate: usize) -> f64 {
-        -(self.passive[coordinate] + self.external[coordinate])
+        active_torque(self.external[coordinate], self.passive[coordinate])
     }
 }
 

@@ -1,23 +1,9 @@
 //! External, passive and active torque of one frame, and in which order and under which names they are told.
 
-use contrapposto::kinematics::Kinematics;
+use contrapposto::joint_torques::{JointTorques, active_torque};
 use contrapposto::model::{CoordinateKind, Model};
-use contrapposto::posture::Posture;
-use contrapposto::statics::{ExternalTorque, Gradient, Load};
+use contrapposto::statics::Gradient;
 use nalgebra::Vector3;
-
-use crate::model_file::Tissue;
-
-/// Everything that is computed of a posture.
-pub(crate) struct Statics {
-    kinematics: Kinematics,
-    external: ExternalTorque,
-    gradient: Option<Gradient>,
-    tissue: Tissue,
-    /// By rate, as if nothing were coupled, and folded.
-    raw_passive: Vec<f64>,
-    passive: Vec<f64>,
-}
 
 /// The three torques of one rate, N m (N for slides), which add up to zero.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +15,8 @@ pub(crate) struct Torques {
 
 impl Torques {
     pub(crate) fn new(external: f64, passive: f64) -> Self {
-        // Not the negative of the sum: that of 0 would be -0.
-        Self { external, passive, active: 0.0 - (external + passive) }
+        // Adding 0 turns -0, the active torque of no torques, into 0.
+        Self { external, passive, active: active_torque(external, passive) + 0.0 }
     }
 }
 
@@ -109,66 +95,28 @@ fn force_name(model: &Model, coordinate: usize) -> Option<String> {
     free.then(|| format!("{joint}_f{axis}"))
 }
 
-impl Statics {
-    pub(crate) fn new(model: &Model, tissue: Tissue, gradient: bool) -> Self {
-        Self {
-            kinematics: Kinematics::new(model),
-            external: ExternalTorque::new(model),
-            gradient: gradient.then(|| Gradient::new(model)),
-            tissue,
-            raw_passive: vec![0.0; model.rates().len()],
-            passive: vec![0.0; model.rates().len()],
-        }
-    }
-
-    pub(crate) fn kinematics(&self) -> &Kinematics {
-        &self.kinematics
-    }
-
-    /// Brings the body to a posture, with its passive torque.
-    pub(crate) fn place(&mut self, model: &Model, posture: &Posture) -> Result<(), String> {
-        self.kinematics.update(model, posture).map_err(|error| error.to_string())?;
-        let values = self.kinematics.values();
-        self.tissue.place(values);
-        for (index, coordinate) in model.coordinates().iter().enumerate() {
-            let Some(rate) = coordinate.rate else { continue };
-            let torque = self.tissue.torque(model, index);
-            if !torque.is_finite() {
-                let (name, value) = (&coordinate.name, values[index]);
-                return Err(format!("the passive torque of `{name}` at {value} rad is {torque}"));
-            }
-            self.raw_passive[rate] = torque;
-        }
-        self.kinematics.fold_couplings(model, &self.raw_passive, &mut self.passive);
-        Ok(())
-    }
-
-    /// Lets gravity and `loads` pull.
-    pub(crate) fn pull(&mut self, model: &Model, loads: &[Load]) -> Result<(), String> {
-        self.external.update(model, &self.kinematics, loads).map_err(|error| error.to_string())?;
-        if let Some(gradient) = &mut self.gradient {
-            self.external.gradient(model, &self.kinematics, gradient);
-        }
-        Ok(())
-    }
-
-    pub(crate) fn frame(&self, model: &Model, order: &Order, index: usize, time: f64) -> Frame<'_> {
-        let (folded, raw) = (self.external.torques(), self.external.uncoupled_torques(model));
+impl<'a> Frame<'a> {
+    /// The torques of `body` in the order in which they are printed.
+    pub(crate) fn new(body: &'a JointTorques, model: &Model, order: &Order, (index, time): (usize, f64)) -> Self {
+        let (external, passive) = (body.external_torque(), body.passive_torque());
         let torques = |rows: &[Row], external: &[f64], passive: &[f64]| -> Vec<Torques> {
             rows.iter().map(|row| Torques::new(external[row.rate], passive[row.rate])).collect()
         };
-        let rates: Vec<usize> = order.rows.iter().map(|row| row.rate).collect();
-        let matrix = |gradient: &Gradient| {
-            rates.iter().map(|&i| rates.iter().map(|&j| gradient.get(i, j)).collect()).collect::<Vec<Vec<f64>>>()
-        };
-        Frame {
+        Self {
             index,
             time,
-            values: self.kinematics.values(),
-            rows: torques(&order.rows, folded, &self.passive),
-            coupled: torques(&order.coupled, raw, &self.raw_passive),
-            center_of_mass: self.kinematics.center_of_mass(model),
-            gradient: self.gradient.as_ref().map(matrix),
+            values: body.kinematics().values(),
+            rows: torques(&order.rows, external.torques(), passive.torques()),
+            coupled: torques(&order.coupled, external.uncoupled_torques(model), passive.uncoupled_torques()),
+            center_of_mass: body.kinematics().center_of_mass(model),
+            gradient: None,
         }
+    }
+
+    /// With the gradient of external torque.
+    pub(crate) fn with_gradient(self, gradient: &Gradient, order: &Order) -> Self {
+        let rates: Vec<usize> = order.rows.iter().map(|row| row.rate).collect();
+        let matrix = rates.iter().map(|&i| rates.iter().map(|&j| gradient.get(i, j)).collect()).collect();
+        Self { gradient: Some(matrix), ..self }
     }
 }

@@ -10,10 +10,11 @@ use nalgebra::Vector3;
 use crate::contact::{Balance, ContactForces, Support, SupportError, root_rates};
 use crate::fatigue::FatigueState;
 use crate::hybrid::{Decision, Problem, Strategy, explain, minimise};
+use crate::joint_torques::{JointTorques, JointTorquesError, Quantities, relative_load};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
-use crate::posture::{Posture, PostureError};
-use crate::statics::{ExternalTorque, Load, LoadError};
+use crate::posture::Posture;
+use crate::statics::Load;
 
 /// Longest piece of time under one load, s.
 const PIECE: f64 = 0.25;
@@ -54,18 +55,12 @@ pub struct Instant<'a> {
     pub index: usize,
     /// Time, s.
     pub time: f64,
-    /// Value of every coordinate, rad or m, followers included.
-    pub values: &'a [f64],
-    /// External torque of every rate, contact forces included, followers folded into leaders, N m (N for slides).
-    pub external: &'a [f64],
-    /// Passive torque of every rate, likewise.
-    pub passive: &'a [f64],
+    /// Posture and torques, contact forces included.
+    pub torques: &'a JointTorques,
     /// Fatigue of the positive and negative group of every coordinate, 0..=1.
     pub fatigue: &'a [[f64; 2]],
     /// Active torque over strength of the same.
     pub load: &'a [[f64; 2]],
-    /// Where everything is.
-    pub kinematics: &'a Kinematics,
     /// What the supports give; none without supports.
     pub contact: Option<&'a ContactForces>,
 }
@@ -158,33 +153,13 @@ pub enum AssessError {
     /// A support does not fit the model.
     #[error(transparent)]
     Support(#[from] SupportError),
-    /// A posture does not fit the model.
+    /// A posture or a load does not fit the model, or a passive law gives no torque.
     #[error("instant {index}: {error}")]
-    Posture {
+    Torques {
         /// Its number, counted from 0.
         index: usize,
         /// Why.
-        error: PostureError,
-    },
-    /// A load does not fit the model.
-    #[error("instant {index}: {error}")]
-    Load {
-        /// Its number, counted from 0.
-        index: usize,
-        /// Why.
-        error: LoadError,
-    },
-    /// A passive law has no torque there.
-    #[error("instant {index}: the passive torque of `{coordinate}` at {value} rad is {torque}")]
-    Passive {
-        /// Number of the instant.
-        index: usize,
-        /// Name of the coordinate.
-        coordinate: String,
-        /// Its value, rad.
-        value: f64,
-        /// N m.
-        torque: f64,
+        error: JointTorquesError,
     },
     /// Times fall, or are no numbers.
     #[error("instant {index} is at {time} s; times must be finite and not fall")]
@@ -232,22 +207,19 @@ pub fn assess(
         if !time.is_finite() || before.is_some_and(|before| *time < before) {
             return Err(AssessError::Order { index, time: *time });
         }
-        statics.see(index, *time, posture, &mut loads)?;
+        statics.update(index, *time, posture, &mut loads)?;
         groups.take(&statics, index, *time, before.map_or(0.0, |before| time - before));
         let (force, moment) = statics.residual();
         found.residual_force.take(force, index, *time);
         found.residual_moment.take(moment, index, *time);
         found.unheld += usize::from(statics.unheld());
-        centers.extend(statics.kinematics.center_of_mass(model));
+        centers.extend(statics.torques.kinematics().center_of_mass(model));
         record(&Instant {
             index,
             time: *time,
-            values: statics.kinematics.values(),
-            external: statics.external.torques(),
-            passive: &statics.passive,
+            torques: &statics.torques,
             fatigue: &groups.fatigue,
             load: &groups.load,
-            kinematics: &statics.kinematics,
             contact: statics.contact.as_ref(),
         });
         before = Some(*time);
@@ -258,7 +230,7 @@ pub fn assess(
         for (at, peak) in [(PeakKind::Load, group.peak_load), (PeakKind::Fatigue, group.peak_fatigue)] {
             if peak.value > 0.0 && (at == PeakKind::Load || peak.index != group.peak_load.index) {
                 let (time, posture) = &motion[peak.index];
-                statics.see(peak.index, *time, posture, &mut loads)?;
+                statics.update(peak.index, *time, posture, &mut loads)?;
                 statics.propose(group, at, *time, settings);
             }
         }
@@ -275,15 +247,10 @@ pub fn assess(
 struct Statics<'a> {
     model: &'a Model,
     ranges: &'a [Option<(f64, f64)>],
-    kinematics: Kinematics,
-    external: ExternalTorque,
+    torques: JointTorques,
     contact: Option<ContactForces>,
     root: Vec<usize>,
     loads: Vec<Load>,
-    /// Values of all coordinates, held inside `ranges`.
-    held: Vec<f64>,
-    raw_passive: Vec<f64>,
-    passive: Vec<f64>,
 }
 
 impl<'a> Statics<'a> {
@@ -293,54 +260,36 @@ impl<'a> Statics<'a> {
         Ok(Self {
             model,
             ranges: &settings.passive_ranges,
-            kinematics: Kinematics::new(model),
-            external: ExternalTorque::new(model),
+            torques: JointTorques::with_passive_ranges(model, &settings.passive_ranges),
             contact,
             root: root_rates(model),
             loads: vec![],
-            held: vec![0.0; model.coordinates().len()],
-            raw_passive: vec![0.0; model.rates().len()],
-            passive: vec![0.0; model.rates().len()],
         })
     }
 
-    fn see(
+    /// Computes everything in the posture of one instant.
+    fn update(
         &mut self,
         index: usize,
         time: f64,
         posture: &Posture,
         loads: &mut impl FnMut(f64, &Kinematics, &mut Vec<Load>),
     ) -> Result<(), AssessError> {
-        let model = self.model;
-        self.kinematics.update(model, posture).map_err(|error| AssessError::Posture { index, error })?;
-        self.held.copy_from_slice(self.kinematics.values());
-        for (value, range) in self.held.iter_mut().zip(self.ranges) {
-            *value = range.map_or(*value, |(min, max)| value.max(min).min(max));
-        }
-        for (i, coordinate) in model.coordinates().iter().enumerate() {
-            let (Some(rate), Some(law)) = (coordinate.rate, &coordinate.passive) else { continue };
-            let (torque, value) = (law.torque(i, &self.held), self.held[i]);
-            if !torque.is_finite() {
-                return Err(AssessError::Passive { index, coordinate: coordinate.name.clone(), value, torque });
-            }
-            self.raw_passive[rate] = torque;
-        }
-        self.kinematics.fold_couplings(model, &self.raw_passive, &mut self.passive);
+        let Self { model, torques, .. } = self;
+        let refused = |error: JointTorquesError| AssessError::Torques { index, error };
+        torques.place(model, posture).map_err(|error| refused(error.into()))?;
         self.loads.clear();
-        loads(time, &self.kinematics, &mut self.loads);
-        let refused = |error| AssessError::Load { index, error };
-        self.external.update(model, &self.kinematics, &self.loads).map_err(refused)?;
-        if let Some(contact) = &mut self.contact {
-            contact.update(model, &self.kinematics, self.external.torques(), &self.passive);
-            self.loads.extend_from_slice(contact.loads());
-            self.external.update(model, &self.kinematics, &self.loads).map_err(refused)?;
+        loads(time, torques.kinematics(), &mut self.loads);
+        match &mut self.contact {
+            Some(contact) => torques.apply_with_contact(model, &self.loads, contact, Quantities::TORQUES),
+            None => torques.apply(model, &self.loads, Quantities::TORQUES),
         }
-        Ok(())
+        .map_err(refused)
     }
 
     /// Active torque of a rate, N m.
     fn active(&self, rate: usize) -> f64 {
-        -(self.passive[rate] + self.external.torques()[rate])
+        self.torques.active_torque()[rate]
     }
 
     /// What the root would need of muscles that it has not: force (N) and moment (N m).
@@ -365,13 +314,15 @@ impl<'a> Statics<'a> {
             return;
         }
         let range = self.ranges.get(i).copied().flatten().unwrap_or(coordinate.range);
-        let Some(curve) = law.curve_at(i, &self.held, range) else { return };
-        let slope = self.external.own_slope(&self.kinematics, self.model, rate);
+        let values = self.torques.passive_torque().values();
+        let Some(curve) = law.curve_at(i, values, range) else { return };
+        let external = self.torques.external_torque();
+        let slope = external.own_slope(self.torques.kinematics(), self.model, rate);
         for strategy in [Strategy::Active, Strategy::Passive] {
             let problem = Problem {
                 curve: &curve,
-                angle: self.held[i].max(curve.range().0).min(curve.range().1),
-                external_torque: self.external.torques()[rate],
+                angle: values[i].max(curve.range().0).min(curve.range().1),
+                external_torque: external.torques()[rate],
                 external_slope: slope,
                 strategy,
                 minimum_decrease_ratio: settings.minimum_decrease_ratio,
@@ -379,7 +330,7 @@ impl<'a> Statics<'a> {
                 accepted: None,
             };
             if let Ok(decision) = minimise(&problem) {
-                let (angle, sentence) = (self.held[i], explain(&problem, &decision));
+                let (angle, sentence) = (values[i], explain(&problem, &decision));
                 group.proposals.push(Proposal { at, time, angle, strategy, decision, sentence });
             }
         }
@@ -430,8 +381,8 @@ impl Groups {
             let group = &groups[side.index()];
             let active = statics.active(rate);
             let works = Side::of(active) == side;
-            let strength = group.strength.torque(statics.kinematics.values()[i]);
-            let load = if works { active.abs() / strength } else { 0.0 };
+            let value = statics.torques.kinematics().values()[i];
+            let load = if works { relative_load(coordinate, value, active) } else { 0.0 };
             let before = std::mem::replace(&mut self.load[i][side.index()], load);
             let law = &group.fatigue;
             if index == 0 {

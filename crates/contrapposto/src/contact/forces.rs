@@ -134,13 +134,13 @@ impl ContactForces {
         self.forces.fill(0.0);
     }
 
-    /// Finds the forces in the posture that `kinematics` holds. `external` and `passive` are torques of every rate without
-    /// contact forces, followers folded into their leaders, N m. Does not allocate once it has solved.
-    pub fn update(&mut self, model: &Model, kinematics: &Kinematics, external: &[f64], passive: &[f64]) -> Balance {
+    /// Finds the forces in the posture that `kinematics` holds. `required` is the active torque of every rate that would be needed
+    /// without contact forces, dependent coordinates folded into independent ones, N m. Does not allocate once it has solved.
+    pub fn update(&mut self, model: &Model, kinematics: &Kinematics, required: &[f64]) -> Balance {
         self.gather(model, kinematics);
-        self.hard_levels(external, passive);
+        self.hard_levels(required);
         for _ in 0..SIGNS {
-            self.effort_level(model, kinematics, external, passive);
+            self.effort_level(model, kinematics, required);
             if !matches!(self.solver.solve_next(&self.problem), Ok(Status::Solved | Status::Infeasible { .. })) {
                 self.solver.forget();
                 if self.solver.solve(&self.problem).is_err() {
@@ -149,7 +149,7 @@ impl ContactForces {
             }
             self.forces.copy_from_slice(self.solver.solution());
             self.sum();
-            if !self.turn_sides(model, kinematics, external, passive) {
+            if !self.turn_sides(model, kinematics, required) {
                 break;
             }
         }
@@ -193,7 +193,7 @@ impl ContactForces {
     }
 
     /// Friction, equilibrium of the root, shares, and small forces.
-    fn hard_levels(&mut self, external: &[f64], passive: &[f64]) {
+    fn hard_levels(&mut self, required: &[f64]) {
         self.problem.levels.iter_mut().for_each(Level::clear);
         let unknowns = Unknowns { first: 0, now: None };
         let mut corner = 0;
@@ -206,7 +206,7 @@ impl ContactForces {
         for i in 0..self.root.len() {
             let rate = self.root[i];
             self.fill_row(rate, self.weight);
-            let rest = -(external[rate] + passive[rate]) / self.weight;
+            let rest = required[rate] / self.weight;
             self.problem.levels[1].push(&self.row, rest, rest);
         }
         for i in 0..self.row.len() {
@@ -218,14 +218,14 @@ impl ContactForces {
         self.problem.levels[1].hard = true;
     }
 
-    fn effort_level(&mut self, model: &Model, kinematics: &Kinematics, external: &[f64], passive: &[f64]) {
+    fn effort_level(&mut self, model: &Model, kinematics: &Kinematics, required: &[f64]) {
         self.problem.levels[3].clear();
         for i in 0..self.working.len() {
             let (coordinate, rate) = self.working[i];
             let Some(groups) = &model.coordinates()[coordinate].groups else { continue };
             let strength = groups[self.sides[i].index()].strength.torque(kinematics.values()[coordinate]);
             self.fill_row(rate, strength);
-            let rest = -(external[rate] + passive[rate]) / strength;
+            let rest = required[rate] / strength;
             self.problem.levels[3].push(&self.row, rest, rest);
         }
     }
@@ -239,10 +239,10 @@ impl ContactForces {
     }
 
     /// Puts the sides right on which muscles work; `false` if that changes no strength.
-    fn turn_sides(&mut self, model: &Model, kinematics: &Kinematics, external: &[f64], passive: &[f64]) -> bool {
+    fn turn_sides(&mut self, model: &Model, kinematics: &Kinematics, required: &[f64]) -> bool {
         let mut turned = false;
         for (side, &(coordinate, rate)) in self.sides.iter_mut().zip(&self.working) {
-            let now = Side::of(-(external[rate] + passive[rate] + self.torques[rate]));
+            let now = Side::of(required[rate] - self.torques[rate]);
             if now != *side
                 && let Some(groups) = &model.coordinates()[coordinate].groups
             {

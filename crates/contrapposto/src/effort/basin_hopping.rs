@@ -12,9 +12,9 @@ use super::sqp::{LocalMinimum, Sqp, SqpOptions};
 use super::tolerances::{
     FINAL_VIOLATION, LARGEST_RANGE, LEAST_IMPROVEMENT, PERTURBED_COORDINATES, PERTURBED_SHARE, SEARCH_VIOLATION,
 };
+use crate::joint_torques::JointTorquesError;
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::tasks::body::BodyError;
 
 /// To the nearest local minimum.
 const TO_NEAREST: SqpOptions = SqpOptions {
@@ -100,7 +100,7 @@ impl BasinHopping {
         problem: &EffortProblem<'_>,
         posture: &mut Posture,
         count: usize,
-    ) -> Result<Option<LocalMinimum>, BodyError> {
+    ) -> Result<Option<LocalMinimum>, JointTorquesError> {
         let mut reduced = ReducedProblem::of(problem, posture)?;
         if problem.contact.supports().is_empty() {
             let smaller = reduced.take().filter(|reduced| reduced.model.rates().len() < problem.model.rates().len());
@@ -145,7 +145,7 @@ impl BasinHopping {
         problem: &EffortProblem<'_>,
         reduced: Option<&ReducedProblem>,
         posture: &Posture,
-    ) -> Result<Option<(LocalMinimum, usize)>, BodyError> {
+    ) -> Result<Option<(LocalMinimum, usize)>, JointTorquesError> {
         let (sqp, lowest) = (&mut self.sqp, &mut self.lowest);
         lowest.forces.clear();
         lowest.forces.extend_from_slice(problem.contact.forces());
@@ -180,7 +180,7 @@ impl BasinHopping {
         problem: &EffortProblem<'_>,
         posture: &mut Posture,
         most: f64,
-    ) -> Result<bool, BodyError> {
+    ) -> Result<bool, JointTorquesError> {
         let forces = &mut self.lowest.forces;
         forces.clear();
         forces.extend_from_slice(problem.contact.forces());
@@ -216,7 +216,7 @@ impl Hop {
         sqp: &mut Sqp,
         lowest: &mut Candidate,
         count: usize,
-    ) -> Result<usize, BodyError> {
+    ) -> Result<usize, JointTorquesError> {
         sqp.start_at(problem, &lowest.posture, &lowest.forces)?;
         let subtrees = DecoupledSubtrees::of(problem, &sqp.iterate);
         let mut objectives = subtrees.objectives(&sqp.iterate.residual);

@@ -16,18 +16,18 @@
 
 use super::problem::EffortProblem;
 use super::tolerances::{DIFFERENCE_STEP, INDEPENDENT_ROW, PASSIVE_DIFFERENCE_STEP};
+use crate::joint_torques::{JointTorques, Quantities};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
 use crate::statics::{ExternalTorque, Gradient, Load};
-use crate::tasks::body::{Body, Needs};
 use crate::tasks::{Task, share_of_strength};
 use hierarchical_least_squares::linalg::{add_scaled, dot};
 
 /// Body, loads and first derivatives at the iterate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FirstOrder<'a> {
-    pub(crate) body: &'a Body,
+    pub(crate) body: &'a JointTorques,
     /// Loads of the scenario, then one a corner.
     pub(crate) loads: &'a [Load],
     /// As [`crate::contact::ContactForces::columns`].
@@ -55,7 +55,7 @@ pub(crate) struct Hessian {
     gradient: Gradient,
     loads: Vec<Load>,
     moved: Posture,
-    body: Body,
+    body: JointTorques,
     /// `w`, by rate.
     weights: Vec<f64>,
     step: Vec<f64>,
@@ -73,7 +73,7 @@ impl Hessian {
             gradient: Gradient::new(model),
             loads: vec![],
             moved: model.default_posture(),
-            body: Body::new(model),
+            body: JointTorques::new(model),
             weights: vec![0.0; n],
             step: vec![0.0; n],
             columns: vec![],
@@ -145,7 +145,7 @@ impl Hessian {
         self.step.iter_mut().zip(&self.weights).for_each(|(step, w)| *step = h * w);
         self.moved.values_mut().copy_from_slice(at.body.posture().values());
         self.moved.displace(model, &self.step);
-        let needs = Needs { torque: true, center_of_mass: false };
+        let needs = Quantities { gradient: true, ..Quantities::default() };
         if self.body.update(model, &self.moved, at.loads, needs).is_err() {
             return None;
         }

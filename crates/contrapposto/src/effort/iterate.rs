@@ -9,11 +9,11 @@ use super::hessian::FirstOrder;
 use super::problem::{EffortProblem, fill_force_columns};
 use super::qp::QuadraticProgram;
 use crate::contact::{Unknowns, friction_rows, share_row};
+use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::statics::{FixedIn, Load, LoadKind, PassiveTorque};
+use crate::statics::{FixedIn, Load, LoadKind};
 use crate::tasks::Task;
-use crate::tasks::body::{Body, BodyError, Needs};
 use hierarchical_least_squares::Level;
 use hierarchical_least_squares::linalg::{add_outer_products, add_scaled};
 
@@ -23,9 +23,8 @@ pub(crate) struct Iterate {
     pub(crate) posture: Posture,
     /// As [`crate::contact::ContactForces::forces`].
     pub(crate) forces: Vec<f64>,
-    pub(crate) body: Body,
+    pub(crate) body: JointTorques,
     /// Filled where supports hold a free root.
-    passive: PassiveTorque,
     /// Loads of the scenario, then one a corner.
     pub(crate) loads: Vec<Load>,
     /// As [`crate::contact::ContactForces::columns`].
@@ -50,8 +49,7 @@ impl Iterate {
         Self {
             posture: model.default_posture(),
             forces: vec![],
-            body: Body::new(model),
-            passive: PassiveTorque::new(model),
+            body: JointTorques::new(model),
             loads: vec![],
             columns: vec![],
             residual: vec![],
@@ -72,7 +70,7 @@ impl Iterate {
     }
 
     /// Computes everything for `posture` and `forces`.
-    pub(crate) fn evaluate(&mut self, problem: &EffortProblem<'_>) -> Result<(), BodyError> {
+    pub(crate) fn evaluate(&mut self, problem: &EffortProblem<'_>) -> Result<(), JointTorquesError> {
         let (model, contact) = (problem.model, problem.contact);
         self.loads.clear();
         self.loads.extend_from_slice(problem.loads);
@@ -82,12 +80,11 @@ impl Iterate {
             self.loads.push(Load { kind, ..*load });
         }
         let tasks = problem.constraint_levels().flat_map(|level| &level.tasks);
-        let needs = Needs { torque: true, center_of_mass: false };
-        let needs = tasks.fold(needs, |needs, task| needs.with(task.needs()));
+        // Passive torque is for the equilibrium of a root that supports must hold.
+        let passive_torque = !contact.root().is_empty();
+        let needs = Quantities { gradient: true, passive_torque, ..Quantities::default() };
+        let needs = tasks.fold(needs, |needs, task| needs.with(task.quantities()));
         self.body.update(model, &self.posture, &self.loads, needs)?;
-        if !contact.root().is_empty() {
-            self.passive.update(model, self.body.kinematics())?;
-        }
         problem.contact_columns(&self.body, &mut self.point_jacobian, &mut self.columns);
         self.evaluate_residual(problem);
         self.constraints.clear();
@@ -141,7 +138,7 @@ impl Iterate {
             let slopes = self.body.gradient().row(rate);
             self.constraints.extend(problem.free.iter().map(|by| slopes[*by] / weight));
             self.constraints.extend(self.columns.chunks_exact(n).map(|column| column[rate] / weight));
-            let missing = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]) / weight;
+            let missing = self.body.active_torque()[rate] / weight;
             self.lower.push(missing);
             self.upper.push(missing);
         }

@@ -5,10 +5,10 @@
 //! free rates, then the three components of each contact force in body weights.
 
 use crate::contact::ContactForces;
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
-use crate::tasks::body::Body;
 use crate::tasks::{Task, share_of_strength};
 
 /// A problem of least effort.
@@ -49,7 +49,7 @@ impl EffortProblem<'_> {
     }
 
     /// Fills `columns` with the torque of every rate at one body weight of each unknown force.
-    pub(crate) fn contact_columns(&self, body: &Body, jacobian: &mut [f64], columns: &mut Vec<f64>) {
+    pub(crate) fn contact_columns(&self, body: &JointTorques, jacobian: &mut [f64], columns: &mut Vec<f64>) {
         let n = self.model.rates().len();
         columns.clear();
         for (load, axes) in self.contact.loads().iter().zip(self.contact.axes()) {
@@ -67,7 +67,7 @@ impl EffortProblem<'_> {
 /// Fills `row` with the derivative of a coordinate's relative load, now `residual`, by the contact forces.
 pub(crate) fn fill_force_columns(
     model: &Model,
-    body: &Body,
+    body: &JointTorques,
     columns: &[f64],
     coordinate: usize,
     residual: f64,

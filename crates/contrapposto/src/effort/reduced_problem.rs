@@ -5,11 +5,11 @@
 
 use super::problem::EffortProblem;
 use crate::contact::ContactForces;
+use crate::joint_torques::JointTorquesError;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, reduced};
 use crate::posture::Posture;
 use crate::tasks::PriorityLevel;
-use crate::tasks::body::BodyError;
 use crate::tasks::{Effort, Task};
 
 /// The reduced model, and its levels.
@@ -29,8 +29,8 @@ impl ReducedProblem {
     /// moves without moving a support, or where the root is free and no support holds it.
     ///
     /// # Errors
-    /// [`BodyError`] when the posture does not fit the model.
-    pub(crate) fn of(problem: &EffortProblem<'_>, posture: &Posture) -> Result<Option<Self>, BodyError> {
+    /// [`JointTorquesError`] when the posture does not fit the model.
+    pub(crate) fn of(problem: &EffortProblem<'_>, posture: &Posture) -> Result<Option<Self>, JointTorquesError> {
         let model = problem.model;
         let fixed = rates_that_move_supports(problem);
         let rate = |c: &usize| model.coordinates()[*c].rate;

@@ -17,9 +17,9 @@ use super::tolerances::{
     PREDICTED_ROUNDING, RAISED_REGULARISATION, ROUNDING_SHARE, WORTH_CORRECTING,
 };
 use crate::contact::bounds;
+use crate::joint_torques::JointTorquesError;
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::tasks::body::BodyError;
 use hierarchical_least_squares::linalg::dot;
 
 /// Settings of a descent.
@@ -175,7 +175,7 @@ impl Sqp {
         forces: &[f64],
         multipliers: &[f64],
         options: &SqpOptions,
-    ) -> Result<LocalMinimum, BodyError> {
+    ) -> Result<LocalMinimum, JointTorquesError> {
         self.start_at(problem, start, forces)?;
         self.multipliers.extend_from_slice(multipliers);
         let mut control = Control::new(options);
@@ -210,7 +210,7 @@ impl Sqp {
         start: &Posture,
         forces: &[f64],
         perturbation: &[f64],
-    ) -> Result<(), BodyError> {
+    ) -> Result<(), JointTorquesError> {
         self.start_at(problem, start, forces)?;
         self.iterate.write(1.0, &mut self.program);
         let n = self.program.n;
@@ -233,7 +233,7 @@ impl Sqp {
         problem: &EffortProblem<'_>,
         start: &Posture,
         forces: &[f64],
-    ) -> Result<(), BodyError> {
+    ) -> Result<(), JointTorquesError> {
         self.iterate.posture.values_mut().copy_from_slice(start.values());
         for iterate in [&mut self.iterate, &mut self.candidate] {
             iterate.forces.clear();
@@ -320,7 +320,7 @@ impl Sqp {
     }
 
     /// Evaluates the candidate after the step, with a second-order correction where that lowers the merit; returns the merit.
-    fn try_step(&mut self, problem: &EffortProblem<'_>, step: &Step, penalty: f64) -> Result<f64, BodyError> {
+    fn try_step(&mut self, problem: &EffortProblem<'_>, step: &Step, penalty: f64) -> Result<f64, JointTorquesError> {
         self.move_candidate(problem, step.length);
         if self.candidate.evaluate(problem).is_err() {
             return Ok(f64::INFINITY); // numbers overflow that far away

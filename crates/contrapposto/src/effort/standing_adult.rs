@@ -10,11 +10,11 @@ use rand_pcg::Pcg64Mcg;
 use super::iterate::Iterate;
 use super::problem::EffortProblem;
 use crate::contact::{ContactForces, Support};
+use crate::joint_torques::{JointTorques, Quantities};
 use crate::model::{Adult, Model, adult};
 use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind};
 use crate::tasks::PriorityLevel;
-use crate::tasks::body::{Body, Needs};
 use crate::tasks::{Effort, Placement, Point, Task};
 
 pub(crate) struct StandingAdult {
@@ -60,8 +60,8 @@ impl StandingAdult {
                 *value += random.random_range(-0.25..0.25) * wide.min(1.0);
                 *value = value.clamp(lower + 0.15 * wide, upper - 0.15 * wide);
             }
-            let mut body = Body::new(&self.model);
-            body.update(&self.model, &posture, &[], Needs::default()).unwrap();
+            let mut body = JointTorques::new(&self.model);
+            body.update(&self.model, &posture, &[], Quantities::default()).unwrap();
             let mut places = PriorityLevel::default();
             for support in self.contact.supports() {
                 let target = body.kinematics().placement(&self.model, support.segment);

@@ -276,7 +276,7 @@ impl<'a> Finder<'a> {
         if model.is_dependent(i) {
             return None;
         }
-        let active = -(engine.body().external_torque().torques()[rate] + engine.passive()[rate]);
+        let active = engine.body().active_torque()[rate];
         let side = Side::of(active);
         let group = &groups[side.index()];
         let strength = group.strength.torque(engine.body().kinematics().values()[i]);

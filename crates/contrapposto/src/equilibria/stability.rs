@@ -16,9 +16,9 @@ use nalgebra::{Cholesky, DMatrix, DVector, SVD, SymmetricEigen};
 
 use crate::contact::Support;
 use crate::hybrid::{Carrier, Equilibrium};
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::statics::{Load, LoadKind};
-use crate::tasks::body::Body;
 use crate::tasks::passive_row;
 
 /// Share of the largest diagonal entry of the mass matrix that every rate has at least.
@@ -74,7 +74,7 @@ impl Stability {
 
 /// Stiffness of the body at every pair of rates, N m/rad: what tissue gives, and what weight, loads and contact forces give.
 /// Row by row, not made symmetric.
-pub fn stiffness(model: &Model, body: &Body) -> [Vec<f64>; 2] {
+pub fn stiffness(model: &Model, body: &JointTorques) -> [Vec<f64>; 2] {
     let n = model.rates().len();
     let mut tissue = vec![0.0; n * n];
     for (i, coordinate) in model.coordinates().iter().enumerate() {
@@ -88,7 +88,13 @@ pub fn stiffness(model: &Model, body: &Body) -> [Vec<f64>; 2] {
 
 /// How stable is the posture of `body`, whose torques include contact forces? `loads` are the scenario's own: weights among them
 /// have inertia. `locked`: rates that do not move, besides coordinates that follow others.
-pub fn stability(model: &Model, body: &Body, supports: &[Support], loads: &[Load], locked: &[bool]) -> Stability {
+pub fn stability(
+    model: &Model,
+    body: &JointTorques,
+    supports: &[Support],
+    loads: &[Load],
+    locked: &[bool],
+) -> Stability {
     let free: Vec<usize> = (0..model.rates().len())
         .filter(|&i| !locked[i] && model.rates()[i].coordinate.is_none_or(|c| !model.is_dependent(c)))
         .collect();
@@ -157,7 +163,7 @@ pub fn stability(model: &Model, body: &Body, supports: &[Support], loads: &[Load
 }
 
 /// A basis, square and of length 1, of the motions of the `free` rates that leave all supports in place: one column a motion.
-fn free_motions(model: &Model, body: &Body, supports: &[Support], free: &[usize]) -> DMatrix<f64> {
+fn free_motions(model: &Model, body: &JointTorques, supports: &[Support], free: &[usize]) -> DMatrix<f64> {
     let n = model.rates().len();
     let mut segments: Vec<usize> = supports.iter().map(|support| support.segment).collect();
     segments.sort_unstable();
@@ -193,7 +199,7 @@ fn free_motions(model: &Model, body: &Body, supports: &[Support], free: &[usize]
 }
 
 /// Mass matrix of all rates, kg m^2 (kg for slides).
-fn mass_matrix(model: &Model, body: &Body, loads: &[Load]) -> DMatrix<f64> {
+fn mass_matrix(model: &Model, body: &JointTorques, loads: &[Load]) -> DMatrix<f64> {
     let n = model.rates().len();
     let mut sum = DMatrix::zeros(n, n);
     let mut rows = vec![0.0; 3 * n];

@@ -18,12 +18,12 @@ use super::{EngineError, LevelError, Options, Reason, SolvedPosture, Step};
 use crate::contact::{ContactForces, Support};
 use crate::effort::basin_hopping::BasinHopping;
 use crate::effort::hessian::HessianModel;
+use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::statics::{ExternalTorque, Load, PassiveTorque};
+use crate::statics::Load;
 use crate::tasks::PriorityLevel;
-use crate::tasks::body::{Body, BodyError, Needs};
 use crate::tasks::{Placement, Task, TaskError};
 use hierarchical_least_squares::{Level, Problem, Solver};
 
@@ -39,13 +39,8 @@ pub struct Engine<'a> {
     loads: Vec<Load>,
     options: Options,
     locked: Vec<bool>,
-    body: Body,
-    kinematics: Kinematics,
-    external: ExternalTorque,
-    passive: PassiveTorque,
+    body: JointTorques,
     contact: ContactForces,
-    /// Loads of the scenario, then contact forces.
-    all_loads: Vec<Load>,
     /// What was computed belongs to the posture in `body`.
     seen: bool,
     probe: Probe,
@@ -86,21 +81,19 @@ impl<'a> Engine<'a> {
         loads: &[Load],
         options: Options,
     ) -> Result<Self, EngineError> {
-        let mut needs = Needs { torque: true, center_of_mass: true };
         let fits = |level: usize, task: &Task| {
             task.check(model).map_err(|error: TaskError| EngineError::Task { level, error })
         };
         for (level, goal) in goals.iter().enumerate() {
             for task in &goal.tasks {
                 fits(level, task)?;
-                needs = needs.with(task.needs());
             }
         }
         for load in loads {
-            load.check(model).map_err(BodyError::from)?;
+            load.check(model).map_err(JointTorquesError::from)?;
         }
         let mut kinematics = Kinematics::new(model);
-        kinematics.update(model, start).map_err(BodyError::from)?;
+        kinematics.update(model, start).map_err(JointTorquesError::from)?;
         let mut places = PriorityLevel::default();
         for support in &supports {
             support.check(model)?;
@@ -115,7 +108,6 @@ impl<'a> Engine<'a> {
         let unknowns = rates + contact.forces().len();
         let mut problem = Problem::new(unknowns);
         problem.levels.resize(BEFORE + goals.len(), Level::default());
-        let all_loads = loads.iter().chain(contact.loads()).copied().collect();
         let locked = model
             .rates()
             .iter()
@@ -128,11 +120,7 @@ impl<'a> Engine<'a> {
             loads: loads.to_vec(),
             options,
             locked: locked.collect(),
-            body: Body::new(model),
-            kinematics,
-            external: ExternalTorque::new(model),
-            passive: PassiveTorque::new(model),
-            all_loads,
+            body: JointTorques::new(model),
             seen: false,
             probe: Probe::new(model, &contact),
             contact,
@@ -174,18 +162,17 @@ impl<'a> Engine<'a> {
     /// Other loads from now on.
     ///
     /// # Errors
-    /// [`BodyError::Load`] for a load that does not fit the model; nothing is changed then.
+    /// [`JointTorquesError::Load`] for a load that does not fit the model; nothing is changed then.
     pub fn set_loads(&mut self, loads: &[Load]) -> Result<(), EngineError> {
-        loads.iter().try_for_each(|load| load.check(self.model)).map_err(BodyError::from)?;
+        loads.iter().try_for_each(|load| load.check(self.model)).map_err(JointTorquesError::from)?;
         self.loads = loads.to_vec();
-        self.all_loads = loads.iter().chain(self.contact.loads()).copied().collect();
         self.seen = false;
         Ok(())
     }
 
     /// Passive torque of every rate in the posture that was looked at last, followers folded in, N m.
     pub fn passive(&self) -> &[f64] {
-        self.passive.torques()
+        self.body.passive_torque().torques()
     }
 
     /// The contact forces of the posture where the last step began, or of the last report.
@@ -194,7 +181,7 @@ impl<'a> Engine<'a> {
     }
 
     /// The body in that posture; its external torque includes contact forces.
-    pub fn body(&self) -> &Body {
+    pub fn body(&self) -> &JointTorques {
         &self.body
     }
 
@@ -307,13 +294,7 @@ impl<'a> Engine<'a> {
             return Ok(());
         }
         self.seen = false;
-        self.kinematics.update(self.model, posture).map_err(BodyError::from)?;
-        self.external.update(self.model, &self.kinematics, &self.loads).map_err(BodyError::from)?;
-        self.passive.update(self.model, &self.kinematics).map_err(BodyError::from)?;
-        self.contact.update(self.model, &self.kinematics, self.external.torques(), self.passive.torques());
-        self.all_loads[self.loads.len()..].copy_from_slice(self.contact.loads());
-        let needs = Needs { torque: true, center_of_mass: true };
-        self.body.update(self.model, posture, &self.all_loads, needs)?;
+        self.body.update_with_contact(self.model, posture, &self.loads, &mut self.contact, Quantities::ALL)?;
         self.seen = true;
         Ok(())
     }

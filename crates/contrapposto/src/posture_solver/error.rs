@@ -1,8 +1,8 @@
 //! Why the posture solver refuses its input.
 
 use crate::contact::SupportError;
+use crate::joint_torques::JointTorquesError;
 use crate::tasks::TaskError;
-use crate::tasks::body::BodyError;
 use hierarchical_least_squares::ProblemError;
 
 /// Why levels, supports, options, posture or loads were refused.
@@ -40,7 +40,7 @@ pub enum EngineError {
     Support(#[from] SupportError),
     /// The posture or a load does not fit the model.
     #[error(transparent)]
-    Body(#[from] BodyError),
+    Body(#[from] JointTorquesError),
     /// Numbers so large that the rows of a task are not finite.
     #[error("the levels have no finite rows in this posture: {0}")]
     Rows(#[from] ProblemError),

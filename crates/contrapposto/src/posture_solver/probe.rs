@@ -2,11 +2,10 @@
 
 use super::EngineError;
 use crate::contact::ContactForces;
-use crate::kinematics::Kinematics;
+use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::statics::{ExternalTorque, Load, PassiveTorque};
-use crate::tasks::body::BodyError;
+use crate::statics::Load;
 use hierarchical_least_squares::{Level, Problem, Solver};
 
 /// How far the joint moves to either side for the difference, rad or m.
@@ -23,9 +22,7 @@ pub(super) struct Probe {
     moved: Posture,
     step: Vec<f64>,
     row: Vec<f64>,
-    kinematics: Kinematics,
-    external: ExternalTorque,
-    passive: PassiveTorque,
+    torques: JointTorques,
     contact: ContactForces,
 }
 
@@ -45,9 +42,7 @@ impl Probe {
             moved: model.default_posture(),
             step: vec![0.0; n],
             row: vec![0.0; n],
-            kinematics: Kinematics::new(model),
-            external: ExternalTorque::new(model),
-            passive: PassiveTorque::new(model),
+            torques: JointTorques::new(model),
             contact: contact.clone(),
         }
     }
@@ -83,15 +78,14 @@ impl Probe {
             }
             self.moved.values_mut().copy_from_slice(posture.values());
             self.moved.displace(model, &self.step);
-            self.kinematics.update(model, &self.moved).map_err(BodyError::from)?;
-            self.external.update(model, &self.kinematics, loads).map_err(BodyError::from)?;
-            // A law may be no number a little beyond a range, and needs not be one.
-            if self.passive.update(model, &self.kinematics).is_err() {
-                return Ok(None);
+            match self.torques.update(model, &self.moved, loads, Quantities::TORQUES) {
+                // A law may be no number a little beyond a range, and needs not be one.
+                Err(JointTorquesError::Passive(_)) => return Ok(None),
+                updated => updated?,
             }
-            let external = self.external.torques();
-            self.contact.update(model, &self.kinematics, external, self.passive.torques());
-            slope += sign * (external[rate] + self.contact.torques()[rate]) / (2.0 * MOVE);
+            self.contact.update(model, self.torques.kinematics(), self.torques.active_torque());
+            let external = self.torques.external_torque().torques()[rate] + self.contact.torques()[rate];
+            slope += sign * external / (2.0 * MOVE);
             let Some(own) = model.rates()[rate].coordinate else { continue };
             let Some(law) = &model.coordinates()[own].passive else { continue };
             slope += sign * law.torque(own, self.moved.values()) / (2.0 * MOVE);

@@ -2,9 +2,9 @@
 
 use super::Reason;
 use crate::contact::Balance;
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::tasks::body::Body;
 use crate::tasks::{PriorityLevel, Unit};
 
 /// The posture that a solve came to.
@@ -46,7 +46,7 @@ pub struct RowError {
 
 impl LevelError {
     /// Computes the error of `level` in the posture of `body`.
-    pub(super) fn of(level: &PriorityLevel, model: &Model, body: &Body) -> Self {
+    pub(super) fn of(level: &PriorityLevel, model: &Model, body: &JointTorques) -> Self {
         let mut rows = vec![];
         let mut errors = vec![];
         for task in &level.tasks {

@@ -4,10 +4,11 @@ use super::Fall;
 use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
+use crate::joint_torques::JointTorquesError;
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::posture_solver::EngineError;
-use crate::statics::{Load, LoadError, PassiveTorqueError};
+use crate::statics::{Load, LoadError};
 use crate::tasks::PriorityLevel;
 use crate::tasks::{Task, TaskError};
 
@@ -147,9 +148,9 @@ pub enum ScenarioError {
     /// An event has thrown the body off balance; nothing near holds it.
     #[error("{0}")]
     Falls(Fall),
-    /// A passive law gives no torque in a posture.
+    /// A posture, a load or a passive law was refused while torques were computed.
     #[error(transparent)]
-    Passive(#[from] PassiveTorqueError),
+    Torques(#[from] JointTorquesError),
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
     Relax(#[from] EngineError),

@@ -7,9 +7,9 @@ use super::{Event, Fall, Scenario, ScenarioError, Tables};
 use crate::constraint::{HalfSpace, relief_step};
 use crate::contact::Balance;
 use crate::hybrid::{Problem, Strategy, minimise, minimise_literal};
-use crate::kinematics::Kinematics;
+use crate::joint_torques::{JointTorques, Quantities, active_torque, effort, relative_load};
 use crate::model::Side;
-use crate::statics::{ExternalTorque, Load, PassiveTorque};
+use crate::statics::Load;
 
 /// Motion below this size, rad or m, counts as none.
 const SETTLED: f64 = 1e-6;
@@ -22,9 +22,8 @@ pub struct Simulation<'a> {
     /// The body with supports or tasks.
     whole: Option<Whole<'a>>,
     loads: Vec<Load>,
-    kinematics: Kinematics,
-    external_torque: ExternalTorque,
-    passive_torque: PassiveTorque,
+    /// Of a body without supports and tasks.
+    torques: JointTorques,
     // What the last sample showed, beside what is in `state`.
     external: Vec<f64>,
     passive: Vec<f64>,
@@ -107,9 +106,7 @@ impl<'a> Simulation<'a> {
             state,
             whole,
             loads: scenario.loads.clone(),
-            kinematics: Kinematics::new(model),
-            external_torque: ExternalTorque::new(model),
-            passive_torque: PassiveTorque::new(model),
+            torques: JointTorques::new(model),
             external: vec![0.0; n],
             passive: vec![0.0; n],
             load: vec![0.0; n],
@@ -219,11 +216,9 @@ impl<'a> Simulation<'a> {
         let model = &self.scenario.model;
         self.active_before.copy_from_slice(&self.state.active);
         self.carry_out();
-        self.kinematics.update(model, &self.state.posture)?;
-        self.external_torque.update(model, &self.kinematics, &self.loads)?;
-        self.passive_torque.update(model, &self.kinematics)?;
+        self.torques.update(model, &self.state.posture, &self.loads, Quantities::TORQUES)?;
         for (i, coordinate) in model.coordinates().iter().enumerate() {
-            let torques = |rate: usize| (self.external_torque.torques()[rate], self.passive_torque.torques()[rate]);
+            let torques = |rate: usize| self.torques.external_and_passive(rate);
             (self.external[i], self.passive[i]) = coordinate.rate.map_or((0.0, 0.0), torques);
         }
         self.weigh();
@@ -242,16 +237,11 @@ impl<'a> Simulation<'a> {
 
     /// Active torque and relative load of every coordinate; gives the effort.
     fn weigh(&mut self) -> f64 {
-        let mut effort = 0.0;
         for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
-            self.state.active[i] = -(self.passive[i] + self.external[i]);
-            let side = Side::of(self.state.active[i]).index();
-            let angle = self.state.posture.values()[i];
-            let strength = coordinate.groups.as_ref().map(|groups| groups[side].strength.torque(angle));
-            self.load[i] = strength.map_or(0.0, |strength| self.state.active[i].abs() / strength);
-            effort += self.load[i] * self.load[i];
+            self.state.active[i] = active_torque(self.external[i], self.passive[i]);
+            self.load[i] = relative_load(coordinate, self.state.posture.values()[i], self.state.active[i]);
         }
-        effort
+        effort(&self.load)
     }
 
     /// As [`Simulation::torques`], through the priorities of the whole body. A step that lets the body fall, or makes the torque
@@ -406,7 +396,10 @@ impl<'a> Simulation<'a> {
                     };
                     (whole.values(), slope)
                 }
-                None => (self.kinematics.values(), self.external_torque.own_slope(&self.kinematics, model, rate)),
+                None => {
+                    let (kinematics, external) = (self.torques.kinematics(), self.torques.external_torque());
+                    (kinematics.values(), external.own_slope(kinematics, model, rate))
+                }
             };
             let Some(curve) = law.curve_at(i, values, coordinate.range) else { continue };
             let problem = Problem {

@@ -229,7 +229,7 @@ impl<'a> Whole<'a> {
 
     /// External torque, contact included, and passive torque of a rate, N m.
     pub(super) fn torques(&self, rate: usize) -> (f64, f64) {
-        (self.engine.body().external_torque().torques()[rate], self.engine.passive()[rate])
+        self.engine.body().external_and_passive(rate)
     }
 
     pub(super) fn values(&self) -> &[f64] {

@@ -6,8 +6,8 @@
 use nalgebra::Vector3;
 
 use super::{Check, HalfPlane, TaskError, add_along, append, chosen, equations};
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// The centre of mass at a place, or over a polygon.
@@ -44,12 +44,12 @@ impl CenterOfMass {
         }
     }
 
-    fn center(body: &Body) -> Vector3<f64> {
+    fn center(body: &JointTorques) -> Vector3<f64> {
         // A body without mass is refused by `check`.
         body.center_of_mass().position().unwrap_or_else(Vector3::zeros)
     }
 
-    pub(super) fn residual(&self, body: &Body, out: &mut Vec<f64>) {
+    pub(super) fn residual(&self, body: &JointTorques, out: &mut Vec<f64>) {
         let center = Self::center(body);
         match &self.goal {
             CenterOfMassGoal::At { target, axes } => out.extend(chosen(*axes, center - target)),
@@ -59,7 +59,7 @@ impl CenterOfMass {
         }
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         let center = Self::center(body);
         let n = model.rates().len();
         match &self.goal {

@@ -6,8 +6,8 @@
 use nalgebra::Vector3;
 
 use super::{Check, TaskError, add_along, append};
+use crate::joint_torques::JointTorques;
 use crate::model::{LARGEST, Model};
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// Two points within a range of distances.
@@ -24,18 +24,18 @@ pub struct Distance {
 }
 
 impl Distance {
-    fn line(&self, model: &Model, body: &Body) -> Vector3<f64> {
+    fn line(&self, model: &Model, body: &JointTorques) -> Vector3<f64> {
         let station = |(segment, point)| body.kinematics().station(model, segment, point);
         station(self.a) - station(self.b)
     }
 
     /// Above the upper limit positive, below the lower one negative, m.
-    pub(super) fn error(&self, model: &Model, body: &Body) -> f64 {
+    pub(super) fn error(&self, model: &Model, body: &JointTorques) -> f64 {
         let length = self.line(model, body).norm();
         length - length.clamp(self.lower, self.upper)
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         let n = model.rates().len();
         let line = self.line(model, body);
         let length = line.norm();

@@ -8,9 +8,9 @@
 //! `q_d(q_i)` through however many couplings, `tau_i = sum_d q_d' tau_d` and `d tau_i/dq_i` has `q_d'' tau_d` besides.
 
 use super::{Check, TaskError, append, equation};
+use crate::joint_torques::JointTorques;
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// Little muscle torque.
@@ -27,14 +27,14 @@ impl Effort {
         Self { coordinates: (0..model.coordinates().len()).filter(known).collect() }
     }
 
-    pub(super) fn residual(&self, model: &Model, body: &Body, out: &mut Vec<f64>) {
+    pub(super) fn residual(&self, model: &Model, body: &JointTorques, out: &mut Vec<f64>) {
         out.extend(self.coordinates.iter().map(|&coordinate| {
             let active = active(model, body, coordinate);
             active / strength(model, body, coordinate, active).0
         }));
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         for &coordinate in &self.coordinates {
             let Some(rate) = model.coordinates()[coordinate].rate else { continue };
             let row = append(level, model, 1);
@@ -78,29 +78,29 @@ impl Effort {
 }
 
 /// Active torque of a coordinate, N m, followers folded in.
-fn active(model: &Model, body: &Body, coordinate: usize) -> f64 {
+fn active(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
     -(external(model, body, coordinate) + passive(model, body, coordinate, [1.0, 0.0], None))
 }
 
 /// What a torque on a coordinate of 1 N m takes from its effort: one over the strength of the group that works where effort is
 /// `error`.
-pub(crate) fn share_of_strength(model: &Model, body: &Body, coordinate: usize, error: f64) -> f64 {
+pub(crate) fn share_of_strength(model: &Model, body: &JointTorques, coordinate: usize, error: f64) -> f64 {
     1.0 / strength(model, body, coordinate, error).0
 }
 
 /// Adds the derivatives of a leading coordinate's passive torque, followers folded in, to `row`, one entry a rate. Gives the torque.
-pub(crate) fn passive_row(model: &Model, body: &Body, coordinate: usize, rate: usize, row: &mut [f64]) -> f64 {
+pub(crate) fn passive_row(model: &Model, body: &JointTorques, coordinate: usize, rate: usize, row: &mut [f64]) -> f64 {
     let torque = passive(model, body, coordinate, [1.0, 0.0], Some((rate, &mut *row)));
     body.kinematics().fold_columns(model, row);
     torque
 }
 
-fn external(model: &Model, body: &Body, coordinate: usize) -> f64 {
+fn external(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
     model.coordinates()[coordinate].rate.map_or(0.0, |rate| body.external_torque().torques()[rate])
 }
 
 /// Strength and slope of the group that gives `active`; without end where it is not known.
-fn strength(model: &Model, body: &Body, coordinate: usize, active: f64) -> (f64, f64) {
+fn strength(model: &Model, body: &JointTorques, coordinate: usize, active: f64) -> (f64, f64) {
     let groups = model.coordinates()[coordinate].groups.as_ref();
     groups.map_or((f64::INFINITY, 0.0), |groups| {
         groups[Side::of(active).index()].strength.torque_and_slope(body.kinematics().values()[coordinate])
@@ -111,7 +111,7 @@ fn strength(model: &Model, body: &Body, coordinate: usize, active: f64) -> (f64,
 /// `slopes`. Adds its derivatives by all rates, followers not yet folded, to the row, where the leader's rate is told apart.
 fn passive(
     model: &Model,
-    body: &Body,
+    body: &JointTorques,
     coordinate: usize,
     [first, second]: [f64; 2],
     mut slopes: Option<(usize, &mut [f64])>,

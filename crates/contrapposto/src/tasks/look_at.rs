@@ -11,8 +11,8 @@
 use nalgebra::{UnitVector3, Vector3};
 
 use super::{Check, TaskError, add_along, append, equation};
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// A direction of a segment toward a place in ground.
@@ -74,7 +74,7 @@ impl Sight {
 
 impl LookAt {
     /// `None` when the eye is at the target.
-    fn sight(&self, model: &Model, body: &Body) -> Option<Sight> {
+    fn sight(&self, model: &Model, body: &JointTorques) -> Option<Sight> {
         let kinematics = body.kinematics();
         let line = self.target - kinematics.station(model, self.segment, self.eye);
         let distance = line.norm();
@@ -96,11 +96,11 @@ impl LookAt {
         Some(Sight { axes, line, distance, across: [x, y], along, sine })
     }
 
-    pub(super) fn error(&self, model: &Model, body: &Body) -> [f64; 2] {
+    pub(super) fn error(&self, model: &Model, body: &JointTorques) -> [f64; 2] {
         self.sight(model, body).map_or([0.0; 2], |sight| sight.error().1)
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         let n = model.rates().len();
         // Two rows, then the six of eye and segment that they are made of, which go away again.
         let (rows, jacobians) = append(level, model, 8).split_at_mut(2 * n);

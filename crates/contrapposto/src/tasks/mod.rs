@@ -4,7 +4,6 @@
 //! are `J step = -error`. An inequality allows a range: `lower - value <= J step <= upper - value`. To first order a step that
 //! keeps the rows reaches the goal; rows keep the scale of their unit (1 m against 1 rad).
 
-pub mod body;
 mod center_of_mass;
 mod distance;
 mod effort;
@@ -33,9 +32,9 @@ pub use unit::Unit;
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::joint_torques::{JointTorques, Quantities};
 use crate::model::{LARGEST, Model};
 use crate::posture::PostureError;
-use body::{Body, Needs};
 use hierarchical_least_squares::Level;
 
 /// Something the body should do.
@@ -123,12 +122,12 @@ pub enum TaskError {
 }
 
 impl Task {
-    /// What [`Body::update`] must compute for it.
-    pub fn needs(&self) -> Needs {
+    /// What [`JointTorques::update`] must compute for it.
+    pub fn quantities(&self) -> Quantities {
         match self {
-            Self::CenterOfMass(_) => Needs { center_of_mass: true, ..Needs::default() },
-            Self::Effort(_) => Needs { torque: true, ..Needs::default() },
-            _ => Needs::default(),
+            Self::CenterOfMass(_) => Quantities { center_of_mass: true, ..Quantities::default() },
+            Self::Effort(_) => Quantities { gradient: true, ..Quantities::default() },
+            _ => Quantities::default(),
         }
     }
 
@@ -206,7 +205,7 @@ impl Task {
     ///
     /// # Panics
     /// When `body` was not updated with what [`Task::needs`] says.
-    pub fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         match self {
             Self::Point(task) => task.evaluate(model, body, level),
             Self::Orientation(task) => task.evaluate(model, body, level),
@@ -224,7 +223,7 @@ impl Task {
     ///
     /// # Panics
     /// As [`Task::evaluate`].
-    pub fn residual(&self, model: &Model, body: &Body, out: &mut Vec<f64>) {
+    pub fn residual(&self, model: &Model, body: &JointTorques, out: &mut Vec<f64>) {
         match self {
             Self::Point(task) => out.extend(chosen(task.axes, task.error(model, body))),
             Self::Orientation(task) => out.extend_from_slice(task.error(model, body).as_slice()),

@@ -8,8 +8,8 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{Check, TaskError, append, equations, multiply};
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// A segment turned as wanted.
@@ -22,12 +22,12 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    pub(super) fn error(&self, model: &Model, body: &Body) -> Vector3<f64> {
+    pub(super) fn error(&self, model: &Model, body: &JointTorques) -> Vector3<f64> {
         let rotation = body.kinematics().placement(model, self.segment).rotation;
         (rotation * self.target.inverse()).scaled_axis()
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         let error = self.error(model, body);
         let rows = append(level, model, 3);
         body.kinematics().rotation_jacobian(model, self.segment, rows);

@@ -5,8 +5,8 @@
 use nalgebra::Vector3;
 
 use super::{Check, Orientation, Point, TaskError};
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// A point and the rotation of a segment, both as wanted.
@@ -29,13 +29,13 @@ impl Placement {
         )
     }
 
-    pub(super) fn error(&self, model: &Model, body: &Body) -> [f64; 6] {
+    pub(super) fn error(&self, model: &Model, body: &JointTorques) -> [f64; 6] {
         let (point, orientation) = self.parts();
         let (shift, turn) = (point.error(model, body), orientation.error(model, body));
         [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z]
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         let (point, orientation) = self.parts();
         point.evaluate(model, body, level);
         orientation.evaluate(model, body, level);

@@ -5,8 +5,8 @@
 use nalgebra::Vector3;
 
 use super::{Check, TaskError, append, equations};
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// A point of a segment at a place in ground.
@@ -23,11 +23,11 @@ pub struct Point {
 }
 
 impl Point {
-    pub(super) fn error(&self, model: &Model, body: &Body) -> Vector3<f64> {
+    pub(super) fn error(&self, model: &Model, body: &JointTorques) -> Vector3<f64> {
         body.kinematics().station(model, self.segment, self.point) - self.target
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         body.kinematics().point_jacobian(model, self.segment, self.point, append(level, model, 3));
         equations(level, model, self.axes, self.error(model, body));
     }

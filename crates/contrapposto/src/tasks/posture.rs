@@ -6,9 +6,9 @@
 
 use super::orientation::inverse_left_jacobian;
 use super::{Check, TaskError, Unit, append, equation};
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture::{Part, parts};
-use crate::tasks::body::Body;
 use hierarchical_least_squares::Level;
 
 /// Coordinates at wanted values.
@@ -33,7 +33,7 @@ impl Posture {
         asked.map(|(rate, _)| Unit::of(rate)).nth(row).unwrap_or(Unit::Radian)
     }
 
-    pub(super) fn residual(&self, model: &Model, body: &Body, out: &mut Vec<f64>) {
+    pub(super) fn residual(&self, model: &Model, body: &JointTorques, out: &mut Vec<f64>) {
         for part in parts(model) {
             match part {
                 Part::Axis { rate, coordinate } if self.weights[rate] > 0.0 => {
@@ -48,7 +48,7 @@ impl Posture {
         }
     }
 
-    pub(super) fn evaluate(&self, model: &Model, body: &Body, level: &mut Level) {
+    pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         for part in parts(model) {
             match part {
                 Part::Axis { rate, coordinate } => {

@@ -46,10 +46,10 @@ impl<'a> Shots<'a> {
         let mut loads = vec![];
         measured(&mut loads);
         let with_next = loads.iter().zip(loads.iter().skip(1).map(Some).chain([None]));
-        let contacts = with_next.filter_map(|(load, next)| self.contact(instant.kinematics, load, next));
+        let contacts = with_next.filter_map(|(load, next)| self.contact(instant.torques.kinematics(), load, next));
         let (segments, contacts): (Vec<usize>, Vec<Contact>) = contacts.unzip();
         if !contacts.is_empty() {
-            let center_of_mass = instant.kinematics.center_of_mass(self.model).unwrap_or_default();
+            let center_of_mass = instant.torques.kinematics().center_of_mass(self.model).unwrap_or_default();
             frame.standing = Some(Standing { contacts, center_of_mass, ..Standing::default() });
             self.pushed = segments;
         }

@@ -9,12 +9,12 @@
 use super::BEFORE;
 use crate::effort::hessian::{FirstOrder, Hessian, HessianModel};
 use crate::effort::problem::EffortProblem;
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture_solver::inverse_kinematics::hold::Hold;
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
 use crate::tasks::Task;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::linalg::{add_outer_product, add_scaled, cholesky};
 use hierarchical_least_squares::{Level, Multipliers, Problem};
 
@@ -66,7 +66,7 @@ impl Curvature {
     pub(super) fn bend(
         &mut self,
         ask: &EffortProblem<'_>,
-        body: &Body,
+        body: &JointTorques,
         loads: &[Load],
         problem: &mut Problem,
         last: Multipliers<'_>,

@@ -49,7 +49,7 @@ impl Engine<'_> {
             contact: &self.contact,
         };
         let last = self.solver.multipliers(BEFORE + goal);
-        self.curvature.bend(&ask, &self.body, &self.all_loads, &mut self.problem, last);
+        self.curvature.bend(&ask, &self.body, self.body.loads(), &mut self.problem, last);
     }
 
     pub(super) fn raise_price(&mut self) {

@@ -76,7 +76,7 @@ impl Engine<'_> {
             for (entry, column) in by_forces.iter_mut().zip(self.contact.columns().chunks_exact(rates)) {
                 *entry = column[rate] / weight;
             }
-            let rest = -(self.body.external_torque().torques()[rate] + self.passive.torques()[rate]) / weight;
+            let rest = self.body.active_torque()[rate] / weight;
             self.problem.levels[0].push(&self.row, rest, rest);
         }
         self.problem.levels[0].hard = true;

@@ -11,10 +11,10 @@
 //! generalised forces change with the posture is that matrix. It is the gradient of external torque (Eqs. 7, 8).
 
 use super::hold::Hold;
+use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::statics::{ExternalTorque, Gradient, Load};
 use crate::tasks::PriorityLevel;
-use crate::tasks::body::Body;
 use hierarchical_least_squares::linalg::{SymmetricEigen, add_outer_product, add_scaled, pivoted_cholesky};
 use hierarchical_least_squares::{Level, Problem, Solver};
 
@@ -80,7 +80,7 @@ impl Curvature {
         &mut self,
         model: &Model,
         goals: &[PriorityLevel],
-        body: &Body,
+        body: &JointTorques,
         problem: &mut Problem,
         solver: &Solver,
         k: usize,
@@ -128,7 +128,7 @@ impl Curvature {
     }
 
     /// `sum r_i r_i'' + sum lambda_i r_i''` into `matrix`.
-    fn second_derivative(&mut self, model: &Model, goals: &[PriorityLevel], body: &Body, k: usize) {
+    fn second_derivative(&mut self, model: &Model, goals: &[PriorityLevel], body: &JointTorques, k: usize) {
         self.loads.clear();
         let mut multipliers = &self.hold.multipliers[..];
         for goal in &goals[..k] {
@@ -217,8 +217,8 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     use super::*;
+    use crate::joint_torques::Quantities;
     use crate::model::{Adult, adult};
-    use crate::tasks::body::Needs;
     use crate::tasks::{self, Task};
 
     /// `sum w_i r_i''` along a direction against second differences of `sum w_i r_i`, where the turns' errors are zero.
@@ -233,8 +233,8 @@ mod tests {
             for (value, coordinate) in posture.values_mut().iter_mut().zip(model.coordinates()) {
                 *value += random.random_range(-0.3..0.3) * (coordinate.range.1 - coordinate.range.0).min(1.0);
             }
-            let mut body = Body::new(&model);
-            let needs = Needs { center_of_mass: true, torque: false };
+            let mut body = JointTorques::new(&model);
+            let needs = Quantities { center_of_mass: true, ..Quantities::default() };
             body.update(&model, &posture, &[], needs).unwrap();
             let hand = model.segment("hand_r").unwrap();
             let foot = model.segment("calcn_l").or_else(|| model.segment("foot_l")).unwrap();

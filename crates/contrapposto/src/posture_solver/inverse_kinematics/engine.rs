@@ -2,12 +2,12 @@
 
 use super::curvature::Curvature;
 use crate::contact::Balance;
+use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::{EngineError, LevelError, Options, Reason, SolvedPosture, Step};
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
-use crate::tasks::body::{Body, BodyError, Needs};
 use hierarchical_least_squares::{Level, Multipliers, Problem, Solver};
 
 /// Brings a body toward goals. Nothing is allocated after the first step.
@@ -17,10 +17,10 @@ pub struct Engine<'a> {
     goals: Vec<PriorityLevel>,
     loads: Vec<Load>,
     options: Options,
-    needs: Needs,
+    needs: Quantities,
     /// Rates that do not move.
     locked: Vec<bool>,
-    body: Body,
+    body: JointTorques,
     problem: Problem,
     solver: Solver,
     restorer: Solver,
@@ -68,18 +68,18 @@ impl<'a> Engine<'a> {
                 return Err(EngineError::Option { what, value, accepted: "greater than 0 and finite" });
             }
         }
-        let mut needs = Needs::default();
+        let mut needs = Quantities::default();
         for (level, goal) in goals.iter().enumerate() {
             for task in &goal.tasks {
                 task.check(model).map_err(|error| EngineError::Task { level, error })?;
-                needs = needs.with(task.needs());
+                needs = needs.with(task.quantities());
             }
             for space in &goal.half_spaces {
                 check_half_space(model, space).map_err(|problem| EngineError::HalfSpace { level, problem })?;
             }
         }
         for load in loads {
-            load.check(model).map_err(BodyError::from)?;
+            load.check(model).map_err(JointTorquesError::from)?;
         }
         let locked = model
             .rates()
@@ -99,7 +99,7 @@ impl<'a> Engine<'a> {
             loads: loads.to_vec(),
             options,
             needs,
-            body: Body::new(model),
+            body: JointTorques::new(model),
             problem,
             solver: solver(),
             restorer: solver(),
@@ -132,7 +132,7 @@ impl<'a> Engine<'a> {
     }
 
     /// The body at the posture of the last step's start.
-    pub fn body(&self) -> &Body {
+    pub fn body(&self) -> &JointTorques {
         &self.body
     }
 

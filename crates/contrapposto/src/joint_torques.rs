@@ -1,0 +1,313 @@
+//! Computes the torques at the joints of a body at rest: external, passive, contact and active torque, relative load and effort.
+//!
+//! At every rate the torques add up to zero (Rodriguez & Boulic 2007, Eq. 1):
+//!
+//! ```text
+//! tau_a + tau_p + tau_e = 0                active, passive and external torque, N m
+//! l_i = |tau_a,i| / S_i(q_i)               relative load, S the strength of the muscle group that gives tau_a
+//! effort = sum_i l_i^2
+//! ```
+//!
+//! External torque is that of gravity, of the loads and of the contact forces of supports. The contact forces of a body on supports
+//! ([`ContactForces`]) depend on the active torque that the joints would need without them; [`JointTorques::update_with_contact`]
+//! computes that torque, then the forces, then all torques with the forces among the loads. Torques of a dependent coordinate are
+//! folded into its independent one. Least-squares solvers minimise `effort / 2`; that half is called objective there.
+
+use crate::contact::ContactForces;
+use crate::kinematics::{CenterOfMass, Kinematics};
+use crate::model::{Coordinate, Model, Side};
+use crate::posture::{Posture, PostureError};
+use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, PassiveTorqueError};
+
+/// Active torque (Eq. 1), N m: what muscles give for external and passive torque to be in equilibrium.
+pub fn active_torque(external: f64, passive: f64) -> f64 {
+    -(passive + external)
+}
+
+/// Relative load of a coordinate at `value` (rad): `|active|` (N m) over the strength of the muscle group that gives it; 0 for a
+/// coordinate of unknown strength.
+pub fn relative_load(coordinate: &Coordinate, value: f64, active: f64) -> f64 {
+    let strength = |groups: &[crate::model::MuscleGroup; 2]| groups[Side::of(active).index()].strength.torque(value);
+    coordinate.groups.as_ref().map_or(0.0, |groups| active.abs() / strength(groups))
+}
+
+/// Effort: the sum of squares of relative loads, or of errors of effort tasks, which are relative loads with a sign.
+pub fn effort(loads: &[f64]) -> f64 {
+    loads.iter().fold(0.0, |sum, load| sum + load * load)
+}
+
+/// The quantities that an update computes beyond frames and axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Quantities {
+    /// The centre of mass.
+    pub center_of_mass: bool,
+    /// External torque.
+    pub external_torque: bool,
+    /// External torque and its gradient.
+    pub gradient: bool,
+    /// Passive torque; with external torque, active torque too.
+    pub passive_torque: bool,
+}
+
+impl Quantities {
+    /// All of them.
+    pub const ALL: Self = Self { center_of_mass: true, external_torque: true, gradient: true, passive_torque: true };
+    /// External, passive and active torque, without the gradient.
+    pub const TORQUES: Self = Self { center_of_mass: false, gradient: false, ..Self::ALL };
+
+    /// Those of either.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            center_of_mass: self.center_of_mass || other.center_of_mass,
+            external_torque: self.external_torque || other.external_torque,
+            gradient: self.gradient || other.gradient,
+            passive_torque: self.passive_torque || other.passive_torque,
+        }
+    }
+
+    fn needs_external_torque(self) -> bool {
+        self.external_torque || self.gradient
+    }
+}
+
+/// Why a posture or a load was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JointTorquesError {
+    /// The posture does not fit the model.
+    #[error(transparent)]
+    Posture(#[from] PostureError),
+    /// A load does not fit the model.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A passive law gives no torque in the posture.
+    #[error(transparent)]
+    Passive(#[from] PassiveTorqueError),
+}
+
+/// Kinematics and torques of a posture. Depends on posture, loads and contact forces; filled by [`JointTorques::update`] or
+/// [`JointTorques::update_with_contact`].
+#[derive(Clone, Debug)]
+pub struct JointTorques {
+    posture: Posture,
+    kinematics: Kinematics,
+    center_of_mass: CenterOfMass,
+    external: ExternalTorque,
+    gradient: Gradient,
+    passive: PassiveTorque,
+    /// By rate, N m.
+    active: Vec<f64>,
+    /// The loads given, then the contact forces.
+    loads: Vec<Load>,
+    /// The quantities of the last update.
+    computed: Quantities,
+}
+
+impl JointTorques {
+    /// Space for `model`, at its default posture; holds frames and axes only.
+    pub fn new(model: &Model) -> Self {
+        Self::with_passive_torque(model, PassiveTorque::new(model))
+    }
+
+    /// As [`JointTorques::new`], with passive torque evaluated inside ranges: see [`PassiveTorque::within`].
+    pub fn with_passive_ranges(model: &Model, ranges: &[Option<(f64, f64)>]) -> Self {
+        Self::with_passive_torque(model, PassiveTorque::within(model, ranges))
+    }
+
+    fn with_passive_torque(model: &Model, passive: PassiveTorque) -> Self {
+        Self {
+            posture: model.default_posture(),
+            kinematics: Kinematics::new(model),
+            center_of_mass: CenterOfMass::new(model),
+            external: ExternalTorque::new(model),
+            gradient: Gradient::new(model),
+            passive,
+            active: vec![0.0; model.rates().len()],
+            loads: vec![],
+            computed: Quantities::default(),
+        }
+    }
+
+    /// Computes `quantities` in `posture`: [`JointTorques::place`], then [`JointTorques::apply`].
+    ///
+    /// # Errors
+    /// [`JointTorquesError`] when posture or loads do not fit the model, or a passive law gives no torque. After a refused posture
+    /// nothing has changed; after a refused load or torque only frames and axes are known.
+    pub fn update(
+        &mut self,
+        model: &Model,
+        posture: &Posture,
+        loads: &[Load],
+        quantities: Quantities,
+    ) -> Result<(), JointTorquesError> {
+        self.place(model, posture)?;
+        self.apply(model, loads, quantities)
+    }
+
+    /// As [`JointTorques::update`], for a body on supports: see [`JointTorques::apply_with_contact`].
+    ///
+    /// # Errors
+    /// As [`JointTorques::update`].
+    pub fn update_with_contact(
+        &mut self,
+        model: &Model,
+        posture: &Posture,
+        loads: &[Load],
+        contact: &mut ContactForces,
+        quantities: Quantities,
+    ) -> Result<(), JointTorquesError> {
+        self.place(model, posture)?;
+        self.apply_with_contact(model, loads, contact, quantities)
+    }
+
+    /// Brings frames and axes to `posture`; torques are unknown until the next [`JointTorques::apply`]. Does not allocate.
+    ///
+    /// # Errors
+    /// [`PostureError`] when the posture does not fit the model; nothing has changed then.
+    pub fn place(&mut self, model: &Model, posture: &Posture) -> Result<(), PostureError> {
+        self.kinematics.update(model, posture)?;
+        self.posture.values_mut().copy_from_slice(posture.values());
+        self.computed = Quantities::default();
+        Ok(())
+    }
+
+    /// Computes `quantities` for `loads` in the posture that the body was placed in. Does not allocate once it has had as many loads.
+    ///
+    /// # Errors
+    /// As [`JointTorques::update`].
+    pub fn apply(&mut self, model: &Model, loads: &[Load], quantities: Quantities) -> Result<(), JointTorquesError> {
+        self.loads.clear();
+        self.loads.extend_from_slice(loads);
+        self.computed = Quantities::default();
+        if quantities.passive_torque {
+            self.passive.update(model, &self.kinematics)?;
+        }
+        self.finish(model, quantities)
+    }
+
+    /// As [`JointTorques::apply`], with the contact forces among the loads that keep the root in equilibrium at least effort; they
+    /// are written to `contact`. External and passive torque are computed in any case.
+    ///
+    /// # Errors
+    /// As [`JointTorques::update`].
+    pub fn apply_with_contact(
+        &mut self,
+        model: &Model,
+        loads: &[Load],
+        contact: &mut ContactForces,
+        quantities: Quantities,
+    ) -> Result<(), JointTorquesError> {
+        self.apply(model, loads, Quantities::TORQUES)?;
+        contact.update(model, &self.kinematics, &self.active);
+        self.loads.extend_from_slice(contact.loads());
+        self.finish(model, Quantities::TORQUES.with(quantities))
+    }
+
+    /// Computes the external torque of `self.loads` and the quantities that depend on it.
+    fn finish(&mut self, model: &Model, quantities: Quantities) -> Result<(), JointTorquesError> {
+        if quantities.needs_external_torque() {
+            self.external.update(model, &self.kinematics, &self.loads)?;
+        } else if quantities.center_of_mass {
+            self.center_of_mass.update(model, &self.kinematics);
+        }
+        if quantities.gradient {
+            self.external.gradient(model, &self.kinematics, &mut self.gradient);
+        }
+        if quantities.passive_torque && quantities.needs_external_torque() {
+            let torques = self.external.torques().iter().zip(self.passive.torques());
+            for (active, (external, passive)) in self.active.iter_mut().zip(torques) {
+                *active = active_torque(*external, *passive);
+            }
+        }
+        self.computed = quantities;
+        Ok(())
+    }
+
+    /// The posture of the last update.
+    pub fn posture(&self) -> &Posture {
+        &self.posture
+    }
+
+    /// Frames and axes.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// The loads of the last update, then its contact forces.
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// The centre of mass.
+    ///
+    /// # Panics
+    /// When the last update did not compute it.
+    pub fn center_of_mass(&self) -> &CenterOfMass {
+        let with_torque = self.computed.needs_external_torque();
+        assert!(self.computed.center_of_mass || with_torque, "the last update left the centre of mass out");
+        // External torque comes with the same sums.
+        if with_torque { self.external.center_of_mass() } else { &self.center_of_mass }
+    }
+
+    /// External torque, contact forces included, N m.
+    ///
+    /// # Panics
+    /// When the last update did not compute it.
+    pub fn external_torque(&self) -> &ExternalTorque {
+        assert!(self.computed.needs_external_torque(), "the last update left the external torque out");
+        &self.external
+    }
+
+    /// Gradient of the external torque, N m/rad.
+    ///
+    /// # Panics
+    /// When the last update did not compute it.
+    pub fn gradient(&self) -> &Gradient {
+        assert!(self.computed.gradient, "the last update left the gradient of external torque out");
+        &self.gradient
+    }
+
+    /// Passive torque, N m.
+    ///
+    /// # Panics
+    /// When the last update did not compute it.
+    pub fn passive_torque(&self) -> &PassiveTorque {
+        assert!(self.computed.passive_torque, "the last update left the passive torque out");
+        &self.passive
+    }
+
+    /// External and passive torque of a rate, N m.
+    ///
+    /// # Panics
+    /// When the last update did not compute both.
+    pub fn external_and_passive(&self, rate: usize) -> (f64, f64) {
+        (self.external_torque().torques()[rate], self.passive_torque().torques()[rate])
+    }
+
+    /// Active torque of every rate (Eq. 1), N m (N for slides).
+    ///
+    /// # Panics
+    /// When the last update did not compute external and passive torque.
+    pub fn active_torque(&self) -> &[f64] {
+        let known = self.computed.passive_torque && self.computed.needs_external_torque();
+        assert!(known, "the last update left external or passive torque out");
+        &self.active
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn active_torque_of_external_3_and_passive_minus_1_is_minus_2() {
+        assert_eq!(active_torque(3.0, -1.0), -2.0);
+    }
+
+    #[test]
+    fn effort_of_loads_a_half_and_two_is_four_and_a_quarter() {
+        assert_eq!(effort(&[0.5, -2.0]), 4.25);
+        assert_eq!(effort(&[]).to_bits(), 0.0f64.to_bits());
+    }
+}
