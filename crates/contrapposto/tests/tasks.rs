@@ -113,7 +113,7 @@ fn tasks(rng: &mut Pcg64, model: &Model) -> Vec<Task> {
 }
 
 fn needs() -> Quantities {
-    Quantities::ALL
+    Quantities { center_of_mass: true, gradient: true, ..Quantities::default() }
 }
 
 /// Rows and what they are derivatives of: `-upper`, or `-lower` where there is no upper limit.
