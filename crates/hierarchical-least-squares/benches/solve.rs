@@ -1,6 +1,6 @@
-//! How long does one lexicographic least-squares problem take? As large and as layered as inverse kinematics of a whole body
-//! makes them, and growing from 10 to 200 unknowns and 1 to 8 levels. With `CONTRAPPOSTO_EXCHANGE` set to a folder, the
-//! growing problems are written there with our answers and least times, for `scripts/compare_growth.py`, and that is all.
+//! Measures one hierarchical least-squares problem of 54 unknowns, and problems growing from 10 to 200 unknowns and 1 to 8
+//! levels. With `CONTRAPPOSTO_EXCHANGE` set to a folder, the growing problems are only written there, with answers and least
+//! times, for `scripts/compare_growth.py`.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use hierarchical_least_squares::{Level, Problem, Solver};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Levels of so many random equations each, then a rest posture; unknowns within `room`.
+/// Levels of so many random equations each, then a level of single unknowns; unknowns within `room`.
 fn problem(random: &mut Pcg64Mcg, n: usize, rows: &[usize], room: f64) -> Problem {
     let mut problem = Problem::new(n);
     problem.lower.fill(-room);
@@ -24,20 +24,20 @@ fn problem(random: &mut Pcg64Mcg, n: usize, rows: &[usize], room: f64) -> Proble
         }
         problem.levels.push(level);
     }
-    let mut rest = Level::default();
+    let mut single = Level::default();
     for i in 6.min(n / 4)..n {
         let mut row = vec![0.0; n];
         row[i] = 1.0;
         let right = random.random_range(-0.3..0.3);
-        rest.push(&row, right, right);
+        single.push(&row, right, right);
     }
-    problem.levels.push(rest);
+    problem.levels.push(single);
     problem
 }
 
 fn solve(c: &mut Criterion) {
     let mut random = Pcg64Mcg::new(1);
-    let mut group = c.benchmark_group("lexicographic/54 unknowns, levels of 12, 2, 3, 3 and 48 rows");
+    let mut group = c.benchmark_group("solve/54 unknowns, levels of 12, 2, 3, 3 and 48 rows");
     for (name, room) in [("no bound active", 1e3), ("bounds active", 0.25)] {
         let problem = problem(&mut random, 54, &[12, 2, 3, 3], room);
         let mut solver = Solver::new();
@@ -46,7 +46,7 @@ fn solve(c: &mut Criterion) {
         group.bench_function(format!("{name}, cold ({changes} changes)"), |b| {
             b.iter(|| solver.solve(black_box(&problem)));
         });
-        group.bench_function(format!("{name}, active set known"), |b| {
+        group.bench_function(format!("{name}, warm start"), |b| {
             b.iter(|| solver.solve_next(black_box(&problem)));
         });
     }
@@ -65,7 +65,7 @@ fn growth(c: &mut Criterion) {
         return exchange(folder.as_ref());
     }
     for (levels, n, problem) in growing() {
-        let mut group = c.benchmark_group(format!("lexicographic/growth, {levels} levels and a rest posture"));
+        let mut group = c.benchmark_group(format!("solve/growth, {levels} levels and one of single unknowns"));
         let mut solver = Solver::new();
         group.bench_with_input(BenchmarkId::from_parameter(n), &n, |b, _| {
             b.iter(|| solver.solve_next(black_box(&problem)));
@@ -74,7 +74,7 @@ fn growth(c: &mut Criterion) {
     }
 }
 
-/// The least time of what is run for half a second, microseconds.
+/// The least time of `run`, repeated for half a second, microseconds.
 fn least(mut run: impl FnMut()) -> f64 {
     let (start, mut least) = (Instant::now(), Duration::MAX);
     while start.elapsed() < Duration::from_millis(500) {
@@ -85,19 +85,18 @@ fn least(mut run: impl FnMut()) -> f64 {
     least.as_secs_f64() * 1e6
 }
 
-/// One JSON file a problem: what is asked, how long each level's residual is, how long it took with nothing known and with the
-/// active set known.
+/// Writes one JSON file a problem: the problem, the norm of each residual, and the times of a cold and a warm start.
 fn exchange(folder: &std::path::Path) {
     for (count, n, problem) in growing() {
-        let (mut cold, mut known) = (Solver::new(), Solver::new());
+        let (mut cold, mut warm) = (Solver::new(), Solver::new());
         let cold = least(|| drop(black_box(cold.solve(black_box(&problem)))));
-        let time = least(|| drop(black_box(known.solve_next(black_box(&problem)))));
+        let time = least(|| drop(black_box(warm.solve_next(black_box(&problem)))));
         let levels: Vec<String> = problem
             .levels
             .iter()
             .enumerate()
             .map(|(k, level)| {
-                let (matrix, right, residual) = (&level.matrix, &level.upper, known.residual_norm(k));
+                let (matrix, right, residual) = (&level.matrix, &level.upper, warm.residual_norm(k));
                 format!(r#"{{"matrix": {matrix:?}, "right": {right:?}, "residual": {residual:?}}}"#)
             })
             .collect();

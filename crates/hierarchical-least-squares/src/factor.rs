@@ -1,112 +1,118 @@
-//! Which directions are still free? Rows that are fixed or active, as `C = L Q1^T`: `L` lower triangular, `Q` a product of
-//! Householder reflections, one a row. What is left of `Q` spans the null space of all rows so far.
+//! Factorises the rows of the working set as `C = L Q1^T`, with `L` lower triangular and `Q = [Q1 Z]` a product of Householder
+//! reflections, one a row. `Z` spans the null space of the rows, in which a level moves (Dimitrov, Sherikov & Wieber 2015).
 //!
-//! Unknowns at a bound from the start are not rows but columns left out (`free` lists the others). Where the
-//! first level knows few unknowns, as two placed feet do, these come first, and its vectors end early.
+//! An unknown that is at a bound when the factorisation begins is a column left out; a bound that becomes active later is a
+//! row. Where the first level has few unknowns, these come first, and the vectors of its reflections end early.
 
 use crate::linalg::{add_scaled, add_scaled_pair, dot, dot_pair, norm};
+use crate::working_set::Constraint;
 
-/// What a row of the factor stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Entry {
-    /// The bound of an unknown.
-    Bound(usize),
-    /// A row, counted through all levels.
-    Row(usize),
-}
-
-/// See the module's text.
+/// The factor, which grows by a row and shrinks from its end.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Factor {
-    /// Unknowns that are not left out, and those that are.
-    pub(crate) free: Vec<usize>,
-    pub(crate) left_out: Vec<usize>,
-    /// What each row stands for.
-    pub(crate) entries: Vec<Entry>,
-    /// `L[r][..r]`, one row after the other, as long as `free`.
-    pub(crate) lower: Vec<f64>,
-    /// The reflections' vectors, [`Factor::padded`] long: zero before place `r` and behind `free`, so that sums may run over
-    /// whole eights.
-    pub(crate) vectors: Vec<f64>,
-    /// Where they end, in whole eights: only zeros from there on.
-    pub(crate) ends: Vec<usize>,
-    pub(crate) diagonal: Vec<f64>,
-    pub(crate) scale: Vec<f64>,
-    /// Product of each vector with the one before.
-    pub(crate) cross: Vec<f64>,
+    /// Unknowns of the columns, and unknowns left out.
+    columns: Vec<usize>,
+    columns_left_out: Vec<usize>,
+    /// The constraint of each row.
+    constraints: Vec<Constraint>,
+    /// `L` below its diagonal, one row after the other, as long as `columns`; and its diagonal.
+    lower: Vec<f64>,
+    diagonal: Vec<f64>,
+    /// Vectors of the reflections, [`Factor::padded_width`] long: zero before index `r` and behind `columns`, so that sums run
+    /// over whole groups of eight.
+    vectors: Vec<f64>,
+    /// A multiple of eight for each vector, from which on it is zero.
+    ends: Vec<usize>,
+    scales: Vec<f64>,
+    /// Inner product of each vector with the one before.
+    cross: Vec<f64>,
 }
 
 impl Factor {
-    /// No rows; the unknowns of `order` that are `fixed` are left out.
-    pub(crate) fn reset(&mut self, order: &[usize], fixed: impl Fn(usize) -> bool) {
-        self.free.clear();
-        self.free.extend(order.iter().filter(|&&i| !fixed(i)));
-        self.left_out.clear();
-        self.left_out.extend(order.iter().filter(|&&i| fixed(i)));
+    pub(crate) fn with_capacity(n: usize) -> Self {
+        Self {
+            columns: Vec::with_capacity(n),
+            columns_left_out: Vec::with_capacity(n),
+            constraints: Vec::with_capacity(n),
+            lower: Vec::with_capacity(n * n),
+            diagonal: Vec::with_capacity(n),
+            vectors: Vec::with_capacity(n * n),
+            ends: Vec::with_capacity(n),
+            scales: Vec::with_capacity(n),
+            cross: Vec::with_capacity(n),
+        }
+    }
+
+    /// Removes all rows. The columns become the unknowns of `order` that are not `at_bound`.
+    pub(crate) fn reset(&mut self, order: &[usize], at_bound: impl Fn(usize) -> bool) {
+        self.columns.clear();
+        self.columns.extend(order.iter().filter(|&&i| !at_bound(i)));
+        self.columns_left_out.clear();
+        self.columns_left_out.extend(order.iter().filter(|&&i| at_bound(i)));
         self.truncate(0);
     }
 
     /// Number of rows.
     pub(crate) fn len(&self) -> usize {
-        self.entries.len()
+        self.constraints.len()
     }
 
-    /// Number of unknowns that are not left out.
+    /// Number of columns.
     pub(crate) fn width(&self) -> usize {
-        self.free.len()
+        self.columns.len()
     }
 
-    /// The width up to the next eight: so long are turned rows, zero behind [`Factor::width`].
-    pub(crate) fn padded(&self) -> usize {
-        self.free.len().next_multiple_of(8)
+    /// The next multiple of eight of the width: the length of transformed rows, which are zero behind [`Factor::width`].
+    pub(crate) fn padded_width(&self) -> usize {
+        self.columns.len().next_multiple_of(8)
     }
 
-    /// Forgets all rows from `len` on.
+    /// Removes all rows from `len` on.
     pub(crate) fn truncate(&mut self, len: usize) {
-        self.entries.truncate(len);
-        self.lower.truncate(len * self.free.len());
-        self.vectors.truncate(len * self.padded());
+        self.constraints.truncate(len);
+        self.lower.truncate(len * self.columns.len());
+        self.vectors.truncate(len * self.padded_width());
         self.ends.truncate(len);
         self.diagonal.truncate(len);
-        self.scale.truncate(len);
+        self.scales.truncate(len);
         self.cross.truncate(len);
     }
 
-    /// The entries of `x` at the free unknowns, then zeros.
+    /// The entries of `x` at the columns, then zeros.
     pub(crate) fn gather(&self, x: &[f64], out: &mut [f64]) {
-        for (out, &i) in out.iter_mut().zip(&self.free) {
+        for (out, &i) in out.iter_mut().zip(&self.columns) {
             *out = x[i];
         }
-        out[self.free.len()..self.padded()].fill(0.0);
+        out[self.columns.len()..self.padded_width()].fill(0.0);
     }
 
-    /// `t -= scale (v . t) v` with the vector of row `r`.
+    /// `t -= scale (v^T t) v` with the vector `v` of row `r`.
     #[inline]
     fn reflect(&self, r: usize, t: &mut [f64]) {
-        let start = r * self.padded();
+        let start = r * self.padded_width();
         let (first, end) = (r / 8 * 8, self.ends[r]);
         let (v, t) = (&self.vectors[start + first..start + end], &mut t[first..end]);
-        let s = self.scale[r] * dot(v, t);
+        let s = self.scales[r] * dot(v, t);
         add_scaled(t, -s, v);
     }
 
-    /// The vectors of rows `r - 1` and `r` and what they are applied to, from the eight where the first begins to where both end.
+    /// The vectors of the rows `r - 1` and `r`, and `t`, from the group of eight where the first begins to the end of both.
     #[inline]
     fn pair<'a>(&'a self, r: usize, t: &'a mut [f64]) -> (&'a [f64], &'a [f64], &'a mut [f64]) {
-        let c = self.padded();
+        let c = self.padded_width();
         let (first, end) = ((r - 1) / 8 * 8, self.ends[r - 1].max(self.ends[r]));
         let vector = |r: usize| &self.vectors[r * c + first..r * c + end];
         (vector(r - 1), vector(r), &mut t[first..end])
     }
 
-    /// Applies the reflections of rows `from..to` to `t`: `Q^T t`, as far as they go. Two at a time, which reads `t` once.
-    pub(crate) fn turn(&self, t: &mut [f64], from: usize, to: usize) {
+    /// Replaces `t` by `Q^T t`, with the reflections of the rows `from..to`. Two reflections at a time read `t` once.
+    pub(crate) fn transform(&self, t: &mut [f64], from: usize, to: usize) {
         let mut r = from;
         while r + 1 < to {
             let (a, b, t) = self.pair(r + 1, t);
             let (p, q) = dot_pair(a, b, t);
-            let p = self.scale[r] * p;
-            let q = self.scale[r + 1] * (q - p * self.cross[r + 1]);
+            let p = self.scales[r] * p;
+            let q = self.scales[r + 1] * (q - p * self.cross[r + 1]);
             add_scaled_pair(t, -p, a, -q, b);
             r += 2;
         }
@@ -115,14 +121,14 @@ impl Factor {
         }
     }
 
-    /// Applies all reflections backwards: `Q t`.
-    pub(crate) fn turn_back(&self, t: &mut [f64]) {
+    /// Replaces `t` by `Q t`.
+    pub(crate) fn transform_back(&self, t: &mut [f64]) {
         let mut r = self.len();
         while r >= 2 {
             let (a, b, t) = self.pair(r - 1, t);
             let (p, q) = dot_pair(a, b, t);
-            let q = self.scale[r - 1] * q;
-            let p = self.scale[r - 2] * (p - q * self.cross[r - 1]);
+            let q = self.scales[r - 1] * q;
+            let p = self.scales[r - 2] * (p - q * self.cross[r - 1]);
             add_scaled_pair(t, -p, a, -q, b);
             r -= 2;
         }
@@ -131,9 +137,9 @@ impl Factor {
         }
     }
 
-    /// Adds a turned row, `Q^T` times it: its part beyond [`Factor::len`] must not vanish.
-    pub(crate) fn append(&mut self, t: &[f64], entry: Entry) {
-        let (r, w, c) = (self.len(), self.width(), self.padded());
+    /// Appends a row, given as `t = Q^T a`. Its part behind [`Factor::len`] must not vanish.
+    pub(crate) fn append(&mut self, t: &[f64], constraint: Constraint) {
+        let (r, w, c) = (self.len(), self.width(), self.padded_width());
         let first = r / 8 * 8;
         let last = t[first..c].as_chunks::<8>().0.iter().rposition(|eight| *eight != [0.0; 8]);
         let end = first + 8 * (last.unwrap_or(0) + 1);
@@ -148,22 +154,22 @@ impl Factor {
         self.cross.push(if r == 0 { 0.0 } else { dot(&before[start - c + first..start - c + end], &own[first..end]) });
         self.ends.push(end);
         self.diagonal.push(beta);
-        self.scale.push(-1.0 / (beta * (t[r] - beta)));
-        self.entries.push(entry);
+        self.scales.push(-1.0 / (beta * (t[r] - beta)));
+        self.constraints.push(constraint);
     }
 
-    /// `y` with `L y = c` for the rows `from..`, whose right-hand sides are `c`; entries before `from` count as zero.
+    /// Solves `L y = c` for the rows `from..`, as if the solution of the rows before were zero.
     pub(crate) fn solve_lower(&self, from: usize, c: &[f64], y: &mut [f64]) {
-        let w = self.free.len();
+        let w = self.columns.len();
         for r in from..self.len() {
             let row = &self.lower[r * w..r * w + r];
             y[r - from] = (c[r - from] - dot(&row[from..], &y[..r - from])) / self.diagonal[r];
         }
     }
 
-    /// Replaces `h[..len]` by the solution of `L[..len]^T z = h`.
-    pub(crate) fn solve_upper(&self, len: usize, h: &mut [f64]) {
-        let w = self.free.len();
+    /// Replaces `h[..len]` by the solution of `L^T z = h` with the first `len` rows.
+    pub(crate) fn solve_lower_transposed(&self, len: usize, h: &mut [f64]) {
+        let w = self.columns.len();
         for r in (0..len).rev() {
             h[r] /= self.diagonal[r];
             let z = h[r];
@@ -178,7 +184,22 @@ impl Factor {
 
     /// `L[r][..r]`.
     pub(crate) fn lower_row(&self, r: usize) -> &[f64] {
-        let w = self.free.len();
+        let w = self.columns.len();
         &self.lower[r * w..r * w + r]
+    }
+
+    /// Unknowns of the columns.
+    pub(crate) fn columns(&self) -> &[usize] {
+        &self.columns
+    }
+
+    /// Unknowns left out.
+    pub(crate) fn columns_left_out(&self) -> &[usize] {
+        &self.columns_left_out
+    }
+
+    /// The constraint of each row.
+    pub(crate) fn constraints(&self) -> &[Constraint] {
+        &self.constraints
     }
 }

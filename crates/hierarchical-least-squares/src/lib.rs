@@ -1,14 +1,21 @@
-//! Least squares in strict order of priority, with inequalities at every level.
+//! Solves least squares in strict order of priority, with bounds and inequalities at every level (hierarchical, or
+//! lexicographic, least squares).
 //!
-//! A [`Problem`] has bounds that always hold and [`Level`]s. The first level is brought as near to its rows as the bounds
-//! allow; each further one as near as the levels above allow without giving up anything of theirs (Escande, Mansard &
-//! Wieber 2014, "Hierarchical quadratic programming: fast online humanoid-robot motion generation"). With equations alone
-//! the answer is that of the recursion of Baerlocher & Boulic (2004).
+//! For levels `k = 1..p` in turn:
 //!
-//! [`Solver`] goes down the levels once. At each it solves a least-squares problem by a primal active-set method in the
-//! null space of what is already fixed, which one orthogonal factorisation of rows (`factor.rs`) carries from level to
-//! level (as in Dimitrov, Sherikov & Wieber 2015, "Efficient resolution of potentially conflicting linear constraints in
-//! robotics").
+//! ```text
+//! minimise  |r_k|^2 + mu_k^2 |x|^2     with  r_k = the distance of A_k x from  lower_k <= A_k x <= upper_k
+//! subject to  lower <= x <= upper,  and the rows of the levels before k at the values those levels have reached
+//! ```
+//!
+//! An inequality that a level satisfies stays satisfied, and may be inactive; a residual that a level keeps stays as it is
+//! (Escande, Mansard & Wieber 2014, "Hierarchical quadratic programming: fast online humanoid-robot motion generation"). With
+//! equations alone the answer is that of the recursion of Baerlocher & Boulic (2004).
+//!
+//! [`Solver`] solves the levels in one pass. Each is a least-squares problem, solved by a primal active-set method in the null
+//! space of the levels above; one orthogonal factorisation of rows is carried from level to level (as in Dimitrov, Sherikov &
+//! Wieber 2015, "Efficient resolution of potentially conflicting linear constraints in robotics"). It is meant for dense
+//! problems of up to a few hundred unknowns, and allocates nothing when a problem of the same size is solved again.
 //!
 //! ```
 //! use hierarchical_least_squares::{Level, Problem, Solver, Status};
@@ -24,19 +31,23 @@
 //! let mut solver = Solver::new();
 //! assert_eq!(solver.solve(&problem)?, Status::Solved);
 //! assert!((solver.solution()[0] - 3.0).abs() < 1e-14 && solver.solution()[1] == -1.0);
-//! assert!((solver.residual(1)[0] + 2.0).abs() < 1e-14); // the bound on y stands in the way of x
+//! assert!((solver.residual(1)[0] + 2.0).abs() < 1e-14); // the bound on y keeps x from 5
 //! # Ok::<(), hierarchical_least_squares::ProblemError>(())
 //! ```
+//!
+//! [`linalg`] holds the dense linear algebra of the solver, for other solvers to use.
 
-mod certificate;
-mod diagonal;
+mod active_set;
 mod factor;
-mod level;
+mod identity_level;
+mod level_solver;
 pub mod linalg;
 mod multipliers;
 mod problem;
+mod rows;
 mod solver;
-mod space;
+mod tolerances;
+mod working_set;
 
 pub use multipliers::Multipliers;
 pub use problem::{Level, Problem, ProblemError};

@@ -1,10 +1,12 @@
-//! What is asked: bounds on the unknowns that always hold, and levels of rows in strict order of priority.
+//! Defines a problem: bounds on the unknowns, which always hold, and levels of rows in strict order of priority.
+
+use crate::tolerances::LARGEST_NUMBER;
 
 /// One level of priority: `lower <= A x <= upper`, as nearly as every level above allows.
 ///
-/// What is left over, `residual_i = a_i x - upper_i` above, `a_i x - lower_i` below, 0 between, is as short as it can be
-/// in the Euclidean norm; an equation has `lower == upper`. Rows keep the scale they are given in: a row multiplied by 10
-/// weighs 100 times as much against the others of its level.
+/// The residual, `a_i x - upper_i` above the upper limit, `a_i x - lower_i` below the lower one, 0 between, has the least
+/// Euclidean norm. An equation has `lower == upper`. Rows keep the scale they are given in: a row multiplied by 10 weighs 100
+/// times as much against the others of its level.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Level {
     /// `A`, row after row, each as long as there are unknowns.
@@ -13,15 +15,15 @@ pub struct Level {
     pub lower: Vec<f64>,
     /// Upper limit of each row, not below the lower one; may be infinite.
     pub upper: Vec<f64>,
-    /// `mu >= 0`: the level minimises `|residual|^2 + mu^2 |x|^2`; 0 for none. Only the values of its rows are kept for the
-    /// levels below: what the rows do not touch is left to those, and the levels above feel nothing of the damping.
+    /// `mu >= 0`: the level minimises `|residual|^2 + mu^2 |x|^2`; 0 for none. The levels below keep the values of its rows
+    /// only: directions that no row contains are left to them. Damping does not change the levels above.
     pub damping: f64,
-    /// The level is meant to hold: a residual makes the answer [`crate::Status::Infeasible`].
+    /// The level must be satisfied: a residual makes the answer [`crate::Status::Infeasible`].
     pub hard: bool,
 }
 
 impl Level {
-    /// No rows; space for `rows` of `unknowns`.
+    /// A level without rows, with space for `rows` of `unknowns`.
     pub fn with_capacity(rows: usize, unknowns: usize) -> Self {
         Self {
             matrix: Vec::with_capacity(rows * unknowns),
@@ -36,7 +38,7 @@ impl Level {
         self.lower.len()
     }
 
-    /// Takes all rows away and keeps the space.
+    /// Removes all rows and keeps the space.
     pub fn clear(&mut self) {
         self.matrix.clear();
         self.lower.clear();
@@ -65,7 +67,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// `n` unknowns without bounds, no levels.
+    /// A problem of `n` unknowns without bounds or levels.
     pub fn new(n: usize) -> Self {
         Self { lower: vec![f64::NEG_INFINITY; n], upper: vec![f64::INFINITY; n], levels: vec![] }
     }
@@ -90,7 +92,7 @@ pub enum ProblemError {
         /// The length it must have.
         needed: usize,
     },
-    /// A number without meaning.
+    /// A number that is not accepted.
     #[error("{what} is {value:e}; it must be {accepted}")]
     Number {
         /// Which number.
@@ -102,18 +104,15 @@ pub enum ProblemError {
     },
 }
 
-/// Coefficients and finite limits must be at most this in size: squares and products of what is accepted stay finite.
-pub(crate) const LARGEST: f64 = 1e60;
-
 impl Problem {
-    /// Do all lengths fit and all numbers have a meaning?
+    /// Checks that all lengths fit and that all numbers are accepted.
     ///
     /// # Errors
-    /// [`ProblemError`] names the first thing that does not.
+    /// [`ProblemError`] names the first list or number that does not.
     pub fn check(&self) -> Result<(), ProblemError> {
         self.check_limits()?;
         for (k, level) in self.levels.iter().enumerate() {
-            if let Some(&value) = level.matrix.iter().find(|a| a.is_nan() || a.abs() > LARGEST) {
+            if let Some(&value) = level.matrix.iter().find(|a| a.is_nan() || a.abs() > LARGEST_NUMBER) {
                 let what = format!("coefficient of level {k}");
                 return Err(ProblemError::Number { what, value, accepted: "finite and at most 1e60 in size" });
             }
@@ -121,7 +120,7 @@ impl Problem {
         Ok(())
     }
 
-    /// The check of everything but the coefficients.
+    /// Checks everything but the coefficients.
     pub(crate) fn check_limits(&self) -> Result<(), ProblemError> {
         let n = self.unknowns();
         check_limits(&self.lower, &self.upper, n, &|| "bound of an unknown".to_owned())?;
@@ -131,7 +130,7 @@ impl Problem {
                 return Err(ProblemError::Length { what: format!("matrix of level {k}"), given, needed });
             }
             check_limits(&level.lower, &level.upper, level.rows(), &|| format!("limit of a row of level {k}"))?;
-            if !(0.0..=LARGEST).contains(&level.damping) {
+            if !(0.0..=LARGEST_NUMBER).contains(&level.damping) {
                 let what = format!("damping of level {k}");
                 return Err(ProblemError::Number { what, value: level.damping, accepted: "between 0 and 1e60" });
             }
@@ -148,10 +147,10 @@ fn check_limits(lower: &[f64], upper: &[f64], needed: usize, what: &dyn Fn() -> 
     for (&lower, &upper) in lower.iter().zip(upper) {
         let number =
             |side, value, accepted| Err(ProblemError::Number { what: format!("{side} {}", what()), value, accepted });
-        if lower.is_nan() || lower == f64::INFINITY || (lower.is_finite() && lower.abs() > LARGEST) {
+        if lower.is_nan() || lower == f64::INFINITY || (lower.is_finite() && lower.abs() > LARGEST_NUMBER) {
             return number("lower", lower, "at most 1e60 in size, or minus infinity");
         }
-        if upper.is_nan() || upper == f64::NEG_INFINITY || (upper.is_finite() && upper.abs() > LARGEST) {
+        if upper.is_nan() || upper == f64::NEG_INFINITY || (upper.is_finite() && upper.abs() > LARGEST_NUMBER) {
             return number("upper", upper, "at most 1e60 in size, or infinity");
         }
         if lower > upper {

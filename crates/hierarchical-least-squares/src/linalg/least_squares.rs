@@ -3,11 +3,7 @@
 //! problems").
 
 use super::vector::{add_scaled, dot, norm};
-
-/// A column whose remainder is below this share of the first pivot counts as zero.
-const DEPENDENT_COLUMN: f64 = 1e-14;
-/// A squared norm that updates have brought below this share of its value is computed anew.
-const NORM_UPDATE: f64 = 1e-3;
+use crate::tolerances::{DEPENDENT_COLUMN, NORM_UPDATE};
 
 /// One least-squares problem, its factors and its residual. The buffers are kept between calls.
 #[derive(Clone, Debug, Default)]

@@ -1,10 +1,7 @@
 //! Computes eigenvalues and eigenvectors of a small symmetric matrix by rotations in planes that each clear one entry
 //! (Jacobi 1846; Golub & Van Loan 2013, "Matrix Computations", section 8.5).
 
-/// Most sweeps over all planes; five or six are enough in practice.
-const MOST_SWEEPS: usize = 30;
-/// Off-diagonal entries up to this share of the largest entry count as zero.
-const NEGLIGIBLE: f64 = 1e-17;
+use crate::tolerances::{OFF_DIAGONAL, SWEEPS};
 
 /// Workspace and result of the eigenvalue decomposition `A = sum_i lambda_i v_i v_i^T`.
 #[derive(Clone, Debug)]
@@ -30,11 +27,11 @@ impl SymmetricEigen {
         vectors.clear();
         vectors.extend((0..n * n).map(|k| if k / n == k % n { 1.0 } else { 0.0 }));
         let size = a.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..SWEEPS {
             let mut diagonal = true;
             for p in 0..n {
                 for q in p + 1..n {
-                    if a[p * n + q].abs() <= NEGLIGIBLE * size {
+                    if a[p * n + q].abs() <= OFF_DIAGONAL * size {
                         continue;
                     }
                     diagonal = false;

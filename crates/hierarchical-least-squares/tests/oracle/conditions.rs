@@ -1,5 +1,5 @@
-//! Is an answer the best there is? The optimality conditions (Karush, Kuhn & Tucker) of every level, and the residuals that
-//! follow from what an answer calls active, both in numbers of 32 digits.
+//! Computes the optimality conditions (Karush, Kuhn & Tucker) of every level, and the residuals that follow from the working
+//! set of an answer, both in numbers of 32 digits.
 
 use crate::double_double::{Double, dot, inner};
 use crate::generator::{Draw, Row, outside};
@@ -23,7 +23,7 @@ const UNSEEN: f64 = 1e-13;
 /// As [`residual_of`], for problems with damped levels.
 const DAMPED: f64 = 1e-12;
 
-/// A multiplier below this, in rows of scale one, does not press.
+/// A multiplier below this, in rows of scale one, counts as zero.
 const PRESSING: f64 = 1e-13;
 /// A multiplier above this, relative to the square of the level's least scale and to what the level keeps, locks its side for
 /// all levels below: to leave it would cost the level something, so what it presses with at levels below may have either sign
@@ -37,10 +37,10 @@ fn locking(residuals: &[f64], scales: impl Iterator<Item = f64> + Clone) -> f64 
     LOCKING * kept.clamp(1e-6, 1.0) * scales.fold(f64::INFINITY, f64::min).powi(2)
 }
 
-/// So many times the last digits are moved.
+/// Number of times the last digits are changed.
 const NUDGES: usize = 5;
 
-/// What a solver says.
+/// Solution, residuals and multipliers of a solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     pub x: Vec<f64>,
@@ -110,7 +110,7 @@ impl Misses {
     }
 }
 
-/// How well an answer satisfies the conditions of all levels; of damped levels only those of the last, as those above are
+/// Violations by an answer of the conditions of all levels; of damped levels only those of the last, as those above are
 /// done somewhere else. Gradients are relative to the square of the level's largest scale.
 pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses {
     let (n, x) = (problem.unknowns(), &answer.x);
@@ -302,7 +302,7 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
     Ok(known.iter().map(|level| level.iter().map(|r| r.value()).collect()).collect())
 }
 
-/// How far the residuals move when the last digit of every coefficient does: no solver can know them better.
+/// Change of the residuals when the last digit of every coefficient changes: no solver can know them better.
 pub fn spread(draw: &Draw, answer: &Answer, rng: &mut Pcg64) -> Result<f64, String> {
     let known = reference(draw, answer)?;
     let mut most: f64 = 0.0;

@@ -1,4 +1,4 @@
-//! Numbers of about 32 digits: the unevaluated sum of two `f64` (Dekker 1971, Knuth's two-sum).
+//! Computes with numbers of about 32 digits: the unevaluated sum of two `f64` (Dekker 1971, Knuth's two-sum).
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 

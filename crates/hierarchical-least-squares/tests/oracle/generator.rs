@@ -1,4 +1,4 @@
-//! Random lexicographic problems of known rank.
+//! Draws random problems of known rank.
 //!
 //! Every level's rows, seen in the null space of the levels above, have singular values above `CLEAR` or below `NOTHING`,
 //! nothing between; a draw that does not is thrown away and counted. Two styles:
@@ -38,7 +38,7 @@ impl Row {
         self.a.iter().zip(x.iter()).map(|(a, x)| a * x).sum()
     }
 
-    /// How far `value` lies outside, with its sign.
+    /// Signed distance of `value` from the limits.
     pub fn outside(&self, value: f64) -> f64 {
         outside(value, self.lower, self.upper)
     }
@@ -118,7 +118,7 @@ pub fn empty_level() -> Level {
     Level { matrix: vec![], lower: vec![], upper: vec![], damping: 0.0, hard: false }
 }
 
-/// What a draw may contain.
+/// Kinds of rows that a draw may contain.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish {
     pub conflicting: bool,
@@ -202,7 +202,7 @@ fn attempt(rng: &mut Pcg64, wish: Wish) -> Draw {
     Draw { n, lower, upper, levels, conflicting: wish.conflicting, scaling: wish.scaling }
 }
 
-/// Room on one side; often none, so that the row just holds.
+/// Distance to one limit; often zero, so that the row is just satisfied.
 fn slack(rng: &mut Pcg64, grid: bool) -> f64 {
     match (rng.random_bool(0.3), grid) {
         (true, _) => 0.0,
@@ -273,7 +273,7 @@ fn grid_rows(rng: &mut Pcg64, n: usize, levels: usize) -> Vec<DMatrix<f64>> {
     all
 }
 
-/// Do the ranks of the levels, each below those above, have a gap?
+/// True where the rank of every level, in the null space of the levels above, is clear.
 fn is_clear(draw: &Draw) -> bool {
     let mut free = DMatrix::identity(draw.n, draw.n);
     for rows in &draw.levels {

@@ -1,4 +1,4 @@
-//! Singular values by one-sided Jacobi rotations (Hestenes 1958): slow, short and exact. That of nalgebra 0.35 was tried,
+//! Computes singular values by one-sided Jacobi rotations (Hestenes 1958): slow, short and exact. That of nalgebra 0.35 was tried,
 //! and is off by up to a few percent where singular values coincide.
 
 use nalgebra::{DMatrix, DVector};
@@ -46,7 +46,7 @@ pub fn svd(a: &DMatrix<f64>) -> Svd {
     Svd { u, values, v }
 }
 
-/// The part of the space of `free` (orthonormal columns) which the rows do not see; none where a singular value lies
+/// The part of the space of `free` (orthonormal columns) in the null space of the rows; none where a singular value lies
 /// between `nothing` and `clear`.
 pub fn null_space(rows: &DMatrix<f64>, free: &DMatrix<f64>, clear: f64, nothing: f64) -> Option<DMatrix<f64>> {
     if free.ncols() == 0 || rows.nrows() == 0 {

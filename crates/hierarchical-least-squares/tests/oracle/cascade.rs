@@ -1,4 +1,4 @@
-//! The answer by a cascade of quadratic programs, each solved by Clarabel.
+//! Solves a problem by a cascade of quadratic programs, each solved by Clarabel.
 //!
 //! A level asks for the least `|v|` with `lower <= A x - v <= upper`, the levels above unchanged: rows that are equations or
 //! keep a residual stay where they are (they are eliminated: `x = x0 + Z y`), rows that hold go on holding.
@@ -15,7 +15,7 @@ const KEPT: f64 = 1e-6;
 /// A row whose free part is below this does not move any more.
 const STILL: f64 = 1e-9;
 
-/// Where a cascade stands: a point, and the directions that are left to it.
+/// State of a cascade: a point, and the directions that the levels so far leave free.
 pub struct Cascade<'a> {
     draw: &'a Draw,
     pub x: DVector<f64>,
@@ -26,7 +26,7 @@ pub struct Cascade<'a> {
 
 #[derive(Debug)]
 pub enum Trouble {
-    /// Clarabel says something else than `Solved`.
+    /// Clarabel's status is not `Solved`.
     Unsolved,
     /// The rows that are kept have no clear rank.
     Unclear,
@@ -52,7 +52,7 @@ impl<'a> Cascade<'a> {
         Ok(rows.iter().map(|row| row.outside(row.dot(&self.x))).collect())
     }
 
-    /// What the levels below must leave alone.
+    /// Fixes the residuals of a level for the levels below.
     pub fn keep(&mut self, k: usize, residuals: &[f64]) -> Result<(), Trouble> {
         let rows = &self.draw.levels[k];
         let kept = |i: usize| rows[i].equation() || residuals[i].abs() > KEPT;

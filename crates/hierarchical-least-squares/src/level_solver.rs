@@ -1,0 +1,380 @@
+//! Solves one level: least squares over its rows in the null space of all levels above, by an active-set method.
+//!
+//! With the rows of the working set above factorised as `L Q1^T` and `Q = [Q1 Z]`, the step is `p = Z z`, and `z` minimises
+//! `|A Z z - (b - A x)|^2 + mu^2 |x + Z z|^2` over the residual rows `A` of the level: its equations, its violated
+//! inequalities, and those that earlier steps met. The rows of `A Z` that are linearly independent are appended to the
+//! factor, which leaves a triangular system, or a small least-squares problem where rows contradict each other or the level
+//! is damped (Escande, Mansard & Wieber 2014; Dimitrov, Sherikov & Wieber 2015).
+
+use crate::active_set::{ActiveSet, Blocking};
+use crate::linalg::{LeastSquares, add_scaled, dot, norm};
+use crate::problem::Problem;
+use crate::tolerances::{INDEPENDENT, LAST_DIGITS, LIGHT_ROW, MULTIPLIER, NORM_UPDATE, REACHED, REFINEMENTS};
+use crate::working_set::{Constraint, RowState, Side};
+
+/// Workspace of a level.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LevelSolver {
+    /// Number of rows of the factor that belong to the levels and bounds above.
+    above: usize,
+    /// Number of independent residual rows: they are the first of `residual_rows`, and behind `above` in the factor.
+    rank: usize,
+    residual_rows: Vec<usize>,
+    /// `Q^T` times each residual row, one after the other, with zeros up to a multiple of eight.
+    transformed: Vec<f64>,
+    /// Share of each residual row outside the span of the factor, squared: now, and when it was last computed anew.
+    remainders: Vec<(f64, f64)>,
+    /// `b - A x` of each residual row.
+    right: Vec<f64>,
+    /// Residual of each residual row at the minimum.
+    residuals: Vec<f64>,
+    /// Sum of the absolute contributions to the gradient at the minimum; 0 where all of it is rounding.
+    gradient_size: f64,
+    /// The step in the columns of the independent residual rows.
+    y: Vec<f64>,
+    /// `Q^T x` of a damped level.
+    transformed_x: Vec<f64>,
+    least_squares: LeastSquares,
+}
+
+impl LevelSolver {
+    pub(crate) fn with_capacity(unknowns: usize, rows: usize) -> Self {
+        let n = unknowns.next_multiple_of(8);
+        Self {
+            residual_rows: Vec::with_capacity(rows),
+            transformed: Vec::with_capacity(rows * n),
+            remainders: Vec::with_capacity(rows),
+            right: Vec::with_capacity(rows),
+            residuals: Vec::with_capacity(rows),
+            y: Vec::with_capacity(n),
+            transformed_x: Vec::with_capacity(n),
+            least_squares: LeastSquares::with_capacity(rows + n, n),
+            ..Self::default()
+        }
+    }
+
+    /// Minimises level `k` and fixes its result for the levels below. Returns `false` after too many changes of the working
+    /// set.
+    pub(crate) fn solve(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) -> bool {
+        choose_residual_rows(problem, set, k);
+        self.y.clear();
+        self.y.resize(problem.unknowns(), 0.0);
+        loop {
+            self.above = set.factor.len();
+            self.factorise(problem, set, k);
+            if let Some(Blocking { constraint, side, .. }) = self.minimise(problem, set, k) {
+                if !set.count_change() {
+                    return false;
+                }
+                set.factor.truncate(self.above);
+                set.activate(problem, k, constraint, side);
+                continue;
+            }
+            self.ignore_rounding_of_levels_above(set);
+            self.gradient_size = self.gradient_size(problem, set, k);
+            let Some(constraint) = self.constraint_to_drop(problem, set, k) else { break };
+            if !set.count_change() {
+                return false;
+            }
+            set.factor.truncate(self.above);
+            match constraint {
+                Constraint::Row(row) if set.working_set.states[row] == RowState::Residual => {
+                    drop_residual_row(problem, set, row);
+                }
+                _ => set.drop_constraint(problem, constraint),
+            }
+        }
+        self.fix(set);
+        true
+    }
+
+    /// Transforms the residual rows and appends the independent ones to the factor, the largest remainder first.
+    fn factorise(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) {
+        let (width, padded) = (set.factor.width(), set.factor.padded_width());
+        let is_residual = |row: &usize| set.working_set.states[*row] == RowState::Residual;
+        self.residual_rows.clear();
+        self.residual_rows.extend(set.rows.of_level(k).filter(is_residual));
+        self.transformed.resize(self.residual_rows.len() * padded, 0.0);
+        self.remainders.clear();
+        for (t, &row) in self.transformed.chunks_exact_mut(padded.max(1)).zip(&self.residual_rows) {
+            set.factor.gather(set.rows.coefficients(problem, row), t);
+            set.factor.transform(t, 0, self.above);
+        }
+        for (s, &row) in self.residual_rows.iter().enumerate() {
+            let length = norm(&self.transformed[s * padded + self.above..s * padded + width]);
+            let share = if set.rows.is_nonzero(row) { (length / set.rows.norm(row)).powi(2) } else { 0.0 };
+            self.remainders.push((share, share));
+        }
+        self.rank = 0;
+        while self.rank < self.residual_rows.len() {
+            let p = self.rank;
+            let larger = |best: usize, s: usize| if self.remainders[s].0 > self.remainders[best].0 { s } else { best };
+            let best = (p..self.residual_rows.len()).fold(p, larger);
+            if set.factor.len() == width || self.remainders[best].0 <= INDEPENDENT * INDEPENDENT {
+                break;
+            }
+            self.residual_rows.swap(p, best);
+            self.remainders.swap(p, best);
+            let (head, tail) = self.transformed.split_at_mut((p + 1) * padded);
+            if best > p {
+                head[p * padded..].swap_with_slice(&mut tail[(best - p - 1) * padded..(best - p) * padded]);
+            }
+            set.factor.append(&head[p * padded..], Constraint::Row(self.residual_rows[p]));
+            self.rank += 1;
+            self.transform_rows_behind_pivot(set);
+        }
+    }
+
+    /// Applies the last reflection to the residual rows that are not in the factor, and updates their remainders.
+    fn transform_rows_behind_pivot(&mut self, set: &ActiveSet) {
+        let (r, width, padded) = (set.factor.len() - 1, set.factor.width(), set.factor.padded_width());
+        let tail = self.transformed[self.rank * padded..].chunks_exact_mut(padded);
+        let rows = self.residual_rows[self.rank..].iter().zip(&mut self.remainders[self.rank..]);
+        for (t, (&row, (share, computed))) in tail.zip(rows) {
+            if *computed == 0.0 {
+                continue;
+            }
+            set.factor.transform(t, r, r + 1);
+            *share -= (t[r] / set.rows.norm(row)).powi(2);
+            if *share < NORM_UPDATE * *computed {
+                *share = (norm(&t[r + 1..width]) / set.rows.norm(row)).powi(2);
+                *computed = *share;
+            }
+        }
+    }
+
+    /// Steps to the minimum over the residual rows, computing the residual anew after each step. Returns the limit that
+    /// blocks a step.
+    fn minimise(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) -> Option<Blocking> {
+        let damped = problem.levels[k].damping > 0.0;
+        for attempt in 0..=REFINEMENTS {
+            self.solve_least_squares(problem, set, k);
+            if attempt == REFINEMENTS || !self.step_is_noticeable(set, damped) {
+                break;
+            }
+            self.compute_step(set, damped);
+            let blocking = set.first_blocking(problem, k);
+            set.advance(problem, blocking);
+            if blocking.is_some() || self.has_reached_predicted_residuals(problem, set) {
+                return blocking;
+            }
+        }
+        None
+    }
+
+    /// Computes `y` and the residual of each residual row at the minimum.
+    fn solve_least_squares(&mut self, problem: &Problem, set: &ActiveSet, k: usize) {
+        let (above, rank, rows) = (self.above, self.rank, self.residual_rows.len());
+        let (padded, damping) = (set.factor.padded_width(), problem.levels[k].damping);
+        self.right.clear();
+        self.right.extend(self.residual_rows.iter().map(|&row| target(problem, set, row) - set.value(problem, row)));
+        self.residuals.clear();
+        if rows == rank && damping == 0.0 {
+            set.factor.solve_lower(above, &self.right, &mut self.y);
+            self.residuals.resize(rows, 0.0);
+            return;
+        }
+        let damped_rows = if damping > 0.0 { rank } else { 0 };
+        self.least_squares.begin(rows + damped_rows, rank);
+        for s in 0..rank {
+            self.least_squares.set(s, &set.factor.lower_row(above + s)[above..], self.right[s]);
+            self.least_squares.set_entry(s, s, set.factor.diagonal(above + s));
+        }
+        for s in rank..rows {
+            let own = &self.transformed[s * padded + above..s * padded + above + rank];
+            self.least_squares.set(s, own, self.right[s]);
+        }
+        if damping > 0.0 {
+            self.transformed_x.resize(padded, 0.0);
+            set.factor.gather(&set.x, &mut self.transformed_x);
+            set.factor.transform(&mut self.transformed_x, 0, above + rank);
+        }
+        for r in 0..damped_rows {
+            self.least_squares.set(rows + r, &[], -damping * self.transformed_x[above + r]);
+            self.least_squares.set_entry(rows + r, r, damping);
+        }
+        self.least_squares.solve(&mut self.y);
+        self.residuals.extend(self.least_squares.residual()[..rows].iter().map(|r| -r));
+    }
+
+    /// Computes the step by unknown. Damping alone moves the directions that no row of the level contains.
+    fn compute_step(&self, set: &mut ActiveSet, damped: bool) {
+        let (above, end, width) = (self.above, self.above + self.rank, set.factor.width());
+        set.work.fill(0.0);
+        set.work[above..end].copy_from_slice(&self.y[..self.rank]);
+        if damped {
+            for (work, x) in set.work[end..width].iter_mut().zip(&self.transformed_x[end..width]) {
+                *work = -x;
+            }
+        }
+        set.factor.transform_back(&mut set.work);
+        set.scatter_step();
+    }
+
+    /// True where the step changes the value of a residual row by more than [`REACHED`] of its rounding (of a damped level by
+    /// more than its rounding), or the directions that only damping moves by more than rounding.
+    fn step_is_noticeable(&self, set: &ActiveSet, damped: bool) -> bool {
+        let (above, padded) = (self.above, set.factor.padded_width());
+        if damped && set.exceeds_rounding_of_x(&self.transformed_x[above + self.rank..set.factor.width()]) {
+            return true;
+        }
+        let share = if damped { 1.0 } else { REACHED };
+        self.residual_rows.iter().enumerate().any(|(s, &row)| {
+            let change = if s < self.rank {
+                dot(&set.factor.lower_row(above + s)[above..], &self.y[..s])
+                    + set.factor.diagonal(above + s) * self.y[s]
+            } else {
+                let own = &self.transformed[s * padded + above..s * padded + above + self.rank];
+                dot(own, &self.y[..self.rank])
+            };
+            change.abs() > share * set.rounding(row)
+        })
+    }
+
+    /// True where a full step has left the residual that the least squares predict, up to rounding.
+    fn has_reached_predicted_residuals(&self, problem: &Problem, set: &ActiveSet) -> bool {
+        self.residual_rows.iter().zip(&self.residuals).all(|(&row, predicted)| {
+            let residual = set.value(problem, row) - target(problem, set, row);
+            (residual - predicted).abs() <= REACHED * set.rounding(row)
+        })
+    }
+
+    /// Sets residuals of the size of rounding to zero for rows in the span of the levels above: rounding there causes them,
+    /// and they have no multiplier.
+    fn ignore_rounding_of_levels_above(&mut self, set: &ActiveSet) {
+        let (above, padded) = (self.above, set.factor.padded_width());
+        for s in self.rank..self.residual_rows.len() {
+            let row = self.residual_rows[s];
+            let own = &self.transformed[s * padded + above..s * padded + above + self.rank];
+            if self.residuals[s].abs() <= set.rounding(row) && norm(own) <= INDEPENDENT * set.rows.norm(row) {
+                self.residuals[s] = 0.0;
+            }
+        }
+    }
+
+    /// Sum of the absolute contributions to the gradient `A^T r + mu^2 x`; 0 where all residuals are rounding.
+    fn gradient_size(&self, problem: &Problem, set: &ActiveSet, k: usize) -> f64 {
+        let rows = self.residuals.iter().zip(&self.residual_rows);
+        let size: f64 = rows.clone().map(|(residual, &row)| residual.abs() * set.rows.norm(row)).sum();
+        let damping = problem.levels[k].damping;
+        if damping > 0.0 {
+            // A damped level has small residuals everywhere: those above the last digits of the values count.
+            let digits = self.residual_rows.iter().map(|&row| LAST_DIGITS * set.rounding(row) * set.rows.norm(row));
+            return size + (damping * damping * norm(&set.x) + digits.sum::<f64>() / MULTIPLIER);
+        }
+        // The residual of a row of zeros cannot change.
+        let mut rows = rows;
+        let counts = rows.any(|(residual, &row)| residual.abs() > set.rounding(row) && set.rows.is_nonzero(row));
+        if counts { size } else { 0.0 }
+    }
+
+    /// The constraint whose multiplier has the wrong sign: a residual row, else a bound or a row above. Where there is none,
+    /// fixes the constraints above that have a multiplier.
+    fn constraint_to_drop(&self, problem: &Problem, set: &mut ActiveSet, k: usize) -> Option<Constraint> {
+        let damped = problem.levels[k].damping > 0.0;
+        if let Some(row) = self.most_dual_infeasible_row(set) {
+            return Some(Constraint::Row(row));
+        }
+        self.compute_gradient(problem, set, k);
+        set.compute_multipliers(problem, k, self.above, self.gradient_size);
+        let dropped = set.most_dual_infeasible(k, self.above, self.gradient_size);
+        if dropped.is_none() && !damped {
+            set.fix_constraints_with_multipliers(k, self.above, self.gradient_size);
+        }
+        dropped
+    }
+
+    /// The residual inequality whose residual, which is its multiplier, violates its sign most. The residual that the least
+    /// squares predict is also right for rows that are small beside others.
+    fn most_dual_infeasible_row(&self, set: &ActiveSet) -> Option<usize> {
+        if self.gradient_size == 0.0 {
+            return None;
+        }
+        let mut worst: Option<(f64, usize)> = None;
+        for (residual, &row) in self.residuals.iter().zip(&self.residual_rows) {
+            let infeasibility = set.rows.norm(row) * set.working_set.sides[row].dual_infeasibility(*residual);
+            let zero = if set.is_cycling() { MULTIPLIER * self.gradient_size } else { self.zero(set, row) };
+            if infeasibility > zero && worst.is_none_or(|(most, _)| infeasibility > most) {
+                worst = Some((infeasibility, row));
+            }
+        }
+        worst.map(|(_, row)| row)
+    }
+
+    /// Multiplier of a residual row, times its norm, that counts as zero. A light row beside heavy ones is judged by its own
+    /// rounding.
+    fn zero(&self, set: &ActiveSet, row: usize) -> f64 {
+        (MULTIPLIER * self.gradient_size).min(LIGHT_ROW * set.rounding(row) * set.rows.norm(row))
+    }
+
+    /// Computes the gradient of the level, transformed, in `work`; and by unknown, in `gradient`, where the factor has columns
+    /// left out.
+    fn compute_gradient(&self, problem: &Problem, set: &mut ActiveSet, k: usize) {
+        let (above, padded) = (self.above, set.factor.padded_width());
+        let by_unknown = !set.factor.columns_left_out().is_empty();
+        set.work.fill(0.0);
+        set.gradient.fill(0.0);
+        if self.gradient_size > 0.0 {
+            for (s, (residual, &row)) in self.residuals.iter().zip(&self.residual_rows).enumerate() {
+                let in_factor = s < self.rank;
+                let own = if in_factor { set.factor.lower_row(above + s) } else { &self.transformed[s * padded..] };
+                add_scaled(&mut set.work[..above], *residual, &own[..above]);
+                if by_unknown {
+                    add_scaled(&mut set.gradient, *residual, set.rows.coefficients(problem, row));
+                }
+            }
+        }
+        let damping = problem.levels[k].damping;
+        if damping > 0.0 {
+            add_scaled(&mut set.work[..above], damping * damping, &self.transformed_x[..above]);
+            add_scaled(&mut set.gradient, damping * damping, &set.x);
+        }
+    }
+
+    /// Puts the residual rows into the working set: equations and rows with a residual for all levels below, the others as
+    /// active rows.
+    fn fix(&self, set: &mut ActiveSet) {
+        for (s, &row) in self.residual_rows.iter().enumerate() {
+            let has_residual = self.residuals[s].abs() * set.rows.norm(row) > self.zero(set, row);
+            let fixed = set.working_set.sides[row] == Side::Equality || (self.gradient_size > 0.0 && has_residual);
+            set.working_set.states[row] = if fixed { RowState::Fixed } else { RowState::Active };
+            if s >= self.rank {
+                set.working_set.set_aside(row);
+            }
+        }
+    }
+}
+
+/// Chooses the residual rows to begin with: equations, violated inequalities, and inequalities that were active before.
+fn choose_residual_rows(problem: &Problem, set: &mut ActiveSet, k: usize) {
+    for row in set.rows.of_level(k) {
+        let (lower, upper) = set.rows.limits(problem, row);
+        let (value, rounding) = (set.value(problem, row), set.rounding(row));
+        let side = match set.working_set.sides[row] {
+            _ if lower == upper => Side::Equality,
+            _ if value > upper + rounding => Side::Upper,
+            _ if value < lower - rounding => Side::Lower,
+            before => before.where_finite(lower, upper),
+        };
+        let state = if side == Side::Inactive { RowState::Inactive } else { RowState::Residual };
+        set.working_set.set_row(row, state, side);
+    }
+}
+
+/// The limit that a residual row is to reach.
+fn target(problem: &Problem, set: &ActiveSet, row: usize) -> f64 {
+    let (lower, upper) = set.rows.limits(problem, row);
+    if set.working_set.sides[row] == Side::Lower { lower } else { upper }
+}
+
+/// Drops a residual row whose multiplier has the wrong sign: it is satisfied, or violates its other limit.
+fn drop_residual_row(problem: &Problem, set: &mut ActiveSet, row: usize) {
+    let (lower, upper) = set.rows.limits(problem, row);
+    let (value, rounding) = (set.value(problem, row), set.rounding(row));
+    let (state, side) = match set.working_set.sides[row] {
+        Side::Lower if value > upper + rounding => (RowState::Residual, Side::Upper),
+        Side::Upper if value < lower - rounding => (RowState::Residual, Side::Lower),
+        _ => (RowState::Inactive, Side::Inactive),
+    };
+    set.working_set.set_row(row, state, side);
+}
