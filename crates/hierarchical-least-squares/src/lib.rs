@@ -52,3 +52,8 @@ mod working_set;
 pub use multipliers::Multipliers;
 pub use problem::{Level, Problem, ProblemError};
 pub use solver::{Solver, Status};
+
+/// The example of the README, as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
