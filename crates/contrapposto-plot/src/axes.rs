@@ -1,4 +1,4 @@
-//! Where on the paper does a value stand? Ranges, tick marks, and the frame in which curves are drawn.
+//! Maps values to the sheet: ranges, tick marks, and the frame in which curves are drawn.
 
 use crate::canvas::Canvas;
 use crate::geometry::{Point, Rect, clip};
@@ -9,7 +9,7 @@ use crate::style::{
 };
 use crate::text::fit;
 
-/// Largest size of a number that is drawn; anything beyond is treated like a missing value.
+/// Largest size of a number that is drawn; a larger number counts as missing.
 const LARGEST: f64 = 1e9;
 
 /// Most points drawn of one curve, several for every pixel of the frame; of longer curves every n-th point is drawn.
@@ -20,7 +20,7 @@ pub(crate) fn drawable(value: f64) -> bool {
     value.abs() <= LARGEST
 }
 
-/// Greatest size of the numbers that can be drawn, 0 without any.
+/// Greatest size of the numbers that can be drawn, 0 if there is none.
 pub(crate) fn extreme(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().filter(|v| drawable(*v)).fold(0.0, |most, v| most.max(v.abs()))
 }
@@ -33,7 +33,7 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The smallest range around all values that can be drawn; 0 to 1 without any.
+    /// The smallest range around all values that can be drawn; 0 to 1 if there is none.
     pub(crate) fn around(values: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = values
             .into_iter()
@@ -104,7 +104,7 @@ pub(crate) fn degrees_text(angle: f64) -> String {
     number_text(&format!("{digits}°"))
 }
 
-/// A rectangle on the paper with a horizontal and a vertical axis.
+/// A rectangle on the sheet with a horizontal and a vertical axis.
 pub(crate) struct Frame {
     pub(crate) area: Rect,
     x: Range,
@@ -221,7 +221,7 @@ impl Frame {
         canvas.block((from, self.area.top), to - from, self.area.height, fill);
     }
 
-    /// Says in the middle of the frame that there is nothing to see.
+    /// Writes "nothing to draw" in the middle of the frame.
     pub(crate) fn say_empty(&self, canvas: &mut Canvas) {
         let (x, y) = (self.area.left + self.area.width / 2.0, self.area.top + self.area.height / 2.0);
         canvas.block((x - 60.0, y - 14.0), 120.0, 20.0, PAPER);
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_round_and_inside() {
+    fn a_range_from_minus_to_plus_4_64_has_ticks_at_even_numbers() {
         let ticks = Range { low: -4.64, high: 4.64 }.ticks(7.5);
         assert_eq!(ticks.values, [-4.0, -2.0, 0.0, 2.0, 4.0]);
         assert_eq!(ticks.label(-4.0), "\u{2212}4");
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_is_never_empty() {
+    fn a_range_around_no_or_equal_values_is_not_empty() {
         for values in [vec![], vec![f64::NAN], vec![3.0], vec![-1e9, -1e9], vec![1e300]] {
             let range = Range::around(values.clone());
             assert!(range.low < range.high, "{values:?}");

@@ -1,4 +1,4 @@
-//! What is known of bodies that are to be drawn? Plain numbers.
+//! Describes the bodies of a picture in plain numbers.
 
 use crate::axes::drawable;
 
@@ -9,32 +9,32 @@ pub struct BodyFigure {
     pub title: String,
     /// Second line above the picture; may be empty.
     pub subtitle: String,
-    /// What crosses stand for, e.g. "target".
+    /// Meaning of the crosses in the legend, e.g. "target".
     pub target: String,
-    /// From left to right; the first five are drawn.
+    /// The postures from left to right; the first five are drawn.
     pub postures: Vec<BodyPosture>,
 }
 
 /// One body in one posture. Axes: x forward, y up, z to the right; m, N.
 #[derive(Clone, Debug, Default)]
 pub struct BodyPosture {
-    /// Above it; may be empty.
+    /// Title above the body; may be empty.
     pub title: String,
     /// Key numbers, a line each; the first six are shown.
     pub notes: Vec<String>,
-    /// What it is made of.
+    /// Parts of the body.
     pub parts: Vec<BodyPart>,
-    /// The same before, drawn pale; may be empty. Loads of these parts are not shown.
+    /// The parts at the start, drawn pale; may be empty. Their loads are not shown.
     pub start: Vec<BodyPart>,
-    /// What carries it.
+    /// Contact forces on the body.
     pub forces: Vec<BodyForce>,
-    /// Its centre of mass.
+    /// Centre of mass.
     pub center_of_mass: Option<[f64; 3]>,
-    /// Height of the ground; none is drawn without.
+    /// Height of the ground; with `None` no ground is drawn.
     pub ground: Option<f64>,
-    /// What points should reach: crosses.
+    /// Targets of points, drawn as crosses.
     pub targets: Vec<[f64; 3]>,
-    /// Lines of sight: eye, and what it should meet.
+    /// Lines of sight: the eye and its target.
     pub gazes: Vec<[[f64; 3]; 2]>,
 }
 
@@ -43,26 +43,26 @@ pub struct BodyPosture {
 pub struct BodyPart {
     /// Centre and radius of each.
     pub balls: Vec<[f64; 4]>,
-    /// Load of the muscles that move it, as a share of their strength, not negative; none where nothing is known.
+    /// Load of the muscles that move the part, as a share of their strength, not negative; `None` where it is not known.
     pub load: Option<f64>,
 }
 
 /// A force on the body.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodyForce {
-    /// Where it acts.
+    /// Point where the force acts.
     pub at: [f64; 3],
-    /// How large it is and which way it points.
+    /// The force vector.
     pub force: [f64; 3],
 }
 
 impl BodyForce {
-    /// Where its arrow ends, m; `reach` is in m/N.
-    pub(crate) fn tip(&self, reach: f64) -> [f64; 3] {
-        [0, 1, 2].map(|k| self.at[k] + reach * self.force[k])
+    /// Tip of the force's arrow, m; `length_per_newton` in m/N.
+    pub(crate) fn tip(&self, length_per_newton: f64) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.at[k] + length_per_newton * self.force[k])
     }
 
-    /// N; 0 where it cannot be drawn.
+    /// Size of the force, N; 0 if it cannot be drawn.
     pub(crate) fn size(&self) -> f64 {
         let size = self.force.iter().map(|f| f * f).sum::<f64>().sqrt();
         if drawable(size) { size } else { 0.0 }
@@ -70,7 +70,7 @@ impl BodyForce {
 }
 
 impl BodyPosture {
-    /// A piece of the ground about its feet and below its centre of mass.
+    /// A square of the ground around the contacts and below the centre of mass.
     pub(crate) fn ground_square(&self) -> Option<[[f64; 3]; 4]> {
         const AROUND: f64 = 0.28;
         let ground = self.ground.filter(|height| drawable(*height))?;

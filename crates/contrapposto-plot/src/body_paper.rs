@@ -1,4 +1,4 @@
-//! How does one body become shapes on paper? Parts from the farthest to the nearest, then what is marked on them.
+//! Draws one body in one view: its parts from the farthest to the nearest, then the marks on them.
 
 use crate::axes::drawable;
 use crate::body::{BodyForce, BodyPart, BodyPosture};
@@ -17,28 +17,28 @@ const CROSS: f64 = 5.0;
 /// Length and half the width of the head of an arrow, px.
 const HEAD: (f64, f64) = (9.0, 4.0);
 /// Shorter arrows are not drawn, px.
-const SHORT: f64 = 2.0;
-/// Farther than this beyond what is drawn, m, a target is outside.
-const BEYOND: f64 = 1e-9;
+const SHORTEST_ARROW: f64 = 2.0;
+/// A target farther than this beyond the bounds, m, is outside.
+const BOUNDS_TOLERANCE: f64 = 1e-9;
 
-/// Where a body stands on the sheet, and how large.
+/// Place and scale of a body on the sheet.
 pub(crate) struct Paper<'a> {
     pub(crate) view: &'a View,
-    /// On the sheet, px, and what is there, m.
+    /// The point of the sheet, px, where the point `middle` of the view, m, is drawn.
     pub(crate) center: Point,
     pub(crate) middle: [f64; 2],
-    /// px/m.
+    /// Scale, px/m.
     pub(crate) scale: f64,
-    /// Length of a force, m/N.
-    pub(crate) reach: f64,
+    /// Length of the arrow of a force, m/N.
+    pub(crate) length_per_newton: f64,
     /// Load of the darkest colour.
     pub(crate) scale_end: f64,
 }
 
 impl Paper<'_> {
-    /// Place on the sheet and nearness, px.
+    /// Place on the sheet and height above it towards the viewer, px.
     fn place(&self, point: [f64; 3]) -> [f64; 3] {
-        let [x, y, z] = self.view.see(point);
+        let [x, y, z] = self.view.project(point);
         let across = self.center.0 + self.scale * (x - self.middle[0]);
         [across, self.center.1 - self.scale * (y - self.middle[1]), self.scale * z]
     }
@@ -48,7 +48,7 @@ impl Paper<'_> {
         point.into_iter().all(drawable).then_some((x, y))
     }
 
-    /// Draws a posture that is within `bounds`; gives the number of targets outside of them.
+    /// Draws a posture; returns the number of targets outside of `bounds`, which are not drawn.
     pub(crate) fn draw(&self, canvas: &mut Canvas, posture: &BodyPosture, bounds: &Bounds) -> usize {
         if let Some(square) = posture.ground_square() {
             let corners: Vec<Point> = square.into_iter().filter_map(|corner| self.point(corner)).collect();
@@ -110,21 +110,24 @@ impl Paper<'_> {
     }
 
     fn force(&self, canvas: &mut Canvas, force: &BodyForce) {
-        if let (Some(foot), Some(tip)) = (self.point(force.at), self.point(force.tip(self.reach))) {
+        if let (Some(foot), Some(tip)) = (self.point(force.at), self.point(force.tip(self.length_per_newton))) {
             arrow(canvas, foot, tip, FORCE);
         }
     }
 }
 
 fn within(bounds: &Bounds, view: &View, point: [f64; 3]) -> bool {
-    let [x, y, _] = view.see(point);
-    [x, y].into_iter().enumerate().all(|(k, v)| v >= bounds.low[k] - BEYOND && v <= bounds.high[k] + BEYOND)
+    let [x, y, _] = view.project(point);
+    [x, y]
+        .into_iter()
+        .enumerate()
+        .all(|(k, v)| v >= bounds.low[k] - BOUNDS_TOLERANCE && v <= bounds.high[k] + BOUNDS_TOLERANCE)
 }
 
-/// An arrow with a thin rim of paper, so that it can be told from what is below it.
+/// An arrow with a thin white rim, so that it stands out from the parts below it.
 pub(crate) fn arrow(canvas: &mut Canvas, foot: Point, tip: Point, ink: Ink) {
     let length = (tip.0 - foot.0).hypot(tip.1 - foot.1);
-    if length < SHORT {
+    if length < SHORTEST_ARROW {
         return;
     }
     let (x, y) = ((tip.0 - foot.0) / length, (tip.1 - foot.1) / length);

@@ -1,20 +1,20 @@
-//! From where is a body seen, and how large is it then? Bodies have axes x forward, y up, z to the right; a view has x right, y up and
-//! z towards who looks. Nothing gets smaller with distance, so lengths can be measured on paper.
+//! Projects bodies into views and measures their extent there. Bodies have axes x forward, y up, z to the right; a view has x right,
+//! y up and z towards the viewer. The projection is orthographic, so lengths can be measured on paper.
 
 use crate::axes::drawable;
 use crate::body::{BodyPart, BodyPosture};
 use crate::depth::Ball;
 use crate::outline::MOST_CIRCLES;
 
-/// Most parts of a body, and most forces, targets and lines of sight, that are drawn.
+/// Greatest number of parts of a body that are drawn, and of forces, targets and lines of sight.
 pub(crate) const MOST_PARTS: usize = 120;
 
-/// A direction to look from.
+/// A direction of view.
 pub(crate) struct View {
     pub(crate) label: &'static str,
-    /// From the front 0, from the body's right a quarter turn, rad.
+    /// Angle about the vertical, rad: 0 from the front, a quarter turn from the body's right.
     yaw: f64,
-    /// From above, rad.
+    /// Angle above the horizontal, rad.
     pitch: f64,
 }
 
@@ -26,9 +26,10 @@ pub(crate) const VIEWS: [View; 3] = [
 ];
 
 impl View {
-    pub(crate) fn see(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    /// Coordinates of a point in the view.
+    pub(crate) fn project(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let ((sy, cy), (sp, cp)) = (self.yaw.sin_cos(), self.pitch.sin_cos());
-        // Face to face with the body its right hand is on the left.
+        // From the front, the body's right hand is on the left.
         let (across, ahead) = (sy * x - cy * z, cy * x + sy * z);
         [across, cp * y - sp * ahead, cp * ahead + sp * y]
     }
@@ -40,7 +41,7 @@ pub(crate) fn balls(part: &BodyPart) -> impl Iterator<Item = Ball> + '_ {
     part.balls.iter().filter(good).take(MOST_CIRCLES).copied()
 }
 
-/// A rectangle in a view, m; of nothing, empty.
+/// A rectangle in a view, m; empty if it bounds nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     pub(crate) low: [f64; 2],
@@ -50,22 +51,22 @@ pub(crate) struct Bounds {
 impl Bounds {
     pub(crate) const NOTHING: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
 
-    /// All of a posture, targets and forces included. `reach`: length of a force, m/N.
-    pub(crate) fn of(posture: &BodyPosture, view: &View, reach: f64) -> Self {
+    /// Bounds of a posture with its targets and forces; `length_per_newton` of arrows, m/N.
+    pub(crate) fn of(posture: &BodyPosture, view: &View, length_per_newton: f64) -> Self {
         let mut bounds = Self::NOTHING;
         for [x, y, z, r] in posture.parts.iter().chain(&posture.start).take(2 * MOST_PARTS).flat_map(balls) {
-            let [x, y, _] = view.see([x, y, z]);
+            let [x, y, _] = view.project([x, y, z]);
             bounds.take([x - r, y - r]);
             bounds.take([x + r, y + r]);
         }
-        let tips = posture.forces.iter().take(MOST_PARTS).map(|force| force.tip(reach));
+        let tips = posture.forces.iter().take(MOST_PARTS).map(|force| force.tip(length_per_newton));
         let marks = tips.chain(posture.center_of_mass).chain(posture.ground_square().into_iter().flatten());
         marks.for_each(|mark| bounds.take_point(view, mark));
-        // Targets that are far off do not make the body small.
+        // A target farther from the body than the body's size stays outside, so that the body is not drawn small.
         let size = bounds.size().into_iter().fold(0.0, f64::max);
         let near = bounds;
         for target in posture.targets.iter().take(MOST_PARTS) {
-            let [x, y, _] = view.see(*target);
+            let [x, y, _] = view.project(*target);
             if [x, y].into_iter().enumerate().all(|(k, v)| v >= near.low[k] - size && v <= near.high[k] + size) {
                 bounds.take_point(view, *target);
             }
@@ -75,7 +76,7 @@ impl Bounds {
 
     fn take_point(&mut self, view: &View, point: [f64; 3]) {
         if point.into_iter().all(drawable) {
-            let [x, y, _] = view.see(point);
+            let [x, y, _] = view.project(point);
             self.take([x, y]);
         }
     }
@@ -99,12 +100,12 @@ impl Bounds {
         self.low[0] > self.high[0]
     }
 
-    /// Width and height, m; of nothing, 0.
+    /// Width and height, m; 0 if empty.
     pub(crate) fn size(&self) -> [f64; 2] {
         [0, 1].map(|k| (self.high[k] - self.low[k]).max(0.0))
     }
 
-    /// Of nothing, the origin.
+    /// Centre of the rectangle; the origin if empty.
     pub(crate) fn middle(&self) -> [f64; 2] {
         if self.is_empty() { [0.0; 2] } else { [0, 1].map(|k| 0.5 * (self.low[k] + self.high[k])) }
     }

@@ -1,4 +1,4 @@
-//! Which words explain a frame? A heading above it, and to its right the legend, where no curve can run into it.
+//! Draws the words that explain a frame: a heading above it, and to its right the legend, where no curve can run into it.
 
 use crate::axes::Frame;
 use crate::canvas::Canvas;
@@ -9,9 +9,9 @@ use crate::text::fit;
 /// Vertical distance of two entries, px.
 const LINE_HEIGHT: f64 = 19.0;
 /// Length of the sample of a line, px.
-const SAMPLE: f64 = 22.0;
+const LINE_SAMPLE: f64 = 22.0;
 
-/// Title and subtitle; returns where they end.
+/// Writes title and subtitle; returns where they end.
 pub(crate) fn heading(canvas: &mut Canvas, left: f64, title: &str, subtitle: &str, top: f64) -> f64 {
     let width = WIDTH - left - MARGIN;
     let mut bottom = top;
@@ -30,7 +30,7 @@ pub(crate) fn heading(canvas: &mut Canvas, left: f64, title: &str, subtitle: &st
     bottom + 4.0
 }
 
-/// What an entry explains.
+/// The sample that an entry explains.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Mark {
     Line(Pen),
@@ -39,12 +39,12 @@ pub(crate) enum Mark {
 
 /// The entries, from the upper edge of the frame downwards.
 pub(crate) fn legend(canvas: &mut Canvas, frame: &Frame, entries: &[(Mark, &str)]) {
-    let text_left = LEGEND_LEFT + SAMPLE + 9.0;
+    let text_left = LEGEND_LEFT + LINE_SAMPLE + 9.0;
     for (i, (mark, label)) in entries.iter().enumerate() {
         let y = frame.area.top + 8.0 + LINE_HEIGHT * i as f64;
         match *mark {
-            Mark::Line(pen) => canvas.line(&[(LEGEND_LEFT, y), (LEGEND_LEFT + SAMPLE, y)], pen),
-            Mark::Dot { fill, rim } => canvas.dot((LEGEND_LEFT + SAMPLE / 2.0, y), 5.0, fill, rim),
+            Mark::Line(pen) => canvas.line(&[(LEGEND_LEFT, y), (LEGEND_LEFT + LINE_SAMPLE, y)], pen),
+            Mark::Dot { fill, rim } => canvas.dot((LEGEND_LEFT + LINE_SAMPLE / 2.0, y), 5.0, fill, rim),
         }
         let label = fit(label, SMALL_SIZE, WIDTH - MARGIN / 2.0 - text_left);
         canvas.text((text_left, y + 4.0), &label, SMALL_SIZE, Align::Left, TEXT);

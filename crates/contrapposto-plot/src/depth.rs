@@ -1,5 +1,7 @@
-//! In which order are solid parts drawn, so that the nearer hides the farther? Where two of them overlap on paper, the one whose
-//! front is nearer there comes later; of two that grow into each other, as at a joint, always the second. Parts are hulls of balls in the axes of a view: x right, y up, z towards who looks.
+//! Orders solid parts for drawing, so that nearer parts hide farther ones.
+//!
+//! Where two parts overlap on the sheet, the part whose front is nearer there comes later; of two parts that penetrate each other, as
+//! at a joint, the second of the list comes later. Parts are hulls of balls in the axes of a view: x right, y up, z towards the viewer.
 
 use std::f64::consts::TAU;
 
@@ -9,25 +11,25 @@ use crate::outline::{Circle, Outline};
 /// A ball: centre and radius.
 pub(crate) type Ball = [f64; 4];
 
-/// Directions towards who looks in which a front is measured: rings about the middle, and directions of a ring.
+/// Directions towards the viewer in which a front is measured: rings about the axis of view, and directions of a ring.
 const RINGS: u32 = 6;
 const SLICES: u32 = 16;
-/// Points a side at which two parts are compared where their boxes overlap.
-const POINTS: u32 = 6;
+/// Two parts are compared at this number of points squared where their boxes overlap.
+const GRID: u32 = 6;
 
 /// Two fronts nearer to each other than this share of the thinner part's thickness count as equally near.
-const EVEN: f64 = 0.7;
+const TIE_SHARE: f64 = 0.7;
 
-/// A part as it is seen.
+/// A part in the axes of a view.
 pub(crate) struct Solid {
     pub(crate) outline: Outline,
-    /// Planes that touch it from the side of who looks: nearness at the origin of the paper, and how it falls with x and with y.
+    /// Planes that touch the part from the viewer's side: z at the origin of the sheet, and its decrease with x and with y.
     planes: Vec<[f64; 3]>,
     low: Point,
     high: Point,
-    /// Of its balls, on average.
+    /// Mean z of the balls.
     depth: f64,
-    /// Radius of its largest ball.
+    /// Radius of the largest ball.
     thick: f64,
 }
 
@@ -36,8 +38,8 @@ impl Solid {
         let circles: Vec<Circle> = balls.iter().map(|b| Circle { center: (b[0], b[1]), radius: b[3] }).collect();
         let least = |f: &dyn Fn(&Ball) -> f64| balls.iter().map(f).fold(f64::INFINITY, f64::min);
         let plane = |[x, y, z]: [f64; 3]| {
-            let reach = -least(&|b| -(b[0] * x + b[1] * y + b[2] * z + b[3]));
-            [reach / z, x / z, y / z]
+            let support = -least(&|b| -(b[0] * x + b[1] * y + b[2] * z + b[3]));
+            [support / z, x / z, y / z]
         };
         Self {
             outline: Outline::of(&circles),
@@ -49,28 +51,29 @@ impl Solid {
         }
     }
 
-    /// How near its front is at a point of the paper: no plane that touches the hull is nearer.
+    /// z of the front at a point of the sheet: the least z of all touching planes there.
     fn front(&self, (x, y): Point) -> f64 {
         self.planes.iter().map(|[near, a, b]| near - a * x - b * y).fold(f64::INFINITY, f64::min)
     }
 
-    /// By how much it hides an earlier part where the two overlap, px3; negative if the earlier one hides it, 0 if they do not overlap.
+    /// Volume between the fronts of two overlapping parts, px3: positive if this part hides the earlier one, negative if the earlier
+    /// one hides it, 0 if the two do not overlap.
     fn hides(&self, earlier: &Self) -> f64 {
         let low = (self.low.0.max(earlier.low.0), self.low.1.max(earlier.low.1));
         let high = (self.high.0.min(earlier.high.0), self.high.1.min(earlier.high.1));
         if low.0 >= high.0 || low.1 >= high.1 {
             return 0.0;
         }
-        let at = |k: u32, low: f64, high: f64| low + (high - low) * (f64::from(k) + 0.5) / f64::from(POINTS);
-        let even = EVEN * self.thick.min(earlier.thick);
+        let at = |k: u32, low: f64, high: f64| low + (high - low) * (f64::from(k) + 0.5) / f64::from(GRID);
+        let tie = TIE_SHARE * self.thick.min(earlier.thick);
         let mut sum = 0.0;
-        for k in 0..POINTS * POINTS {
-            let point = (at(k / POINTS, low.0, high.0), at(k % POINTS, low.1, high.1));
+        for k in 0..GRID * GRID {
+            let point = (at(k / GRID, low.0, high.0), at(k % GRID, low.1, high.1));
             if self.outline.contains(point) && earlier.outline.contains(point) {
-                sum += self.front(point) - earlier.front(point) + even;
+                sum += self.front(point) - earlier.front(point) + tie;
             }
         }
-        sum * (high.0 - low.0) * (high.1 - low.1) / f64::from(POINTS * POINTS)
+        sum * (high.0 - low.0) * (high.1 - low.1) / f64::from(GRID * GRID)
     }
 }
 
@@ -86,7 +89,8 @@ fn directions() -> impl Iterator<Item = [f64; 3]> {
     (0..RINGS).flat_map(ring)
 }
 
-/// Places of the solids from the farthest to the nearest. Where they hide each other in a circle, what is drawn wrongly is the least.
+/// Indices of the solids from the farthest to the nearest. Where solids hide each other in a cycle, the order draws the least volume
+/// wrongly.
 pub(crate) fn order(solids: &[Solid]) -> Vec<usize> {
     let n = solids.len();
     let mut hides = vec![vec![0.0; n]; n];
@@ -113,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_front_of_a_ball_and_of_a_bar_is_where_geometry_says() {
+    fn the_front_of_a_ball_and_of_a_slanted_bar_is_at_most_two_hundredths_too_near() {
         let ball = Solid::new(&[[1.0, 2.0, 3.0, 0.5]]);
         let (x, y) = (1.2, 1.9);
         let exact = 3.0 + f64::sqrt(0.25 - 0.04 - 0.01);
@@ -127,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_forearm_before_the_chest_is_drawn_after_it_although_its_middle_is_no_nearer() {
+    fn a_bar_in_front_of_a_chest_is_drawn_last_although_its_mean_is_farther() {
         // The chest is deep; the bar passes before it on the slant, from far behind beside it to just before it.
         let chest = Solid::new(&[[0.0, 0.0, 0.0, 0.15], [0.0, 0.4, 0.0, 0.15]]);
         let bar = Solid::new(&[[0.9, 0.2, -0.9, 0.04], [0.1, 0.2, 0.2, 0.04]]);
@@ -136,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_that_do_not_touch_on_paper_and_circles_have_an_order_too() {
+    fn separate_parts_are_ordered_by_depth_and_a_cycle_has_an_order() {
         let far = || Solid::new(&[[5.0, 0.0, -1.0, 0.1]]);
         let near = || Solid::new(&[[0.0, 0.0, 1.0, 0.1]]);
         assert_eq!(order(&[near(), far()]), [1, 0]);

@@ -1,9 +1,9 @@
-//! Which part of a line is visible, and where do labels go so that they do not overlap? Pure functions on points.
+//! Clips lines, cuts dashes, and spreads labels so that they do not overlap: pure functions of points on the sheet.
 
-/// A point on the paper, px: x right, y down.
+/// A point on the sheet, px: x right, y down.
 pub(crate) type Point = (f64, f64);
 
-/// An upright rectangle on the paper, px.
+/// An upright rectangle on the sheet, px.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rect {
     pub(crate) left: f64,
@@ -104,22 +104,22 @@ pub(crate) fn dashes(points: &[Point], dash: f64, gap: f64) -> Vec<Vec<Point>> {
     parts
 }
 
-/// A label that wants to stand at `wanted` (its centre, px) and is `width` px wide.
+/// A label `width` px wide whose preferred centre is `wanted`, px.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slot {
     pub(crate) wanted: f64,
     pub(crate) width: f64,
 }
 
-/// Centres of the slots, near where they want to be, without overlap, between `low` and `high`.
+/// Centres of the slots near their preferred ones, without overlap, between `low` and `high`.
 ///
 /// The slots come in the order of `wanted`, and together they are no wider than `high - low`. Neighbours that would
-/// overlap form a block; a block stands where its members are on average at home.
+/// overlap form a block; a block stands at the mean of its members' preferred places.
 pub(crate) fn spread(slots: &[Slot], low: f64, high: f64) -> Vec<f64> {
     struct Block {
         members: usize,
         width: f64,
-        /// Sum over the members of the left edge the block should have for that member.
+        /// Sum of the left edges that the members prefer for the block.
         lefts: f64,
     }
     let left_of = |block: &Block| {
@@ -157,19 +157,19 @@ mod tests {
     const WINDOW: Rect = Rect { left: 0.0, top: 0.0, width: 10.0, height: 10.0 };
 
     #[test]
-    fn a_line_that_leaves_and_returns_has_two_parts() {
+    fn clipping_a_line_that_leaves_the_window_twice_gives_two_parts() {
         let parts = clip(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (8.0, 20.0), (8.0, 2.0)], WINDOW);
         assert_eq!(parts, [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)], vec![(8.0, 10.0), (8.0, 2.0)]]);
     }
 
     #[test]
-    fn dashes_go_on_around_a_corner() {
+    fn the_dash_pattern_continues_around_a_corner() {
         let parts = dashes(&[(0.0, 0.0), (3.0, 0.0), (3.0, 4.0)], 2.0, 2.0);
         assert_eq!(parts, [vec![(0.0, 0.0), (2.0, 0.0)], vec![(3.0, 1.0), (3.0, 3.0)],]);
     }
 
     #[test]
-    fn spread_labels_stay_in_order_in_bounds_and_apart() {
+    fn overlapping_slots_are_moved_apart_within_the_bounds() {
         let slots = [1.0, 2.0, 2.0, 50.0, 99.0].map(|wanted| Slot { wanted, width: 10.0 });
         let centers = spread(&slots, 0.0, 100.0);
         assert_eq!(centers, [5.0, 15.0, 25.0, 50.0, 95.0]);

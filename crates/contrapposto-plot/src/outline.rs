@@ -1,17 +1,19 @@
-//! What is the outline of a solid part on paper? The hull of balls, seen from far away, is the hull of circles: arcs joined by
-//! straight lines. Exactly so: which circle reaches farthest in a direction changes only where two reach equally far.
+//! Computes the outline of a solid part on the sheet.
+//!
+//! The orthographic image of the hull of balls is the hull of circles: arcs joined by straight lines. The arcs are exact: the circle
+//! that reaches farthest in a direction `u` changes only where two circles reach equally far, `(a - b).u = rb - ra`.
 
 use std::f64::consts::TAU;
 
 use crate::geometry::Point;
 use crate::path::{Path, Step};
 
-/// Most circles of one outline.
+/// Greatest number of circles of one outline.
 pub(crate) const MOST_CIRCLES: usize = 32;
 /// Arcs are drawn as cubic curves of at most this angle, rad: they stay within a millionth of the radius.
 const LONGEST_CURVE: f64 = std::f64::consts::FRAC_PI_6;
-/// Directions nearer to each other, rad, are one.
-const NEAR: f64 = 1e-12;
+/// Directions nearer to each other than this, rad, count as one.
+const ANGLE_TOLERANCE: f64 = 1e-12;
 
 /// A circle on the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,8 +47,8 @@ impl Arc {
 }
 
 impl Circle {
-    /// How far it reaches in a direction.
-    fn reach(&self, (x, y): Point) -> f64 {
+    /// Largest component of the circle's points in a direction (its support function).
+    fn support(&self, (x, y): Point) -> f64 {
         self.center.0 * x + self.center.1 * y + self.radius
     }
 
@@ -64,14 +66,14 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Of no circles, nothing; of more than [`MOST_CIRCLES`], the hull of the first ones.
+    /// The hull of the first [`MOST_CIRCLES`] circles; empty if there is none.
     pub(crate) fn of(circles: &[Circle]) -> Self {
         let arcs = arcs(circles);
         let corners = arcs.iter().flat_map(|arc| [arc.circle.point(arc.from), arc.circle.point(arc.to)]).collect();
         Self { arcs, corners }
     }
 
-    /// Does the hull contain the point?
+    /// Whether the hull contains the point.
     pub(crate) fn contains(&self, (x, y): Point) -> bool {
         let left_of = |(a, b): (&Point, &Point)| (b.0 - a.0) * (y - a.1) - (b.1 - a.1) * (x - a.0) >= 0.0;
         let within = |arc: &Arc| (x - arc.circle.center.0).hypot(y - arc.circle.center.1) <= arc.circle.radius;
@@ -98,7 +100,7 @@ impl Outline {
 /// Arcs of the hull, one after the other; straight lines join them.
 fn arcs(circles: &[Circle]) -> Vec<Arc> {
     let circles = &circles[..circles.len().min(MOST_CIRCLES)];
-    // Where two circles reach equally far: (a - b).u = rb - ra.
+    // Directions in which two circles reach equally far: (a - b).u = rb - ra.
     let mut turns = vec![0.0];
     for (i, a) in circles.iter().enumerate() {
         for b in &circles[..i] {
@@ -113,10 +115,10 @@ fn arcs(circles: &[Circle]) -> Vec<Arc> {
     turns.sort_by(f64::total_cmp);
     turns.push(TAU);
     let mut arcs: Vec<Arc> = vec![];
-    for pair in turns.windows(2).filter(|pair| pair[1] - pair[0] > NEAR) {
+    for pair in turns.windows(2).filter(|pair| pair[1] - pair[0] > ANGLE_TOLERANCE) {
         let (sin, cos) = (0.5 * (pair[0] + pair[1])).sin_cos();
         // The first of equals.
-        let farthest = circles.iter().rev().max_by(|a, b| a.reach((cos, sin)).total_cmp(&b.reach((cos, sin))));
+        let farthest = circles.iter().rev().max_by(|a, b| a.support((cos, sin)).total_cmp(&b.support((cos, sin))));
         let Some(&circle) = farthest else { return vec![] };
         match arcs.last_mut() {
             Some(arc) if arc.circle == circle => arc.to = pair[1],
@@ -142,7 +144,7 @@ mod tests {
         list.iter().map(|&(x, y, radius)| Circle { center: (x, y), radius }).collect()
     }
 
-    /// Numbers that look random: the same ones every time.
+    /// Pseudo-random numbers, the same in every run.
     fn numbers(seed: u64) -> impl FnMut() -> f64 {
         let mut state = seed;
         move || {
@@ -172,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn the_path_reaches_as_far_as_the_circles_in_every_direction() {
+    fn the_path_has_the_support_function_of_its_circles() {
         let mut next = numbers(7);
         let mut cases = vec![
             circles(&[(5.0, 5.0, 2.0)]),
@@ -192,7 +194,7 @@ mod tests {
             let drawn = points(&outline.path());
             for k in 0..STEPS {
                 let (sin, cos) = (TAU * f64::from(k) / f64::from(STEPS)).sin_cos();
-                let wanted = case.iter().map(|c| c.reach((cos, sin))).fold(f64::NEG_INFINITY, f64::max);
+                let wanted = case.iter().map(|c| c.support((cos, sin))).fold(f64::NEG_INFINITY, f64::max);
                 let found = drawn.iter().map(|p| p.0 * cos + p.1 * sin).fold(f64::NEG_INFINITY, f64::max);
                 // The sag between the 16 points of a curve.
                 assert!((wanted - found).abs() < 0.03, "{case:?}: {wanted} {found}");
@@ -203,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn inside_is_what_no_direction_leaves_out() {
+    fn a_point_is_contained_if_no_direction_separates_it() {
         let mut next = numbers(11);
         for _ in 0..40 {
             let case: Vec<Circle> =
@@ -213,7 +215,7 @@ mod tests {
                 let p = (20.0 * next() - 5.0, 20.0 * next() - 5.0);
                 let room = (0..STEPS).map(|k| {
                     let (sin, cos) = (TAU * f64::from(k) / f64::from(STEPS)).sin_cos();
-                    case.iter().map(|c| c.reach((cos, sin))).fold(f64::NEG_INFINITY, f64::max) - p.0 * cos - p.1 * sin
+                    case.iter().map(|c| c.support((cos, sin))).fold(f64::NEG_INFINITY, f64::max) - p.0 * cos - p.1 * sin
                 });
                 let room = room.fold(f64::INFINITY, f64::min);
                 if room.abs() > 1e-3 {
@@ -224,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_outline() {
+    fn the_outline_of_no_circles_is_empty() {
         let nothing = Outline::of(&[]);
         assert_eq!(nothing.path(), Path::default());
         assert!(!nothing.contains((0.0, 0.0)));

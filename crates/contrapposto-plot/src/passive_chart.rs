@@ -1,4 +1,4 @@
-//! How does a joint resist? The passive torque of one coordinate over its range, and below it the slope.
+//! Draws the passive torque of one coordinate over its range, and below it the slope.
 //!
 //! The slope (`d tau_p / d theta`, stiffness with a minus sign) is what Table 1 of the paper compares with the slope
 //! of the external torque; its flattest angle divides the range in two.
@@ -8,13 +8,14 @@ use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::shape::Align;
-use crate::style::{BELOW_FRAME, FLAT_ZONE, FRAME_LEFT, MARGIN, PASSIVE_PEN, QUIET_TEXT, SMALL_SIZE, TEXT, WIDTH};
+use crate::style::{
+    BELOW_FRAME, FLAT_ZONE, FRAME_GAP, FRAME_LEFT, MARGIN, PASSIVE_PEN, QUIET_TEXT, SMALL_SIZE, TEXT, WIDTH,
+};
 use crate::tags::{Tag, draw_tags, draw_uprights, tags_height};
 use crate::text::wrap;
 
 const TORQUE_HEIGHT: f64 = 220.0;
 const SLOPE_HEIGHT: f64 = 150.0;
-const GAP: f64 = 18.0;
 /// Distance of two lines of the caption, px.
 const CAPTION_LINE: f64 = 15.0;
 
@@ -51,7 +52,7 @@ pub fn passive_curve(chart: &PassiveChart) -> Figure {
     let torque_range = values_in_range(chart, &chart.torque_nm);
     let torque = Frame::new(top, TORQUE_HEIGHT, angles, torque_range);
     let slope_range = values_in_range(chart, &chart.slope_nm_per_rad);
-    let slope_top = torque.area.bottom() + GAP;
+    let slope_top = torque.area.bottom() + FRAME_GAP;
     let slope = Frame::new(slope_top, SLOPE_HEIGHT, angles, slope_range);
 
     for frame in [&torque, &slope] {

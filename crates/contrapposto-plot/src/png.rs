@@ -8,12 +8,12 @@ use crate::shape::{Align, Shape, Text};
 use crate::style::{Ink, WIDTH};
 
 /// Image pixels for one unit of the SVG: a figure 800 units wide becomes 1600 pixels wide.
-const SCALE: f32 = 2.0;
+const PIXELS_PER_UNIT: f32 = 2.0;
 
 /// The bytes of the PNG file of a picture of the given height; an error as text.
 pub(crate) fn png(height: f64, shapes: &[Shape]) -> Result<Vec<u8>, String> {
     let fonts = Fonts::read().map_err(|error| error.to_string())?;
-    let pixels = |length: f64| (length as f32 * SCALE).ceil() as u32;
+    let pixels = |length: f64| (length as f32 * PIXELS_PER_UNIT).ceil() as u32;
     let pixmap = Pixmap::new(pixels(WIDTH), pixels(height)).ok_or("the picture has no height")?;
     let mut sheet = Sheet { pixmap, fonts };
     sheet.pixmap.fill(Color::WHITE);
@@ -23,7 +23,7 @@ pub(crate) fn png(height: f64, shapes: &[Shape]) -> Result<Vec<u8>, String> {
     sheet.pixmap.encode_png().map_err(|error| error.to_string())
 }
 
-/// What is drawn so far.
+/// The pixels drawn so far.
 struct Sheet {
     pixmap: Pixmap,
     fonts: Fonts,
@@ -71,7 +71,7 @@ impl Sheet {
     /// A path without points, or with one that is not a number, is not drawn.
     fn fill(&mut self, path: Option<&tiny_skia::Path>, ink: Ink, turn: Transform) {
         if let Some(path) = path {
-            let transform = turn.post_scale(SCALE, SCALE);
+            let transform = turn.post_scale(PIXELS_PER_UNIT, PIXELS_PER_UNIT);
             self.pixmap.fill_path(path, &paint(ink), FillRule::Winding, transform, None);
         }
     }
@@ -80,7 +80,13 @@ impl Sheet {
         let round =
             Stroke { width: width as f32, line_cap: LineCap::Round, line_join: LineJoin::Round, ..Stroke::default() };
         if let Some(path) = path {
-            self.pixmap.stroke_path(path, &paint(ink), &round, Transform::from_scale(SCALE, SCALE), None);
+            self.pixmap.stroke_path(
+                path,
+                &paint(ink),
+                &round,
+                Transform::from_scale(PIXELS_PER_UNIT, PIXELS_PER_UNIT),
+                None,
+            );
         }
     }
 }

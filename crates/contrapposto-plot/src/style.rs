@@ -1,4 +1,4 @@
-//! What do the pictures look like? Every colour, pen and size in one place.
+//! Holds every colour, pen and size of the pictures.
 //!
 //! The colours are the paper's: passive torque blue, external torque red, active torque brown (its opposite dotted),
 //! path yellow, start black, goal green.
@@ -36,7 +36,7 @@ pub(crate) const GHOST: Ink = Ink(0xec, 0xee, 0xf1);
 pub(crate) const GHOST_EDGE: Ink = Ink(0xb4, 0xbb, 0xc6);
 pub(crate) const GROUND: Ink = Ink(0xf5, 0xf6, 0xf8);
 
-/// The colour of a load, 0 to 1 of the end of the scale: paler than none is none, darker than all is all.
+/// The colour of a load, as a share of the end of the scale; shares below 0 count as 0, above 1 as 1.
 pub(crate) fn load_ink(share: f64) -> Ink {
     let place = share.clamp(0.0, 1.0) * (LOAD.len() - 1) as f64;
     let below = (place.floor() as usize).min(LOAD.len() - 2);
@@ -60,6 +60,8 @@ pub(crate) const FRAME_LEFT: f64 = 80.0;
 pub(crate) const FRAME_WIDTH: f64 = 568.0;
 /// Left edge of the legend.
 pub(crate) const LEGEND_LEFT: f64 = FRAME_LEFT + FRAME_WIDTH + 16.0;
+/// Space between two frames of one chart.
+pub(crate) const FRAME_GAP: f64 = 18.0;
 /// Room below a frame for the numbers and the label of its horizontal axis.
 pub(crate) const BELOW_FRAME: f64 = 44.0;
 /// Free space around the whole figure.

@@ -1,5 +1,5 @@
-//! What stands above a frame? Short notes and small drawings of the posture, each near its place on the horizontal
-//! axis, with a thin line that leads there.
+//! Draws short notes and small drawings of the posture above a frame, each near its place on the horizontal axis, with a thin line
+//! that leads there.
 
 use crate::axes::{Frame, drawable};
 use crate::canvas::Canvas;
@@ -17,17 +17,17 @@ const TEXT_HEIGHT: f64 = 15.0;
 const LEADER_HEIGHT: f64 = 14.0;
 /// Longest text of a note without drawing, px.
 const NOTE_WIDTH: f64 = 200.0;
-/// Most notes of one frame that get an upright line.
+/// Greatest number of notes of one frame with an upright line.
 pub(crate) const MOST_TAGS: usize = 60;
-/// Most drawings above one frame; more would not be readable.
+/// Greatest number of drawings above one frame; more would not be readable.
 const MOST_SKETCHES: usize = 5;
 
-/// Which of the marked postures a drawing shows; decides its colour.
+/// The posture that a drawing shows; it decides the colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SketchRole {
-    /// Where the path begins: black.
+    /// The posture at the start of the path: black.
     Start,
-    /// Where it ends: green.
+    /// The posture at its end: green.
     Goal,
     /// A posture without active torque: brown, like the curve of the active torque.
     Zero,
@@ -48,18 +48,18 @@ impl SketchRole {
 pub struct PostureSketch {
     /// Text below the drawing, e.g. "goal 4.3°"; cut beyond about 16 characters.
     pub label: String,
-    /// Where on the horizontal axis the posture belongs, degrees.
+    /// Angle of the posture on the horizontal axis, degrees.
     pub angle_deg: f64,
     /// Stick segments in the plane of the picture, m: x right, y up. The first line is drawn pale (the trunk, which
-    /// stays), the others in the colour of the role. All drawings of a panel share one scale and one origin.
+    /// does not move), the others in the colour of the role. All drawings of a panel share one scale and one origin.
     pub polylines: Vec<Vec<[f64; 2]>>,
-    /// Which posture this is.
+    /// The posture that is shown.
     pub role: SketchRole,
 }
 
 /// A note above a frame.
 pub(crate) struct Tag<'a> {
-    /// Where it belongs on the horizontal axis.
+    /// Value on the horizontal axis.
     pub(crate) at: f64,
     pub(crate) label: String,
     pub(crate) ink: Ink,
@@ -159,7 +159,7 @@ fn drawable_points(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> + '_ {
     line.iter().copied().filter(|[x, y]| drawable(*x) && drawable(*y)).take(1_000)
 }
 
-/// How metres become pixels, the same for all drawings of a panel.
+/// The map from metres to pixels, the same for all drawings of a panel.
 struct Scale {
     /// Middle of all drawings together, m.
     middle: [f64; 2],

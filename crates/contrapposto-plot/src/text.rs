@@ -1,6 +1,6 @@
 //! Estimates the width of texts, and cuts or wraps texts to a width.
 
-/// Width of a text in px, slightly too large rather than too small (advances of DejaVu Sans).
+/// Estimated width of a text, px: the advances of DejaVu Sans, rounded up by kinds of letters.
 pub(crate) fn text_width(text: &str, size: u32) -> f64 {
     let ems: f64 = text.chars().map(advance).sum();
     ems * f64::from(size)

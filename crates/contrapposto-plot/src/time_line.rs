@@ -1,6 +1,6 @@
-//! How did it go? Angle, torques and fatigue of one coordinate against time, one frame below the other.
+//! Draws angle, torques and fatigue of one coordinate against time, one frame below the other.
 //!
-//! Fatigue is followed for both muscle groups of the coordinate, one for each sign of the active torque (the paper's
+//! Fatigue is drawn for both muscle groups of the coordinate, one for each sign of the active torque (the paper's
 //! half-joints). Relief begins when a group passes the critical level and ends at the lower recovery level.
 
 use crate::axes::{Frame, Range, drawable};
@@ -8,12 +8,10 @@ use crate::canvas::Canvas;
 use crate::captions::{Mark, heading, legend};
 use crate::figure::Figure;
 use crate::style::{
-    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, FRAME_LEFT, MARGIN, NEGATIVE_PEN, PASSIVE_PEN,
-    POSITIVE_PEN, Pen, RECOVERY_PEN, TEXT,
+    ACTIVE_PEN, ANGLE_PEN, BELOW_FRAME, CRITICAL_PEN, EXTERNAL_PEN, FRAME_GAP, FRAME_LEFT, MARGIN, NEGATIVE_PEN,
+    PASSIVE_PEN, POSITIVE_PEN, Pen, RECOVERY_PEN, TEXT,
 };
 use crate::tags::{Tag, draw_tags, draw_uprights, tags_height};
-
-const GAP: f64 = 18.0;
 
 /// One coordinate through time.
 #[derive(Clone, Debug, Default)]
@@ -38,9 +36,9 @@ pub struct TimeLine {
     pub fatigue_positive: Vec<f64>,
     /// Fatigue of the muscle group that produces negative torque, 0 to 1, at each time; may be empty.
     pub fatigue_negative: Vec<f64>,
-    /// Fatigue at which relief begins, 0 to 1; NaN where there is none.
+    /// Fatigue at which relief begins, 0 to 1; NaN if there is none.
     pub critical_level: f64,
-    /// Fatigue at which relief ends, 0 to 1; NaN where there is none.
+    /// Fatigue at which relief ends, 0 to 1; NaN if there is none.
     pub recovery_level: f64,
     /// Changes of case: time, s, and a short label, e.g. "3.2". Every event has an upright line (the first 60), and a
     /// label as long as there is room.
@@ -75,9 +73,9 @@ pub fn time_line(line: &TimeLine) -> Figure {
         draw_uprights(&mut canvas, &frame, &tags);
         draw_part(&mut canvas, &frame, part, &line.time_s);
         frame.outline(&mut canvas);
-        top = frame.area.bottom() + GAP;
+        top = frame.area.bottom() + FRAME_GAP;
     }
-    canvas.finish(top - GAP + BELOW_FRAME + MARGIN)
+    canvas.finish(top - FRAME_GAP + BELOW_FRAME + MARGIN)
 }
 
 fn parts(line: &TimeLine) -> [Part<'_>; 3] {

@@ -1,4 +1,4 @@
-//! Where does the passive torque carry the external one? A panel in the style of the paper's Figures 1 and 7-14.
+//! Draws external, passive and active torque against the angle, in the style of the paper's Figures 1 and 7-14.
 //!
 //! Where minus the passive torque (blue) crosses the external torque (red), the active torque (brown) is zero:
 //! `tau_a = -(tau_p + tau_e)`, Eq. 1 and 2.
@@ -14,7 +14,7 @@ use crate::style::{
 use crate::tags::{MOST_TAGS, PostureSketch, SketchRole, Tag, draw_tags, draw_uprights, tags_height};
 
 const FRAME_HEIGHT: f64 = 320.0;
-/// How far the vertical axis reaches beyond the greatest external torque: the passive torque grows steeply towards
+/// End of the vertical axis, as a multiple of the greatest external torque: the passive torque grows steeply towards
 /// the limits and is cut at the frame, so that the middle of the range stays readable.
 const HEADROOM: f64 = 1.6;
 /// The tolerance is drawn if it is at least this far from its curve, px; closer it would hide in the line.
@@ -43,7 +43,7 @@ pub struct TorqueBalance {
     /// Tolerance on the active torque, N m: two dotted lines beside minus the passive torque (the paper's Figure 2),
     /// where they are far enough from it to be seen. 0 for none.
     pub tolerance_nm: f64,
-    /// Black point: angle, degrees, and active torque, N m, at the beginning; of a posture that stands for itself (one point in
+    /// Black point: angle, degrees, and active torque, N m, at the beginning; of a single posture (one point in
     /// [`TorqueBalance::path`], no goal) its active torque.
     pub start: Option<(f64, f64)>,
     /// Yellow path: angle, degrees, and active torque, N m, of every step.
@@ -157,12 +157,12 @@ fn draw_curves(canvas: &mut Canvas, frame: &Frame, panel: &TorqueBalance) {
         frame.say_empty(canvas);
     }
 
-    // A posture that stands for itself has no course.
-    let alone = panel.goal.is_none() && panel.path.len() == 1;
+    // A single posture has no path.
+    let single = panel.goal.is_none() && panel.path.len() == 1;
     let external_point = !external && panel.external_nm.is_empty() && !panel.external_path.is_empty();
     let marks = [
         (external_point, EXTERNAL, PAPER, "external"),
-        (panel.start.is_some(), START, PAPER, if alone { "active" } else { "start" }),
+        (panel.start.is_some(), START, PAPER, if single { "active" } else { "start" }),
         (panel.goal.is_some(), GOAL, PAPER, "goal"),
         (!panel.zero_torque_deg.is_empty(), PAPER, ACTIVE, "active = 0"),
     ];

@@ -1,4 +1,4 @@
-//! Bodies side by side: every mark is there, no text touches another or a body, and nothing that strangers give breaks the picture.
+//! Checks body figures: every mark is there, no text touches another text or a body, and hostile input gives a well-formed picture.
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
@@ -62,7 +62,7 @@ fn advance(c: char) -> f64 {
     }
 }
 
-/// The texts of a picture, as long as DejaVu Sans at most makes them, and what they say.
+/// The extents of a picture's texts, from the widest letters of DejaVu Sans, and their contents.
 fn texts(svg: &str) -> Vec<(Extent, String)> {
     let text = |element: &str| {
         let (opening, rest) = element.split_once('>').unwrap();
@@ -99,7 +99,7 @@ fn touch(a: &Extent, b: &Extent) -> bool {
 }
 
 #[test]
-fn no_text_touches_another_or_a_body_and_all_are_on_the_sheet() {
+fn no_text_touches_another_text_or_a_body_and_all_are_on_the_sheet() {
     for count in 1..=5 {
         let mut wide = body(0.2);
         wide.parts[2].balls[1] = [1.2, 1.35, 0.9, 0.05];
@@ -123,7 +123,7 @@ fn no_text_touches_another_or_a_body_and_all_are_on_the_sheet() {
 }
 
 #[test]
-fn all_postures_have_one_scale_and_stand_on_one_ground() {
+fn a_posture_of_half_the_size_is_drawn_half_as_tall_on_the_same_ground() {
     let mut small = body(0.1);
     for ball in small.parts.iter_mut().chain(&mut small.start).flat_map(|part| &mut part.balls) {
         *ball = ball.map(|v| 0.5 * v);
@@ -141,12 +141,12 @@ fn all_postures_have_one_scale_and_stand_on_one_ground() {
 }
 
 #[test]
-fn colours_are_those_of_loads_and_the_scale_ends_at_a_round_number() {
+fn parts_have_the_colours_of_their_loads_and_the_scale_ends_at_a_round_number() {
     let with_loads = |loads: [Option<f64>; 3]| {
         let parts = loads.map(|load| BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load });
         body_figure(&figure(vec![BodyPosture { parts: parts.to_vec(), ..BodyPosture::default() }], "")).svg()
     };
-    // Ends and the second stop of the page's scale, and what is not known.
+    // Ends and the second stop of the page's scale.
     let svg = with_loads([Some(0.0), Some(0.1), Some(0.3)]);
     for colour in ["#faedc2", "#fab857", "#85141f"] {
         assert_eq!(
@@ -163,7 +163,7 @@ fn colours_are_those_of_loads_and_the_scale_ends_at_a_round_number() {
 }
 
 #[test]
-fn the_length_of_an_arrow_is_what_the_legend_says() {
+fn arrows_of_forces_have_the_scale_of_the_legend() {
     let svg = body_figure(&figure(vec![body(0.1)], "")).svg();
     let words = texts(&svg).into_iter().map(|(_, said)| said).find(|said| said.starts_with("contact force, ")).unwrap();
     let newtons: f64 = words.split_whitespace().nth(2).unwrap().parse().unwrap();
@@ -187,7 +187,7 @@ fn the_length_of_an_arrow_is_what_the_legend_says() {
 }
 
 #[test]
-fn whatever_it_is_given_it_draws_well_formed() {
+fn extreme_numbers_and_texts_with_markup_give_well_formed_figures() {
     let odd = [0.0, -0.0, 1e9, -1e9, 1e308, 1e-300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
     let mut postures = vec![];
     for &a in &odd {
@@ -222,7 +222,7 @@ fn whatever_it_is_given_it_draws_well_formed() {
 }
 
 #[test]
-fn nothing_says_so_and_the_same_gives_the_same() {
+fn empty_figures_say_nothing_to_draw_and_equal_input_gives_equal_bytes() {
     let part = BodyPart { balls: vec![[0.0, 0.0, 0.0, -0.1], [f64::NAN, 0.0, 0.0, 0.1]], load: Some(0.1) };
     let unreal = BodyPosture { parts: vec![part], ..BodyPosture::default() };
     for postures in [vec![], vec![BodyPosture::default()], vec![BodyPosture::default(); 3], vec![unreal]] {

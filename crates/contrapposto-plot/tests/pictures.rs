@@ -1,4 +1,4 @@
-//! Do the pictures hold whatever they are given? Hostile numbers and texts, the same bytes twice, the marks that must be there.
+//! Checks the charts: hostile numbers and texts, the same bytes twice, the marks that must be there.
 
 use contrapposto_plot::{
     Figure, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, passive_curve, time_line, torque_balance,
@@ -21,7 +21,7 @@ const HOSTILE_NUMBERS: [f64; 12] = [
     f64::NEG_INFINITY,
 ];
 
-/// Lists of numbers that break careless drawing code.
+/// Empty, constant, extreme and long lists of numbers.
 fn hostile_lists() -> Vec<Vec<f64>> {
     let mut lists = vec![
         vec![],
@@ -128,7 +128,7 @@ fn assert_well_formed(svg: &str) {
 }
 
 #[test]
-fn hostile_numbers_give_well_formed_pictures() {
+fn extreme_and_missing_numbers_give_well_formed_pictures() {
     let lists = hostile_lists();
     for xs in &lists {
         for ys in &lists {
@@ -143,7 +143,7 @@ fn hostile_numbers_give_well_formed_pictures() {
 }
 
 #[test]
-fn hostile_texts_are_escaped() {
+fn texts_with_markup_are_escaped() {
     let (xs, ys) = ramp();
     for figure in all_pictures(&xs, &ys, HOSTILE_TEXT) {
         let svg = figure.svg();
@@ -156,7 +156,7 @@ fn hostile_texts_are_escaped() {
 }
 
 #[test]
-fn long_texts_are_cut() {
+fn texts_of_a_megabyte_are_cut() {
     let (xs, ys) = ramp();
     let text = "very long words ".repeat(100_000);
     for figure in all_pictures(&xs, &ys, &text) {
@@ -175,7 +175,7 @@ fn the_same_input_gives_the_same_bytes() {
 }
 
 #[test]
-fn the_balance_shows_the_colours_and_marks_of_the_paper() {
+fn a_torque_balance_has_the_colours_and_marks_of_the_paper() {
     let (xs, ys) = ramp();
     let mut panel = balance(&xs, &ys, "text");
     panel.zero_torque_deg = vec![25.0];
@@ -192,7 +192,7 @@ fn the_balance_shows_the_colours_and_marks_of_the_paper() {
 }
 
 #[test]
-fn curves_end_at_the_frame() {
+fn a_curve_beyond_the_frame_is_cut_at_it() {
     let (xs, _) = ramp();
     let panel = TorqueBalance {
         external_nm: vec![1.0; xs.len()],
@@ -209,7 +209,7 @@ fn curves_end_at_the_frame() {
 }
 
 #[test]
-fn panels_stand_below_each_other_until_a_png_would_be_too_tall() {
+fn two_panels_make_a_longer_picture_and_a_hundred_are_refused_as_png() {
     let (xs, ys) = ramp();
     let panel = balance(&xs, &ys, "text");
     let one = torque_balance(std::slice::from_ref(&panel));
@@ -220,7 +220,7 @@ fn panels_stand_below_each_other_until_a_png_would_be_too_tall() {
 }
 
 #[test]
-fn a_picture_of_nothing_says_so() {
+fn empty_pictures_contain_the_words_nothing_to_draw() {
     let empty = [
         torque_balance(&[]),
         torque_balance(&[TorqueBalance::default()]),

@@ -1,139 +1,197 @@
-// The charts of one joint, by plotly.js: torques over the angle, and everything over time. What moves with the present moment is
-// laid over them, so that a step of the slider draws no chart anew.
-function Charts(onTime) {
-  const [balance, now, course, cursor] = ["balance", "balance-now", "course", "cursor"].map((id) => document.getElementById(id));
-  // plotly.js reads a little markup in texts; names are no markup, and long ones do not fit.
-  const plain = (text) => (text.length > 48 ? `${text.slice(0, 47)}…` : text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
-  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const config = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"], displayModeBar: false };
-  const line = (color, width, dash) => ({ color: css(color), width, dash: dash || "solid" });
-  const times = report.times && Array.from(report.times);
-  const list = (values) => Array.from(values);
-  const axis = (title, more) => Object.assign({
-    title: { text: title, standoff: 8 }, gridcolor: css("--line"), zerolinecolor: css("--quiet"), linecolor: css("--quiet"), automargin: true,
-  }, more);
-  const layout = (more) => Object.assign({
-    font: { family: "system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif", size: 12, color: css("--ink") },
+// The charts of one joint, by plotly.js: torques over the angle, and everything over time. Marks of the present frame lie over the
+// charts, so that a step of the slider draws no chart anew.
+const LONGEST_LABEL = 48;
+const CHART_CONFIG = {
+  displaylogo: false, responsive: true, displayModeBar: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
+};
+
+// A name as text of a chart: plotly.js reads a little markup in texts, and long names do not fit.
+function chartText(text) {
+  const short = text.length > LONGEST_LABEL ? `${text.slice(0, LONGEST_LABEL - 1)}…` : text;
+  return short.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
+}
+
+function styleValue(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+function chartLine(color, width, dash) {
+  return { color: styleValue(color), width, dash: dash || "solid" };
+}
+
+function chartAxis(title, more) {
+  const colors = { gridcolor: styleValue("--line"), zerolinecolor: styleValue("--quiet"), linecolor: styleValue("--quiet") };
+  return { title: { text: title, standoff: 8 }, ...colors, automargin: true, ...more };
+}
+
+function chartLayout(more) {
+  const ink = styleValue("--ink");
+  return {
+    font: { family: "system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif", size: 12, color: ink },
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 58, r: 14, t: 10, b: 44 }, dragmode: false,
     legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 11.5 } },
-    hoverlabel: { bgcolor: css("--panel"), bordercolor: css("--line"), font: { color: css("--ink") } },
-  }, more);
-  let joint = null, present = 0;
+    hoverlabel: { bgcolor: styleValue("--panel"), bordercolor: styleValue("--line"), font: { color: ink } },
+    ...more,
+  };
+}
 
-  // Its torques over the range: in a run those of its end, of several postures each has its own.
-  const curves = () => joint.balance[Math.min(present, joint.balance.length - 1)] || { angle: [], minus_passive: [], external: [] };
+// A level line of the fatigue axis, and its label.
+function levelLine(y, dash) {
+  const line = { color: styleValue("--quiet"), width: 1, dash };
+  return { type: "line", xref: "paper", x0: 0, x1: 1, yref: "y3", y0: y, y1: y, line };
+}
+function levelLabel(y, text) {
+  const font = { size: 11, color: styleValue("--quiet") };
+  return {
+    xref: "paper", x: 1, xanchor: "right", yref: "y3", y, yanchor: "top", text, showarrow: false, font,
+    bgcolor: styleValue("--paper"), opacity: 0.8, borderpad: 0,
+  };
+}
 
-  function drawBalance() {
-    const { angle, minus_passive, external } = curves();
-    const swept = external.length > 0;
-    const torque = ` %{y:.2f} ${joint.torque} at %{x:.1f} ${joint.unit}<extra></extra>`;
-    const traces = [];
-    if (times) traces.push({ name: "active, this run", x: list(joint.angle), y: joint.active, line: line("--path", 7), hoverinfo: "skip" });
-    else {
-      // From minus passive to external torque: what muscles hold in every posture.
-      const held = { x: [], y: [] };
-      joint.angle.forEach((a, i) => {
-        held.x.push(a, a, null);
-        held.y.push(-joint.passive[i], joint.external[i], null);
-      });
-      traces.push({ name: "muscles hold", ...held, line: line("--path", 7), hoverinfo: "skip" });
-      traces.push({ name: "active", x: list(joint.angle), y: joint.active, mode: "markers", marker: { size: 9, color: css("--active") }, hovertemplate: "active" + torque });
-    }
-    traces.push({ name: "external", x: swept ? angle : list(joint.angle), y: swept ? external : list(joint.external),
-      mode: swept || times ? "lines" : "markers", marker: { size: 9, color: css("--external") }, line: line("--external", 2.2), hovertemplate: "external" + torque });
-    if (angle.length) traces.push({ name: "minus passive", x: angle, y: minus_passive, line: line("--passive", 2.2), hovertemplate: "minus passive" + torque });
-    if (swept) traces.push({ name: "active", x: angle, y: external.map((e, i) => minus_passive[i] - e), line: line("--active", 1.8, "dash"), hovertemplate: "active" + torque });
-    for (const trace of traces) Object.assign(trace, { type: "scatter", mode: trace.mode || "lines" });
-    const positive = joint.positive ? ` (positive: ${joint.positive})` : "";
-    Plotly.react(balance, traces, layout({
-      xaxis: axis(plain(`${joint.slides ? "place, m" : "angle, °"}${positive}`), { zeroline: false }),
-      yaxis: axis(`torque, ${joint.torque}`),
-    }), config);
+class Charts {
+  // `onTime` is called with the time of a click.
+  constructor(onTime) {
+    const ids = { balance: "balance", marks: "balance-now", course: "course", cursor: "cursor" };
+    for (const [name, id] of Object.entries(ids)) this[name] = document.getElementById(id);
+    this.times = report.times && Array.from(report.times);
+    [this.joint, this.frame] = [null, 0];
+    this.course.addEventListener("click", (event) => {
+      const axis = this.course._fullLayout && this.course._fullLayout.xaxis;
+      if (!axis) return;
+      const time = axis.p2d(event.clientX - this.course.getBoundingClientRect().left - axis._offset);
+      if (time >= axis.range[0] && time <= axis.range[1]) onTime(time);
+    });
   }
 
-  function drawCourse() {
-    const traces = [
-      { name: "external", y: list(joint.external), yaxis: "y2", line: line("--external", 2) },
-      { name: "passive", y: list(joint.passive), yaxis: "y2", line: line("--passive", 2) },
-      { name: "active", y: joint.active, yaxis: "y2", line: line("--active", 2, "dash") },
-      { name: "angle", y: list(joint.angle), line: line("--active", 2), showlegend: false },
-    ];
-    const tires = (joint.groups || []).some((group) => group.fatigue);
-    if (tires) joint.groups.forEach((group, side) => traces.push({
-      name: plain(group.label), y: list(group.fatigue.map((f) => 100 * f)), yaxis: "y3",
-      line: line(side ? "--negative" : "--positive", 2, side ? "dashdot" : "solid"),
-    }));
-    for (const trace of traces) {
-      Object.assign(trace, { type: "scatter", mode: "lines", x: times, hovertemplate: "%{y:.2f}" });
-    }
-    const level = (y, dash) => ({ type: "line", xref: "paper", x0: 0, x1: 1, yref: "y3", y0: y, y1: y, line: { color: css("--quiet"), width: 1, dash } });
-    const word = (y, text, yanchor) => ({ xref: "paper", x: 1, xanchor: "right", yref: "y3", y, yanchor, text, showarrow: false, font: { size: 11, color: css("--quiet") }, bgcolor: css("--paper"), opacity: 0.8, borderpad: 0 });
-    const told = tires && report.levels ? report.levels.map((share) => 100 * share) : [];
-    Plotly.react(course, traces, layout({
-      hovermode: "x unified",
-      shapes: told.map((y, i) => level(y, i ? "dot" : "dash")),
-      annotations: told.map((y, i) => word(y, i ? "relief ends" : "relief begins", "top")),
-      xaxis: axis("time, s", { anchor: tires ? "y3" : "y2", zeroline: false }),
-      yaxis: axis(joint.slides ? "place, m" : "angle, °", { domain: tires ? [0.71, 1] : [0.55, 1], zeroline: false }),
-      yaxis2: axis(`torque, ${joint.torque}`, { domain: tires ? [0.355, 0.645] : [0, 0.45] }),
-      ...(tires && { yaxis3: axis("fatigue, %", { domain: [0, 0.29], range: [0, 105], zeroline: false }) }),
-    }), config);
-  }
-
-  // The present point, and what muscles hold between two of its torques.
-  function drawNow() {
-    const { xaxis: x, yaxis: y } = balance._fullLayout || {};
-    if (!x || !joint) return;
-    const across = x._offset + x.l2p(joint.angle[present]), at = (torque) => y._offset + y.l2p(torque);
-    const [external, passive, active] = [joint.external[present], -joint.passive[present], joint.active[present]].map(at);
-    const shape = (kind, numbers) => {
-      const made = document.createElementNS(now.namespaceURI, kind);
-      for (const [name, value] of Object.entries(numbers)) made.setAttribute(name, value);
-      return made;
-    };
-    const point = (cy, r, color) => shape("circle", { cx: across, cy, r, style: `fill: var(${color})` });
-    now.replaceChildren(shape("line", { x1: across, x2: across, y1: external, y2: passive }),
-      point(external, 5, "--external"), point(passive, 5, "--passive"), point(active, 6, "--active"));
-  }
-  function drawCursor() {
-    const { xaxis: x, _size: size } = course._fullLayout || {};
-    if (!x || !times) return;
-    cursor.style.cssText = `left: ${x._offset + x.l2p(times[present])}px; top: ${size.t}px; height: ${size.h}px`;
-  }
-
-  // A joint: one chart, and the other a moment later, so that the page answers between them.
-  async function drawJoint(place, frame) {
-    if (!window.Plotly || !report.joints[place]) return;
-    const again = balance._fullLayout;
-    [joint, present] = [report.joints[place], frame];
-    drawBalance();
-    drawNow();
-    if (!again) {
-      balance.on("plotly_afterplot", drawNow);
+  // Draws the charts of a joint: the second one a moment later when both are new, so that the page answers between them.
+  async drawJoint(index, frame) {
+    if (!window.Plotly || !report.joints[index]) return;
+    const isNew = !this.balance._fullLayout;
+    [this.joint, this.frame] = [report.joints[index], frame];
+    this.drawBalance();
+    this.drawMarks();
+    if (isNew) {
+      this.balance.on("plotly_afterplot", () => this.drawMarks());
       await new Promise((done) => setTimeout(done));
     }
-    if (!times || times.length < 2) return;
-    drawCourse();
-    drawCursor();
-    if (!again) course.on("plotly_afterplot", drawCursor);
+    if (!this.times || this.times.length < 2) return;
+    this.drawCourse();
+    this.drawCursor();
+    if (isNew) this.course.on("plotly_afterplot", () => this.drawCursor());
   }
 
-  // A moment.
-  function drawFrame(frame) {
-    if (!joint) return;
-    present = frame;
-    if (joint.balance.length > 1) drawBalance();
-    drawNow();
-    drawCursor();
+  drawFrame(frame) {
+    if (!this.joint) return;
+    this.frame = frame;
+    if (this.joint.balance.length > 1) this.drawBalance();
+    this.drawMarks();
+    this.drawCursor();
   }
 
-  // A click anywhere on the course goes to its moment.
-  course.addEventListener("click", (event) => {
-    const x = course._fullLayout && course._fullLayout.xaxis;
-    if (!x) return;
-    const time = x.p2d(event.clientX - course.getBoundingClientRect().left - x._offset);
-    if (time >= x.range[0] && time <= x.range[1]) onTime(time);
-  });
+  resize() {
+    for (const chart of [this.balance, this.course]) if (chart._fullLayout) Plotly.Plots.resize(chart);
+  }
 
-  return { drawJoint, drawFrame, resize: () => [balance, course].forEach((chart) => chart._fullLayout && Plotly.Plots.resize(chart)) };
+  // Torques over the angle.
+  drawBalance() {
+    const joint = this.joint, positive = joint.positive ? ` (positive: ${joint.positive})` : "";
+    const traces = [...this.activeTraces(), ...this.rangeTraces()];
+    for (const trace of traces) Object.assign(trace, { type: "scatter", mode: trace.mode || "lines" });
+    Plotly.react(this.balance, traces, chartLayout({
+      xaxis: chartAxis(chartText(`${joint.slides ? "place, m" : "angle, °"}${positive}`), { zeroline: false }),
+      yaxis: chartAxis(`torque, ${joint.torque}`),
+    }), CHART_CONFIG);
+  }
+
+  // Active torque where the body is: its path over time, or in every posture the span from minus passive to external torque.
+  activeTraces() {
+    const joint = this.joint, angles = Array.from(joint.angle), line = chartLine("--path", 7);
+    if (this.times) return [{ name: "active, this run", x: angles, y: joint.active, line, hoverinfo: "skip" }];
+    const x = angles.flatMap((angle) => [angle, angle, null]);
+    const y = angles.flatMap((_, i) => [-joint.passive[i], joint.external[i], null]);
+    const marker = { size: 9, color: styleValue("--active") }, hovertemplate = this.hover("active");
+    return [
+      { name: "muscles hold", x, y, line, hoverinfo: "skip" },
+      { name: "active", x: angles, y: joint.active, mode: "markers", marker, hovertemplate },
+    ];
+  }
+
+  // Torques over the range of the joint: over time those at the end, with several postures those of the present one.
+  rangeTraces() {
+    const joint = this.joint, none = { angle: [], minus_passive: [], external: [] };
+    const { angle, minus_passive, external } = joint.balance[Math.min(this.frame, joint.balance.length - 1)] || none;
+    const swept = external.length > 0, traces = [{
+      name: "external", x: swept ? angle : Array.from(joint.angle), y: swept ? external : Array.from(joint.external),
+      mode: swept || this.times ? "lines" : "markers", marker: { size: 9, color: styleValue("--external") },
+      line: chartLine("--external", 2.2), hovertemplate: this.hover("external"),
+    }];
+    if (angle.length) {
+      const line = chartLine("--passive", 2.2), hovertemplate = this.hover("minus passive");
+      traces.push({ name: "minus passive", x: angle, y: minus_passive, line, hovertemplate });
+    }
+    if (swept) {
+      const y = external.map((torque, i) => minus_passive[i] - torque), line = chartLine("--active", 1.8, "dash");
+      traces.push({ name: "active", x: angle, y, line, hovertemplate: this.hover("active") });
+    }
+    return traces;
+  }
+
+  hover(name) {
+    return `${name} %{y:.2f} ${this.joint.torque} at %{x:.1f} ${this.joint.unit}<extra></extra>`;
+  }
+
+  // Angle, torques and fatigue over time.
+  drawCourse() {
+    const joint = this.joint, tires = (joint.groups || []).some((group) => group.fatigue);
+    const levels = tires && report.levels ? report.levels.map((share) => 100 * share) : [];
+    Plotly.react(this.course, this.courseTraces(tires), chartLayout({
+      hovermode: "x unified",
+      shapes: levels.map((y, i) => levelLine(y, i ? "dot" : "dash")),
+      annotations: levels.map((y, i) => levelLabel(y, i ? "relief ends" : "relief begins")),
+      xaxis: chartAxis("time, s", { anchor: tires ? "y3" : "y2", zeroline: false }),
+      yaxis: chartAxis(joint.slides ? "place, m" : "angle, °", { domain: tires ? [0.71, 1] : [0.55, 1], zeroline: false }),
+      yaxis2: chartAxis(`torque, ${joint.torque}`, { domain: tires ? [0.355, 0.645] : [0, 0.45] }),
+      ...(tires && { yaxis3: chartAxis("fatigue, %", { domain: [0, 0.29], range: [0, 105], zeroline: false }) }),
+    }), CHART_CONFIG);
+  }
+
+  courseTraces(tires) {
+    const joint = this.joint, traces = [
+      { name: "external", y: Array.from(joint.external), yaxis: "y2", line: chartLine("--external", 2) },
+      { name: "passive", y: Array.from(joint.passive), yaxis: "y2", line: chartLine("--passive", 2) },
+      { name: "active", y: joint.active, yaxis: "y2", line: chartLine("--active", 2, "dash") },
+      { name: "angle", y: Array.from(joint.angle), line: chartLine("--active", 2), showlegend: false },
+    ];
+    for (const [side, group] of (tires ? joint.groups : []).entries()) {
+      const line = chartLine(side ? "--negative" : "--positive", 2, side ? "dashdot" : "solid");
+      traces.push({ name: chartText(group.label), y: Array.from(group.fatigue, (f) => 100 * f), yaxis: "y3", line });
+    }
+    for (const trace of traces) Object.assign(trace, { type: "scatter", mode: "lines", x: this.times, hovertemplate: "%{y:.2f}" });
+    return traces;
+  }
+
+  // The torques of the present frame, and the span that muscles hold.
+  drawMarks() {
+    const { xaxis, yaxis } = this.balance._fullLayout || {};
+    if (!xaxis || !yaxis || !this.joint) return;
+    const { angle, external, passive, active } = this.joint, frame = this.frame;
+    const cx = xaxis._offset + xaxis.l2p(angle[frame]);
+    const [y1, y2, y3] = [external[frame], -passive[frame], active[frame]].map((torque) => yaxis._offset + yaxis.l2p(torque));
+    const shape = (kind, attributes) => {
+      const made = document.createElementNS(this.marks.namespaceURI, kind);
+      for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+      return made;
+    };
+    const point = (cy, r, color) => shape("circle", { cx, cy, r, style: `fill: var(${color})` });
+    this.marks.replaceChildren(shape("line", { x1: cx, x2: cx, y1, y2 }),
+      point(y1, 5, "--external"), point(y2, 5, "--passive"), point(y3, 6, "--active"));
+  }
+
+  // The present time in the course.
+  drawCursor() {
+    const { xaxis, _size: size } = this.course._fullLayout || {};
+    if (!xaxis || !this.times) return;
+    const left = xaxis._offset + xaxis.l2p(this.times[this.frame]);
+    this.cursor.style.cssText = `left: ${left}px; top: ${size.t}px; height: ${size.h}px`;
+  }
 }

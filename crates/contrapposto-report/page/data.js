@@ -1,5 +1,5 @@
 "use strict";
-// What the program wrote, made ready: columns of differences become lists of numbers.
+// The data of the report: columns of differences become lists of numbers.
 const report = (() => {
   const read = JSON.parse(document.getElementById("data").textContent);
   const n = read.frames;
@@ -37,7 +37,7 @@ const report = (() => {
   return read;
 })();
 
-// What colours show: each is a share, 0 to 1, of a frame's segment, or null where nothing is known.
+// Measures that colours show: a share, 0 to 1, for a segment in a frame, or null where it is not known.
 const measures = {
   load: {
     colors: [[0.98, 0.93, 0.76], [0.98, 0.72, 0.34], [0.86, 0.36, 0.13], [0.52, 0.08, 0.12]],
@@ -48,7 +48,7 @@ const measures = {
   },
   passive: {
     colors: [[0.95, 0.94, 0.88], [0.62, 0.80, 0.88], [0.18, 0.52, 0.76], [0.03, 0.19, 0.42]],
-    // What passive torque takes off the muscles, of all that pulls on the joint; less than 0.5 N m is nothing to carry.
+    // The part of external torque that passive torque carries; external torques below 0.5 N m count as none.
     of(segment, frame) {
       let pulled = 0, carried = 0;
       for (const joint of segment.joints.map((j) => report.joints[j])) {

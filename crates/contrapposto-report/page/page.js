@@ -1,25 +1,67 @@
-// What ties the page together: one moment, one joint, one measure; everything shown follows from these three.
-(() => {
-  const find = (id) => document.getElementById(id);
-  const make = (kind, text, name) => {
-    const made = document.createElement(kind);
-    if (text !== undefined) made.textContent = text;
-    if (name) made.className = name;
-    return made;
-  };
-  const state = { frame: 0, joint: report.main, measure: measures.load, playing: null };
-  const last = Math.max(0, report.frames - 1), times = report.times || [], end = times[last] || 0;
-  const moves = times.length > 1, tires = report.joints.some((joint) => (joint.groups || []).some((group) => group.fatigue));
-  const slider = find("slider"), rows = find("groups").tBodies[0];
+// Ties the page together: one frame, one joint, one measure; everything shown follows from these three.
+const HARDEST_GROUPS = 8, LONGEST_PLAY = 12; // rows; s
+const LAST_FRAME = Math.max(0, report.frames - 1), TIMES = report.times || [], END = TIMES[LAST_FRAME] || 0;
+const MOVES = TIMES.length > 1, SEVERAL = LAST_FRAME > 0;
+const TIRES = report.joints.some((joint) => (joint.groups || []).some((group) => group.fatigue));
 
-  // --- In words.
-  const clock = (t) => (end < 300 ? `${t.toFixed(end < 20 ? 2 : 1)} s` : `${Math.floor(t / 60)} min ${String(Math.floor(t % 60)).padStart(2, "0")} s`);
-  const moment = (frame) => (report.names ? report.names[frame] : clock(times[frame] || 0));
-  const percent = (share) => `${(100 * share).toFixed(share < 0.0995 ? 1 : 0)}\u00a0%`;
-  const signed = (value) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(Math.abs(value) < 9.95 ? 2 : 1)}`;
-  const span = (s) => (s < 0 ? "no limit" : s < 100 ? `${s.toFixed(0)} s` : s < 5400 ? `${(s / 60).toFixed(0)} min` : `${(s / 3600).toFixed(1)} h`);
+// --- Elements.
 
-  // --- What never changes.
+function find(id) {
+  return document.getElementById(id);
+}
+
+function make(kind, text, name) {
+  const made = document.createElement(kind);
+  if (text !== undefined) made.textContent = text;
+  if (name) made.className = name;
+  return made;
+}
+
+function makeButton(...content) {
+  const button = make("button");
+  button.type = "button";
+  button.append(...content);
+  return button;
+}
+
+function press(buttons, isPressed) {
+  document.querySelectorAll(buttons).forEach((button, i) => button.setAttribute("aria-pressed", String(isPressed(button, i))));
+}
+
+// --- Numbers in words.
+
+function clock(t) {
+  if (END < 300) return `${t.toFixed(END < 20 ? 2 : 1)} s`;
+  return `${Math.floor(t / 60)} min ${String(Math.floor(t % 60)).padStart(2, "0")} s`;
+}
+function frameName(frame) {
+  return report.names ? report.names[frame] : clock(TIMES[frame] || 0);
+}
+function percent(share) {
+  return `${(100 * share).toFixed(share < 0.0995 ? 1 : 0)}\u00a0%`;
+}
+function signed(value) {
+  return `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(Math.abs(value) < 9.95 ? 2 : 1)}`;
+}
+function duration(s) {
+  if (s < 0) return "no limit";
+  if (s < 100) return `${s.toFixed(0)} s`;
+  return s < 5400 ? `${(s / 60).toFixed(0)} min` : `${(s / 3600).toFixed(1)} h`;
+}
+
+// The frame nearest to a time.
+function frameAt(time) {
+  let low = 0, high = LAST_FRAME;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (TIMES[middle] < time) low = middle + 1; else high = middle;
+  }
+  return low > 0 && time - TIMES[low - 1] < TIMES[low] - time ? low - 1 : low;
+}
+
+// --- Parts of the page that never change.
+
+function fillHeader() {
   document.title = report.title || "contrapposto";
   find("title").textContent = [report.title, report.body].filter(Boolean).join(" · ");
   find("headline").textContent = report.headline;
@@ -30,217 +72,296 @@
     if (note) item.append(make("span", note));
     find("figures").append(item);
   }
+}
+
+// Hides every part about which the report says nothing.
+function hideUnknown() {
+  const known = {
+    "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
+    "key-target": report.targets.length, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
+    postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
+    overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
+  };
+  for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
+  document.documentElement.toggleAttribute("data-still", !MOVES);
+  if (!TIRES) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
+  const postureKeys = SEVERAL ? "Arrow keys go from posture to posture. " : "";
+  const keys = MOVES ? "Space plays. Arrow keys step (with Shift by ten), Home and End jump. " : postureKeys;
+  find("keys").textContent = `${keys}Drag the body to turn it.`;
+}
+
+function fillChooser() {
   report.joints.forEach((joint, i) => {
     const option = make("option", joint.label === joint.name ? joint.name : `${joint.label} (${joint.name})`);
     option.value = i;
     find("chooser").append(option);
   });
-  // What is not known has no place on the page.
-  const shown = {
-    "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length, "key-target": report.targets.length,
-    "key-ghost": moves || report.names, time: moves, "over-time": moves, postures: last > 0 && report.names, joint: report.joints.length,
-    list: report.list.entries.length || report.list.none, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
-  };
-  for (const [id, known] of Object.entries(shown)) find(id).hidden = !known;
-  document.documentElement.toggleAttribute("data-still", !moves);
-  if (!tires) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
-  find("keys").textContent = (moves ? "Space plays. Arrow keys step (with Shift by ten), Home and End jump. " : last > 0 ? "Arrow keys go from posture to posture. " : "") + "Drag the body to turn it.";
-  find("list-heading").textContent = report.list.heading;
-  report.list.entries.forEach((entry) => {
-    const item = make("li"), button = make("button");
-    button.type = "button";
-    if (moves || report.names) button.append(make("time", moment(entry.frame)));
-    button.append(make("span", entry.text));
-    button.addEventListener("click", () => {
-      choose(entry.joint);
-      show(entry.frame);
-    });
-    item.append(button);
-    find("decisions").append(item);
-  });
-  if (!report.list.entries.length) find("decisions").append(make("li", report.list.none, "hint"));
+}
+
+function fillTable() {
   find("overview-heading").textContent = report.table.heading;
-  const lines = find("table").tBodies[0];
-  for (const [kind, part, cells] of [["th", find("table").tHead, report.table.columns], ...report.table.rows.map((row) => ["td", lines, row])]) {
-    const line = make("tr");
-    line.append(...cells.map((text) => make(kind, text)));
-    part.append(line);
+  const addRow = (part, kind, cells) => {
+    const row = make("tr");
+    row.append(...cells.map((text) => make(kind, text)));
+    part.append(row);
+  };
+  addRow(find("table").tHead, "th", report.table.columns);
+  for (const cells of report.table.rows) addRow(find("table").tBodies[0], "td", cells);
+}
+
+// The text below the heading of the torque balance.
+function balanceHint(joint) {
+  const end = MOVES || SEVERAL ? " Large dots: now." : "";
+  if (joint && joint.balance.some((balance) => balance.external.length)) {
+    return "Where external torque meets minus passive torque the joint hangs on its ligaments: the gap between them is what muscles hold." + end;
   }
-  if (shown.postures) report.names.forEach((name, frame) => {
-    const button = make("button", name);
-    button.type = "button";
-    button.addEventListener("click", () => show(frame));
-    find("postures").append(button);
-  });
+  const place = MOVES ? "where the body went" : SEVERAL ? "in each posture" : "in this posture";
+  const passive = joint && joint.balance.length
+    ? "Where it meets minus passive torque the joint hangs on its ligaments: the gap is what muscles hold."
+    : "Nothing is known of its ligaments.";
+  return `External torque ${place}. ${passive}${end}`;
+}
 
-  // --- Body and charts.
-  const body = Body(find("body"), (view) => {
-    document.querySelectorAll("[data-view]").forEach((b) => b.setAttribute("aria-pressed", String(b.dataset.view === view)));
-    paintBody();
-  });
-  if (!body) find("no-body").hidden = false;
-  const charts = Charts((time) => show(frameAt(time)));
-  const paintBody = () => { if (body) body.draw(state.frame, state.measure); };
+// --- The page.
 
-  function frameAt(time) {
-    let low = 0, high = last;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (times[middle] < time) low = middle + 1; else high = middle;
+class Page {
+  constructor() {
+    [this.frame, this.joint, this.measure, this.playing, this.wanted] = [0, report.main, measures.load, null, null];
+    fillHeader();
+    fillChooser();
+    hideUnknown();
+    this.fillList();
+    fillTable();
+    this.fillPostures();
+    this.body = Body.on(find("body"), (view) => {
+      press("[data-view]", (button) => button.dataset.view === view);
+      this.paintBody();
+    });
+    if (!this.body) find("no-body").hidden = false;
+    this.charts = new Charts((time) => this.showFrame(frameAt(time)));
+    this.listen();
+    this.listenToMedia();
+  }
+
+  fillList() {
+    find("list-heading").textContent = report.list.heading;
+    for (const entry of report.list.entries) {
+      const time = MOVES || report.names ? [make("time", frameName(entry.frame))] : [];
+      const button = makeButton(...time, make("span", entry.text)), item = make("li");
+      button.addEventListener("click", () => {
+        this.chooseJoint(entry.joint);
+        this.showFrame(entry.frame);
+      });
+      item.append(button);
+      find("decisions").append(item);
     }
-    return low > 0 && time - times[low - 1] < times[low] - time ? low - 1 : low;
+    if (!report.list.entries.length) find("decisions").append(make("li", report.list.none, "hint"));
   }
 
-  // --- A moment.
-  function show(frame) {
-    state.frame = Math.min(last, Math.max(0, frame));
-    const time = times[state.frame] || 0, name = moment(state.frame);
-    slider.value = time;
-    slider.setAttribute("aria-valuetext", name);
-    find("clock").textContent = `${name} of ${clock(end)}`;
-    document.querySelectorAll("#postures button").forEach((b, i) => b.setAttribute("aria-pressed", String(i === state.frame)));
-    paintBody();
-    charts.drawFrame(state.frame);
-    tellJoint();
-    tellGroups(name);
-    const current = report.list.entries.findLastIndex((entry) => entry.frame <= state.frame);
+  fillPostures() {
+    if (!SEVERAL || !report.names) return;
+    report.names.forEach((name, frame) => {
+      const button = makeButton(name);
+      button.addEventListener("click", () => this.showFrame(frame));
+      find("postures").append(button);
+    });
+  }
+
+  paintBody() {
+    if (this.body) this.body.draw(this.frame, this.measure);
+  }
+
+  showFrame(frame) {
+    this.frame = Math.min(LAST_FRAME, Math.max(0, frame));
+    const time = TIMES[this.frame] || 0, name = frameName(this.frame);
+    find("slider").value = time;
+    find("slider").setAttribute("aria-valuetext", name);
+    find("clock").textContent = `${name} of ${clock(END)}`;
+    press("#postures button", (_, i) => i === this.frame);
+    this.paintBody();
+    this.charts.drawFrame(this.frame);
+    this.describeJoint();
+    this.listGroups(name);
+    const current = report.list.entries.findLastIndex((entry) => entry.frame <= this.frame);
     document.querySelectorAll("#decisions button").forEach((b, i) => b.classList.toggle("current", i === current));
   }
 
-  function tellJoint() {
-    const joint = report.joints[state.joint], i = state.frame;
+  // One sentence about the torques of the joint.
+  describeJoint() {
+    const joint = report.joints[this.joint], i = this.frame;
     if (!joint) return;
     const share = joint.groups ? ` (${percent(joint.load[i])} of strength)` : "";
-    const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1), value = joint.angle[i].toFixed(joint.slides ? 3 : 1).replace("-", "−");
-    find("now").textContent = `${name}, ${value}${joint.slides ? " m" : "°"}: weight and contact pull with ${signed(joint.external[i])} ` +
-      `${joint.torque}, ligaments answer with ${signed(joint.passive[i])}, muscles with ${signed(joint.active[i])}${share}.`;
+    const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1);
+    const value = joint.angle[i].toFixed(joint.slides ? 3 : 1).replace("-", "−") + (joint.slides ? " m" : "°");
+    find("now").textContent = `${name}, ${value}: weight and contact pull with ${signed(joint.external[i])} ${joint.torque}, ` +
+      `ligaments answer with ${signed(joint.passive[i])}, muscles with ${signed(joint.active[i])}${share}.`;
   }
 
-  // The hardest worked groups of the moment.
-  function tellGroups(name) {
-    const i = state.frame, found = [];
-    report.joints.forEach((joint, place) => (joint.groups || []).forEach((group, side) => {
-      const works = side === (joint.active[i] < 0 ? 1 : 0);
-      const row = { place, group, load: works ? joint.load[i] : 0, fatigue: group.fatigue ? group.fatigue[i] : 0 };
-      if (row.load >= 0.001 || row.fatigue >= 0.005) found.push(row);
-    }));
-    found.sort((a, b) => b.load - a.load || b.fatigue - a.fatigue);
-    find("when").textContent = moves ? `at ${name}` : last > 0 ? name : "";
-    while (rows.rows.length > Math.min(8, found.length)) rows.deleteRow(-1);
-    found.slice(0, 8).forEach((row, k) => {
-      const line = rows.rows[k] || newRow();
-      line.dataset.joint = row.place;
-      const cells = [row.group.label, percent(row.load), percent(row.fatigue), row.load < 0.005 ? "rests" : span(row.group.left[i])];
-      cells.forEach((text, c) => { line.cells[c].textContent = text; });
-      line.cells[2].classList.toggle("tired", row.fatigue >= (report.levels || [1])[0]);
+  // The hardest worked muscle groups of the frame.
+  listGroups(name) {
+    const rows = find("groups").tBodies[0], groups = this.workingGroups().slice(0, HARDEST_GROUPS);
+    find("when").textContent = MOVES ? `at ${name}` : SEVERAL ? name : "";
+    while (rows.rows.length > groups.length) rows.deleteRow(-1);
+    groups.forEach(({ place, group, load, fatigue }, k) => {
+      const row = rows.rows[k] || this.addGroupRow(rows);
+      row.dataset.joint = place;
+      const endurance = load < 0.005 ? "rests" : duration(group.left[this.frame]);
+      [group.label, percent(load), percent(fatigue), endurance].forEach((text, c) => { row.cells[c].textContent = text; });
+      row.cells[2].classList.toggle("tired", fatigue >= (report.levels || [1])[0]);
     });
   }
-  function newRow() {
-    const row = rows.insertRow();
-    for (let c = 0; c < 4; c++) row.insertCell().hidden = c === 2 && !tires;
+
+  // Groups with load or fatigue, the greatest load first.
+  workingGroups() {
+    const i = this.frame, found = [];
+    report.joints.forEach((joint, place) => (joint.groups || []).forEach((group, side) => {
+      const works = side === (joint.active[i] < 0 ? 1 : 0);
+      const entry = { place, group, load: works ? joint.load[i] : 0, fatigue: group.fatigue ? group.fatigue[i] : 0 };
+      if (entry.load >= 0.001 || entry.fatigue >= 0.005) found.push(entry);
+    }));
+    return found.sort((a, b) => b.load - a.load || b.fatigue - a.fatigue);
+  }
+
+  addGroupRow(rows) {
+    const row = rows.insertRow(), choose = () => this.chooseJoint(Number(row.dataset.joint));
+    for (let c = 0; c < 4; c++) row.insertCell().hidden = c === 2 && !TIRES;
     row.tabIndex = 0;
-    row.addEventListener("click", () => choose(Number(row.dataset.joint)));
-    row.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(Number(row.dataset.joint)); });
+    row.addEventListener("click", choose);
+    row.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(); });
     return row;
   }
 
-  // --- A joint.
-  function choose(place) {
-    state.joint = place;
-    find("chooser").value = place;
-    const joint = report.joints[place];
-    const swept = joint && joint.balance.some((balance) => balance.external.length), known = joint && joint.balance.length;
-    find("balance-hint").textContent = (swept ? "Where external torque meets minus passive torque the joint hangs on its ligaments: the gap between them is what muscles hold."
-      : `External torque ${moves ? "where the body went" : last > 0 ? "in each posture" : "in this posture"}. ` +
-        (known ? "Where it meets minus passive torque the joint hangs on its ligaments: the gap is what muscles hold." : "Nothing is known of its ligaments.")) +
-      (moves || last > 0 ? " Large dots: now." : "");
-    tellJoint();
-    return charts.drawJoint(place, state.frame);
+  chooseJoint(index) {
+    this.joint = index;
+    find("chooser").value = index;
+    find("balance-hint").textContent = balanceHint(report.joints[index]);
+    this.describeJoint();
+    return this.charts.drawJoint(index, this.frame);
   }
 
-  // --- A measure.
-  function measure(name) {
-    state.measure = measures[name];
+  chooseMeasure(name) {
+    this.measure = measures[name];
     for (const key of ["load", "passive"]) find(`by-${key}`).setAttribute("aria-pressed", String(key === name));
     find("scale-low").textContent = "0 %";
-    find("scale-high").textContent = name === "load" ? `${percent(state.measure.largest)} of strength` : "100 % of the torque";
-    const stops = state.measure.colors.map((c) => `rgb(${c.map((v) => Math.round(255 * v)).join(",")})`);
+    find("scale-high").textContent = name === "load" ? `${percent(this.measure.largest)} of strength` : "100 % of the torque";
+    const stops = this.measure.colors.map((color) => `rgb(${color.map((v) => Math.round(255 * v)).join(",")})`);
     find("scale").style.background = `linear-gradient(to right, ${stops.join(",")})`;
-    paintBody();
+    this.paintBody();
   }
 
-  // --- Time goes by: the whole run in twelve seconds at most, and never slower than it was.
-  function play() {
-    const pace = Math.max(1, end / 12), from = state.frame >= last ? 0 : times[state.frame];
+  // Plays the run from the present frame: in twelve seconds at most, and never slower than real time.
+  play() {
+    const speed = Math.max(1, END / LONGEST_PLAY), from = this.frame >= LAST_FRAME ? 0 : TIMES[this.frame];
     const begin = performance.now();
     const step = (now) => {
-      const time = from + (now - begin) / 1000 * pace;
-      show(frameAt(time));
-      if (time >= end) return stop();
-      state.playing = requestAnimationFrame(step);
+      const time = from + (now - begin) / 1000 * speed;
+      this.showFrame(frameAt(time));
+      if (time >= END) return this.pause();
+      this.playing = requestAnimationFrame(step);
     };
-    state.playing = requestAnimationFrame(step);
+    this.playing = requestAnimationFrame(step);
     find("play").textContent = "❚❚";
     find("play").setAttribute("aria-label", "Pause");
   }
-  function stop() {
-    cancelAnimationFrame(state.playing);
-    state.playing = null;
+
+  pause() {
+    cancelAnimationFrame(this.playing);
+    this.playing = null;
     find("play").textContent = "▶";
     find("play").setAttribute("aria-label", "Play");
   }
-  const toggle = () => (state.playing === null ? play() : stop());
 
-  // --- Hands.
-  slider.max = end;
-  let wanted = null;
-  slider.addEventListener("input", () => {
-    stop();
-    if (wanted === null) requestAnimationFrame(() => { show(frameAt(wanted)); wanted = null; });
-    wanted = Number(slider.value);
-  });
-  find("play").addEventListener("click", toggle);
-  find("chooser").addEventListener("change", (event) => choose(Number(event.target.value)));
-  for (const key of ["load", "passive"]) find(`by-${key}`).addEventListener("click", () => measure(key));
-  document.querySelectorAll("[data-view]").forEach((b) => b.addEventListener("click", () => body && body.from(b.dataset.view)));
-  document.addEventListener("keydown", (event) => {
+  togglePlay() {
+    if (this.playing === null) this.play();
+    else this.pause();
+  }
+
+  listen() {
+    find("slider").max = END;
+    find("slider").addEventListener("input", () => this.slide(Number(find("slider").value)));
+    find("play").addEventListener("click", () => this.togglePlay());
+    find("chooser").addEventListener("change", (event) => this.chooseJoint(Number(event.target.value)));
+    for (const key of ["load", "passive"]) find(`by-${key}`).addEventListener("click", () => this.chooseMeasure(key));
+    for (const button of document.querySelectorAll("[data-view]")) {
+      button.addEventListener("click", () => this.body && this.body.lookFrom(button.dataset.view));
+    }
+    document.addEventListener("keydown", (event) => this.pressKey(event));
+  }
+
+  // Shows the last of all times that the slider sends before the next picture.
+  slide(time) {
+    this.pause();
+    if (this.wanted === null) {
+      requestAnimationFrame(() => {
+        this.showFrame(frameAt(this.wanted));
+        this.wanted = null;
+      });
+    }
+    this.wanted = time;
+  }
+
+  pressKey(event) {
     if (event.altKey || event.ctrlKey || event.metaKey || event.target.tagName === "SELECT") return;
     const far = event.shiftKey ? 10 : 1;
-    const to = { ArrowLeft: state.frame - far, ArrowRight: state.frame + far, Home: 0, End: last }[event.key];
-    if (event.key === " " && moves && event.target.tagName !== "BUTTON") toggle();
-    else if (to !== undefined) { stop(); show(to); }
-    else return;
+    const to = { ArrowLeft: this.frame - far, ArrowRight: this.frame + far, Home: 0, End: LAST_FRAME }[event.key];
+    if (event.key === " " && MOVES && event.target.tagName !== "BUTTON") {
+      this.togglePlay();
+    } else if (to !== undefined) {
+      this.pause();
+      this.showFrame(to);
+    } else {
+      return;
+    }
     event.preventDefault();
-  });
+  }
 
-  // --- Light, dark, paper, another width: all is drawn anew.
-  const redraw = () => { choose(state.joint); paintBody(); };
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-  new ResizeObserver(paintBody).observe(find("stage"));
-  // What WebGL has drawn does not reach paper; a picture of it does.
-  const print = (begins) => {
+  // Draws everything anew in light, dark, on paper and at another width.
+  listenToMedia() {
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
+    new ResizeObserver(() => this.paintBody()).observe(find("stage"));
+    addEventListener("beforeprint", () => this.print(true));
+    addEventListener("afterprint", () => this.print(false));
+    matchMedia("print").addEventListener("change", (change) => {
+      this.print(change.matches);
+      this.charts.resize();
+    });
+  }
+
+  redraw() {
+    this.chooseJoint(this.joint);
+    this.paintBody();
+  }
+
+  // A WebGL canvas is not printed; an image of it is.
+  print(begins) {
     document.documentElement.toggleAttribute("data-paper", begins);
-    redraw();
-    if (begins && body) find("printed").src = find("body").toDataURL();
-  };
-  addEventListener("beforeprint", () => print(true));
-  addEventListener("afterprint", () => print(false));
-  matchMedia("print").addEventListener("change", (change) => { print(change.matches); charts.resize(); });
+    this.redraw();
+    if (begins && this.body) find("printed").src = find("body").toDataURL();
+  }
 
-  const known = report.joints.some((joint) => joint.groups);
-  find("by-load").hidden = !known;
-  measure(known ? "load" : "passive");
-  choose(state.joint);
-  show(report.names ? 0 : last);
-  // The body and the words are there; the charts' library takes a moment to read and comes after they are painted.
+  open() {
+    const hasLoads = report.joints.some((joint) => joint.groups);
+    find("by-load").hidden = !hasLoads;
+    this.chooseMeasure(hasLoads ? "load" : "passive");
+    this.chooseJoint(this.joint);
+    this.showFrame(report.names ? 0 : LAST_FRAME);
+  }
+}
+
+// Opens the page: first words and body, then, when these are painted, plotly.js and the charts. The times of both steps stand as
+// `data-drawn` and `data-ready` on the root element.
+async function openPage() {
   const painted = new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
   const parsed = new Promise((done) => addEventListener("DOMContentLoaded", done));
   const mark = (name) => { document.documentElement.dataset[name] = String(Math.round(performance.now())); };
-  painted.then(() => mark("drawn"));
-  Promise.all([painted, parsed]).then(async () => {
-    document.head.append(make("script", find("plotly").textContent));
-    find("plotly").remove();
-    await choose(state.joint);
-    mark("ready");
-  });
-})();
+  const page = new Page();
+  page.open();
+  await painted;
+  mark("drawn");
+  await parsed;
+  document.head.append(make("script", find("plotly").textContent));
+  find("plotly").remove();
+  await page.chooseJoint(page.joint);
+  mark("ready");
+}
+openPage();

@@ -1,11 +1,11 @@
-//! How do numbers over time stay short? Whole multiples of what can be seen, each as the difference from the one before.
+//! Writes numbers over time in few characters: whole multiples of a visible step, each as the difference from the one before.
 
 use serde_json::{Value, json};
 
-/// Largest multiple that is kept: beyond it a browser loses digits.
+/// Largest multiple: beyond it a browser loses digits.
 const LARGEST: f64 = 1e12;
 
-/// `count` numbers, rounded to multiples of `step`; trailing zeros (nothing changes any more) are left out.
+/// `count` numbers, rounded to multiples of `step`; trailing zero differences are left out.
 pub(crate) fn column(values: impl IntoIterator<Item = f64>, count: usize, step: f64) -> Value {
     let mut before = 0;
     let mut differences: Vec<i64> = vec![];
@@ -44,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_in_comes_out_rounded() {
+    fn values_come_back_rounded_to_the_step() {
         let values = [1.2345, -3.0, -3.0, 7.77];
         for (a, b) in values.iter().zip(back(&column(values, 4, 0.01), 4)) {
             assert!((a - b).abs() <= 0.005 + 1e-12, "{a} came back as {b}");
@@ -52,12 +52,12 @@ mod tests {
     }
 
     #[test]
-    fn what_rests_costs_nothing() {
+    fn a_constant_column_is_one_difference() {
         assert_eq!(column([5.0; 1000], 1000, 1.0), json!({ "step": 1.0, "by": [5] }));
     }
 
     #[test]
-    fn odd_numbers_do_no_harm() {
+    fn infinite_and_missing_numbers_give_bounded_differences() {
         let odd = column([f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300], 4, 1e-3);
         assert!(odd["by"].as_array().unwrap().iter().all(|d| d.as_i64().unwrap().abs() <= 2_000_000_000_000));
     }

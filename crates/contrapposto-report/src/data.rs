@@ -1,11 +1,11 @@
-//! What does the page's script read? One JSON text, safe inside a `<script>` of data.
+//! Writes the data that the page's script reads: one JSON text, safe inside a `<script>` element.
 
 use serde_json::{Value, json};
 
 use crate::column::{column, columns};
 use crate::{Balance, Entry, Group, Joint, Moments, Report, Segment, Support};
 
-/// What can be seen on a page.
+/// Steps to which numbers are rounded: the smallest visible differences.
 const SECONDS: f64 = 1e-3;
 const METRES: f64 = 1e-4;
 const TURN: f64 = 2e-4;
@@ -13,8 +13,8 @@ const DEGREES: f64 = 0.02;
 const TORQUE: f64 = 0.01;
 const SHARE: f64 = 1e-3;
 const NEWTONS: f64 = 0.5;
-/// Endurance is told in whole seconds, and beyond this many counts as for ever.
-const FOR_EVER: f64 = 1e5;
+/// Endurance times from this on, s, count as unlimited.
+const UNLIMITED: f64 = 1e5;
 
 /// The JSON text of a report. No `<`, `>` or `&` is left in it, so nothing in it can end or begin an element.
 pub(crate) fn data(report: &Report) -> String {
@@ -51,7 +51,7 @@ pub(crate) fn data(report: &Report) -> String {
     escape(&value.to_string())
 }
 
-/// Characters that mean something to a browser outside of JSON strings, written as JSON escapes. They occur in strings only.
+/// The JSON text with the characters of markup, which occur in strings only, as JSON escapes.
 fn escape(json: &str) -> String {
     let mut safe = String::with_capacity(json.len());
     for c in json.chars() {
@@ -92,7 +92,7 @@ fn joint(joint: &Joint, n: usize) -> Value {
 }
 
 fn group(group: &Group, n: usize) -> Value {
-    let left = |&seconds: &f64| if seconds < FOR_EVER { seconds.max(0.0) } else { -1.0 };
+    let left = |&seconds: &f64| if seconds < UNLIMITED { seconds.max(0.0) } else { -1.0 };
     json!({
         "label": group.label,
         "fatigue": known(&group.fatigue, || column(group.fatigue.iter().copied(), n, SHARE)),
@@ -125,12 +125,12 @@ fn points(points: &[[f64; 3]]) -> Value {
     points.iter().map(|point| short(point, METRES)).collect()
 }
 
-/// Nothing where there is nothing.
+/// Null for an empty list.
 fn known<T>(values: &[T], write: impl FnOnce() -> Value) -> Value {
     if values.is_empty() { Value::Null } else { write() }
 }
 
-/// Numbers rounded to what can be seen.
+/// Numbers rounded to a step.
 fn short(values: &[f64], step: f64) -> Value {
     let per = 1.0 / step;
     values.iter().map(|v| (v * per).round() / per).map(|v| if v.is_finite() { v } else { 0.0 }).collect()
@@ -142,7 +142,7 @@ mod tests {
     use crate::List;
 
     #[test]
-    fn hostile_names_stay_data() {
+    fn names_with_markup_come_back_unchanged_and_contain_none_in_the_json() {
         let name = "</script><script>alert(1)</script><!-- & \u{2028}\u{2029} \"\\ \u{0} </SCRIPT >";
         let report = Report {
             title: name.to_owned(),

@@ -1,9 +1,9 @@
-//! How does a result become a page that opens anywhere? Plain numbers in, one `report.html` out: the body in three dimensions,
-//! over time or in a few postures, charts of every joint, decisions in plain words. It needs no network, and its content security
-//! policy allows none. What is not known stands nowhere on the page.
+//! Writes a result as a page that opens in any browser: plain numbers in, one `report.html` out, with the body in three dimensions,
+//! over time or in a few postures, charts of every joint, and decisions in plain words. The page needs no network, and its content
+//! security policy allows none. Parts of the page about which nothing is known are hidden.
 //!
-//! Inside, every file stands on those above it in this list: `solid` (thickness of segments), `column` (numbers over time,
-//! short), `data` (what the page's script reads), `page` (the file itself). The page's own script and style stand in `page/`.
+//! Inside, a file uses only those above it in this list: `solid` (thickness of segments), `column` (numbers over time,
+//! short), `data` (the input of the page's script), `page` (the file). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
 //!
 //! Every function takes any input without panicking: numbers that are not finite count as 0, lists that are too short as if
 //! their last number went on. The same input gives the same bytes. Texts may come from strangers: they reach the page as text.
@@ -23,42 +23,42 @@ pub struct Report {
     pub title: String,
     /// Name of the body.
     pub body: String,
-    /// What was found, in one plain sentence.
+    /// The finding in one plain sentence.
     pub headline: String,
-    /// Why, in a few more.
+    /// The reasons, a sentence each.
     pub reasons: Vec<String>,
-    /// The few numbers that say most.
+    /// The most important numbers.
     pub figures: Vec<Figure>,
-    /// What its frames are.
+    /// Meaning of the frames.
     pub moments: Moments,
-    /// What the body is made of.
+    /// Segments of the body.
     pub segments: Vec<Segment>,
-    /// Its coordinates, those that hold a torque.
+    /// Coordinates of the body that carry a torque.
     pub joints: Vec<Joint>,
-    /// Place in `joints` of the one to show first.
+    /// Index in `joints` of the joint to show first.
     pub main: usize,
-    /// Fatigue at which relief begins and ends, 0..=1; none where nobody is relieved.
+    /// Fatigue at which relief begins and ends, 0..=1; `None` without relief.
     pub levels: Option<[f64; 2]>,
-    /// What carries the body; without, it is held by its root.
+    /// Supports of the body; empty if the root is fixed.
     pub supports: Vec<Support>,
-    /// Height of the ground, m; without, none is drawn.
+    /// Height of the ground, m; with `None` no ground is drawn.
     pub ground: Option<f64>,
-    /// Other things that the body rests on, a seat, a table, a wall: corners of flat pieces, around, m.
+    /// Other surfaces that carry the body, a seat, a table, a wall: the four corners of each in order, m.
     pub surfaces: Vec<[[f64; 3]; 4]>,
-    /// Places that tasks ask for, m.
+    /// Targets of tasks, m.
     pub targets: Vec<[f64; 3]>,
     /// Centre of mass in every frame; may be empty.
     pub center_of_mass: Vec<[f64; 3]>,
-    /// What there is to read of single frames.
+    /// Texts about single frames.
     pub list: List,
-    /// What there is to read of all of them; may be empty.
+    /// A table about all frames; may be empty.
     pub table: Table,
 }
 
-/// What the frames of a report are.
+/// Meaning of the frames of a report.
 #[derive(Clone, Debug)]
 pub enum Moments {
-    /// Moments of a motion, s, rising: a slider and a button to play go through them.
+    /// Times of a motion, s, rising; the page has a slider and a button to play.
     Times(Vec<f64>),
     /// Postures to choose between, each with its name.
     Postures(Vec<String>),
@@ -80,14 +80,14 @@ impl Moments {
     }
 }
 
-/// A number worth a large print.
+/// An important number.
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
-    /// What it is.
+    /// Name of the number.
     pub label: String,
     /// The number with its unit.
     pub value: String,
-    /// What it was, or is to be compared with; may be empty.
+    /// A value to compare with; may be empty.
     pub note: String,
 }
 
@@ -101,11 +101,11 @@ pub struct Segment {
     pub name: String,
     /// At least one.
     pub balls: Vec<Ball>,
-    /// Places in [`Report::joints`] of the coordinates that join it to what carries it; none for a root.
+    /// Indices in [`Report::joints`] of the coordinates that join the segment to its parent; empty for a root.
     pub joints: Vec<usize>,
-    /// Where it is in every frame: origin, m, and unit quaternion `w x y z`.
+    /// Placement in every frame: origin, m, and unit quaternion `w x y z`.
     pub places: Vec<[f64; 7]>,
-    /// Where it was before anything happened: a ghost shows it.
+    /// Placement at the start, drawn as a ghost.
     pub start: [f64; 7],
 }
 
@@ -114,11 +114,11 @@ pub struct Segment {
 pub struct Joint {
     /// Its name in the model.
     pub name: String,
-    /// The same in words.
+    /// Its name in words.
     pub label: String,
-    /// Which way is positive; may be empty.
+    /// The positive direction in words; may be empty.
     pub positive: String,
-    /// It slides: its values are m and N, not degrees and N m.
+    /// Whether the coordinate is a length: values in m and N, not degrees and N m.
     pub slides: bool,
     /// Its two muscle groups, positive torque first.
     pub groups: Option<[Group; 2]>,
@@ -141,51 +141,51 @@ pub struct Balance {
     pub angle: Vec<f64>,
     /// Minus the passive torque at each.
     pub minus_passive: Vec<f64>,
-    /// External torque at each, everything else held; empty where that makes no sense, as for a leg that stands.
+    /// External torque at each angle, all other coordinates unchanged; empty where that has no meaning, as for a standing leg.
     pub external: Vec<f64>,
 }
 
 /// One muscle group over time.
 #[derive(Clone, Debug, Default)]
 pub struct Group {
-    /// In words.
+    /// Name in words.
     pub label: String,
-    /// Fatigue in every frame, 0..=1; empty where it is not known.
+    /// Fatigue in every frame, 0..=1; empty if not known.
     pub fatigue: Vec<f64>,
-    /// How long the present load can still be held, s, in every frame; infinite for ever.
+    /// Time for which the present load can still be held, s, in every frame; may be infinite.
     pub left: Vec<f64>,
 }
 
-/// What carries the body, over time.
+/// One support of the body over time.
 #[derive(Clone, Debug, Default)]
 pub struct Support {
     /// Its name.
     pub label: String,
     /// Force on the body in every frame, N.
     pub force: Vec<[f64; 3]>,
-    /// Where it acts in every frame, m.
+    /// Point where the force acts in every frame, m.
     pub at: Vec<[f64; 3]>,
     /// Share of the body's weight in every frame.
     pub share: Vec<f64>,
 }
 
-/// What there is to read of single frames; empty with nothing in it.
+/// Texts about single frames; the default is empty.
 #[derive(Clone, Debug, Default)]
 pub struct List {
-    /// What the list is.
+    /// Heading of the list.
     pub heading: String,
     /// In the order of frames.
     pub entries: Vec<Entry>,
-    /// What to say where there are none.
+    /// The text of an empty list.
     pub none: String,
 }
 
-/// Something that a frame and a joint show: a click goes there.
+/// A text about a frame and a joint; a click shows both.
 #[derive(Clone, Debug, Default)]
 pub struct Entry {
     /// Number of the frame.
     pub frame: usize,
-    /// Place in [`Report::joints`].
+    /// Index in [`Report::joints`].
     pub joint: usize,
     /// In plain words.
     pub text: String,
@@ -194,7 +194,7 @@ pub struct Entry {
 /// A table of texts.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    /// What it shows.
+    /// Heading of the table.
     pub heading: String,
     /// Names of its columns.
     pub columns: Vec<String>,

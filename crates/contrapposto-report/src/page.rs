@@ -1,4 +1,4 @@
-//! The file itself: what stands in it, and what it is allowed to do.
+//! Writes the file: the page with its style, data and scripts, and the policy that names what it may do.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -9,9 +9,12 @@ use crate::data::data;
 
 const PAGE: &str = include_str!("../page/page.html");
 const STYLE: &str = include_str!("../page/style.css");
-/// One after the other they are one script.
-const SCRIPTS: [&str; 4] = [
+/// In this order they form one script.
+const SCRIPTS: [&str; 7] = [
     include_str!("../page/data.js"),
+    include_str!("../page/meshes.js"),
+    include_str!("../page/camera.js"),
+    include_str!("../page/painter.js"),
     include_str!("../page/body.js"),
     include_str!("../page/charts.js"),
     include_str!("../page/page.js"),
@@ -22,10 +25,10 @@ const PLOTLY: &str = include_str!("../vendor/plotly.js/plotly-basic.min.js");
 
 /// Writes the page.
 ///
-/// Its policy: nothing is fetched from anywhere; the two scripts run because their hashes are named, and no other does. plotly.js
-/// stands in it as text and becomes a script once body and words are painted.
-/// Style may stand inside (`unsafe-inline`): plotly.js sets style attributes, and without a network style can tell nobody anything.
-/// Pictures may come from the page itself: plotly.js makes them when a chart is saved.
+/// The page's policy allows no request at all, and exactly two scripts, by their hashes. plotly.js stands in the page as text and
+/// becomes a script once body and words are painted.
+/// Inline style is allowed (`unsafe-inline`), because plotly.js sets style attributes; without a network it cannot send anything.
+/// Images may come from the page itself, because plotly.js makes one when a chart is saved.
 pub fn write(report: &Report) -> String {
     let script = SCRIPTS.concat();
     let policy = format!(
@@ -45,7 +48,7 @@ pub fn write(report: &Report) -> String {
         _ => "",
     };
     let mut page = String::with_capacity(PLOTLY.len() + data.len() + (1 << 18));
-    // Places are looked for in our own text only, never in what was filled in.
+    // Places are searched in our own text only, never in inserted text.
     let mut rest = PAGE;
     while let Some((before, (place, after))) = rest.split_once("{{").and_then(|(b, a)| Some((b, a.split_once("}}")?))) {
         page.push_str(before);
@@ -56,14 +59,14 @@ pub fn write(report: &Report) -> String {
     page
 }
 
-/// As the policy names a script.
+/// The hash by which the policy names a script.
 fn hash(script: &str) -> String {
     // Browsers hash what they have parsed, where every end of line is one character.
     let script = script.replace("\r\n", "\n").replace('\r', "\n");
     format!("sha256-{}", BASE64_STANDARD.encode(Sha256::digest(script)))
 }
 
-/// As text of an element.
+/// The text with the characters escaped that begin elements and entities.
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
@@ -83,14 +86,14 @@ mod tests {
     }
 
     #[test]
-    fn no_script_ends_its_element() {
+    fn no_script_contains_the_end_of_its_element() {
         for script in [PLOTLY, &SCRIPTS.concat()] {
             assert!(!script.to_lowercase().contains("</script") && !script.contains("<!--"));
         }
     }
 
     #[test]
-    fn every_place_is_filled_once() {
+    fn every_place_is_filled_once_and_placeholders_in_titles_stay_text() {
         let page = write(&Report { title: "{{script}} <b>&".to_owned(), ..Report::default() });
         assert!(page.contains("<title>{{script}} &lt;b&gt;&amp;</title>"));
         assert!(!PAGE.is_empty() && page.ends_with("</html>\n"));
@@ -101,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn our_own_text_fetches_nothing() {
+    fn our_own_text_names_no_address_and_no_request() {
         for text in [PAGE, STYLE].into_iter().chain(SCRIPTS) {
             for word in ["http:", "https:", "fetch(", "XMLHttpRequest", "WebSocket", "innerHTML", "eval(", "import("] {
                 assert!(!text.contains(word), "{word}");

@@ -1,4 +1,4 @@
-//! How thick is a segment? As thick as its volume asks: the hull of equal balls about its points.
+//! Computes the thickness of a segment from its volume: the convex hull of balls about its points has that volume.
 
 use crate::Ball;
 
@@ -30,8 +30,8 @@ fn hull_volume(balls: &[Ball]) -> f64 {
         let (down, across) = (std::f64::consts::PI * ring as f64 / RINGS as f64).sin_cos();
         let (sin, cos) = (std::f64::consts::TAU * (slice % SLICES) as f64 / SLICES as f64).sin_cos();
         let d = [down * cos, across, down * sin];
-        let reach = |b: &&Ball| b[0] * d[0] + b[1] * d[1] + b[2] * d[2] + b[3];
-        let Some(b) = balls.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))) else { return [0.0; 3] };
+        let support = |b: &&Ball| b[0] * d[0] + b[1] * d[1] + b[2] * d[2] + b[3];
+        let Some(b) = balls.iter().max_by(|a, b| support(a).total_cmp(&support(b))) else { return [0.0; 3] };
         [b[0] + b[3] * d[0], b[1] + b[3] * d[1], b[2] + b[3] * d[2]]
     };
     let mut six = 0.0;
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ball_and_a_bar_have_their_volume() {
+    fn balls_of_the_volume_of_a_ball_and_of_a_bar_have_their_radius() {
         let radius: f64 = 0.1;
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
         let found = balls_of(&[[0.3, 0.2, 0.1, 1.0]], ball)[0][3];
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_too_much_stay_within_bounds() {
+    fn volumes_of_zero_and_of_a_billion_give_the_thinnest_and_thickest_ball() {
         assert_eq!(balls_of(&[[0.0, 0.0, 0.0, 1.0]], 0.0)[0][3], THIN);
         assert_eq!(balls_of(&[[0.0, 0.0, 0.0, 1.0]], 1e9)[0][3], THICK);
         assert!(balls_of(&[], 1.0).is_empty());

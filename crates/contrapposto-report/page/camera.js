@@ -1,0 +1,101 @@
+// Placements and the camera, as matrices of four columns. Ground axes: y up.
+const FIELD_OF_VIEW = 0.45;
+// Yaw and pitch of the camera, rad: yaw 0 is from the front, a quarter turn from the body's right.
+const VIEWS = { front: [0, 0.06], side: [Math.PI / 2, 0.06], between: [0.45, 0.14] };
+const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+// Place of a segment in a frame; `places` holds x, y, z and the quaternion w, x, y, z, each over all frames.
+function placement(places, frame) {
+  const [x, y, z, w, a, b, c] = places.map((column) => column[frame]);
+  const s = 2 / (w * w + a * a + b * b + c * c || 1);
+  return [
+    1 - s * (b * b + c * c), s * (a * b + c * w), s * (a * c - b * w), 0,
+    s * (a * b - c * w), 1 - s * (a * a + c * c), s * (b * c + a * w), 0,
+    s * (a * c + b * w), s * (b * c - a * w), 1 - s * (a * a + b * b), 0, x, y, z, 1];
+}
+
+// Takes the y axis to the direction `along` at `from`: scaled by `stretch` along it and by `thickness` across it.
+function pointing(from, along, thickness, stretch) {
+  const y = unit(along), x = unit(cross(Math.abs(y[0]) < 0.9 ? [1, 0, 0] : [0, 0, 1], y)), z = cross(x, y);
+  return [...x.map((v) => v * thickness), 0, ...y.map((v) => v * stretch), 0, ...z.map((v) => v * thickness), 0, ...from, 1];
+}
+
+// A ball of radius 1 at a point, scaled to `size`, and to `height` along the vertical.
+function scaledAt(point, size, height) {
+  return [size, 0, 0, 0, 0, height, 0, 0, 0, 0, size, 0, ...point, 1];
+}
+
+// Bounds of the segments in some frames and at the start, of the surfaces and of the targets.
+function sceneBounds() {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  const include = (k, from, to) => {
+    low[k] = Math.min(low[k], from);
+    high[k] = Math.max(high[k], to);
+  };
+  const includeBall = (m, [x, y, z, r]) => {
+    for (let k = 0; k < 3; k++) {
+      const c = m[k] * x + m[4 + k] * y + m[8 + k] * z + m[12 + k];
+      include(k, c - r, c + r);
+    }
+  };
+  const frames = Array.from({ length: 12 }, (_, i) => Math.round(i / 11 * (report.frames - 1)));
+  for (const segment of report.segments) {
+    const places = [placement(segment.start, 0), ...frames.map((frame) => placement(segment.places, frame))];
+    for (const place of places) for (const ball of segment.balls) includeBall(place, ball);
+  }
+  for (const corner of [...report.surfaces.flat(), ...report.targets]) corner.forEach((c, k) => include(k, c, c));
+  return { low, high };
+}
+
+// The camera looks at the middle of the bounds, from a distance at which all of them are in the picture.
+class Camera {
+  constructor({ low, high }) {
+    this.middle = low.map((v, k) => (v + high[k]) / 2 || 0);
+    this.height = Math.max(0.3, high[1] - low[1]) || 1;
+    this.width = Math.max(0.2, Math.hypot(high[0] - low[0], high[2] - low[2])) || 1;
+    [this.yaw, this.pitch] = VIEWS.between;
+    this.zoom = 1;
+  }
+
+  turn(yaw, pitch) {
+    this.yaw += yaw;
+    this.pitch = Math.min(1.5, Math.max(-0.4, this.pitch + pitch));
+  }
+
+  magnify(factor) {
+    this.zoom = Math.min(6, Math.max(0.4, this.zoom * factor));
+  }
+
+  lookFrom(view) {
+    [this.yaw, this.pitch] = VIEWS[view];
+  }
+
+  // Unit vectors of the picture in ground axes: right, up, and back towards the camera.
+  axes() {
+    const [sy, cy, sp, cp] = [Math.sin(this.yaw), Math.cos(this.yaw), Math.sin(this.pitch), Math.cos(this.pitch)];
+    return { right: [sy, 0, -cy], up: [-sp * cy, cp, -sp * sy], back: [cp * cy, sp, cp * sy] };
+  }
+
+  // The matrix from ground to clip coordinates.
+  projection(aspect) {
+    const { right, up, back } = this.axes();
+    const spread = Math.tan(FIELD_OF_VIEW / 2), f = 1 / spread;
+    const distance = Math.max(this.height / 1.75, this.width / (1.85 * aspect)) / spread / this.zoom + this.width / 3;
+    const nearest = 0.05, farthest = distance + 20, depth = nearest - farthest;
+    const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const shift = [-dot(right, this.middle), -dot(up, this.middle), -dot(back, this.middle) - distance];
+    const matrix = [];
+    for (let k = 0; k < 4; k++) {
+      const [x, y, z] = k < 3 ? [right, up, back].map((axis) => axis[k]) : shift;
+      const clip = (nearest + farthest) / depth * z + (k < 3 ? 0 : 2 * nearest * farthest / depth);
+      matrix.push(f / aspect * x, f * y, clip, -z);
+    }
+    return matrix;
+  }
+
+  // Direction towards the light, above the left shoulder of the viewer.
+  light() {
+    const { right, up, back } = this.axes();
+    return unit([0, 1, 2].map((k) => 0.55 * back[k] + 0.7 * up[k] - 0.45 * right[k]));
+  }
+}
