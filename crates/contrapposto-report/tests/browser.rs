@@ -1,5 +1,5 @@
-//! Tests the page in a real browser: it loads without a complaint, everything can be moved by hand and by keyboard, names
-//! stay text, and nothing is asked of a network.
+//! Tests the page in a real browser: it loads without an error, slider, keys and mouse move every part, names stay text,
+//! and no request is sent.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
@@ -13,7 +13,7 @@ use contrapposto_report::{
 use serde_json::json;
 use support::chromium::Chromium;
 
-/// A name that would like to be more than a name.
+/// A name with markup and a script.
 const HOSTILE: &str = "</script><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">\
                        <a href=\"https://example.invalid/\">x</a>&amp;\u{2028}{{script}}";
 
@@ -131,7 +131,7 @@ const SHOWN: &str = "[...document.querySelectorAll('section, #time, #postures, #
 
 #[test]
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
-fn slider_keys_and_decisions_move_everything() {
+fn slider_keys_and_decisions_move_body_and_charts() {
     let mut page = open("moves.html");
     let start = [PICTURE, POINT, CURSOR].map(|what| page.evaluate(what));
     page.evaluate("{ const s = document.getElementById('slider'); s.value = 2; s.dispatchEvent(new Event('input')); }");
@@ -174,7 +174,7 @@ fn slider_keys_and_decisions_move_everything() {
 
 #[test]
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
-fn postures_are_chosen_from() {
+fn buttons_keys_and_list_choose_a_posture() {
     let mut page = open_page("postures.html", &postures(3));
     let parts = "scene key-ghost key-force key-center key-target postures list joint muscles overview";
     assert_eq!(page.evaluate(SHOWN), parts, "no time, no fatigue");
@@ -202,7 +202,7 @@ fn postures_are_chosen_from() {
 
 #[test]
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
-fn what_is_not_known_is_not_shown() {
+fn parts_without_data_are_hidden() {
     let mut report = postures(1);
     (report.list, report.table) = (List::default(), Table::default());
     (report.center_of_mass, report.supports, report.targets) = (vec![], vec![], vec![]);
@@ -268,7 +268,7 @@ fn a_phone_in_the_dark_and_paper_have_no_overflow() {
 }
 
 #[test]
-fn the_same_report_is_the_same_page() {
+fn equal_reports_give_equal_pages() {
     assert!(write(&report()) == write(&report()));
 }
 
@@ -279,7 +279,7 @@ fn an_empty_report_is_a_page_below_six_megabytes() {
 
 #[test]
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
-fn an_empty_report_is_a_page_without_complaints() {
+fn an_empty_report_opens_without_errors() {
     let mut browser = Chromium::start();
     browser.open(&file("empty.html", &write(&Report::default())));
     assert_eq!(browser.complaints(), Vec::<String>::new());
