@@ -24,7 +24,6 @@ pub(crate) struct Iterate {
     /// As [`crate::contact::ContactForces::forces`].
     pub(crate) forces: Vec<f64>,
     pub(crate) body: JointTorques,
-    /// Filled where supports hold a free root.
     /// Loads of the scenario, then one a corner.
     pub(crate) loads: Vec<Load>,
     /// As [`crate::contact::ContactForces::columns`].

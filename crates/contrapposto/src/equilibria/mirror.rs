@@ -1,8 +1,8 @@
-//! What is the mirror image of a posture?
+//! Computes the mirror image of a posture.
 //!
-//! Left and right are told by names (`_r` and `_l`, `right` and `left`); the plane between them is that of up and ahead through
-//! the ground's origin. Which way a coordinate counts on the other side is found by moving it: a body has a mirror image only
-//! if every segment, passive torque and strength agrees with that of its partner.
+//! Names tell left from right (`_r` and `_l`, `right` and `left`); the mirror plane is spanned by up and ahead, through the
+//! ground's origin. The sign of a coordinate on the other side is found by moving the coordinate: a body has a mirror image only if
+//! every segment, passive torque and strength agrees with that of its partner.
 
 use nalgebra::Vector3;
 
@@ -10,10 +10,10 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
 
-/// What partners may differ by, in m, and as a share of torques: rounding.
-const ALIKE: f64 = 1e-9;
+/// Largest difference between partners, m, and as a share of torques: rounding.
+const SAME_SIDE: f64 = 1e-9;
 /// Share of a coordinate's range (of 1 rad or m at most) by which it is moved.
-const MOVE: f64 = 0.13;
+const TRIAL_MOVE: f64 = 0.13;
 
 /// Partners of all coordinates, and their signs.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Mirror {
 }
 
 impl Mirror {
-    /// Of a body that is the same on both sides; `None` for one that is not, or that has ball joints.
+    /// The mirror of a symmetric body; `None` for another one, or one with ball joints.
     pub fn of(model: &Model) -> Option<Self> {
         let coordinates = model.coordinates();
         if coordinates.iter().any(|coordinate| coordinate.rate.is_none()) {
@@ -40,27 +40,27 @@ impl Mirror {
         for (i, coordinate) in coordinates.iter().enumerate() {
             let mut moved = model.default_posture();
             let (low, high) = coordinate.range;
-            let far = MOVE * (high - low).min(1.0);
+            let far = TRIAL_MOVE * (high - low).min(1.0);
             moved.values_mut()[i] += if moved.values()[i] + far <= high { far } else { -far };
             let fits = |mirror: &mut Self, sign: f64, kinematics: &mut _| {
                 mirror.partners[i].1 = sign;
-                mirror.holds(model, &moved, kinematics, Some(i))
+                mirror.agrees(model, &moved, kinematics, Some(i))
             };
             if !fits(&mut mirror, 1.0, &mut kinematics) && !fits(&mut mirror, -1.0, &mut kinematics) {
                 return None;
             }
         }
-        // All at once, each somewhere else.
+        // All coordinates at once, each by another share.
         let mut moved = model.default_posture();
         for (i, (value, coordinate)) in moved.values_mut().iter_mut().zip(coordinates).enumerate() {
             let share = 0.2 + 0.6 * ((i * 7) % 11) as f64 / 10.0;
-            *value += share * MOVE * (coordinate.range.1 - coordinate.range.0).min(1.0);
+            *value += share * TRIAL_MOVE * (coordinate.range.1 - coordinate.range.0).min(1.0);
         }
         moved.displace(model, &vec![0.0; model.rates().len()]);
-        mirror.holds(model, &moved, &mut kinematics, None).then_some(mirror)
+        mirror.agrees(model, &moved, &mut kinematics, None).then_some(mirror)
     }
 
-    /// The other side's posture.
+    /// The mirror image of a posture.
     pub fn posture(&self, posture: &Posture) -> Posture {
         let mut image = posture.clone();
         for (value, &(partner, sign)) in posture.values().iter().zip(&self.partners) {
@@ -84,9 +84,9 @@ impl Mirror {
         v - 2.0 * self.across.dot(&v) * self.across
     }
 
-    /// Is the image of `posture` where it should be? With `only`, other coordinates are left at their defaults, whatever their
-    /// signs, and torques are not compared.
-    fn holds(&self, model: &Model, posture: &Posture, kinematics: &mut [Kinematics; 2], only: Option<usize>) -> bool {
+    /// Whether every segment of the image of `posture` is the mirror image of its partner. With `only`, other coordinates stay at
+    /// their defaults, whatever their signs, and torques are not compared.
+    fn agrees(&self, model: &Model, posture: &Posture, kinematics: &mut [Kinematics; 2], only: Option<usize>) -> bool {
         let mut image = model.default_posture();
         match only {
             Some(i) => image.values_mut()[self.partners[i].0] = self.partners[i].1 * posture.values()[i],
@@ -97,26 +97,26 @@ impl Mirror {
             return false;
         }
         let [here, there] = kinematics;
-        let alike = |i: usize| {
+        let agrees = |i: usize| {
             let (own, other) = (&model.segments()[i], &model.segments()[self.segments[i]]);
             let at = |k: &Kinematics, s: usize| {
                 [k.placement(model, s).translation.vector, k.station(model, s, model.segments()[s].center_of_mass)]
             };
-            (own.mass - other.mass).abs() <= ALIKE * own.mass.max(1.0)
+            (own.mass - other.mass).abs() <= SAME_SIDE * own.mass.max(1.0)
                 && at(here, i)
                     .into_iter()
                     .zip(at(there, self.segments[i]))
-                    .all(|(a, b)| (self.vector(a) - b).norm() <= ALIKE * a.norm().max(1.0))
+                    .all(|(a, b)| (self.vector(a) - b).norm() <= SAME_SIDE * a.norm().max(1.0))
         };
-        (0..model.segments().len()).all(alike)
-            && (only.is_some() || (0..self.partners.len()).all(|i| self.tissue_alike(model, i, posture, &image)))
+        (0..model.segments().len()).all(agrees)
+            && (only.is_some() || (0..self.partners.len()).all(|i| self.tissue_agrees(model, i, posture, &image)))
     }
 
-    /// Do passive torque and strength agree?
-    fn tissue_alike(&self, model: &Model, i: usize, posture: &Posture, image: &Posture) -> bool {
+    /// Whether passive torque and strength agree.
+    fn tissue_agrees(&self, model: &Model, i: usize, posture: &Posture, image: &Posture) -> bool {
         let (partner, sign) = self.partners[i];
         let (own, other) = (&model.coordinates()[i], &model.coordinates()[partner]);
-        let near = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(1.0);
+        let near = |a: f64, b: f64| (a - b).abs() <= SAME_SIDE * a.abs().max(1.0);
         let passive = match (&own.passive, &other.passive) {
             (Some(a), Some(b)) => near(sign * a.torque(i, posture.values()), b.torque(partner, image.values())),
             (a, b) => a.is_none() && b.is_none(),
@@ -141,7 +141,7 @@ fn across(model: &Model) -> Vector3<f64> {
     (x - up * up.dot(&x)).normalize().cross(&up)
 }
 
-/// The name of the same thing on the other side; the name itself where it names no side.
+/// The name with its side exchanged; the name itself where it names no side.
 fn other_side(name: &str) -> String {
     for (one, other) in [("_r", "_l"), ("_l", "_r")] {
         if let Some(stem) = name.strip_suffix(one) {

@@ -1,12 +1,31 @@
 //! Searches for the different postures of least effort under supports and tasks, and computes their stability.
+//!
+//! Effort has many local minima; the one that [`Engine`](crate::posture_solver::Engine) finds depends on its start. The starts are
+//! given by the body and the tables of the paper (`finder.rs`), none by chance:
+//!
+//! 1. the start of the scenario, moved to its tasks first;
+//! 2. from the posture found there: [`minimise`](crate::hybrid::minimise) gives every coordinate its active and its passive goal
+//!    angle, with the slope along the motion that supports and tasks leave it. All active goals together, all passive goals
+//!    together, and those of the coordinates with the largest relative loads one by one, are half-spaces below the tasks and above
+//!    effort; exploratory steps follow with and then without them. Active goals lie where passive curves are flat, passive ones
+//!    near the ends of ranges, where ligaments carry;
+//! 3. the same from the posture of least effort so far, if that is a new one;
+//! 4. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise.
+//!
+//! From every different posture the engine then converges. Two postures count as one if at no joint the torque of loads or of
+//! passive tissue differs by more than a twentieth of the strength there: minima can be flat, a forearm may rotate without load on
+//! a muscle. Of those the one of least effort is kept. Postures whose tasks are farther away than in the best one, that slipped or
+//! fell, are counted and left out.
 
-mod equilibria;
+mod description;
 mod finder;
 mod mirror;
+mod outcome;
+mod search;
 mod stability;
 
-pub use equilibria::{
-    Carried, Equilibria, Hanging, ROUNDS, RelaxedPosture, SAME, SCOUT, SINGLE, Search, SearchError, Work, equilibria,
-};
+pub use finder::equilibria;
 pub use mirror::Mirror;
+pub use outcome::{Carried, Equilibria, Hanging, RelaxedPosture, Work};
+pub use search::{Search, SearchError};
 pub use stability::{Direction, LEAST_MASS, Stability, stability, stiffness};

@@ -1,16 +1,16 @@
-//! Does a posture come back by itself when it is pushed, and if not, which joints must be attended to?
+//! Computes whether a posture returns by itself after a disturbance, and else which joints need attention.
 //!
-//! Muscles hold their torque, contact forces theirs (as world-fixed forces at their corners), supports stay where they are:
-//! a small motion `d` that the supports leave free is answered by the torque `-K d` with the stiffness
-//! `K = -(d tau_p/dq + d tau_e/dq)`. Its symmetric part, on the null space `Z` of the supports' Jacobians, decides. What is
-//! one-sided (a foot that could lift, the end of a range) counts as it is where the body stands: feet stay, ranges do not push.
+//! Muscles keep their torques, contact forces stay as world-fixed forces at their corners, supports stay in place: a small motion
+//! `d` that the supports allow is answered by the torque `-K d` with the stiffness `K = -(d tau_p/dq + d tau_e/dq)`. The symmetric
+//! part of `K` on the null space `Z` of the supports' Jacobians decides. One-sided constraints (a foot that could lift, the end of a
+//! range) count as they are in the posture: feet stay, ranges do not push.
 //!
 //! The metric is the mass matrix `M`, loads with weight included: `Z^T K Z x = s Z^T M Z x`. How many `s` are negative does not
-//! depend on the metric (Sylvester's law of inertia); with this one `s` has a meaning, `1/sqrt(-s)` is the time in which a
-//! disturbance grows by `e`, and slides and angles need no weights against each other. Joints without mass behind them get
+//! depend on the metric (Sylvester's law of inertia); in this one `1/sqrt(-s)` is the time in which a disturbance grows by `e`, and
+//! slides and angles need no weights against each other. Joints without mass behind them get
 //! [`LEAST_MASS`] of the largest entry, so that every `s` is finite.
 //!
-//! For one joint the verdict is that of [`crate::hybrid::Equilibrium`]: stable where `d tau_a / d theta > 0`.
+//! For one joint the result is that of [`crate::hybrid::Equilibrium`]: stable where `d tau_a / d theta > 0`.
 
 use nalgebra::{Cholesky, DMatrix, DVector, SVD, SymmetricEigen};
 
@@ -24,23 +24,23 @@ use crate::tasks::passive_row;
 /// Share of the largest diagonal entry of the mass matrix that every rate has at least.
 pub const LEAST_MASS: f64 = 1e-9;
 /// Singular values of the supports' Jacobian below this share of the largest count as zero: a free direction.
-const FREE: f64 = 1e-9;
-/// Of the largest eigenvalue in size: what is smaller is rounding, and no more stable than a ball on a table.
-const ROUNDING: f64 = 1e-12;
+const ZERO_SINGULAR_VALUE: f64 = 1e-9;
+/// Share of the largest eigenvalue below which an eigenvalue is rounding: neutral, as a ball on a table.
+const ZERO_EIGENVALUE: f64 = 1e-12;
 
-/// One way in which the body can move on its supports, square to the others in the metric of its mass.
+/// A motion that the supports allow, orthogonal to the others in the metric of the mass matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// How far every rate moves, rad or m; of length 1 in the metric of the mass matrix (kg m^2).
+    /// Change of every rate, rad or m; of length 1 in the metric of the mass matrix (kg m^2).
     pub motion: Vec<f64>,
-    /// `s`, 1/s^2: how hard the body is driven back (positive) or away (negative), by its inertia.
+    /// `s`, 1/s^2: acceleration back (positive) or away (negative) per motion.
     pub stiffness: f64,
-    /// Part of it that passive tissue gives, 1/s^2.
+    /// Part of the stiffness from passive tissue, 1/s^2.
     pub by_tissue: f64,
-    /// Part of it that weight, loads and contact forces give, 1/s^2.
+    /// Part of the stiffness from weight, loads and contact forces, 1/s^2.
     pub by_load: f64,
-    /// Coordinates that move in it and that muscles could hold, with their share of the sum of squared motions; the largest
-    /// first, those below a hundredth left out.
+    /// Coordinates with muscles that move, with their share of the sum of squared motions; the largest first, those below a
+    /// hundredth left out.
     pub joints: Vec<(usize, f64)>,
 }
 
@@ -51,29 +51,29 @@ impl Direction {
     }
 }
 
-/// What holds a posture when nobody attends to it.
+/// Stability of a posture without attention.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
-    /// By whom, judged in the weakest direction; `None` where the supports leave nothing free.
+    /// The equilibrium in the weakest direction; `None` where the supports allow no motion.
     pub equilibrium: Option<Equilibrium>,
     /// All directions, the least stable first.
     pub directions: Vec<Direction>,
-    /// So many of them do not come back by themselves.
+    /// Number of directions that do not return by themselves.
     pub unstable: usize,
-    /// Size of the part of the stiffness that no energy gives, against its symmetric part (Frobenius norms on the free
+    /// Norm of the part of the stiffness that derives from no energy, over that of the symmetric part (Frobenius norms on the free
     /// directions): coupled passive laws, couples and body-fixed forces have such a part.
     pub without_energy: f64,
 }
 
 impl Stability {
-    /// Directions that do not come back by themselves, the worst first.
+    /// Directions that do not return by themselves, the least stable first.
     pub fn unstable(&self) -> &[Direction] {
         &self.directions[..self.unstable]
     }
 }
 
-/// Stiffness of the body at every pair of rates, N m/rad: what tissue gives, and what weight, loads and contact forces give.
-/// Row by row, not made symmetric.
+/// Stiffness at every pair of rates, N m/rad, from passive tissue and from weight, loads and contact forces; row after row, not
+/// symmetric.
 pub fn stiffness(model: &Model, body: &JointTorques) -> [Vec<f64>; 2] {
     let n = model.rates().len();
     let mut tissue = vec![0.0; n * n];
@@ -86,8 +86,8 @@ pub fn stiffness(model: &Model, body: &JointTorques) -> [Vec<f64>; 2] {
     [tissue, load]
 }
 
-/// How stable is the posture of `body`, whose torques include contact forces? `loads` are the scenario's own: weights among them
-/// have inertia. `locked`: rates that do not move, besides coordinates that follow others.
+/// Computes the stability of the posture of `body`, whose torques include contact forces. `loads` are those of the scenario:
+/// weights among them have inertia. `locked`: rates that do not move, besides dependent coordinates.
 pub fn stability(
     model: &Model,
     body: &JointTorques,
@@ -99,8 +99,7 @@ pub fn stability(
         .filter(|&i| !locked[i] && model.rates()[i].coordinate.is_none_or(|c| !model.is_dependent(c)))
         .collect();
     let basis = free_motions(model, body, supports, &free);
-    let n = basis.ncols();
-    if n == 0 {
+    if basis.ncols() == 0 {
         return Stability { equilibrium: None, directions: vec![], unstable: 0, without_energy: 0.0 };
     }
     let [tissue, load] = stiffness(model, body).map(|full| {
@@ -108,7 +107,6 @@ pub fn stability(
         basis.transpose() * full.select_rows(&free).select_columns(&free) * &basis
     });
     let total = &tissue + &load;
-    let symmetric = |m: &DMatrix<f64>| 0.5 * (m + m.transpose());
     let half = symmetric(&total);
     let without_energy = (&total - &half).norm() / half.norm().max(f64::MIN_POSITIVE);
     let mut mass = mass_matrix(model, body, loads).select_rows(&free).select_columns(&free);
@@ -116,41 +114,10 @@ pub fn stability(
     let least = if largest > 0.0 { LEAST_MASS * largest } else { 1.0 };
     (0..free.len()).for_each(|i| mass[(i, i)] += least);
     let mass = basis.transpose() * mass * &basis;
-    // A sum of squares and a positive diagonal: only numbers without size could fail here.
-    let Some(root) = Cholesky::new(symmetric(&mass)) else {
+    // Fails only for numbers that are not finite.
+    let Some((directions, unstable)) = eigen_directions(model, (&basis, &free), &mass, [tissue, load]) else {
         return Stability { equilibrium: None, directions: vec![], unstable: 0, without_energy };
     };
-    let lower = root.l();
-    let scaled = |m: &DMatrix<f64>| {
-        let left = lower.solve_lower_triangular(m)?;
-        lower.solve_lower_triangular(&left.transpose())
-    };
-    let Some(matrix) = scaled(&half) else {
-        return Stability { equilibrium: None, directions: vec![], unstable: 0, without_energy };
-    };
-    let found = SymmetricEigen::new(symmetric(&matrix));
-    let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by(|a, b| found.eigenvalues[*a].total_cmp(&found.eigenvalues[*b]));
-    let (tissue, load) = (symmetric(&tissue), symmetric(&load));
-    let directions: Vec<Direction> = order
-        .into_iter()
-        .map(|i| {
-            let along: DVector<f64> = found.eigenvectors.column(i).into();
-            let along = lower.tr_solve_lower_triangular(&along).unwrap_or(along);
-            let moved = &basis * &along;
-            let mut motion = vec![0.0; model.rates().len()];
-            free.iter().zip(moved.iter()).for_each(|(&rate, moved)| motion[rate] = *moved);
-            Direction {
-                stiffness: found.eigenvalues[i],
-                by_tissue: along.dot(&(&tissue * &along)),
-                by_load: along.dot(&(&load * &along)),
-                joints: joints(model, &motion),
-                motion,
-            }
-        })
-        .collect();
-    let rounding = ROUNDING * found.eigenvalues.amax();
-    let unstable = directions.iter().filter(|direction| direction.stiffness <= rounding).count();
     let weakest = &directions[0];
     let equilibrium = if unstable > 0 {
         Equilibrium::Unstable
@@ -162,13 +129,54 @@ pub fn stability(
     Stability { equilibrium: Some(equilibrium), directions, unstable, without_energy }
 }
 
-/// A basis, square and of length 1, of the motions of the `free` rates that leave all supports in place: one column a motion.
+fn symmetric(m: &DMatrix<f64>) -> DMatrix<f64> {
+    0.5 * (m + m.transpose())
+}
+
+/// Solves `K x = s M x` in the coordinates of `basis`, with `K` the sum of the two stiffnesses; returns the directions, the least
+/// stable first, and the number of those that are not stable.
+fn eigen_directions(
+    model: &Model,
+    (basis, free): (&DMatrix<f64>, &[usize]),
+    mass: &DMatrix<f64>,
+    [tissue, load]: [DMatrix<f64>; 2],
+) -> Option<(Vec<Direction>, usize)> {
+    let lower = Cholesky::new(symmetric(mass))?.l();
+    let scaled = |m: &DMatrix<f64>| {
+        let left = lower.solve_lower_triangular(m)?;
+        lower.solve_lower_triangular(&left.transpose())
+    };
+    let found = SymmetricEigen::new(symmetric(&scaled(&symmetric(&(&tissue + &load)))?));
+    let mut order: Vec<usize> = (0..basis.ncols()).collect();
+    order.sort_by(|a, b| found.eigenvalues[*a].total_cmp(&found.eigenvalues[*b]));
+    let (tissue, load) = (symmetric(&tissue), symmetric(&load));
+    let direction = |i: usize| {
+        let along: DVector<f64> = found.eigenvectors.column(i).into();
+        let along = lower.tr_solve_lower_triangular(&along).unwrap_or(along);
+        let moved = basis * &along;
+        let mut motion = vec![0.0; model.rates().len()];
+        free.iter().zip(moved.iter()).for_each(|(&rate, moved)| motion[rate] = *moved);
+        Direction {
+            stiffness: found.eigenvalues[i],
+            by_tissue: along.dot(&(&tissue * &along)),
+            by_load: along.dot(&(&load * &along)),
+            joints: joints(model, &motion),
+            motion,
+        }
+    };
+    let directions: Vec<Direction> = order.into_iter().map(direction).collect();
+    let rounding = ZERO_EIGENVALUE * found.eigenvalues.amax();
+    let unstable = directions.iter().filter(|direction| direction.stiffness <= rounding).count();
+    Some((directions, unstable))
+}
+
+/// An orthonormal basis of the motions of the `free` rates that leave all supports in place: one column a motion.
 fn free_motions(model: &Model, body: &JointTorques, supports: &[Support], free: &[usize]) -> DMatrix<f64> {
     let n = model.rates().len();
     let mut segments: Vec<usize> = supports.iter().map(|support| support.segment).collect();
     segments.sort_unstable();
     segments.dedup();
-    // Square at least, so that the whole basis comes out.
+    // At least as many rows as columns: the SVD then returns the whole basis.
     let mut jacobian = DMatrix::zeros((6 * segments.len()).max(free.len()), free.len());
     let mut rows = vec![0.0; 3 * n];
     for (i, &segment) in segments.iter().enumerate() {
@@ -193,7 +201,7 @@ fn free_motions(model: &Model, body: &JointTorques, supports: &[Support], free: 
     let svd = SVD::new(jacobian, false, true);
     let largest = svd.singular_values.amax();
     let Some(rows) = svd.v_t else { return DMatrix::zeros(free.len(), 0) };
-    let within = (0..free.len()).filter(|&i| svd.singular_values[i] <= FREE * largest);
+    let within = (0..free.len()).filter(|&i| svd.singular_values[i] <= ZERO_SINGULAR_VALUE * largest);
     let columns: Vec<DVector<f64>> = within.map(|i| rows.row(i).transpose()).collect();
     if columns.is_empty() { DMatrix::zeros(free.len(), 0) } else { DMatrix::from_columns(&columns) }
 }
@@ -240,7 +248,7 @@ fn joints(model: &Model, motion: &[f64]) -> Vec<(usize, f64)> {
     let whole = sum(&list);
     list.retain(|(_, square)| *square >= 0.01 * whole && *square > 0.0);
     list.iter_mut().for_each(|(_, square)| *square /= whole);
-    // Of equals the first of the model.
+    // A stable sort: of equals the first of the model.
     list.sort_by(|a, b| b.1.total_cmp(&a.1));
     list
 }

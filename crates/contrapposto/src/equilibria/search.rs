@@ -1,0 +1,37 @@
+//! States a search for postures of least effort, and its errors.
+
+use crate::contact::{Missing, Support};
+use crate::model::Model;
+use crate::posture::Posture;
+use crate::posture_solver::EngineError;
+use crate::statics::Load;
+use crate::tasks::PriorityLevel;
+
+/// Body, supports and tasks.
+#[derive(Clone, Debug)]
+pub struct Search<'a> {
+    /// The body.
+    pub model: &'a Model,
+    /// Start; the supports stay where they are in it.
+    pub start: &'a Posture,
+    /// Supports that carry the body.
+    pub supports: &'a [Support],
+    /// Tasks, the most important first. Effort of all muscles comes last where no level asks for effort.
+    pub goals: &'a [PriorityLevel],
+    /// Loads on the body besides its weight.
+    pub loads: &'a [Load],
+    /// Rates that do not move, besides those of locked coordinates.
+    pub locked: &'a [usize],
+}
+
+/// Why no posture was found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SearchError {
+    /// Body, supports or goals do not fit.
+    #[error(transparent)]
+    Relax(#[from] EngineError),
+    /// From no start a posture was found in which the supports hold the body.
+    #[error("the supports cannot hold the body, in the best posture that was tried: {0}")]
+    CannotStand(Missing),
+}
