@@ -12,7 +12,6 @@ use contrapposto::posture_solver::inverse_kinematics::Engine;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal as Place, Distance, LookAt, Placement, Point, Posture, Task};
-use hierarchical_least_squares::{Level, Problem, Solver, Status};
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -104,45 +103,6 @@ fn jacobians_allocate_nothing() {
         kinematics.fold_columns(&model, &mut rows);
     });
     assert!(height != 0.0 && rows.iter().any(|&entry| entry != 0.0));
-}
-
-/// Levels of random equations and a rest posture, as inverse kinematics makes them, with bounds that are active.
-fn levels(rng: &mut Pcg64) -> Problem {
-    let n = 40;
-    let mut problem = Problem::new(n);
-    problem.lower.fill(-0.25);
-    problem.upper.fill(0.25);
-    for rows in [9, 2, 3] {
-        let mut level = Level::default();
-        for _ in 0..rows {
-            let row: Vec<f64> = (0..n).map(|_| rng.random_range(-1.0..1.0)).collect();
-            let right = rng.random_range(-0.2..0.2);
-            level.push(&row, right, if rng.random_range(0..4) == 0 { right + 0.1 } else { right });
-        }
-        level.damping = rng.random_range(0.0..0.01);
-        problem.levels.push(level);
-    }
-    let mut rest = Level::default();
-    for i in 0..n {
-        let mut row = vec![0.0; n];
-        row[i] = 1.0;
-        let right = rng.random_range(-0.3..0.3);
-        rest.push(&row, right, right);
-    }
-    problem.levels.push(rest);
-    problem
-}
-
-#[test]
-fn solver_allocates_nothing() {
-    let mut rng = random();
-    // What is kept of an active set grows with it: every problem is seen once before.
-    let problems: Vec<Problem> = (0..CALLS).map(|_| levels(&mut rng)).collect();
-    let mut solver = Solver::new();
-    assert_silent("solve_next", CALLS, |i| assert_eq!(solver.solve_next(&problems[i]), Ok(Status::Solved)));
-    let mut solver = Solver::new();
-    assert_silent("solve", CALLS, |i| assert_eq!(solver.solve(&problems[i]), Ok(Status::Solved)));
-    assert!(solver.changes() > 0);
 }
 
 /// Goals of most kinds that `there` fulfils, and what is left as at the start.
