@@ -1,6 +1,6 @@
 //! Draws torques, postures and fatigue as pictures: plain numbers in, a [`Figure`] out, which is SVG text or PNG bytes.
 //!
-//! | Picture | Function | What it shows |
+//! | Picture | Function | Contents |
 //! |---|---|---|
 //! | Torque balance | [`torque_balance()`] | Figures 1 and 7-14 of Rodriguez & Boulic (2007): torques against the angle, the path of the active torque, the arm |
 //! | Passive curve | [`passive_curve()`] | passive torque and its slope over the range of a coordinate |

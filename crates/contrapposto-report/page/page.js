@@ -113,12 +113,12 @@ function fillTable() {
 function balanceHint(joint) {
   const end = MOVES || SEVERAL ? " Large dots: now." : "";
   if (joint && joint.balance.some((balance) => balance.external.length)) {
-    return "Where external torque meets minus passive torque the joint hangs on its ligaments: the gap between them is what muscles hold." + end;
+    return "Where the external torque equals minus the passive torque, ligaments carry the joint; muscles hold the difference." + end;
   }
   const place = MOVES ? "where the body went" : SEVERAL ? "in each posture" : "in this posture";
   const passive = joint && joint.balance.length
-    ? "Where it meets minus passive torque the joint hangs on its ligaments: the gap is what muscles hold."
-    : "Nothing is known of its ligaments.";
+    ? "Where it equals minus the passive torque, ligaments carry the joint; muscles hold the difference."
+    : "The passive torque of this joint is not known.";
   return `External torque ${place}. ${passive}${end}`;
 }
 

@@ -61,7 +61,7 @@ pub fn write(report: &Report) -> String {
 
 /// The hash by which the policy names a script.
 fn hash(script: &str) -> String {
-    // Browsers hash what they have parsed, where every end of line is one character.
+    // Browsers hash the parsed text, in which every end of line is one character.
     let script = script.replace("\r\n", "\n").replace('\r', "\n");
     format!("sha256-{}", BASE64_STANDARD.encode(Sha256::digest(script)))
 }

@@ -273,8 +273,8 @@ fn equal_reports_give_equal_pages() {
 }
 
 #[test]
-fn an_empty_report_is_a_page_below_six_megabytes() {
-    assert!(write(&Report::default()).len() < 6_000_000);
+fn an_empty_report_is_a_page_below_two_megabytes() {
+    assert!(write(&Report::default()).len() < 2_000_000);
 }
 
 #[test]

@@ -13,7 +13,7 @@ pub(crate) struct Chromium {
     from: BufReader<ChildStdout>,
     session: String,
     count: u64,
-    /// What the browser told without being asked.
+    /// Events that the browser sent.
     pub(crate) events: Vec<Value>,
     _profile: tempfile::TempDir,
 }
@@ -36,8 +36,8 @@ impl Chromium {
         page
     }
 
-    /// Starts one that tells nothing, and so is as fast as the browser of a person: a browser that is listened to notes where
-    /// in the source everything stands, which for a large script takes longer than to run it.
+    /// Starts one without events, which is as fast as a browser in daily use: a browser that reports events records positions in
+    /// the source, which for a large script takes longer than to run it.
     pub(crate) fn start_quietly() -> Self {
         let profile = tempfile::tempdir().unwrap();
         // Chromium reads its pipe from descriptor 3 and writes to 4.

@@ -1,3 +1,3 @@
-//! What the tests share.
+//! Shared parts of the tests.
 
 pub(crate) mod chromium;
