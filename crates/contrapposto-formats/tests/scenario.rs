@@ -123,7 +123,7 @@ step_s = 0.05
 /// Runs at most a second of it, of a whole body at most four steps; every number of every sample must be finite, in memory and as written.
 fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
     scenario.run.duration = scenario.run.duration.min(1.0);
-    let steps = if scenario.is_whole() { 4.0 } else { 40.0 };
+    let steps = if scenario.has_supports_or_tasks() { 4.0 } else { 40.0 };
     scenario.run.step = scenario.run.step.max(scenario.run.duration / steps);
     let columns = csv_header(&scenario.model).split(',').count();
     let mut row = String::new();
@@ -147,7 +147,9 @@ fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
         }
     });
     // That a body cannot stand is found out by trying.
-    if scenario.is_whole() && matches!(summary, Err(ScenarioError::CannotStand { .. } | ScenarioError::Relax(_))) {
+    if scenario.has_supports_or_tasks()
+        && matches!(summary, Err(ScenarioError::CannotStand { .. } | ScenarioError::Relax(_)))
+    {
         return;
     }
     let summary = summary.unwrap_or_else(|error| panic!("{error}\n{}", told()));
@@ -251,7 +253,7 @@ fn truncated_scenarios_never_panic() {
 fn a_whole_body_is_read() {
     let scenario = read_whole(WHOLE).unwrap_or_else(|error| panic!("{}", complaint(&error)));
     let model = &scenario.model;
-    assert!(scenario.is_whole());
+    assert!(scenario.has_supports_or_tasks());
     let [right, left] = [&scenario.supports[0], &scenario.supports[1]];
     assert_eq!((right.segment, right.friction, right.share_max), (model.segment("calcn_r").unwrap(), 0.8, 1.0));
     assert_eq!(right.corners, model.segments()[right.segment].patch);

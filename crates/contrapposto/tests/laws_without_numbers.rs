@@ -12,7 +12,11 @@ use contrapposto::math::expression::Expression;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto::posture_solver::Options;
-use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, run};
+use contrapposto::simulation::{
+    Event, ReliefSettings, RunSettings, Scenario, ScenarioError, Simulation, StrategySettings, Tables, TaskSettings,
+    run,
+};
+use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{Effort, Task};
 use nalgebra::Vector3;
@@ -126,4 +130,67 @@ fn contact_forces_of_no_torques_hold_nothing() {
         assert_eq!(contact.update(&model, kinematics, required), good);
         assert_eq!(contact.forces(), before, "{bad}");
     }
+}
+
+/// On its feet, with a task that bends the trunk from 0.05 rad, where the law `q^0.5` is a number, to -0.2 rad, where it is none.
+fn bending_beyond_the_law() -> Scenario {
+    let mut scenario = scenario(model("q^0.5"), true);
+    let bending = scenario.model.coordinate("lumbar_bending").unwrap();
+    scenario.start.values_mut()[bending] = 0.05;
+    let rate = scenario.model.coordinates()[bending].rate.unwrap();
+    let (mut target, mut weights) = (scenario.start.clone(), vec![0.0; scenario.model.rates().len()]);
+    target.values_mut()[bending] = 0.04;
+    weights[rate] = 1.0;
+    let task = |target: &contrapposto::posture::Posture| {
+        Task::Posture(contrapposto::tasks::Posture { target: target.clone(), weights: weights.clone() })
+    };
+    scenario.tasks = vec![TaskSettings { goal: task(&target).into(), above_relief: true }];
+    target.values_mut()[bending] = -0.2;
+    scenario.events = vec![Event { time: 0.2, tasks: vec![(0, task(&target).into())], ..Event::default() }];
+    scenario
+}
+
+#[test]
+fn after_a_passive_law_gives_no_number_posture_and_supports_stay() {
+    let scenario = bending_beyond_the_law();
+    let mut simulation = Simulation::new(&scenario).unwrap();
+    let mut last = vec![];
+    let error = loop {
+        match simulation.step() {
+            Ok(sample) => {
+                assert!(sample.standing.is_some());
+                last = sample.posture.to_vec();
+            }
+            Err(error) => break error,
+        }
+    };
+    assert!(names_it(&error.to_string()) && !last.is_empty());
+    // The next steps meet the same law again: on the supports, from the posture of the last sample.
+    for _ in 0..3 {
+        match simulation.step() {
+            Ok(sample) => {
+                assert!(sample.standing.is_some_and(|standing| standing.contacts.len() == 2), "the supports are gone");
+                let farthest = sample.posture.iter().zip(&last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(farthest < 0.1, "{farthest} rad from the last sample");
+            }
+            Err(again) => assert_eq!(again, error),
+        }
+    }
+}
+
+#[test]
+fn an_event_that_throws_the_body_over_does_so_in_every_further_step() {
+    let mut scenario = scenario(adult(&Adult::default()).unwrap(), true);
+    let hand = scenario.model.segment("hand_r").unwrap();
+    let push = LoadKind::Force(Vector3::new(3000.0, 0.0, 0.0), FixedIn::World);
+    let loads = vec![Load { segment: hand, point: Vector3::zeros(), kind: push }];
+    scenario.events = vec![Event { time: 0.1, loads: Some(loads), ..Event::default() }];
+    let mut simulation = Simulation::new(&scenario).unwrap();
+    let error = loop {
+        if let Err(error) = simulation.step() {
+            break error;
+        }
+    };
+    assert!(matches!(error, ScenarioError::Falls(_)), "{error}");
+    assert_eq!(simulation.step().unwrap_err(), error);
 }

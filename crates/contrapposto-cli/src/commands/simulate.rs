@@ -109,7 +109,7 @@ fn write(
     if !scenario.supports.is_empty() {
         contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
     }
-    let names = if scenario.is_whole() {
+    let names = if scenario.has_supports_or_tasks() {
         ["postures.svg", "postures.png"]
     } else {
         ["torque-balance.svg", "torque-balance.png"]

@@ -44,7 +44,7 @@ pub(crate) fn figures_of_run(
         line.subtitle = story(scenario, &summary.coordinates[i]);
         line.critical_level = scenario.hysteresis.critical_level;
         line.recovery_level = scenario.hysteresis.recovery_level;
-        let balance = match scenario.is_whole() {
+        let balance = match scenario.has_supports_or_tasks() {
             true => been(model, &film.frames, i),
             false => swept(scenario, &film.frames, i)?,
         };
@@ -183,7 +183,7 @@ pub(crate) fn pictures_of_run(
     line.coordinate.clone_from(&coordinate.name);
     line.critical_level = scenario.hysteresis.critical_level;
     line.recovery_level = scenario.hysteresis.recovery_level;
-    if scenario.is_whole() {
+    if scenario.has_supports_or_tasks() {
         return Ok([body_figure(&before_and_after(scenario, recording, &subtitle)?), time_line(&line)]);
     }
     let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();

@@ -101,7 +101,7 @@ impl Recording {
     pub(crate) fn fits(&self, scenario: &Scenario, samples: u64) -> bool {
         let new = Self::new(scenario);
         let (rows, n) = (samples.div_ceil(new.every) as usize, new.coordinates);
-        let standing = if scenario.is_whole() { rows } else { 0 };
+        let standing = if scenario.has_supports_or_tasks() { rows } else { 0 };
         let by_coordinate = [&self.posture, &self.external, &self.passive, &self.load];
         (self.every, self.coordinates, self.supports) == (new.every, n, new.supports)
             && self.times.len() == rows

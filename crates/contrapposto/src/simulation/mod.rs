@@ -1,9 +1,14 @@
-//! What happens to a posture as muscle groups tire and ask for relief?
+//! Simulates how a posture changes as muscle groups tire and request relief.
 //!
-//! The loop of Rodriguez & Boulic 2007, section 3: torques, fatigue, hysteresis, minimisation, constraint, motion, record.
-//! [`Simulation::step`] is that loop, once; [`run`] repeats it, and a [`Run`] can be left and taken up again. Same scenario, same build: same bits.
+//! The loop of Rodriguez & Boulic 2007, section 3: motion, torques, fatigue, hysteresis, minimisation, constraint, record. The motion
+//! of a step is the one that the constraints of the step before request. [`Simulation::step`] is that loop, once; [`run`] repeats it,
+//! and a [`Run`] can be interrupted and resumed. The same scenario and the same build give the same bits.
 
-mod group;
+mod body_motion;
+mod group_state;
+mod joint_motion;
+mod motion;
+mod prediction;
 mod relief_log;
 mod run;
 mod sample;
@@ -11,7 +16,6 @@ mod scenario;
 mod state;
 mod step;
 mod summary;
-mod whole;
 
 pub use relief_log::{ReliefLog, ReliefRecord};
 pub use run::{Run, Snapshot, run};

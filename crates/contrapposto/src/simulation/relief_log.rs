@@ -1,4 +1,4 @@
-//! What became of each relief, from when a group asked until something about it changed?
+//! Records each relief, from the first request of a group to the next change of its decision.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,39 +6,39 @@ use super::sample::{Relief, Sample};
 use crate::hybrid::{Case, Decision, Outcome, Strategy};
 use crate::model::Side;
 
-/// Most reliefs that are kept; a chattering run has more.
-const MOST: usize = 10_000;
+/// Most reliefs that are recorded; a run whose decisions alternate has more.
+const MOST_RECORDS: usize = 10_000;
 
 /// One relief of one coordinate: a run of decisions of the same case and outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReliefRecord {
     /// Coordinate.
     pub coordinate: usize,
-    /// The muscle group that asked.
+    /// The muscle group that requested relief.
     pub side: Side,
-    /// Its fatigue when it began to ask, 0..=1.
+    /// Its fatigue at the first request, 0..=1.
     pub fatigue: f64,
-    /// Strategy it followed.
+    /// The strategy of its coordinate.
     pub strategy: Strategy,
-    /// The first decision; `None` where the joint could not move or had given up.
+    /// The first decision; `None` where the joint could not move or the relief waited for the next recovery.
     pub decision: Option<Decision>,
-    /// When it began and ended, s.
+    /// Begin and end, s.
     pub time: (f64, f64),
-    /// The coordinate then, rad or m.
+    /// The coordinate at begin and end, rad or m.
     pub value: (f64, f64),
-    /// Active torque then, N m.
+    /// Active torque at begin and end, N m.
     pub active: (f64, f64),
-    /// Sum over its steps of the change of active torque that was foretold, N m.
+    /// Sum over its steps of the predicted change of active torque, N m.
     pub predicted: f64,
-    /// Sum of the changes that came, N m.
-    pub real: f64,
+    /// Sum of the actual changes, N m.
+    pub actual: f64,
     /// Steps that were carried out.
     pub done: u64,
-    /// Steps against which something more important stood.
+    /// Steps that something more important did not allow.
     pub deferred: u64,
-    /// Steps that made things worse and were taken back.
+    /// Steps that were taken back.
     pub taken_back: u64,
-    /// Steps in which it could not move or had given up.
+    /// Steps in which the joint could not move or the relief waited.
     pub idle: u64,
 }
 
@@ -49,7 +49,7 @@ pub struct ReliefLog {
     pub records: Vec<ReliefRecord>,
     /// How many there were in all.
     pub count: u64,
-    /// By coordinate: the one that goes on.
+    /// By coordinate: the record that continues.
     open: Vec<Option<usize>>,
 }
 
@@ -58,7 +58,7 @@ impl ReliefLog {
         Self { open: vec![None; coordinates], ..Self::default() }
     }
 
-    /// Is every place it names there?
+    /// Whether every record that it names is there.
     pub(super) fn fits(&self, coordinates: usize) -> bool {
         self.open.len() == coordinates
             && self.open.iter().flatten().all(|&place| place < self.records.len())
@@ -84,7 +84,7 @@ impl ReliefLog {
             }
             self.count += 1;
             self.open[i] = None;
-            if self.records.len() < MOST {
+            if self.records.len() < MOST_RECORDS {
                 self.open[i] = Some(self.records.len());
                 self.records.push(ReliefRecord::new(i, side, sample));
             }
@@ -105,7 +105,7 @@ impl ReliefRecord {
             value: (value, value),
             active: (active, active),
             predicted: 0.0,
-            real: 0.0,
+            actual: 0.0,
             done: 0,
             deferred: 0,
             taken_back: 0,
@@ -122,9 +122,9 @@ impl ReliefRecord {
         self.value.1 = sample.posture[i];
         self.active.1 = sample.active[i];
         match sample.reliefs[i] {
-            Some(Relief::Done { predicted, real }) => {
+            Some(Relief::Done { predicted, actual }) => {
                 self.predicted += predicted;
-                self.real += real;
+                self.actual += actual;
                 self.done += 1;
             }
             Some(Relief::Deferred) => self.deferred += 1,

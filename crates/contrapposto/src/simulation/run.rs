@@ -1,15 +1,16 @@
-//! A scenario from its start to its end, or from where it was left.
+//! Runs a scenario from its start, or from a snapshot, to its end.
 
 use serde::{Deserialize, Serialize};
 
 use super::relief_log::ReliefLog;
 use super::state::State;
+use super::step::TIME_TOLERANCE;
 use super::{CoordinateSummary, Fall, Sample, Scenario, ScenarioError, Simulation, Standing, StopReason, Summary};
 
-/// So many steps lie between the moments at which a run can be left and taken up again.
-const BETWEEN_MARKS: u64 = 900;
+/// Steps between two snapshots.
+const SNAPSHOT_STEPS: u64 = 900;
 
-/// Where a run can be taken up again. Going on from here gives the same bytes as never having stopped.
+/// A moment from which a run can be resumed. A resumed run gives the same bytes as one that was never interrupted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// Samples taken before.
@@ -25,9 +26,9 @@ pub struct Snapshot {
 #[derive(Debug)]
 pub struct Run<'a> {
     simulation: Simulation<'a>,
-    /// What has happened so far; its `state` is that of the last mark.
+    /// All samples so far; its `state` is that of the last snapshot.
     so_far: Snapshot,
-    mark: Snapshot,
+    snapshot: Snapshot,
     /// Samples in all.
     samples: u64,
     reason: Option<StopReason>,
@@ -58,7 +59,7 @@ impl<'a> Run<'a> {
         Ok(Self::with(scenario, simulation, start))
     }
 
-    /// From where another run of the same scenario was left.
+    /// From the snapshot of another run of the same scenario.
     ///
     /// # Errors
     /// [`ScenarioError::Snapshot`] if the snapshot is that of another body or run.
@@ -74,7 +75,7 @@ impl<'a> Run<'a> {
     fn with(scenario: &Scenario, simulation: Simulation<'a>, start: Snapshot) -> Self {
         Self {
             simulation,
-            mark: start.clone(),
+            snapshot: start.clone(),
             so_far: start,
             samples: scenario.run.steps() + 1,
             reason: None,
@@ -96,9 +97,9 @@ impl<'a> Run<'a> {
         if self.reason.is_some() {
             return Ok(None);
         }
-        if self.so_far.samples.is_multiple_of(BETWEEN_MARKS) && self.so_far.samples > self.mark.samples {
+        if self.so_far.samples.is_multiple_of(SNAPSHOT_STEPS) && self.so_far.samples > self.snapshot.samples {
             self.so_far.state = self.simulation.state();
-            self.mark.clone_from(&self.so_far);
+            self.snapshot.clone_from(&self.so_far);
         }
         let sample = match self.simulation.step() {
             Err(ScenarioError::Falls(fall)) if self.so_far.samples > 0 => {
@@ -117,15 +118,15 @@ impl<'a> Run<'a> {
             self.so_far.effort_at_start.get_or_insert(standing.effort);
             self.standing.get_or_insert_default().clone_from(standing);
         }
-        if sample.settled && self.stop_when_settled && sample.time + 1e-9 >= self.last_event {
+        if sample.settled && self.stop_when_settled && sample.time + TIME_TOLERANCE >= self.last_event {
             self.reason = Some(StopReason::Settled);
         }
         Ok(Some(sample))
     }
 
-    /// The last moment from which the run can be taken up again.
+    /// The last snapshot.
     pub fn snapshot(&self) -> &Snapshot {
-        &self.mark
+        &self.snapshot
     }
 
     /// What has happened.

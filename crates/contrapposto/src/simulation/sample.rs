@@ -1,4 +1,4 @@
-//! What does a run show of one instant?
+//! Holds what a run shows of one instant.
 
 use nalgebra::Vector3;
 
@@ -22,56 +22,83 @@ pub struct Sample<'a> {
     pub load: &'a [f64],
     /// Fatigue of the positive and negative group of every coordinate, 0..=1. Depends on the load so far.
     pub fatigue: &'a [[f64; 2]],
-    /// The decision of every coordinate that asked for relief.
+    /// The decision of every coordinate that requests relief.
     pub decisions: &'a [Option<Decision>],
-    /// The muscle group of every coordinate that asks for relief.
+    /// The muscle group of every coordinate that requests relief.
     pub asking: &'a [Option<Side>],
-    /// What became of the relief of every coordinate that asked for it, in the step that led here.
+    /// The outcome of the relief of every coordinate, in the step that led here.
     pub reliefs: &'a [Option<Relief>],
-    /// How it stands, for a body with supports or tasks.
+    /// Contact forces, task errors and effort of a body with supports or tasks.
     pub standing: Option<&'a Standing>,
     /// Strategy of every coordinate.
     pub strategies: &'a [Strategy],
-    /// Relief was asked for, and moves nothing any more.
+    /// Relief was requested, and moves nothing any more.
     pub settled: bool,
 }
 
-/// What became of a relief.
+/// The parts of a sample that no later step needs.
+#[derive(Debug)]
+pub(super) struct Record {
+    pub(super) external: Vec<f64>,
+    pub(super) passive: Vec<f64>,
+    pub(super) load: Vec<f64>,
+    pub(super) asking: Vec<Option<Side>>,
+    pub(super) reliefs: Vec<Option<Relief>>,
+    pub(super) standing: Standing,
+    pub(super) settled: bool,
+}
+
+impl Record {
+    /// Space for `n` coordinates.
+    pub(super) fn new(n: usize) -> Self {
+        Self {
+            external: vec![0.0; n],
+            passive: vec![0.0; n],
+            load: vec![0.0; n],
+            asking: vec![None; n],
+            reliefs: vec![None; n],
+            standing: Standing::default(),
+            settled: false,
+        }
+    }
+}
+
+/// The outcome of a relief in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Relief {
-    /// It was carried out: the change of active torque that the decision foretold, and the real one, N m.
+    /// The motion was carried out: predicted and actual change of active torque, N m.
     Done {
         /// From the slope along the motion.
         predicted: f64,
         /// Computed in the posture that was reached.
-        real: f64,
+        actual: f64,
     },
-    /// Something more important stood against it: supports, tasks above relief, or a more tired group.
+    /// Supports, tasks above relief or the relief of a more fatigued group did not allow the motion.
     Deferred,
-    /// It made its own torque larger than foretold, and the whole effort with it, and was taken back.
+    /// The motion raised the joint's own torque above its predicted peak, or cost too much effort, and was taken back.
     TakenBack,
-    /// The joint cannot move without what stands above relief.
+    /// The joint cannot move without violating what stands above relief.
     Blocked,
-    /// It was taken back so often that it waits for the next recovery.
+    /// The motion was taken back so often that the relief waits for the next recovery.
     GivenUp,
 }
 
-/// How a body stands.
+/// Contact forces, task errors and effort of a body with supports or tasks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Standing {
     /// One a support, in the order of the scenario.
     pub contacts: Vec<Contact>,
     /// Length of the error of each task, in its units.
     pub errors: Vec<f64>,
-    /// How far supports are off their places, m and rad together.
+    /// Distance of the supports from their places, m and rad together.
     pub slip: f64,
     /// Centre of mass, ground, m.
     pub center_of_mass: Vector3<f64>,
-    /// `sum (active torque / strength)^2` over all coordinates with known strength.
+    /// Sum of the squared relative loads: see [`crate::joint_torques::effort`].
     pub effort: f64,
 }
 
-/// What a support carries.
+/// The force at a support.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Force on the body, ground axes, N.

@@ -1,4 +1,4 @@
-//! What is the experiment? Body, start, loads, strategy and thresholds, all checked before the first step.
+//! Describes an experiment: body, start, loads, strategy and thresholds, all checked before the first step.
 
 use super::Fall;
 use crate::contact::{Missing, Support, SupportError};
@@ -185,19 +185,19 @@ pub enum ScenarioError {
 /// Most steps of one run: 30 steps a second for four days.
 const MOST_STEPS: f64 = 1e7;
 
-/// Do two goals ask for the same kinds of things?
+/// Whether two levels hold tasks of the same kinds.
 fn alike(a: &PriorityLevel, b: &PriorityLevel) -> bool {
     let kinds = |goal: &PriorityLevel| goal.tasks.iter().map(Task::kind).collect::<Vec<_>>();
     kinds(a) == kinds(b)
 }
 
 impl Scenario {
-    /// Does the body stand on something or have something to do? Otherwise each coordinate finds relief on its own.
-    pub fn is_whole(&self) -> bool {
+    /// Whether the body has supports or tasks. Without them each coordinate finds relief on its own.
+    pub fn has_supports_or_tasks(&self) -> bool {
         !self.supports.is_empty() || !self.tasks.is_empty()
     }
 
-    /// Is everything in place?
+    /// Checks that all parts fit the model and each other.
     ///
     /// # Errors
     /// [`ScenarioError`] names the first thing that is not.
@@ -240,7 +240,7 @@ impl Scenario {
             if value < range.0 || value > range.1 {
                 return Err(ScenarioError::OutsideRange { coordinate: coordinate.name.clone(), value, range });
             }
-            if free && !self.is_whole() && !coordinate.can_be_relieved() {
+            if free && !self.has_supports_or_tasks() && !coordinate.can_be_relieved() {
                 return Err(ScenarioError::NoPassiveCurve(coordinate.name.clone()));
             }
         }

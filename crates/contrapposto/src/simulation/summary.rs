@@ -1,4 +1,4 @@
-//! How did a run end, and what happened on the way?
+//! Summarises a run: its end, and what every coordinate went through.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::contact::Missing;
 use crate::hybrid::{Case, Decision};
 use crate::model::Side;
 
-/// Most changes of case that are kept in order; a chattering run has thousands.
+/// Most changes of case that are recorded in order; a run whose cases alternate has thousands.
 const MOST_CHANGES: usize = 200;
 
 /// Why a run stopped.

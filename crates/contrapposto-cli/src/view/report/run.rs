@@ -17,7 +17,7 @@ pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary:
     let shown = shown(&scenario.model);
     let start = film.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
     let scene = Scene {
-        held: (!scenario.is_whole()).then_some(scenario.loads.as_slice()),
+        held: (!scenario.has_supports_or_tasks()).then_some(scenario.loads.as_slice()),
         ..Scene::of(&scenario.title, &scenario.model, start, &film.frames, &scenario.supports)
     };
     let times = film.frames.iter().map(|frame| frame.time).collect();

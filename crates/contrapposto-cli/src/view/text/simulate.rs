@@ -64,7 +64,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) ->
         StopReason::Interrupted => "interrupted",
         StopReason::Fell => "fell",
     };
-    let picture = if scenario.is_whole() { "postures.svg" } else { "torque-balance.svg" };
+    let picture = if scenario.has_supports_or_tasks() { "postures.svg" } else { "torque-balance.svg" };
     let standing =
         summary.standing.as_ref().map_or(String::new(), |standing| standing_text(scenario, summary, standing));
     format!(

@@ -1,0 +1,298 @@
+//! Moves a body on its supports and with its tasks, by strict priorities.
+//!
+//! Reliefs are half-spaces (Rodriguez & Boulic 2007, Eqs. 4-6) in the priorities of [`crate::posture_solver::Engine`]: supports,
+//! tasks above relief, the reliefs, that of the most fatigued group first, then the other tasks. Each relief is a level of its
+//! own, so that of two conflicting reliefs the one of the more fatigued group is kept, and of equals the first of the model.
+
+use nalgebra::Vector3;
+
+use crate::contact::{Balance, ContactForces, Missing};
+use crate::joint_torques::JointTorques;
+use crate::model::Model;
+use crate::posture::Posture;
+use crate::posture_solver::{Engine, Options};
+use crate::statics::{Load, LoadKind};
+use crate::tasks::PriorityLevel;
+
+use super::sample::{Contact, Standing};
+use super::state::Request;
+use super::{Scenario, ScenarioError};
+
+/// Levels for reliefs; requests of less fatigued groups beyond them wait.
+const MOST_RELIEFS: usize = 16;
+/// Greatest change of a joint in the search for the start, rad or m.
+const START_MAX_STEP: f64 = 0.1;
+/// Greatest change of a joint in one time step, in greatest steps of relief: the rest of the body must be able to follow.
+const FOLLOWING_STEPS: f64 = 2.0;
+/// A time step in which no rate changes by more is slow, rad or m.
+const SLOW_STEP: f64 = 1e-3;
+/// A time step in which no rate changes by more is at rest, rad or m.
+const REST_STEP: f64 = 1e-9;
+/// After so many slow time steps in a row the body descends to the local minimum of effort, if that is near.
+const SLOW_STEPS: u32 = 30;
+/// Convergence count of a body at rest.
+const AT_REST: u32 = u32::MAX;
+/// A slope is computed anew when some coordinate has moved farther, rad or m.
+const SLOPE_VALIDITY: f64 = 0.005;
+/// Steps within which balance must be recovered after an event.
+const RECOVERY_STEPS: usize = 300;
+/// A half-space that is violated by more was not kept, rad or m.
+const HALF_SPACE_TOLERANCE: f64 = 1e-6;
+
+/// A body with supports or tasks under way.
+#[derive(Clone, Debug)]
+pub(super) struct BodyMotion<'a> {
+    engine: Engine<'a>,
+    model: &'a Model,
+    /// Number of levels above the reliefs.
+    above: usize,
+    /// Level of each of the scenario's tasks.
+    task_levels: Vec<usize>,
+    /// By coordinate.
+    slopes: Vec<Option<Slope>>,
+    /// The posture before the last step.
+    before: Posture,
+    /// Slow steps in a row, [`AT_REST`] at rest.
+    convergence_count: u32,
+    /// Coordinates whose half-spaces the last step was to keep, and those of them that it did not keep.
+    requested: Vec<usize>,
+    deferred: Vec<usize>,
+}
+
+/// A slope of external torque, and the posture that it was computed in; without value where the coordinate cannot move.
+#[derive(Clone, Debug)]
+struct Slope {
+    posture: Posture,
+    value: Option<f64>,
+}
+
+impl<'a> BodyMotion<'a> {
+    /// The body at the posture nearest to the scenario's start in which its supports hold it and its tasks are done.
+    pub(super) fn new(scenario: &'a Scenario) -> Result<(Self, Posture), ScenarioError> {
+        let model = &scenario.model;
+        let (above, below): (Vec<_>, Vec<_>) = (0..scenario.tasks.len()).partition(|&i| scenario.tasks[i].above_relief);
+        let level = |i: &usize| scenario.tasks[*i].goal.clone();
+        let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
+        let start =
+            engine(scenario, above.iter().chain(&below).map(level).collect(), options)?.solve(&scenario.start)?;
+        let reliefs = std::iter::repeat_n(PriorityLevel::default(), MOST_RELIEFS);
+        let levels = above.iter().map(level).chain(reliefs).chain(below.iter().map(level)).collect();
+        let mut task_levels = vec![0; scenario.tasks.len()];
+        above.iter().enumerate().for_each(|(level, &i)| task_levels[i] = level);
+        below.iter().enumerate().for_each(|(level, &i)| task_levels[i] = above.len() + MOST_RELIEFS + level);
+        let max_step = FOLLOWING_STEPS * scenario.relief.max_step;
+        let options = Options { reject_steps: false, max_step, ..options };
+        // Supports stay where they were at the scenario's start, not where the first solution left them.
+        let mut body = Self {
+            engine: engine(scenario, levels, options)?,
+            model,
+            above: above.len(),
+            task_levels,
+            slopes: vec![None; model.coordinates().len()],
+            before: start.posture.clone(),
+            convergence_count: 0,
+            requested: vec![],
+            deferred: vec![],
+        };
+        // A body whose weight acts at the very edge of its supports may be off balance by rounding.
+        let mut posture = start.posture;
+        match body.recover_balance(&mut posture)? {
+            Some(missing) => Err(ScenarioError::CannotStand(missing)),
+            None => {
+                body.forget();
+                Ok((body, posture))
+            }
+        }
+    }
+
+    /// Moves by one step toward the half-spaces of the `requested` coordinates, the most fatigued first, and the tasks.
+    /// `reliefs_move`: some relief asks for motion, not only to be kept.
+    pub(super) fn step(
+        &mut self,
+        posture: &mut Posture,
+        requested: &[usize],
+        requests: &[Request],
+        reliefs_move: bool,
+    ) -> Result<(), ScenarioError> {
+        self.before.values_mut().copy_from_slice(posture.values());
+        if !reliefs_move && self.is_at_rest() && self.requested == requested {
+            return Ok(());
+        }
+        self.requested.clear();
+        self.requested.extend_from_slice(requested);
+        self.write_relief_levels(requests);
+        if reliefs_move {
+            self.engine.widen_trust_region();
+        }
+        let largest = self.engine.step(posture)?.largest;
+        self.count_convergence(posture, largest, reliefs_move)?;
+        let kept = |slot: usize, i: usize| {
+            slot < MOST_RELIEFS && requests[i].half_space.violation(posture.values()) <= HALF_SPACE_TOLERANCE
+        };
+        self.deferred.clear();
+        self.deferred.extend(requested.iter().enumerate().filter(|(slot, i)| !kept(*slot, **i)).map(|(_, i)| *i));
+        Ok(())
+    }
+
+    /// Coordinates whose half-spaces the last step did not keep.
+    pub(super) fn deferred(&self) -> &[usize] {
+        &self.deferred
+    }
+
+    fn write_relief_levels(&mut self, requests: &[Request]) {
+        let levels = &mut self.engine.levels_mut()[self.above..self.above + MOST_RELIEFS];
+        for (slot, level) in levels.iter_mut().enumerate() {
+            level.half_spaces.truncate(usize::from(slot < self.requested.len()));
+            let wanted = self.requested.get(slot).map(|&i| &requests[i].half_space);
+            match (wanted, level.half_spaces.first_mut()) {
+                (Some(half_space), Some(present)) => present.clone_from(half_space),
+                (Some(half_space), None) => level.half_spaces.push(half_space.clone()),
+                _ => {}
+            }
+        }
+    }
+
+    /// Counts slow steps; now and then a slow body descends to the local minimum, where it is at rest.
+    fn count_convergence(
+        &mut self,
+        posture: &mut Posture,
+        largest: f64,
+        reliefs_move: bool,
+    ) -> Result<(), ScenarioError> {
+        let before = if self.is_at_rest() { 0 } else { self.convergence_count };
+        let count = if largest <= SLOW_STEP && !reliefs_move { before + 1 } else { 0 };
+        self.convergence_count = count;
+        let due = count > 0 && count.is_multiple_of(SLOW_STEPS);
+        if due && (largest <= REST_STEP || self.engine.descend(posture)?) {
+            self.convergence_count = AT_REST;
+        }
+        Ok(())
+    }
+
+    /// Computes all torques in a posture.
+    pub(super) fn update(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
+        Ok(self.engine.evaluate(posture)?)
+    }
+
+    /// Goes back to the posture in which the last step began; torques stay to be updated.
+    pub(super) fn take_back(&self, posture: &mut Posture) {
+        posture.values_mut().copy_from_slice(self.before.values());
+    }
+
+    /// After an event: moves until the supports hold the body again, within the same time step, as a body does that anticipates a
+    /// load. Where no such posture is found `posture` stays; the answer is the force and moment that are missing there.
+    pub(super) fn recover_balance(&mut self, posture: &mut Posture) -> Result<Option<Missing>, ScenarioError> {
+        self.update(posture)?;
+        let missing = self.contact().missing(self.model, self.torques().kinematics());
+        if missing.is_none() {
+            return Ok(None);
+        }
+        self.before.values_mut().copy_from_slice(posture.values());
+        for _ in 0..RECOVERY_STEPS {
+            self.engine.step(posture)?;
+            self.update(posture)?;
+            if self.contact().balance() == Balance::Held {
+                self.restart_convergence();
+                return Ok(None);
+            }
+        }
+        self.take_back(posture);
+        self.update(posture)?;
+        Ok(missing)
+    }
+
+    /// Slope of a coordinate's external torque along the motion that all levels above relief allow; `None` where they do not let
+    /// the coordinate move.
+    pub(super) fn external_slope(
+        &mut self,
+        posture: &Posture,
+        coordinate: usize,
+        rate: usize,
+    ) -> Result<Option<f64>, ScenarioError> {
+        let far = |at: &Posture| at.values().iter().zip(posture.values()).any(|(a, b)| (a - b).abs() > SLOPE_VALIDITY);
+        if let Some(slope) = self.slopes[coordinate].as_ref().filter(|slope| !far(&slope.posture)) {
+            return Ok(slope.value);
+        }
+        let value = self.engine.slope_along(posture, rate, self.above)?;
+        self.slopes[coordinate] = Some(Slope { posture: posture.clone(), value });
+        Ok(value)
+    }
+
+    /// Forgets all that earlier steps have shown.
+    pub(super) fn forget(&mut self) {
+        self.engine.restart();
+        self.convergence_count = 0;
+        self.slopes.fill(None);
+    }
+
+    /// Begins to count slow steps anew: loads, tasks or the posture have changed.
+    pub(super) fn restart_convergence(&mut self) {
+        self.engine.widen_trust_region();
+        self.convergence_count = 0;
+        self.slopes.fill(None);
+    }
+
+    pub(super) fn set_loads(&mut self, loads: &[Load]) -> Result<(), ScenarioError> {
+        self.restart_convergence();
+        Ok(self.engine.set_loads(loads)?)
+    }
+
+    pub(super) fn set_task(&mut self, task: usize, goal: &PriorityLevel) {
+        self.restart_convergence();
+        self.engine.levels_mut()[self.task_levels[task]].clone_from(goal);
+    }
+
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.convergence_count == AT_REST
+    }
+
+    pub(super) fn contact(&self) -> &ContactForces {
+        self.engine.contact()
+    }
+
+    /// Torques of the last update, contact included.
+    pub(super) fn torques(&self) -> &JointTorques {
+        self.engine.body()
+    }
+
+    /// Writes how the body stands in the posture of the last update; `effort` stays.
+    pub(super) fn write_standing(&self, standing: &mut Standing) {
+        let contact = self.contact();
+        standing.contacts.clear();
+        standing.contacts.extend((0..contact.supports().len()).map(|support| self.contact_of(support)));
+        standing.errors.clear();
+        standing.errors.extend(self.task_levels.iter().map(|&level| self.engine.error(level)));
+        standing.slip = self.engine.slip();
+        standing.center_of_mass = self.torques().kinematics().center_of_mass(self.model).unwrap_or_default();
+    }
+
+    fn contact_of(&self, support: usize) -> Contact {
+        let (contact, kinematics) = (self.contact(), self.torques().kinematics());
+        let center_of_pressure = contact.center_of_pressure(self.model, kinematics, support);
+        let about = center_of_pressure.unwrap_or_default();
+        let mut couple = Vector3::zeros();
+        for load in &contact.loads()[contact.corners(support)] {
+            if let LoadKind::Force(force, _) = load.kind {
+                let at = kinematics.station(self.model, load.segment, load.point);
+                couple += (at - about).cross(&force);
+            }
+        }
+        Contact { force: contact.force(support), share: contact.share(support), center_of_pressure, couple }
+    }
+}
+
+/// An engine for a scenario's body that moves its free coordinates.
+fn engine<'a>(
+    scenario: &'a Scenario,
+    levels: Vec<PriorityLevel>,
+    options: Options,
+) -> Result<Engine<'a>, ScenarioError> {
+    let (model, supports) = (&scenario.model, scenario.supports.clone());
+    let mut engine = Engine::new(model, &scenario.start, supports, levels, &scenario.loads, options)?;
+    for (i, rate) in model.rates().iter().enumerate() {
+        if rate.coordinate.is_some_and(|c| !scenario.free[c]) {
+            engine.lock(i);
+        }
+    }
+    Ok(engine)
+}
