@@ -1,0 +1,32 @@
+//! Names the reasons for which a motion is not assessed.
+
+use crate::contact::SupportError;
+use crate::joint_torques::JointTorquesError;
+
+/// Why a motion was not assessed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AssessError {
+    /// A support does not fit the model.
+    #[error(transparent)]
+    Support(#[from] SupportError),
+    /// A posture or a load does not fit the model, or a passive law gives no torque.
+    #[error("instant {index}: {error}")]
+    Torques {
+        /// Its number, counted from 0.
+        index: usize,
+        /// Why.
+        error: JointTorquesError,
+    },
+    /// Times fall, or are no numbers.
+    #[error("instant {index} is at {time} s; times must be finite and not fall")]
+    Order {
+        /// Number of the instant.
+        index: usize,
+        /// Its time, s.
+        time: f64,
+    },
+    /// It lasts for days.
+    #[error("the motion lasts {0} s; 1e5 s at most")]
+    TooLong(f64),
+}

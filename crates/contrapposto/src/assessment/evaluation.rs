@@ -1,0 +1,107 @@
+//! Evaluates one instant of a motion: torques, what the root lacks, and where relief would lie.
+
+use super::error::AssessError;
+use super::result::{GroupAssessment, PeakKind, Proposal};
+use super::settings::AssessSettings;
+use crate::contact::{Balance, ContactForces, SupportError, root_rates};
+use crate::hybrid::{Problem, Strategy, explain, minimise};
+use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
+use crate::kinematics::Kinematics;
+use crate::model::{Model, Side};
+use crate::posture::Posture;
+use crate::statics::Load;
+
+/// Torques and contact forces of one instant.
+pub(super) struct Evaluation<'a> {
+    pub(super) model: &'a Model,
+    ranges: &'a [Option<(f64, f64)>],
+    pub(super) torques: JointTorques,
+    pub(super) contact: Option<ContactForces>,
+    root: Vec<usize>,
+    loads: Vec<Load>,
+}
+
+impl<'a> Evaluation<'a> {
+    pub(super) fn new(model: &'a Model, settings: &'a AssessSettings) -> Result<Self, SupportError> {
+        let supports = &settings.supports;
+        let contact = (!supports.is_empty()).then(|| ContactForces::new(model, supports.clone())).transpose()?;
+        Ok(Self {
+            model,
+            ranges: &settings.passive_ranges,
+            torques: JointTorques::with_passive_ranges(model, &settings.passive_ranges),
+            contact,
+            root: root_rates(model),
+            loads: vec![],
+        })
+    }
+
+    /// Computes all torques of one instant.
+    pub(super) fn update(
+        &mut self,
+        index: usize,
+        time: f64,
+        posture: &Posture,
+        loads: &mut impl FnMut(f64, &Kinematics, &mut Vec<Load>),
+    ) -> Result<(), AssessError> {
+        let Self { model, torques, .. } = self;
+        let refused = |error: JointTorquesError| AssessError::Torques { index, error };
+        torques.place(model, posture).map_err(|error| refused(error.into()))?;
+        self.loads.clear();
+        loads(time, torques.kinematics(), &mut self.loads);
+        match &mut self.contact {
+            Some(contact) => torques.apply_with_contact(model, &self.loads, contact, Quantities::TORQUES),
+            None => torques.apply(model, &self.loads, Quantities::TORQUES),
+        }
+        .map_err(refused)
+    }
+
+    /// Active torque of a rate, N m.
+    pub(super) fn active(&self, rate: usize) -> f64 {
+        self.torques.active_torque()[rate]
+    }
+
+    /// Force (N) and moment (N m) that the root lacks: its active torque, for which it has no muscles.
+    pub(super) fn residual(&self) -> (f64, f64) {
+        let size = |turns: bool| {
+            let rates = self.root.iter().filter(|&&rate| self.model.rates()[rate].rotational == turns);
+            rates.map(|&rate| self.active(rate).powi(2)).sum::<f64>().sqrt()
+        };
+        (size(false), size(true))
+    }
+
+    /// Whether the supports cannot hold the root.
+    pub(super) fn is_out_of_balance(&self) -> bool {
+        self.contact.as_ref().is_some_and(|contact| contact.balance() != Balance::Held)
+    }
+
+    /// Adds what both strategies propose to a group in the posture of the last update.
+    pub(super) fn propose(&self, group: &mut GroupAssessment, at: PeakKind, time: f64, settings: &AssessSettings) {
+        let i = group.coordinate;
+        let coordinate = &self.model.coordinates()[i];
+        let (Some(law), Some(rate)) = (&coordinate.passive, coordinate.rate) else { return };
+        if Side::of(self.active(rate)) != group.side {
+            return;
+        }
+        let range = self.ranges.get(i).copied().flatten().unwrap_or(coordinate.range);
+        let values = self.torques.passive_torque().values();
+        let Some(curve) = law.curve_at(i, values, range) else { return };
+        let external = self.torques.external_torque();
+        let slope = external.own_slope(self.torques.kinematics(), self.model, rate);
+        for strategy in [Strategy::Active, Strategy::Passive] {
+            let problem = Problem {
+                curve: &curve,
+                angle: values[i].max(curve.range().0).min(curve.range().1),
+                external_torque: external.torques()[rate],
+                external_slope: slope,
+                strategy,
+                minimum_decrease_ratio: settings.minimum_decrease_ratio,
+                torque_tolerance: settings.torque_tolerance,
+                accepted: None,
+            };
+            if let Ok(decision) = minimise(&problem) {
+                let (angle, sentence) = (values[i], explain(&problem, &decision));
+                group.proposals.push(Proposal { at, time, angle, strategy, decision, sentence });
+            }
+        }
+    }
+}

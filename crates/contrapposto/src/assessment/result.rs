@@ -1,0 +1,104 @@
+//! Holds what an assessment finds: groups, peaks and proposals.
+
+use crate::contact::ContactForces;
+use crate::hybrid::{Decision, Strategy};
+use crate::joint_torques::JointTorques;
+use crate::model::Side;
+
+/// One instant of the motion.
+#[derive(Debug)]
+pub struct Instant<'a> {
+    /// Its number, counted from 0.
+    pub index: usize,
+    /// Time, s.
+    pub time: f64,
+    /// Posture and torques, contact forces included.
+    pub torques: &'a JointTorques,
+    /// Fatigue of the positive and negative group of every coordinate, 0..=1.
+    pub fatigue: &'a [[f64; 2]],
+    /// Active torque over strength of the same.
+    pub load: &'a [[f64; 2]],
+    /// Contact forces; none without supports.
+    pub contact: Option<&'a ContactForces>,
+}
+
+/// A value and when it was there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peak {
+    /// The value.
+    pub value: f64,
+    /// Number of the instant.
+    pub index: usize,
+    /// Its time, s.
+    pub time: f64,
+}
+
+impl Peak {
+    pub(super) fn take(&mut self, value: f64, index: usize, time: f64) {
+        if value > self.value {
+            *self = Self { value, index, time };
+        }
+    }
+}
+
+/// Load and fatigue of one group over the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupAssessment {
+    /// Index of its coordinate.
+    pub coordinate: usize,
+    /// Which of its two groups.
+    pub side: Side,
+    /// Greatest active torque over strength.
+    pub peak_load: Peak,
+    /// Greatest fatigue, 0..=1.
+    pub peak_fatigue: Peak,
+    /// Fatigue at the end.
+    pub fatigue: f64,
+    /// When its fatigue first reached 1, s.
+    pub exhausted_at: Option<f64>,
+    /// Where relief would lie at both peaks, by both strategies; where the group rested or has no falling passive curve, none.
+    pub proposals: Vec<Proposal>,
+}
+
+/// Which peak a relief is proposed at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PeakKind {
+    /// Greatest load.
+    Load,
+    /// Greatest fatigue.
+    Fatigue,
+}
+
+/// A relief that the hybrid minimisation proposes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proposal {
+    /// At which peak.
+    pub at: PeakKind,
+    /// Its time, s.
+    pub time: f64,
+    /// Value of the coordinate there, rad.
+    pub angle: f64,
+    /// The strategy asked for.
+    pub strategy: Strategy,
+    /// Case, goal and outcome.
+    pub decision: Decision,
+    /// The same in a plain sentence.
+    pub sentence: String,
+}
+
+/// The result of an assessment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assessment {
+    /// Every group of known strength: those that fail first, then by fatigue, then by load.
+    pub groups: Vec<GroupAssessment>,
+    /// Greatest force that the root lacked, N: neither loads nor supports gave it.
+    pub residual_force: Peak,
+    /// Greatest moment that it lacked, N m.
+    pub residual_moment: Peak,
+    /// Number of instants in which the supports could not hold the root.
+    pub unheld: usize,
+    /// Greatest acceleration of the centre of mass, m/s^2.
+    pub acceleration: Peak,
+    /// Share of the instants in which it was above 1 m/s^2, so that a posture at rest says little.
+    pub fast_share: f64,
+}
