@@ -20,6 +20,7 @@ use crate::posture::{Posture, PostureError};
 use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, PassiveTorqueError};
 
 /// Active torque (Eq. 1), N m: what muscles give for external and passive torque to be in equilibrium.
+#[inline]
 pub fn active_torque(external: f64, passive: f64) -> f64 {
     -(passive + external)
 }

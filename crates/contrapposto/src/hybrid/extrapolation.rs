@@ -3,6 +3,7 @@
 //! `tau_a(theta) = -(tau_p(theta) + tau_e + d tau_e (theta - theta_c))` (Rodriguez & Boulic 2007, section 2.2).
 
 use super::Problem;
+use crate::joint_torques::active_torque;
 use crate::math::dichotomy_between;
 use crate::passive::PassiveCurve;
 
@@ -58,7 +59,7 @@ impl<'a> Extrapolation<'a> {
     #[inline]
     pub fn active_and_slope(&self, angle: f64) -> (f64, f64) {
         let (passive, passive_slope) = self.curve.torque_and_slope(angle);
-        (-(passive + self.external(angle)), -(passive_slope + self.external_slope))
+        (active_torque(self.external(angle), passive), -(passive_slope + self.external_slope))
     }
 
     /// The straight line.
@@ -76,7 +77,7 @@ impl<'a> Extrapolation<'a> {
     pub(super) fn limits(&self) -> (Point, Point) {
         let (min, max) = self.curve.range();
         let (at_min, at_max) = self.curve.limit_torques();
-        let point = |angle, passive: f64| Point { angle, torque: -(passive + self.external(angle)) };
+        let point = |angle, passive: f64| Point { angle, torque: active_torque(self.external(angle), passive) };
         (point(min, at_min), point(max, at_max))
     }
 

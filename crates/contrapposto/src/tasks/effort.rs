@@ -8,7 +8,7 @@
 //! `q_d(q_i)` through however many couplings, `tau_i = sum_d q_d' tau_d` and `d tau_i/dq_i` has `q_d'' tau_d` besides.
 
 use super::{Check, TaskError, append, equation};
-use crate::joint_torques::JointTorques;
+use crate::joint_torques::{JointTorques, active_torque};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use hierarchical_least_squares::Level;
@@ -39,7 +39,7 @@ impl Effort {
             let Some(rate) = model.coordinates()[coordinate].rate else { continue };
             let row = append(level, model, 1);
             let passive = passive_row(model, body, coordinate, rate, row);
-            let active = -(external(model, body, coordinate) + passive);
+            let active = active_torque(external(model, body, coordinate), passive);
             let (strength, slope) = strength(model, body, coordinate, active);
             let share = -1.0 / strength;
             for (entry, external) in row.iter_mut().zip(body.gradient().row(rate)) {
@@ -79,7 +79,7 @@ impl Effort {
 
 /// Active torque of a coordinate, N m, followers folded in.
 fn active(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
-    -(external(model, body, coordinate) + passive(model, body, coordinate, [1.0, 0.0], None))
+    active_torque(external(model, body, coordinate), passive(model, body, coordinate, [1.0, 0.0], None))
 }
 
 /// What a torque on a coordinate of 1 N m takes from its effort: one over the strength of the group that works where effort is
