@@ -9,8 +9,7 @@ mod peer;
 
 use std::time::Instant;
 
-use contrapposto::posture_solver::Options;
-use contrapposto::posture_solver::inverse_kinematics::Engine;
+use contrapposto::posture_solver::{Engine, Options};
 use peer::{Peer, target};
 
 /// Runs of each target.

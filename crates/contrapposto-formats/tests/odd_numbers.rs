@@ -225,13 +225,8 @@ fn poses() {
     let read = |text: &str| read_pose("pose.toml", text.as_bytes(), None).map_err(|error| complaint(&error));
     odd_in_every_place("pose", POSE, &[], read, |pose| {
         let options = contrapposto::posture_solver::Options { max_steps: 3, ..pose.options };
-        let mut engine = contrapposto::posture_solver::inverse_kinematics::Engine::new(
-            &pose.model,
-            pose.goals.clone(),
-            &pose.loads,
-            options,
-        )
-        .unwrap();
+        let mut engine =
+            contrapposto::posture_solver::Engine::new(&pose.model, pose.goals.clone(), &pose.loads, options).unwrap();
         let ended = engine.solve(&pose.start);
         ended.map_or(true, |pose| pose.posture.values().iter().all(|value| value.is_finite()))
     });
@@ -246,7 +241,7 @@ fn searches_for_rest() {
             ..contrapposto::posture_solver::Options::least_effort()
         };
         let supports = relax.supports.clone();
-        let engine = contrapposto::posture_solver::Engine::new(
+        let engine = contrapposto::posture_solver::Engine::with_supports(
             &relax.model,
             &relax.start,
             supports,

@@ -7,8 +7,7 @@ mod peer;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture::Posture;
-use contrapposto::posture_solver::inverse_kinematics::Engine;
-use contrapposto::posture_solver::{Options, Reason};
+use contrapposto::posture_solver::{Engine, Options, Reason};
 use contrapposto::tasks::{self, Task};
 use nalgebra::Vector3;
 use peer::{Peer, target};

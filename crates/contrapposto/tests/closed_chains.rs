@@ -87,7 +87,8 @@ fn the_slope_is_that_of_the_motion_which_feet_and_goals_allow() {
         let goals: Vec<PriorityLevel> = (0..above).map(|_| Task::Point(task).into()).collect();
         let rows = rows(&model, &kinematics, &feet, goals.first().map(|_| &task));
         let projection = DMatrix::identity(n, n) - rows.clone().pseudo_inverse(1e-10).unwrap() * &rows;
-        let mut engine = Engine::new(&model, &posture, feet.clone(), goals, &loads, Options::least_effort()).unwrap();
+        let mut engine =
+            Engine::with_supports(&model, &posture, feet.clone(), goals, &loads, Options::least_effort()).unwrap();
         let mut scale = Scale {
             model: &model,
             torques: JointTorques::new(&model),
@@ -127,7 +128,7 @@ fn the_slope_is_that_of_the_motion_which_feet_and_goals_allow() {
     assert!(worst < 1e-4, "{worst}");
     // A knee between a foot that stays and a hip that is locked does not move.
     let start = model.default_posture();
-    let mut engine = Engine::new(&model, &start, feet, vec![], &loads, Options::least_effort()).unwrap();
+    let mut engine = Engine::with_supports(&model, &start, feet, vec![], &loads, Options::least_effort()).unwrap();
     let knee = model.coordinates()[model.coordinate("knee_angle_r").unwrap()].rate.unwrap();
     assert!(engine.slope_along(&start, knee, 0).unwrap().is_some());
     (0..n).filter(|rate| *rate != knee).for_each(|rate| engine.lock(rate));

@@ -17,7 +17,6 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver;
-use contrapposto::posture_solver::inverse_kinematics as ik;
 use contrapposto::simulation::{ReliefSettings, RunSettings, Scenario, StrategySettings, Tables, TaskSettings, run};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind, PassiveTorque};
 use contrapposto::tasks::PriorityLevel;
@@ -157,7 +156,7 @@ impl Setting {
 
     fn pose(&self) -> Stage<'_> {
         let options = posture_solver::Options { max_steps: 40, ..posture_solver::Options::inverse_kinematics() };
-        let mut engine = ik::Engine::new(&self.model, self.goals.clone(), &self.loads, options).unwrap();
+        let mut engine = posture_solver::Engine::new(&self.model, self.goals.clone(), &self.loads, options).unwrap();
         Box::new(move |posture| format!("{:?}", engine.solve(posture)))
     }
 
@@ -166,7 +165,8 @@ impl Setting {
             (&self.model, posture_solver::Options { max_steps: 30, ..posture_solver::Options::least_effort() });
         let (supports, goals) = (self.supports.clone(), self.goals.clone());
         let start = model.default_posture();
-        let mut engine = posture_solver::Engine::new(model, &start, supports, goals, &self.loads, options).unwrap();
+        let mut engine =
+            posture_solver::Engine::with_supports(model, &start, supports, goals, &self.loads, options).unwrap();
         Box::new(move |posture| format!("{:?} {:?}", engine.solve(posture), engine.contact().forces()))
     }
 

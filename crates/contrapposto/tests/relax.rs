@@ -87,7 +87,7 @@ impl Standing {
 
     fn engine(&self, options: Options) -> Engine<'_> {
         let (supports, goals) = (self.supports.clone(), self.goals.clone());
-        Engine::new(&self.model, &self.start, supports, goals, &self.loads, options).unwrap()
+        Engine::with_supports(&self.model, &self.start, supports, goals, &self.loads, options).unwrap()
     }
 }
 
@@ -315,7 +315,7 @@ fn what_may_not_move_is_left_out_without_loss() {
     let goals = [Task::Point(point), Task::Posture(kept), Task::Effort(Effort::whole(&model))].map(PriorityLevel::from);
     let solve = |local_minima: usize, from: &Posture| {
         let options = Options { local_minima, ..OPTIONS };
-        let mut engine = Engine::new(&model, &start, vec![], goals.to_vec(), &[], options).unwrap();
+        let mut engine = Engine::with_supports(&model, &start, vec![], goals.to_vec(), &[], options).unwrap();
         root_rates(&model).into_iter().chain(model.coordinates()[arm].rate).for_each(|rate| engine.lock(rate));
         engine.solve(from).unwrap()
     };
@@ -341,7 +341,7 @@ fn a_free_root_without_supports_stays() {
     let solve = |local_minima: usize| {
         let options = Options { local_minima, max_steps: 0, ..OPTIONS };
         let goals = vec![Task::Effort(effort.clone()).into()];
-        let mut engine = Engine::new(&standing.model, &standing.start, vec![], goals, &[], options).unwrap();
+        let mut engine = Engine::with_supports(&standing.model, &standing.start, vec![], goals, &[], options).unwrap();
         standing.model.coordinates()[arm].rate.into_iter().for_each(|rate| engine.lock(rate));
         engine.solve(&standing.start).unwrap().posture
     };

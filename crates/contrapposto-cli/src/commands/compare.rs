@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use contrapposto::posture_solver::inverse_kinematics::Engine;
+use contrapposto::posture_solver::Engine;
 use contrapposto::simulation::Run;
 use contrapposto_formats::{read_pose, read_scenario, scenario_runs};
 use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use contrapposto::posture_solver::inverse_kinematics::Engine;
-use contrapposto::posture_solver::{EngineError, Reason, SolvedPosture};
+use contrapposto::posture_solver::{Engine, EngineError, Reason, SolvedPosture};
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
 use contrapposto_plot::body_figure;

@@ -104,7 +104,8 @@ impl Problem {
         let hand = Point { segment: self.load.segment, point: Vector3::zeros(), target, axes: [true; 3] };
         let goals: Vec<PriorityLevel> = vec![Task::Point(hand).into(), Task::Effort(Effort::whole(&self.model)).into()];
         let supports = self.supports.clone();
-        let mut engine = Engine::new(&self.model, &self.rest, supports, goals, &[self.load], options).unwrap();
+        let mut engine =
+            Engine::with_supports(&self.model, &self.rest, supports, goals, &[self.load], options).unwrap();
         self.locked.iter().for_each(|rate| engine.lock(*rate));
         engine
     }

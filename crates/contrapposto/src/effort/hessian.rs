@@ -1,9 +1,8 @@
 //! Computes the second derivative of the Lagrangian of a problem of least effort, by posture and contact forces.
 //!
 //! `L = 1/2 |r|^2 + sum_k y_k c_k` with the relative loads `r`, the errors `c_k` of all constraints and their multipliers `y_k`.
-//! Beyond `J^T J` its second derivative has `sum_k y_k c_k''` of the tasks (the gradient of external torque under pulls, see
-//! [`Task::pull`]) and `sum_i w_i tau_i''` with `w_i = -r_i / S_i` for muscles and `w_k = y_k` for the root's equilibrium. External
-//! torque is the gradient of a potential, whose third derivatives are symmetric: that sum is the change of the gradient matrix when
+//! Beyond `J^T J` its second derivative has `sum_k y_k c_k''` of the tasks ([`ErrorHessian`]) and `sum_i w_i tau_i''` with
+//! `w_i = -r_i / S_i` for muscles and `w_k = y_k` for the root's equilibrium. External torque is the gradient of a potential, whose third derivatives are symmetric: that sum is the change of the gradient matrix when
 //! the body moves along `w`, and its mixed part is the change of the torques of each contact force, since these too are gradients
 //! of a potential. One difference gives both. Coupled passive laws, which have no potential, and strength that changes with the
 //! angle have closed forms.
@@ -20,8 +19,8 @@ use crate::joint_torques::{JointTorques, Quantities};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
 use crate::posture::Posture;
-use crate::statics::{ExternalTorque, Gradient, Load};
-use crate::tasks::{Task, share_of_strength};
+use crate::statics::{Gradient, Load};
+use crate::tasks::{ErrorHessian, Task, share_of_strength};
 use hierarchical_least_squares::linalg::{add_scaled, dot};
 
 /// Body, loads and first derivatives at the iterate.
@@ -51,9 +50,7 @@ pub(crate) enum HessianModel {
 /// Workspace of the second derivative.
 #[derive(Clone, Debug)]
 pub(crate) struct Hessian {
-    pulls: ExternalTorque,
-    gradient: Gradient,
-    loads: Vec<Load>,
+    errors: ErrorHessian,
     moved: Posture,
     body: JointTorques,
     /// `w`, by rate.
@@ -69,9 +66,7 @@ impl Hessian {
     pub(crate) fn new(model: &Model) -> Self {
         let n = model.rates().len();
         Self {
-            pulls: ExternalTorque::new(model),
-            gradient: Gradient::new(model),
-            loads: vec![],
+            errors: ErrorHessian::new(model, 0),
             moved: model.default_posture(),
             body: JointTorques::new(model),
             weights: vec![0.0; n],
@@ -120,18 +115,15 @@ impl Hessian {
     /// Adds `sum_k y_k c_k''` of the tasks.
     fn add_tasks(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, multipliers: &[f64], matrix: &mut [f64]) {
         let Some(mut multipliers) = multipliers.get(problem.contact.root().len()..) else { return };
-        self.loads.clear();
+        self.errors.clear();
         for task in problem.constraint_levels().flat_map(|level| &level.tasks) {
             let Some((own, rest)) = multipliers.split_at_checked(task.rows()) else { return };
-            task.pull(problem.model, own, &mut self.loads);
+            self.errors.add(problem.model, task, own);
             multipliers = rest;
         }
-        // Loads beyond what the model accepts leave the matrix without them.
-        if self.pulls.update_weightless(problem.model, at.body.kinematics(), &self.loads).is_err() {
-            return;
+        if let Some(hessian) = self.errors.evaluate(problem.model, at.body.kinematics()) {
+            add_gradient(problem, 1.0, hessian, None, matrix);
         }
-        self.pulls.gradient(problem.model, at.body.kinematics(), &mut self.gradient);
-        add_gradient(problem, 1.0, &self.gradient, None, matrix);
     }
 
     /// Adds the change of the torque gradient along `w`; returns how far along `w` the body has moved for the difference.

@@ -6,6 +6,7 @@ use super::outcome::Equilibria;
 use super::search::{Search, SearchError};
 use crate::constraint::HalfSpace;
 use crate::contact::{Condition, Missing};
+use crate::effort::hessian::HessianModel;
 use crate::hybrid::{Problem, Strategy, minimise};
 use crate::model::CoordinateKind;
 use crate::posture::Posture;
@@ -111,13 +112,14 @@ impl<'a> Finder<'a> {
         let engine = |max_steps: usize, levels: &[PriorityLevel]| {
             let (supports, levels) = (search.supports.to_vec(), levels.to_vec());
             let options = Options { max_steps, local_minima: 0, ..options };
-            let mut engine = Engine::new(search.model, search.start, supports, levels, search.loads, options)?;
+            let mut engine =
+                Engine::with_supports(search.model, search.start, supports, levels, search.loads, options)?;
             search.locked.iter().for_each(|&rate| engine.lock(rate));
             Ok::<_, SearchError>(engine)
         };
         let exploratory = EXPLORATORY_STEPS.min(options.max_steps);
         let mut engines = [engine(exploratory, &levels)?, engine(options.max_steps, &levels)?];
-        engines[0].scout();
+        engines[0].set_hessian_model(HessianModel::Partial);
         let approach = engine(EXPLORATORY_STEPS, &levels[..slot])?;
         Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], refused: None, starts: 0, steps: 0 })
     }
@@ -178,7 +180,7 @@ impl<'a> Finder<'a> {
             }
         };
         self.steps += relaxed.steps;
-        let missing = engine.contact().missing(model, engine.body().kinematics());
+        let missing = engine.contact().missing(model, engine.torques().kinematics());
         let allowed = ALLOWED_MISSING[stage as usize] * model.mass() * model.gravity().norm();
         if let Some(missing) = missing.filter(|missing| missing.force.max(missing.moment) > allowed) {
             self.fell.push(missing);
@@ -287,7 +289,7 @@ impl<'a> Finder<'a> {
             let problem = Problem {
                 curve: &curve,
                 angle: posture.values()[i],
-                external_torque: engine.body().external_torque().torques()[rate],
+                external_torque: engine.torques().external_torque().torques()[rate],
                 external_slope,
                 strategy,
                 minimum_decrease_ratio: MINIMUM_DECREASE_RATIO,

@@ -1,17 +1,37 @@
-//! Solves for postures by steps of strict priorities: without supports ([`inverse_kinematics`]), and with supports, contact forces
-//! and effort ([`Engine`]).
+//! Solves for postures by steps of prioritised least squares: for tasks without supports (inverse kinematics), and for bodies on supports,
+//! with contact forces and effort.
 //!
-//! With supports, posture and contact forces are found together. Each step of the [`Engine`] is one lexicographic problem in the
-//! changes of both: friction and equilibrium of the root first, then supports stay where they are, then no support carries more
-//! than its greatest share, then the priority levels in their order, of which one may be effort. After every step the contact
-//! forces are found anew for the posture reached ([`crate::contact`]), so that the reported posture is in equilibrium exactly.
+//! [`Engine`] makes a step, or a whole posture, from [`PriorityLevel`](crate::tasks::PriorityLevel)s. Ranges of motion and the largest step
+//! always hold; then the levels follow in their order. On supports, posture and contact forces are found together: friction and
+//! equilibrium of the root come first, then supports stay where they are, then no support carries more than its greatest share, then the
+//! priority levels follow, of which one may be effort. The contact forces of every posture are solved anew ([`crate::contact`]), so that
+//! the reported posture is in equilibrium exactly.
+//!
+//! | File | Holds |
+//! |---|---|
+//! | `settings` | the problem as it is given |
+//! | `iterate` | the present posture and all that follows from it |
+//! | `linearisation` | rows and bounds of one step |
+//! | `newton_level`, `multiplier_estimate` | a level with its second derivative |
+//! | `step_rule`, `priority_rule`, `merit_rule` | the two rules by which steps are completed and judged |
+//! | `engine` | the loop |
+//! | `slope` | how a torque changes along the motion that supports and tasks allow |
+//! | `tolerances` | every tolerance, with its unit |
 
 mod engine;
 mod error;
-pub mod inverse_kinematics;
+mod iterate;
+mod linearisation;
+mod merit_rule;
+mod multiplier_estimate;
+mod newton_level;
 mod options;
-mod probe;
+mod priority_rule;
 mod report;
+mod settings;
+mod slope;
+mod step_rule;
+mod tolerances;
 
 pub use engine::Engine;
 pub use error::EngineError;

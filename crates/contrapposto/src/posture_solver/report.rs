@@ -64,4 +64,10 @@ impl LevelError {
         let length = rows.iter().map(|row| row.value * row.value).sum::<f64>().sqrt();
         Self { rows, length }
     }
+
+    /// Sum of squares of the shares of strength among the rows.
+    pub(super) fn effort(&self) -> f64 {
+        let shares = self.rows.iter().filter(|row| row.unit == Unit::ShareOfStrength);
+        shares.fold(0.0, |sum, row| sum + row.value * row.value)
+    }
 }

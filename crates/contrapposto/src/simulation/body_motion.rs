@@ -252,7 +252,7 @@ impl<'a> BodyMotion<'a> {
 
     /// Torques of the last update, contact included.
     pub(super) fn torques(&self) -> &JointTorques {
-        self.engine.body()
+        self.engine.torques()
     }
 
     /// Writes how the body stands in the posture of the last update; `effort` stays.
@@ -288,7 +288,7 @@ fn engine<'a>(
     options: Options,
 ) -> Result<Engine<'a>, ScenarioError> {
     let (model, supports) = (&scenario.model, scenario.supports.clone());
-    let mut engine = Engine::new(model, &scenario.start, supports, levels, &scenario.loads, options)?;
+    let mut engine = Engine::with_supports(model, &scenario.start, supports, levels, &scenario.loads, options)?;
     for (i, rate) in model.rates().iter().enumerate() {
         if rate.coordinate.is_some_and(|c| !scenario.free[c]) {
             engine.lock(i);

@@ -1,11 +1,13 @@
-//! Is the centre of mass where it should be?
+//! Error and Jacobian of the centre of mass against a place or a polygon.
 //!
 //! At a place: error `c - target` in ground axes, m, on the asked axes. Over a polygon: one inequality an edge,
 //! `normal . c <= offset - margin`, error the excess, m.
 
 use nalgebra::Vector3;
 
-use super::{Check, HalfPlane, TaskError, add_along, append, chosen, equations};
+use super::check::{Check, TaskError};
+use super::polygon::HalfPlane;
+use super::rows::{add_along, append, chosen, equations};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use hierarchical_least_squares::Level;
@@ -68,7 +70,7 @@ impl CenterOfMass {
                 equations(level, model, *axes, center - target);
             }
             CenterOfMassGoal::Inside { polygon, margin } => {
-                // The edges' rows, then the three they are made of, which go away again.
+                // The edges' rows, then the three they are made of, which are removed again.
                 let rows = append(level, model, polygon.len() + 3);
                 let (edges, jacobian) = rows.split_at_mut(polygon.len() * n);
                 body.center_of_mass().jacobian(model, body.kinematics(), jacobian);

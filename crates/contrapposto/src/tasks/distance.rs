@@ -1,11 +1,12 @@
-//! Are two points as far apart as they should be?
+//! Error and Jacobian of the distance of two points.
 //!
 //! `lower <= |a - b| <= upper`, m: one inequality, whose row is `n . (J_a - J_b)` with `n` the unit line from `b` to `a`. Where
 //! the points meet, `n` is ground x.
 
 use nalgebra::Vector3;
 
-use super::{Check, TaskError, add_along, append};
+use super::check::{Check, TaskError};
+use super::rows::{add_along, append};
 use crate::joint_torques::JointTorques;
 use crate::model::{LARGEST, Model};
 use hierarchical_least_squares::Level;
@@ -40,7 +41,7 @@ impl Distance {
         let line = self.line(model, body);
         let length = line.norm();
         let unit = if length > 0.0 { line / length } else { Vector3::x() };
-        // One row, then the six that it is made of, which go away again.
+        // One row, then the six that it is made of, which are removed again.
         let (row, jacobians) = append(level, model, 7).split_at_mut(n);
         let (a, b) = jacobians.split_at_mut(3 * n);
         body.kinematics().point_jacobian(model, self.a.0, self.a.1, a);

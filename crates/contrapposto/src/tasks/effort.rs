@@ -1,13 +1,14 @@
-//! How much of their strength do muscles need?
+//! Error and Jacobian of effort: active torque as a share of strength.
 //!
 //! Error `e = tau_a / S` of every asked coordinate, a share of the strength `S(q)` of the group that works (the sign of the
 //! active torque `tau_a = -(tau_p + tau_e)`), so between -1 and 1 for a posture that can be held. Its derivative is
 //! `-(d tau_p/dq + d tau_e/dq)/S - tau_a S'/S^2`; it has a kink where the other group takes over, at `e = 0`.
 //!
-//! Passive torque counts as external torque does: what a coordinate that follows another one gives is its leader's. With
+//! Passive torque is folded as external torque is: that of a dependent coordinate counts at its independent one. With
 //! `q_d(q_i)` through however many couplings, `tau_i = sum_d q_d' tau_d` and `d tau_i/dq_i` has `q_d'' tau_d` besides.
 
-use super::{Check, TaskError, append, equation};
+use super::check::{Check, TaskError};
+use super::rows::{append, equation};
 use crate::joint_torques::{JointTorques, active_torque};
 use crate::model::{Model, Side};
 use crate::passive::PassiveLaw;
@@ -16,12 +17,12 @@ use hierarchical_least_squares::Level;
 /// Little muscle torque.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effort {
-    /// The coordinates, each with known muscle groups and following no other one.
+    /// Independent coordinates with known muscle groups.
     pub coordinates: Vec<usize>,
 }
 
 impl Effort {
-    /// Every coordinate with known muscle groups that follows no other one.
+    /// Every independent coordinate with known muscle groups.
     pub fn whole(model: &Model) -> Self {
         let known = |i: &usize| model.coordinates()[*i].groups.is_some() && !model.is_dependent(*i);
         Self { coordinates: (0..model.coordinates().len()).filter(known).collect() }
@@ -77,18 +78,18 @@ impl Effort {
     }
 }
 
-/// Active torque of a coordinate, N m, followers folded in.
+/// Active torque of a coordinate, N m, dependent coordinates folded in.
 fn active(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
     active_torque(external(model, body, coordinate), passive(model, body, coordinate, [1.0, 0.0], None))
 }
 
-/// What a torque on a coordinate of 1 N m takes from its effort: one over the strength of the group that works where effort is
-/// `error`.
+/// The error that a torque of 1 N m on a coordinate takes away: one over the strength of the group that works where the error is `error`.
 pub(crate) fn share_of_strength(model: &Model, body: &JointTorques, coordinate: usize, error: f64) -> f64 {
     1.0 / strength(model, body, coordinate, error).0
 }
 
-/// Adds the derivatives of a leading coordinate's passive torque, followers folded in, to `row`, one entry a rate. Gives the torque.
+/// Adds the derivatives of an independent coordinate's passive torque, dependent coordinates folded in, to `row`, one entry a rate. Returns
+/// the torque.
 pub(crate) fn passive_row(model: &Model, body: &JointTorques, coordinate: usize, rate: usize, row: &mut [f64]) -> f64 {
     let torque = passive(model, body, coordinate, [1.0, 0.0], Some((rate, &mut *row)));
     body.kinematics().fold_columns(model, row);
@@ -108,7 +109,8 @@ fn strength(model: &Model, body: &JointTorques, coordinate: usize, active: f64) 
 }
 
 /// Passive torque of a coordinate and of all that follow it, `[q', q'']` times: derivatives of the coordinate by that of
-/// `slopes`. Adds its derivatives by all rates, followers not yet folded, to the row, where the leader's rate is told apart.
+/// `slopes`. Adds its derivatives by all rates, dependent coordinates not yet folded, to the row; the rate of the independent
+/// coordinate is given beside the row.
 fn passive(
     model: &Model,
     body: &JointTorques,
@@ -147,14 +149,14 @@ fn passive(
             }),
         };
         sum += first * torque;
-        if let Some((leader, row)) = &mut slopes {
-            row[*leader] += second * torque;
+        if let Some((independent, row)) = &mut slopes {
+            row[*independent] += second * torque;
         }
     }
     for coupling in model.couplings().iter().filter(|coupling| coupling.independent == coordinate) {
         let [_, slope, curvature] = coupling.function.value_slope_curvature(q);
         let by = [slope * first, curvature * first * first + slope * second];
-        let slopes = slopes.as_mut().map(|(leader, row)| (*leader, &mut **row));
+        let slopes = slopes.as_mut().map(|(independent, row)| (*independent, &mut **row));
         sum += passive(model, body, coupling.dependent, by, slopes);
     }
     sum

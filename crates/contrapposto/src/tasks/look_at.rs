@@ -1,4 +1,4 @@
-//! Does a segment look at a place?
+//! Error and Jacobian of a direction of a segment toward a place in ground.
 //!
 //! `g` is the gaze, `d` the unit line from the eye to the target, both in ground. The error is the rotation vector that would
 //! turn the gaze onto the target, `a (g x d) / |g x d|` with `a` the angle between them; it has no part along the gaze, so two
@@ -10,7 +10,8 @@
 
 use nalgebra::{UnitVector3, Vector3};
 
-use super::{Check, TaskError, add_along, append, equation};
+use super::check::{Check, TaskError};
+use super::rows::{add_along, append, equation};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use hierarchical_least_squares::Level;
@@ -24,14 +25,14 @@ pub struct LookAt {
     pub eye: Vector3<f64>,
     /// The gaze, in the segment's frame.
     pub direction: UnitVector3<f64>,
-    /// What it should meet, in ground, m.
+    /// The point that the gaze should meet, in ground, m.
     pub target: Vector3<f64>,
 }
 
-/// Nearer than this, m, the eye is at its target, which is then met whatever the gaze.
+/// m. An eye nearer to its target than this meets the target with any gaze.
 const TOUCHING: f64 = 1e-9;
 
-/// Nearer than this to straight behind, rad, every way round is as short: one is taken.
+/// rad. A target nearer than this to straight behind can be met either way round; one way is taken.
 const BEHIND: f64 = 1e-6;
 
 /// Gaze and target of one posture.
@@ -56,7 +57,7 @@ impl Sight {
         (f, [-f * y, f * x])
     }
 
-    /// What a change of the line must be multiplied with to give that of either row.
+    /// Derivatives of either row by the line.
     fn slopes(&self) -> [Vector3<f64>; 2] {
         let ([x, y], [u, v, gaze], s) = (self.across, self.axes, self.sine);
         let square = s * s;
@@ -102,7 +103,7 @@ impl LookAt {
 
     pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         let n = model.rates().len();
-        // Two rows, then the six of eye and segment that they are made of, which go away again.
+        // Two rows, then the six of eye and segment that they are made of, which are removed again.
         let (rows, jacobians) = append(level, model, 8).split_at_mut(2 * n);
         let mut error = [0.0; 2];
         if let Some(sight) = self.sight(model, body) {

@@ -1,4 +1,4 @@
-//! Is a segment turned as it should be?
+//! Error and Jacobian of the rotation of a segment.
 //!
 //! Error `r = log(R R_t^-1)` in ground axes, rad: the turn that leads from the target to the present rotation, at most half a
 //! turn. An angular velocity `w` in ground axes changes it by `J_l^-1(r) w`, with the inverse of the left Jacobian of SO(3),
@@ -7,7 +7,8 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{Check, TaskError, append, equations, multiply};
+use super::check::{Check, TaskError};
+use super::rows::{append, equations, multiply};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use hierarchical_least_squares::Level;

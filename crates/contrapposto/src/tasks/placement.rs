@@ -1,10 +1,12 @@
-//! Is a frame of a segment where it should be, and turned as it should be?
+//! Error and Jacobian of point and rotation of a segment together.
 //!
 //! Three rows of [`Point`] (m), then three of [`Orientation`] (rad): a metre weighs as much as a radian.
 
 use nalgebra::Vector3;
 
-use super::{Check, Orientation, Point, TaskError};
+use super::check::{Check, TaskError};
+use super::orientation::Orientation;
+use super::point::Point;
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use hierarchical_least_squares::Level;

@@ -1,10 +1,11 @@
-//! Is a point of a segment where it should be?
+//! Error and Jacobian of a point of a segment.
 //!
 //! Error `x - target` in ground axes, m, on the asked axes; its Jacobian is that of the point.
 
 use nalgebra::Vector3;
 
-use super::{Check, TaskError, append, equations};
+use super::check::{Check, TaskError};
+use super::rows::{append, equations};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use hierarchical_least_squares::Level;

@@ -1,4 +1,4 @@
-//! Over which ground do points carry the body?
+//! Computes the support polygon of points on the ground.
 //!
 //! The convex hull of the points seen along gravity, as half-planes `normal . x <= offset` in ground coordinates with unit
 //! normals square to gravity. Monotone chain (Andrew 1979, "Another efficient algorithm for convex hulls in two dimensions").

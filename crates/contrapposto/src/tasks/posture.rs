@@ -1,11 +1,13 @@
-//! Are coordinates at their wanted values?
+//! Error and Jacobian of coordinates against wanted values.
 //!
 //! Error `q - target` of hinges and slides (rad, m), `log(q_t^-1 q)` of a ball in its own axes (rad; at most half a turn, where it
 //! jumps to the other side). Turning a ball by `w` changes its error by `J_r^-1(r) w`, the right Jacobian's inverse, which is
 //! the left one's of `-r`. Rows are multiplied with the weight of their rate.
 
+use super::check::{Check, TaskError};
 use super::orientation::inverse_left_jacobian;
-use super::{Check, TaskError, Unit, append, equation};
+use super::rows::{append, equation};
+use super::unit::Unit;
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture::{Part, parts};
@@ -21,10 +23,10 @@ pub struct Posture {
 }
 
 impl Posture {
-    /// Every coordinate that follows no other one, all with weight 1.
+    /// Every independent coordinate, all with weight 1.
     pub fn whole(model: &Model, target: crate::posture::Posture) -> Self {
-        let follows = |rate: &crate::model::Rate| rate.coordinate.is_some_and(|c| model.is_dependent(c));
-        let weights = model.rates().iter().map(|rate| if follows(rate) { 0.0 } else { 1.0 }).collect();
+        let dependent = |rate: &crate::model::Rate| rate.coordinate.is_some_and(|c| model.is_dependent(c));
+        let weights = model.rates().iter().map(|rate| if dependent(rate) { 0.0 } else { 1.0 }).collect();
         Self { target, weights }
     }
 

@@ -1,6 +1,6 @@
-//! Holds what is asked at one level of priority: tasks and half-spaces.
+//! One level of priority: tasks and half-spaces of the same importance.
 
-use super::Task;
+use super::task::Task;
 use crate::constraint::HalfSpace;
 
 /// Tasks and half-spaces of one level of priority.
@@ -10,12 +10,12 @@ pub struct PriorityLevel {
     pub tasks: Vec<Task>,
     /// Reliefs (Eqs. 4-6) on hinge and slide coordinates.
     pub half_spaces: Vec<HalfSpace>,
-    /// It is meant to hold: where it cannot, the answer says so.
+    /// A level that must be met; the status of a step says where it is not.
     pub hard: bool,
 }
 
 impl PriorityLevel {
-    /// Rows of its level: the errors of its tasks, then its half-spaces.
+    /// Number of rows: the errors of the tasks, then the half-spaces.
     pub fn rows(&self) -> usize {
         self.tasks.iter().map(Task::rows).sum::<usize>() + self.half_spaces.len()
     }

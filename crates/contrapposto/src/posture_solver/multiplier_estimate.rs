@@ -1,86 +1,91 @@
-//! How hard do the levels above hold a level back, in the posture of now?
+//! Estimates the Lagrange multipliers of all rows above a level, in the present posture.
 //!
-//! The multipliers of the last step belong to the posture before it, and to a step that was cut short where it was longest: a
-//! second derivative built with them is that of something else, and the steps it proposes are taken back again and again. Here
-//! they are estimated anew: the `lambda` that leaves the shortest `J^T r + A^T lambda` over all rates that are not at the end of
-//! their range (the first-order estimate of Gill, Murray & Wright 1981, "Practical Optimization", section 6.6).
+//! ```text
+//! lambda = argmin |J^T r + A^T lambda|     over all unknowns that are not at a bound, A the rows above that are active
+//! ```
+//!
+//! This is the first-order estimate of Gill, Murray & Wright 1981, "Practical Optimization", section 6.6. The multipliers of the
+//! last step belong to the posture before it, and to a step that was cut short where it was longest; a second derivative built with
+//! them leads to steps that are rejected again and again.
 
+use super::tolerances::{DEPENDENT_ROW, NO_ROOM};
 use hierarchical_least_squares::linalg::dot;
 use hierarchical_least_squares::{Level, Multipliers, Problem};
 
-/// A rate or row with less room than this, in its units, is at the end of its range.
-const NO_ROOM: f64 = 1e-9;
-/// Share of a row's square below which it says nothing that the rows before it have not said.
-const DEPENDENT: f64 = 1e-10;
-
-/// The multipliers of all rows above a level. Keeps its space.
+/// The estimate, with space that is kept.
 #[derive(Clone, Debug)]
-pub(crate) struct Hold {
-    /// By row of the levels above; zero where a row does not hold.
-    pub(crate) multipliers: Vec<f64>,
-    /// Rows that hold, at the rates that can move, and which rows they are.
+pub(super) struct MultiplierEstimate {
+    /// By row of the levels above; 0 where a row is inactive.
+    multipliers: Vec<f64>,
+    /// Active rows, 0 at unknowns at a bound, and their indices.
     rows: Vec<f64>,
-    places: Vec<usize>,
+    indices: Vec<usize>,
     /// Cholesky factor of the products of these rows.
     factor: Vec<f64>,
     solution: Vec<f64>,
 }
 
-impl Hold {
+impl MultiplierEstimate {
     /// Space for so many `rows` above.
-    pub(crate) fn new(rows: usize, unknowns: usize) -> Self {
+    pub(super) fn new(rows: usize, unknowns: usize) -> Self {
         Self {
             multipliers: Vec::with_capacity(rows),
             rows: Vec::with_capacity(rows * unknowns),
-            places: Vec::with_capacity(rows),
+            indices: Vec::with_capacity(rows),
             factor: Vec::with_capacity(rows * rows),
             solution: Vec::with_capacity(rows),
         }
     }
 
-    /// Estimates the multipliers of `above` for a level with this `gradient`, `J^T r`. What was pressed on in the `last` step,
-    /// and has no room now, holds.
-    pub(crate) fn estimate(&mut self, problem: &Problem, above: &[Level], last: Multipliers<'_>, gradient: &[f64]) {
+    /// By row of the levels above; 0 where a row is inactive.
+    pub(super) fn multipliers(&self) -> &[f64] {
+        &self.multipliers
+    }
+
+    /// Estimates the multipliers of `above` for a level with this `gradient`, `J^T r`. A row or bound is active if it is an
+    /// equation, or had a multiplier in the `last` step and has no room now.
+    pub(super) fn estimate(&mut self, problem: &Problem, above: &[Level], last: Multipliers<'_>, gradient: &[f64]) {
         let n = problem.unknowns();
-        let holds = |multiplier: Option<&f64>, lower: f64, upper: f64| {
+        let active = |multiplier: Option<&f64>, lower: f64, upper: f64| {
             lower == upper
                 || multiplier.is_some_and(|m| *m != 0.0 && (if *m > 0.0 { upper } else { -lower }) <= NO_ROOM)
         };
-        // Of other rows it says nothing.
+        // Multipliers of other rows say nothing of these.
         let same = last.rows.len() == above.iter().map(Level::rows).sum::<usize>();
         self.multipliers.clear();
         self.rows.clear();
-        self.places.clear();
+        self.indices.clear();
         for level in above {
             for (i, row) in level.matrix.chunks_exact(n).enumerate() {
-                let place = self.multipliers.len();
+                let index = self.multipliers.len();
                 self.multipliers.push(0.0);
-                let (lower, upper) = (level.lower[i], level.upper[i]);
-                if holds(last.rows.get(place).filter(|_| same), lower, upper) {
-                    self.places.push(place);
-                    let moves = |i: usize| !holds(last.bounds.get(i), problem.lower[i], problem.upper[i]);
-                    self.rows.extend(row.iter().enumerate().map(|(i, a)| if moves(i) { *a } else { 0.0 }));
+                if active(last.rows.get(index).filter(|_| same), level.lower[i], level.upper[i]) {
+                    self.indices.push(index);
+                    let free = |i: usize| !active(last.bounds.get(i), problem.lower[i], problem.upper[i]);
+                    self.rows.extend(row.iter().enumerate().map(|(i, a)| if free(i) { *a } else { 0.0 }));
                 }
             }
         }
         self.solve(n, gradient);
-        for (place, multiplier) in self.places.iter().zip(&self.solution) {
-            self.multipliers[*place] = *multiplier;
+        for (index, multiplier) in self.indices.iter().zip(&self.solution) {
+            self.multipliers[*index] = *multiplier;
         }
     }
 
-    /// Takes those of the last step instead, where it had the same rows; else none.
-    pub(crate) fn keep(&mut self, last: Multipliers<'_>) {
-        if last.rows.len() == self.multipliers.len() {
-            self.multipliers.copy_from_slice(last.rows);
+    /// Takes the multipliers of the last step instead where it had the same number of rows `above`, else zeros.
+    pub(super) fn take_last(&mut self, above: &[Level], last: Multipliers<'_>) {
+        let rows = above.iter().map(Level::rows).sum();
+        self.multipliers.clear();
+        if last.rows.len() == rows {
+            self.multipliers.extend_from_slice(last.rows);
         } else {
-            self.multipliers.fill(0.0);
+            self.multipliers.resize(rows, 0.0);
         }
     }
 
-    /// `A A^T solution = -A gradient`; rows that say nothing new get zero.
+    /// `A A^T solution = -A gradient`; a row that depends on the rows before it gets zero.
     fn solve(&mut self, n: usize, gradient: &[f64]) {
-        let m = self.places.len();
+        let m = self.indices.len();
         let Self { rows, factor, solution, .. } = self;
         let row = |r: usize| &rows[r * n..(r + 1) * n];
         factor.clear();
@@ -98,7 +103,7 @@ impl Hold {
             }
             let whole = dot(row(r), row(r));
             let new = whole - dot(&factor[r * m..r * m + r], &factor[r * m..r * m + r]);
-            if new > DEPENDENT * whole {
+            if new > DEPENDENT_ROW * whole {
                 factor[r * m + r] = new.sqrt();
                 solution.push(right / new.sqrt());
             } else {
@@ -123,10 +128,10 @@ mod tests {
     use super::*;
     use hierarchical_least_squares::Solver;
 
-    /// Where a level cannot be met, the estimate in the solution is what the solver says; and it is orthogonal to what holds,
-    /// though some rows are said twice.
+    /// Three rows above, one of them twice, two active bounds, and a level that cannot be reached: in the solution the estimate
+    /// equals the multipliers of the solver.
     #[test]
-    fn estimates_are_the_multipliers_of_the_solution() {
+    fn estimate_in_the_solution_of_an_unreachable_level_equals_the_multipliers_of_the_solver() {
         let mut random = Pcg64Mcg::new(5);
         let mut worst = 0f64;
         for _ in 0..200 {
@@ -150,17 +155,17 @@ mod tests {
             for (row, r) in problem.levels[1].matrix.chunks_exact(n).zip(solver.residual(1)) {
                 gradient.iter_mut().zip(row).for_each(|(g, a)| *g += r * a);
             }
-            // Seen from the solution, as a step sees its problem.
+            // The problem of a step that begins in the solution.
             let x = solver.solution().to_vec();
             let mut here = problem.clone();
             here.lower.iter_mut().zip(&x).for_each(|(limit, x)| *limit -= x);
             here.upper.iter_mut().zip(&x).for_each(|(limit, x)| *limit -= x);
             let last = solver.multipliers(1);
-            let mut hold = Hold::new(4, n);
-            hold.estimate(&here, &here.levels[..1], last, &gradient);
-            // The row that is there twice may share its multiplier with the other.
+            let mut estimate = MultiplierEstimate::new(4, n);
+            estimate.estimate(&here, &here.levels[..1], last, &gradient);
+            // The two equal rows may share their multiplier.
             let sum = |m: &[f64]| [m[0] + m[3], m[1], m[2]];
-            for (a, b) in sum(&hold.multipliers).iter().zip(sum(last.rows)) {
+            for (a, b) in sum(&estimate.multipliers).iter().zip(sum(last.rows)) {
                 worst = worst.max((a - b).abs());
             }
         }

@@ -1,0 +1,162 @@
+//! Computes the sum of second derivatives of the errors of tasks, `sum_i w_i r_i''`.
+//!
+//! Loads whose generalised forces are `sum_i w_i grad r_i` change with the posture as that sum does: it is their gradient of external torque
+//! (Eqs. 7, 8).
+
+use nalgebra::Vector3;
+
+use super::center_of_mass::CenterOfMassGoal;
+use super::task::Task;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
+
+/// Workspace of the sum. Filled by [`ErrorHessian::add`], one task at a time.
+#[derive(Clone, Debug)]
+pub(crate) struct ErrorHessian {
+    loads: Vec<Load>,
+    torque: ExternalTorque,
+    gradient: Gradient,
+}
+
+impl ErrorHessian {
+    /// Space for so many `tasks`: the loads of each act at two places at most, or at all segments.
+    pub(crate) fn new(model: &Model, tasks: usize) -> Self {
+        Self {
+            loads: Vec::with_capacity(tasks * (2 + model.segments().len())),
+            torque: ExternalTorque::new(model),
+            gradient: Gradient::new(model),
+        }
+    }
+
+    /// Takes all tasks away.
+    pub(crate) fn clear(&mut self) {
+        self.loads.clear();
+    }
+
+    /// Adds the errors of a task, one weight each.
+    pub(crate) fn add(&mut self, model: &Model, task: &Task, weights: &[f64]) {
+        add_gradient_loads(task, model, weights, &mut self.loads);
+    }
+
+    /// The sum in the posture of `kinematics`; its symmetric part counts. `None` for weights beyond the loads that a model accepts (1e9).
+    pub(crate) fn evaluate(&mut self, model: &Model, kinematics: &Kinematics) -> Option<&Gradient> {
+        self.torque.update_weightless(model, kinematics, &self.loads).ok()?;
+        self.torque.gradient(model, kinematics, &mut self.gradient);
+        Some(&self.gradient)
+    }
+}
+
+/// Adds the loads whose generalised forces are `sum weights_i grad r_i` of its rows. Tasks of directions, distances, postures and
+/// effort are left out: their second derivatives are not known here.
+fn add_gradient_loads(task: &Task, model: &Model, weights: &[f64], loads: &mut Vec<Load>) {
+    let world = |segment, point, force| Load { segment, point, kind: LoadKind::Force(force, FixedIn::World) };
+    let couple = |segment, v| Load { segment, point: Vector3::zeros(), kind: LoadKind::Couple(v, FixedIn::World) };
+    let vector = |v: &[f64]| Vector3::new(v[0], v[1], v[2]);
+    match task {
+        Task::Point(task) => loads.push(world(task.segment, task.point, spread(task.axes, weights))),
+        Task::Orientation(task) => loads.push(couple(task.segment, vector(weights))),
+        Task::Placement(task) => {
+            loads.push(world(task.segment, task.point, vector(weights)));
+            loads.push(couple(task.segment, vector(&weights[3..])));
+        }
+        Task::CenterOfMass(task) => {
+            let force = match &task.goal {
+                CenterOfMassGoal::At { axes, .. } => spread(*axes, weights),
+                CenterOfMassGoal::Inside { polygon, .. } => {
+                    polygon.iter().zip(weights).map(|(edge, w)| edge.normal * *w).sum()
+                }
+            };
+            let mass = model.mass();
+            for (i, segment) in model.segments().iter().enumerate().filter(|(_, segment)| segment.mass > 0.0) {
+                loads.push(world(i, segment.center_of_mass, force * (segment.mass / mass)));
+            }
+        }
+        Task::LookAt(_) | Task::Distance(_) | Task::Posture(_) | Task::Effort(_) => {}
+    }
+}
+
+/// A vector with the given entries on the asked axes, 0 on the others.
+fn spread(axes: [bool; 3], weights: &[f64]) -> Vector3<f64> {
+    let mut weights = weights.iter();
+    Vector3::from_fn(|k, _| if axes[k] { weights.next().copied().unwrap_or(0.0) } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{UnitQuaternion, Vector3};
+    use rand::RngExt;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+    use crate::joint_torques::{JointTorques, Quantities};
+    use crate::model::{Adult, adult};
+    use crate::tasks::{self, Task};
+
+    /// Along a random direction, where the errors of the rotations are zero.
+    #[test]
+    fn weighted_sum_of_errors_has_second_differences_equal_to_the_hessian() {
+        let mut random = Pcg64Mcg::new(11);
+        let model = adult(&Adult::default()).unwrap();
+        let n = model.rates().len();
+        let mut worst = 0f64;
+        for _ in 0..20 {
+            let mut posture = model.default_posture();
+            for (value, coordinate) in posture.values_mut().iter_mut().zip(model.coordinates()) {
+                *value += random.random_range(-0.3..0.3) * (coordinate.range.1 - coordinate.range.0).min(1.0);
+            }
+            let mut body = JointTorques::new(&model);
+            let needs = Quantities { center_of_mass: true, ..Quantities::default() };
+            body.update(&model, &posture, &[], needs).unwrap();
+            let hand = model.segment("hand_r").unwrap();
+            let foot = model.segment("calcn_l").or_else(|| model.segment("foot_l")).unwrap();
+            let tasks = [
+                Task::Point(tasks::Point {
+                    segment: hand,
+                    point: Vector3::new(0.01, -0.1, 0.02),
+                    target: Vector3::new(1.0, 2.0, 0.5),
+                    axes: [true, false, true],
+                }),
+                Task::Placement(tasks::Placement {
+                    segment: foot,
+                    point: Vector3::zeros(),
+                    target: body.kinematics().placement(&model, foot),
+                }),
+                Task::CenterOfMass(tasks::CenterOfMass {
+                    goal: tasks::CenterOfMassGoal::At { target: Vector3::zeros(), axes: [true, false, true] },
+                }),
+                Task::Orientation(tasks::Orientation {
+                    segment: hand,
+                    target: UnitQuaternion::from(body.kinematics().placement(&model, hand).rotation),
+                }),
+            ];
+            let weights: Vec<f64> =
+                (0..tasks.iter().map(Task::rows).sum()).map(|_| random.random_range(-1.0..1.0)).collect();
+            let direction: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..1.0)).collect();
+            let mut along = |h: f64| {
+                let mut moved = posture.clone();
+                moved.displace(&model, &direction.iter().map(|d| d * h).collect::<Vec<_>>());
+                body.update(&model, &moved, &[], needs).unwrap();
+                let mut errors = vec![];
+                tasks.iter().for_each(|task| task.residual(&model, &body, &mut errors));
+                errors.iter().zip(&weights).map(|(e, w)| e * w).sum::<f64>()
+            };
+            let h = 1e-3;
+            let (a, c, b) = (along(-h), along(h), along(0.0));
+            let numeric = (a - 2.0 * b + c) / (h * h);
+            let mut hessian = ErrorHessian::new(&model, tasks.len());
+            let mut rest = &weights[..];
+            for task in &tasks {
+                let (own, others) = rest.split_at(task.rows());
+                hessian.add(&model, task, own);
+                rest = others;
+            }
+            body.update(&model, &posture, &[], needs).unwrap();
+            let matrix = hessian.evaluate(&model, body.kinematics()).unwrap();
+            let exact: f64 =
+                (0..n).map(|i| (0..n).map(|j| direction[i] * matrix.get(i, j) * direction[j]).sum::<f64>()).sum();
+            worst = worst.max((numeric - exact).abs() / (1.0 + exact.abs()));
+        }
+        assert!(worst < 1e-4, "{worst}");
+    }
+}

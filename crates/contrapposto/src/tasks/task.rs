@@ -1,0 +1,173 @@
+//! The closed set of tasks: dispatches to the file of each kind.
+
+use nalgebra::Vector3;
+
+use super::center_of_mass::{CenterOfMass, CenterOfMassGoal};
+use super::check::{Check, TaskError};
+use super::distance::Distance;
+use super::effort::Effort;
+use super::look_at::LookAt;
+use super::orientation::Orientation;
+use super::placement::Placement;
+use super::point::Point;
+use super::posture::Posture;
+use super::rows::chosen;
+use super::unit::Unit;
+use crate::joint_torques::{JointTorques, Quantities};
+use crate::model::Model;
+use hierarchical_least_squares::Level;
+
+/// A task of the body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Task {
+    /// A point of a segment at a place in ground.
+    Point(Point),
+    /// A segment turned as wanted.
+    Orientation(Orientation),
+    /// A point and the rotation of a segment, both as wanted.
+    Placement(Placement),
+    /// A direction of a segment toward a place in ground.
+    LookAt(LookAt),
+    /// Two points within a range of distances.
+    Distance(Distance),
+    /// The centre of mass at a place, or over a polygon.
+    CenterOfMass(CenterOfMass),
+    /// Coordinates at wanted values.
+    Posture(Posture),
+    /// Little muscle torque for strength.
+    Effort(Effort),
+}
+
+impl Task {
+    /// The quantities that [`JointTorques::update`] must compute for the task.
+    pub fn quantities(&self) -> Quantities {
+        match self {
+            Self::CenterOfMass(_) => Quantities { center_of_mass: true, ..Quantities::default() },
+            Self::Effort(_) => Quantities { gradient: true, ..Quantities::default() },
+            _ => Quantities::default(),
+        }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        match self {
+            Self::Point(task) => task.axes.iter().filter(|asked| **asked).count(),
+            Self::Orientation(_) => 3,
+            Self::Placement(_) => 6,
+            Self::LookAt(_) => 2,
+            Self::Distance(_) => 1,
+            Self::CenterOfMass(task) => task.rows(),
+            Self::Posture(task) => task.weights.iter().filter(|weight| **weight > 0.0).count(),
+            Self::Effort(task) => task.coordinates.len(),
+        }
+    }
+
+    /// The kind as scenarios write it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Point(_) => "point",
+            Self::Orientation(_) => "orientation",
+            Self::Placement(_) => "placement",
+            Self::LookAt(_) => "look_at",
+            Self::Distance(_) => "distance",
+            Self::CenterOfMass(_) => "center_of_mass",
+            Self::Posture(_) => "posture",
+            Self::Effort(_) => "effort",
+        }
+    }
+
+    /// Replaces the target, ground, m; returns `false` for a task without one.
+    pub fn retarget(&mut self, to: Vector3<f64>) -> bool {
+        match self {
+            Self::Point(task) => task.target = to,
+            Self::Placement(task) => task.target.translation.vector = to,
+            Self::LookAt(task) => task.target = to,
+            Self::CenterOfMass(CenterOfMass { goal: CenterOfMassGoal::At { target, .. } }) => *target = to,
+            _ => return false,
+        }
+        true
+    }
+
+    /// The kind and the segments that it moves, e.g. `point hand_r`. The task must have passed [`Task::check`].
+    pub fn label(&self, model: &Model) -> String {
+        let name = |segment: usize| &model.segments()[segment].name;
+        let kind = self.kind();
+        match self {
+            Self::Point(Point { segment, .. })
+            | Self::Orientation(Orientation { segment, .. })
+            | Self::Placement(Placement { segment, .. })
+            | Self::LookAt(LookAt { segment, .. }) => format!("{kind} {}", name(*segment)),
+            Self::Distance(task) => format!("{kind} {} {}", name(task.a.0), name(task.b.0)),
+            Self::CenterOfMass(_) | Self::Posture(_) | Self::Effort(_) => kind.to_owned(),
+        }
+    }
+
+    /// Unit of the error of a row.
+    ///
+    /// # Panics
+    /// Unless `row` is less than [`Task::rows`].
+    pub fn unit(&self, model: &Model, row: usize) -> Unit {
+        assert!(row < self.rows(), "row {row} of {}", self.rows());
+        match self {
+            Self::Point(_) | Self::Distance(_) | Self::CenterOfMass(_) => Unit::Metre,
+            Self::Orientation(_) | Self::LookAt(_) => Unit::Radian,
+            Self::Placement(_) => [Unit::Metre, Unit::Radian][row / 3],
+            Self::Posture(task) => task.unit(model, row),
+            Self::Effort(_) => Unit::ShareOfStrength,
+        }
+    }
+
+    /// Adds the rows of the task to `level`, whose unknowns are the model's rates. Does not allocate once the level has had the space. The
+    /// task must have passed [`Task::check`].
+    ///
+    /// # Panics
+    /// When `body` was not updated with [`Task::quantities`].
+    pub fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
+        match self {
+            Self::Point(task) => task.evaluate(model, body, level),
+            Self::Orientation(task) => task.evaluate(model, body, level),
+            Self::Placement(task) => task.evaluate(model, body, level),
+            Self::LookAt(task) => task.evaluate(model, body, level),
+            Self::Distance(task) => task.evaluate(model, body, level),
+            Self::CenterOfMass(task) => task.evaluate(model, body, level),
+            Self::Posture(task) => task.evaluate(model, body, level),
+            Self::Effort(task) => task.evaluate(model, body, level),
+        }
+    }
+
+    /// Adds the true errors of the task, one a row, to `out`: present less wanted, in the row's unit; 0 where an inequality holds, and without
+    /// the weights of a posture task.
+    ///
+    /// # Panics
+    /// As [`Task::evaluate`].
+    pub fn residual(&self, model: &Model, body: &JointTorques, out: &mut Vec<f64>) {
+        match self {
+            Self::Point(task) => out.extend(chosen(task.axes, task.error(model, body))),
+            Self::Orientation(task) => out.extend_from_slice(task.error(model, body).as_slice()),
+            Self::Placement(task) => out.extend(task.error(model, body)),
+            Self::LookAt(task) => out.extend(task.error(model, body)),
+            Self::Distance(task) => out.push(task.error(model, body)),
+            Self::CenterOfMass(task) => task.residual(body, out),
+            Self::Posture(task) => task.residual(model, body, out),
+            Self::Effort(task) => task.residual(model, body, out),
+        }
+    }
+
+    /// Checks that the task fits `model`.
+    ///
+    /// # Errors
+    /// [`TaskError`] names the first thing that does not fit.
+    pub fn check(&self, model: &Model) -> Result<(), TaskError> {
+        let check = Check { task: self.kind(), model };
+        match self {
+            Self::Point(task) => task.check(&check),
+            Self::Orientation(task) => task.check(&check),
+            Self::Placement(task) => task.check(&check),
+            Self::LookAt(task) => task.check(&check),
+            Self::Distance(task) => task.check(&check),
+            Self::CenterOfMass(task) => task.check(&check),
+            Self::Posture(task) => task.check(&check),
+            Self::Effort(task) => task.check(&check),
+        }
+    }
+}
