@@ -7,7 +7,7 @@ use crate::tolerances::{DEPENDENT_COLUMN, NORM_UPDATE};
 
 /// One least-squares problem, its factors and its residual. The buffers are kept between calls.
 #[derive(Clone, Debug, Default)]
-pub struct LeastSquares {
+pub(crate) struct LeastSquares {
     rows: usize,
     columns: usize,
     /// `T` row after row, and `c`, as given.
@@ -31,7 +31,7 @@ pub struct LeastSquares {
 
 impl LeastSquares {
     /// An empty problem with space for so many rows and columns.
-    pub fn with_capacity(rows: usize, columns: usize) -> Self {
+    pub(crate) fn with_capacity(rows: usize, columns: usize) -> Self {
         Self {
             given: Vec::with_capacity(rows * columns),
             given_right: Vec::with_capacity(rows),
@@ -49,7 +49,7 @@ impl LeastSquares {
     }
 
     /// Starts a problem of this size, all entries zero. Fill it with [`LeastSquares::set`].
-    pub fn begin(&mut self, rows: usize, columns: usize) {
+    pub(crate) fn begin(&mut self, rows: usize, columns: usize) {
         (self.rows, self.columns) = (rows, columns);
         self.given.clear();
         self.given.resize(rows * columns, 0.0);
@@ -58,19 +58,19 @@ impl LeastSquares {
     }
 
     /// Sets row `i` to `row`, padded with zeros, and its right-hand side to `right`.
-    pub fn set(&mut self, i: usize, row: &[f64], right: f64) {
+    pub(crate) fn set(&mut self, i: usize, row: &[f64], right: f64) {
         let n = self.columns;
         self.given[i * n..i * n + row.len()].copy_from_slice(row);
         self.given_right[i] = right;
     }
 
     /// Sets one entry.
-    pub fn set_entry(&mut self, i: usize, column: usize, value: f64) {
+    pub(crate) fn set_entry(&mut self, i: usize, column: usize, value: f64) {
         self.given[i * self.columns + column] = value;
     }
 
     /// Solves into the first entries of `y`. Unknowns of columns that depend on others are zero.
-    pub fn solve(&mut self, y: &mut [f64]) {
+    pub(crate) fn solve(&mut self, y: &mut [f64]) {
         let (m, n) = (self.rows, self.columns);
         y[..n].fill(0.0);
         self.arrange();
@@ -84,7 +84,7 @@ impl LeastSquares {
     }
 
     /// `c - T y` of the last solution, by row.
-    pub fn residual(&self) -> &[f64] {
+    pub(crate) fn residual(&self) -> &[f64] {
         &self.residual
     }
 

@@ -20,10 +20,8 @@ mod vector;
 
 pub use blocked_cholesky::{block_start, blocked_cholesky, padded_width};
 pub use cholesky::{cholesky, pivoted_cholesky, semidefinite_cholesky};
-pub use least_squares::LeastSquares;
+pub(crate) use least_squares::LeastSquares;
 pub use symmetric_eigen::SymmetricEigen;
 pub use triangular::{solve_lower, solve_lower_transposed, solve_upper, solve_upper_transposed};
-pub use vector::{
-    add_four_scaled, add_outer_product, add_outer_products, add_scaled, add_scaled_fours, add_scaled_pair,
-    add_symmetric_column, dot, dot_pair, norm, norm_and_nonzeros,
-};
+pub use vector::{add_outer_product, add_outer_products, add_scaled, add_symmetric_column, dot, norm};
+pub(crate) use vector::{add_scaled_pair, dot_pair, norm_and_nonzeros};

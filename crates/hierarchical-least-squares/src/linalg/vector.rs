@@ -60,7 +60,7 @@ pub fn add_outer_product(matrix: &mut [f64], row: &[f64], weight: f64) {
 
 /// `y += sum_r factors_r x_r` of four rows, in whole groups of four entries.
 #[inline]
-pub fn add_four_scaled(y: &mut [[f64; 4]], factors: [f64; 4], [a, b, c, d]: [&[[f64; 4]]; 4]) {
+pub(super) fn add_four_scaled(y: &mut [[f64; 4]], factors: [f64; 4], [a, b, c, d]: [&[[f64; 4]]; 4]) {
     let [p, q, r, s] = factors.map(f64x4::splat);
     for (y, ((a, b), (c, d))) in y.iter_mut().zip(a.iter().zip(b).zip(c.iter().zip(d))) {
         let more = (p * lanes(a) + q * lanes(b)) + (r * lanes(c) + s * lanes(d));
@@ -70,7 +70,7 @@ pub fn add_four_scaled(y: &mut [[f64; 4]], factors: [f64; 4], [a, b, c, d]: [&[[
 
 /// `y += s x`, in whole groups of four entries.
 #[inline]
-pub fn add_scaled_fours(y: &mut [[f64; 4]], s: f64, x: &[[f64; 4]]) {
+pub(super) fn add_scaled_fours(y: &mut [[f64; 4]], s: f64, x: &[[f64; 4]]) {
     let scale = f64x4::splat(s);
     for (y, x) in y.iter_mut().zip(x) {
         *y = (lanes(y) + scale * lanes(x)).to_array();
@@ -104,7 +104,7 @@ pub fn add_outer_products(matrix: &mut [f64], n: usize, rows: &[f64], weight: im
 
 /// `a^T t` and `b^T t`; lengths are multiples of eight.
 #[inline]
-pub fn dot_pair(a: &[f64], b: &[f64], t: &[f64]) -> (f64, f64) {
+pub(crate) fn dot_pair(a: &[f64], b: &[f64], t: &[f64]) -> (f64, f64) {
     let (mut left, mut right) = ([f64x4::ZERO; 2], [f64x4::ZERO; 2]);
     for ((a, b), t) in a.as_chunks::<8>().0.iter().zip(b.as_chunks::<8>().0).zip(t.as_chunks::<8>().0) {
         add_products(&mut left, a, t);
@@ -115,7 +115,7 @@ pub fn dot_pair(a: &[f64], b: &[f64], t: &[f64]) -> (f64, f64) {
 
 /// `t += p a + q b`; lengths are multiples of four.
 #[inline]
-pub fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64]) {
+pub(crate) fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64]) {
     let (p, q) = (f64x4::splat(p), f64x4::splat(q));
     for ((t, a), b) in t.as_chunks_mut::<4>().0.iter_mut().zip(a.as_chunks::<4>().0).zip(b.as_chunks::<4>().0) {
         *t = (lanes(t) + (p * lanes(a) + q * lanes(b))).to_array();
@@ -124,7 +124,7 @@ pub fn add_scaled_pair(t: &mut [f64], p: f64, a: &[f64], q: f64, b: &[f64]) {
 
 /// Euclidean norm of a vector, and the number of its entries that are not zero.
 #[inline]
-pub fn norm_and_nonzeros(a: &[f64]) -> (f64, u64) {
+pub(crate) fn norm_and_nonzeros(a: &[f64]) -> (f64, u64) {
     let count = a.iter().map(|x| u64::from(*x != 0.0)).sum();
     (norm(a), count)
 }
