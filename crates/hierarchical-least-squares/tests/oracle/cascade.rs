@@ -1,8 +1,8 @@
 //! Solves a problem by a cascade of quadratic programs, each solved by Clarabel.
 //!
-//! A level asks for the least `|v|` with `lower <= A x - v <= upper`, the levels above unchanged: rows that are equations or
-//! keep a residual stay where they are (they are eliminated: `x = x0 + Z y`), rows that hold go on holding.
-//! Scales are taken out of the rows and put into the objective.
+//! A level minimises `|v|` with `lower <= A x - v <= upper`, the levels above unchanged: equations and rows with a residual keep
+//! their values (they are eliminated: `x = x0 + Z y`), satisfied rows stay satisfied. Scales are in the objective, not in the
+//! rows.
 
 use crate::generator::{Draw, Row, matrix_of};
 use crate::linear::{least_squares, null_space};
@@ -10,9 +10,9 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
-/// A residual above this keeps its row where it is.
+/// A residual above this fixes the value of its row.
 const KEPT: f64 = 1e-6;
-/// A row whose free part is below this does not move any more.
+/// A row whose part in the null space is below this does not change any more.
 const STILL: f64 = 1e-9;
 
 /// State of a cascade: a point, and the directions that the levels so far leave free.
@@ -20,15 +20,15 @@ pub struct Cascade<'a> {
     draw: &'a Draw,
     pub x: DVector<f64>,
     free: DMatrix<f64>,
-    /// Rows that hold and shall go on holding.
+    /// Satisfied rows, which must stay satisfied.
     holding: Vec<&'a Row>,
 }
 
 #[derive(Debug)]
-pub enum Trouble {
+pub enum CascadeError {
     /// Clarabel's status is not `Solved`.
     Unsolved,
-    /// The rows that are kept have no clear rank.
+    /// The fixed rows have no clear rank.
     Unclear,
 }
 
@@ -43,7 +43,7 @@ impl<'a> Cascade<'a> {
     }
 
     /// Takes a level to its optimum, and returns its residuals (of rows before scaling).
-    pub fn optimum(&mut self, k: usize) -> Result<Vec<f64>, Trouble> {
+    pub fn optimum(&mut self, k: usize) -> Result<Vec<f64>, CascadeError> {
         let rows = &self.draw.levels[k];
         if self.free.ncols() > 0 {
             let y = self.solve(rows)?;
@@ -53,19 +53,19 @@ impl<'a> Cascade<'a> {
     }
 
     /// Fixes the residuals of a level for the levels below.
-    pub fn keep(&mut self, k: usize, residuals: &[f64]) -> Result<(), Trouble> {
+    pub fn keep(&mut self, k: usize, residuals: &[f64]) -> Result<(), CascadeError> {
         let rows = &self.draw.levels[k];
         let kept = |i: usize| rows[i].equation() || residuals[i].abs() > KEPT;
         let matrix = matrix_of(self.draw.n, (0..rows.len()).filter(|i| kept(*i)).map(|i| &rows[i]));
-        self.free = null_space(&matrix, &self.free, 1e-5, 1e-9).ok_or(Trouble::Unclear)?;
+        self.free = null_space(&matrix, &self.free, 1e-5, 1e-9).ok_or(CascadeError::Unclear)?;
         self.holding.extend((0..rows.len()).filter(|i| !kept(*i)).map(|i| &rows[i]));
         Ok(())
     }
 
     /// The step to the optimum of a level, by Clarabel, then polished.
-    fn solve(&self, rows: &[Row]) -> Result<DVector<f64>, Trouble> {
+    fn solve(&self, rows: &[Row]) -> Result<DVector<f64>, CascadeError> {
         let (p, m) = (self.free.ncols(), rows.len());
-        // Where every residual can be zero, weights say nothing and only spoil the numbers.
+        // Where every residual can be zero, weights do not change the answer and spoil its digits.
         let largest = rows.iter().map(|row| row.scale).fold(0.0, f64::max);
         let weight = |row: &Row| if self.draw.conflicting { row.scale / largest } else { 1.0 };
         let weights: Vec<f64> = rows.iter().map(weight).collect();
@@ -105,19 +105,19 @@ impl<'a> Cascade<'a> {
             answer = attempt(1e-10, 1e-8);
         }
         if answer.status != SolverStatus::Solved {
-            return Err(Trouble::Unsolved);
+            return Err(CascadeError::Unsolved);
         }
         let y = DVector::from_column_slice(&answer.x[..p]);
-        let pressing = |i: usize, _: f64| lines[i].equation || answer.z[i] > answer.s[i];
+        let zero_multiplier = |i: usize, _: f64| lines[i].equation || answer.z[i] > answer.s[i];
         let near = |i: usize, room: f64| lines[i].equation || room < 1e-5;
-        let y = polish(&lines, &weights, y, pressing);
+        let y = polish(&lines, &weights, y, zero_multiplier);
         Ok(polish(&lines, &weights, y, near))
     }
 
-    /// All that holds for a step `y`, equations first.
+    /// All constraints on a step `y`, equations first.
     fn lines(&self, rows: &[Row]) -> Vec<Line> {
         let mut lines = vec![];
-        // What does not move must not move by the rounding in its direction either, however far along it.
+        // A row that does not change must not change by rounding in its direction either, however long the step.
         let direction = |a: &[f64]| {
             let direction = self.free.tr_mul(&DVector::from_column_slice(a));
             if direction.norm() > STILL { direction } else { 0.0 * direction }
@@ -163,8 +163,8 @@ struct Line {
     equation: bool,
 }
 
-/// An interior point stops a little off the sides that hold it. Put exactly on those of `active`, in the sense of least
-/// squares; kept if nothing is worse than before.
+/// Moves an interior point exactly to the `active` limits, in the sense of least squares; the result counts if no violation and
+/// no residual is larger than before.
 fn polish(lines: &[Line], weights: &[f64], y: DVector<f64>, active: impl Fn(usize, f64) -> bool) -> DVector<f64> {
     let p = y.len();
     let room = |i: usize, y: &DVector<f64>| lines[i].room - lines[i].direction.dot(y);
@@ -186,7 +186,7 @@ fn polish(lines: &[Line], weights: &[f64], y: DVector<f64>, active: impl Fn(usiz
     let mut next = &y + least_squares(&hard, &rooms(&firm, &y), 1e-9);
     let step = least_squares(&(stack(&soft) * &free), &rooms(&soft, &next), 1e-13);
     next += free * step;
-    // Most any line of another level is passed, and what the level is about.
+    // The largest violation of another level, and the objective of the level.
     let merit = |y: &DVector<f64>| {
         let (mut passed, mut sum) = (0.0_f64, 0.0);
         for (i, line) in lines.iter().enumerate() {

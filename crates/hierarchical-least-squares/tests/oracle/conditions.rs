@@ -7,38 +7,38 @@ use hierarchical_least_squares::{Problem, Solver};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-/// A residual above this, in rows of scale one, is one; below, its row counts as holding.
+/// A residual above this, in rows of scale one, counts; below, the row counts as satisfied.
 pub const RESIDUAL: f64 = 1e-9;
 
 /// As [`RESIDUAL`], for a level with these scales: the heaviest rows keep residuals as much smaller than those of the
 /// lightest as the squares of their scales say.
 pub fn residual_of(scales: impl Iterator<Item = f64> + Clone) -> f64 {
     let (least, most) = (scales.clone().fold(f64::INFINITY, f64::min), scales.fold(0.0, f64::max));
-    (RESIDUAL * (least / most).powi(2)).max(UNSEEN)
+    (RESIDUAL * (least / most).powi(2)).max(INVISIBLE_RESIDUAL)
 }
 
-/// No residual below this, in rows of scale one, can be told from rounding.
-const UNSEEN: f64 = 1e-13;
+/// A residual below this, in rows of scale one, is rounding.
+const INVISIBLE_RESIDUAL: f64 = 1e-13;
 
 /// As [`residual_of`], for problems with damped levels.
-const DAMPED: f64 = 1e-12;
+const DAMPED_RESIDUAL: f64 = 1e-12;
 
 /// A multiplier below this, in rows of scale one, counts as zero.
-const PRESSING: f64 = 1e-13;
-/// A multiplier above this, relative to the square of the level's least scale and to what the level keeps, locks its side for
-/// all levels below: to leave it would cost the level something, so what it presses with at levels below may have either sign
-/// (the multipliers of one side are positive in the lexicographic sense).
-const LOCKING: f64 = 1e-8;
+const ZERO_MULTIPLIER: f64 = 1e-13;
+/// A multiplier above this, relative to the square of the level's least scale and to the residual of the level, fixes its limit
+/// for all levels below: leaving the limit would cost the level something, so that the multiplier at levels below may have
+/// either sign (the multipliers of one limit are positive in the lexicographic sense).
+const FIXING_MULTIPLIER: f64 = 1e-8;
 
-/// From which multiplier on a level locks sides, in rows of these scales: multipliers are as much smaller than one as what
-/// it keeps, in rows of scale one, but rounding is not.
-fn locking(residuals: &[f64], scales: impl Iterator<Item = f64> + Clone) -> f64 {
+/// The least multiplier with which a level fixes limits, in rows of these scales: multipliers are in proportion to the residual
+/// of the level, rounding is not.
+fn fixing_multiplier(residuals: &[f64], scales: impl Iterator<Item = f64> + Clone) -> f64 {
     let kept = residuals.iter().zip(scales.clone()).map(|(r, scale)| r.abs() / scale).fold(0.0, f64::max);
-    LOCKING * kept.clamp(1e-6, 1.0) * scales.fold(f64::INFINITY, f64::min).powi(2)
+    FIXING_MULTIPLIER * kept.clamp(1e-6, 1.0) * scales.fold(f64::INFINITY, f64::min).powi(2)
 }
 
 /// Number of times the last digits are changed.
-const NUDGES: usize = 5;
+const PERTURBATIONS: usize = 5;
 
 /// Solution, residuals and multipliers of a solver.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,20 +84,20 @@ pub fn residual(value: Double, lower: f64, upper: f64) -> Double {
     }
 }
 
-/// The largest misses; all should be a little rounding.
+/// The largest violations of the conditions; all should be rounding.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Misses {
+pub struct Violations {
     /// Reported residuals against those recomputed.
     pub residual: f64,
     /// Unknowns outside their bounds.
     pub bounds: f64,
     /// Gradient of the Lagrangian.
     pub stationarity: f64,
-    /// Multipliers at no side, or at the wrong one.
+    /// Multipliers of inactive limits, or of the wrong sign.
     pub sign: f64,
 }
 
-impl Misses {
+impl Violations {
     pub fn largest(&mut self, other: &Self) {
         self.residual = self.residual.max(other.residual);
         self.bounds = self.bounds.max(other.bounds);
@@ -112,27 +112,27 @@ impl Misses {
 
 /// Violations by an answer of the conditions of all levels; of damped levels only those of the last, as those above are
 /// done somewhere else. Gradients are relative to the square of the level's largest scale.
-pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses {
+pub fn violations(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Violations {
     let (n, x) = (problem.unknowns(), &answer.x);
-    let mut misses = Misses::default();
+    let mut violations = Violations::default();
     for ((&x, &lower), &upper) in x.iter().zip(&problem.lower).zip(&problem.upper) {
         let outside = if x.is_finite() { outside(x, lower, upper).abs() } else { f64::INFINITY };
-        misses.bounds = misses.bounds.max(outside);
+        violations.bounds = violations.bounds.max(outside);
     }
     let mut values: Vec<Vec<Double>> = vec![];
-    // Damped levels keep residuals as small as their damping is, and make others keep what follows from those.
+    // Damped levels have residuals in proportion to their damping, and cause residuals of that size in other levels.
     let damped = problem.levels.iter().any(|level| level.damping > 0.0);
-    let smallest = |level: &Vec<f64>| if damped { DAMPED } else { residual_of(level.iter().copied()) };
+    let smallest = |level: &Vec<f64>| if damped { DAMPED_RESIDUAL } else { residual_of(level.iter().copied()) };
     let smallest: Vec<f64> = scales.iter().map(smallest).collect();
-    // Levels of such scales that a heavy row at its side may keep a residual nobody can see: either sign is right there.
-    let mut unseen = vec![];
-    let mut locked: Vec<Vec<bool>> = scales.iter().map(|level| vec![false; level.len()]).collect();
-    let mut locked_bounds = vec![false; n];
+    // In levels of such scales a heavy row at its limit may have a residual below rounding: either sign is right there.
+    let mut invisible = vec![];
+    let mut fixed: Vec<Vec<bool>> = scales.iter().map(|level| vec![false; level.len()]).collect();
+    let mut fixed_bounds = vec![false; n];
     for (k, level) in problem.levels.iter().enumerate() {
         let (products, scale) = (products(problem, k, x), scales[k].iter().copied().fold(0.0, f64::max));
-        let locking = locking(&answer.residuals[k], scales[k].iter().copied());
+        let fixing_multiplier = fixing_multiplier(&answer.residuals[k], scales[k].iter().copied());
         let (mut sum, mut size) = (vec![Double::ZERO; n], vec![0.0; n]);
-        // What the last digit of `x` alone makes of the sum: no answer in doubles is nearer.
+        // The change of the sum by the last digit of `x`: no answer in doubles is nearer.
         let mut blur = vec![0.0; n];
         let mut add = |a: &[f64], factor: Double| {
             for (j, a) in a.iter().enumerate() {
@@ -151,10 +151,10 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
                 *blur += 0.5 * f64::EPSILON * size * a.abs();
             }
             let miss = (answer.residuals[k][i] - residual.value()).abs() / (size + side).max(f64::MIN_POSITIVE);
-            misses.residual = misses.residual.max(miss);
+            violations.residual = violations.residual.max(miss);
         }
         let keeps = answer.residuals[k].iter().zip(&scales[k]).any(|(r, scale)| r.abs() > smallest[k] * scale);
-        unseen.push(keeps && residual_of(scales[k].iter().copied()) == UNSEEN);
+        invisible.push(keeps && residual_of(scales[k].iter().copied()) == INVISIBLE_RESIDUAL);
         values.push(products);
         if level.damping > 0.0 && k + 1 < problem.levels.len() {
             continue;
@@ -168,24 +168,24 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
             add(&level.matrix[i * n..(i + 1) * n], Double::from(factor));
             let (lower, upper, scale) = (level.lower[i], level.upper[i], scales[j][i]);
             let free = residual(values[j][i], lower, upper).value().abs() > smallest[j] * scale;
-            if !free && lower != upper && !locked[j][i] {
+            if !free && lower != upper && !fixed[j][i] {
                 let off = |side: f64| {
                     let off = (values[j][i] - Double::from(side)).value().abs();
                     off.is_nan() || off > RESIDUAL * (scale + side.abs())
                 };
                 let (side, other) = if factor > 0.0 { (upper, lower) } else { (lower, upper) };
-                if off(side) && (off(other) || !unseen[j]) {
+                if off(side) && (off(other) || !invisible[j]) {
                     signs.push(factor.abs() * scale);
                 } else {
-                    locked[j][i] = factor.abs() * scale > locking;
+                    fixed[j][i] = factor.abs() * scale > fixing_multiplier;
                 }
             }
         }
         for (j, &factor) in bounds.iter().enumerate() {
             let side = if factor > 0.0 { problem.upper[j] } else { problem.lower[j] };
-            if problem.lower[j] != problem.upper[j] && !locked_bounds[j] {
+            if problem.lower[j] != problem.upper[j] && !fixed_bounds[j] {
                 if x[j] == side {
-                    locked_bounds[j] = factor.abs() > locking;
+                    fixed_bounds[j] = factor.abs() > fixing_multiplier;
                 } else {
                     signs.push(factor.abs());
                 }
@@ -196,56 +196,58 @@ pub fn misses(problem: &Problem, scales: &[Vec<f64>], answer: &Answer) -> Misses
             sum[j] += Double::from(*factor) + pull;
             size[j] += factor.abs() + pull.value().abs();
         }
-        // Relative to all that is summed, but to no less than a residual of one.
+        // Relative to the sum of absolute values, but to no less than a residual of one.
         let size = scale * scale + size.iter().copied().fold(0.0, f64::max);
         let off = sum.iter().zip(&blur).map(|(sum, blur)| sum.value().abs() - blur);
         let stationarity = off.fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
         let sign = signs.iter().copied().fold(0.0, f64::max) / size.max(f64::MIN_POSITIVE);
-        misses.stationarity = misses.stationarity.max(stationarity);
-        misses.sign = misses.sign.max(sign);
+        violations.stationarity = violations.stationarity.max(stationarity);
+        violations.sign = violations.sign.max(sign);
     }
-    misses
+    violations
 }
 
-/// A row `a x = value` that is held, and the side of an inequality it stands for.
-struct Held<'a> {
+/// An active row `a x = value`.
+struct Active<'a> {
     a: &'a [f64],
     value: Double,
     multiplier: f64,
     inequality: bool,
 }
 
-/// The residuals (of rows before scaling) that follow from what the answer calls active. With the right signs of their
-/// multipliers they are the best there are, whatever `x` may say.
+/// The residuals (of rows before scaling) that follow from the working set of the answer. With the right signs of the
+/// multipliers they are optimal, whatever `x` is.
 pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> {
     let n = draw.n;
     let units: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| if i == j { 1.0 } else { 0.0 }).collect()).collect();
     let mut known: Vec<Vec<Double>> = vec![];
-    // The side an inequality is locked at: 1 upper, -1 lower, 0 none.
-    let mut locks: Vec<f64> = vec![];
-    let mut bound_locks = vec![0.0; n];
+    // The limit at which an inequality is fixed: 1 upper, -1 lower, 0 none.
+    let mut fixed_sides: Vec<f64> = vec![];
+    let mut fixed_bound_sides = vec![0.0; n];
     for (k, rows) in draw.levels.iter().enumerate() {
         let largest = rows.iter().map(|row| row.scale).fold(0.0, f64::max);
-        let locking = locking(&answer.residuals[k], rows.iter().map(|row| row.scale)) / (largest * largest);
+        let fixing_multiplier =
+            fixing_multiplier(&answer.residuals[k], rows.iter().map(|row| row.scale)) / (largest * largest);
         let (bounds, factors) = &answer.multipliers[k];
         let scales = draw.levels[..k].iter().flatten().map(|row| row.scale);
         let all = factors.iter().zip(scales).map(|(factor, scale)| factor * scale).chain(bounds.iter().copied());
-        let pressing = PRESSING * all.fold(1.0, |most: f64, factor| most.max(factor.abs() / (largest * largest)));
+        let zero_multiplier =
+            ZERO_MULTIPLIER * all.fold(1.0, |most: f64, factor| most.max(factor.abs() / (largest * largest)));
         let mut held = vec![];
         for (j, a) in units.iter().enumerate() {
             let multiplier = bounds[j] / (largest * largest);
             let fixed = draw.lower[j] == draw.upper[j];
-            if fixed || multiplier.abs() > pressing {
-                let inequality = !fixed && bound_locks[j] == 0.0;
-                let upper = if inequality { multiplier > 0.0 } else { bound_locks[j] > 0.0 };
+            if fixed || multiplier.abs() > zero_multiplier {
+                let inequality = !fixed && fixed_bound_sides[j] == 0.0;
+                let upper = if inequality { multiplier > 0.0 } else { fixed_bound_sides[j] > 0.0 };
                 let side = if upper { draw.upper[j] } else { draw.lower[j] };
                 if side.is_infinite() {
                     continue;
                 }
                 let value = Double::from(side);
-                held.push(Held { a, value, multiplier, inequality });
-                if inequality && multiplier.abs() > locking {
-                    bound_locks[j] = multiplier.signum();
+                held.push(Active { a, value, multiplier, inequality });
+                if inequality && multiplier.abs() > fixing_multiplier {
+                    fixed_bound_sides[j] = multiplier.signum();
                 }
             }
         }
@@ -254,11 +256,11 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
             let smallest = smallest(rows);
             rows.iter().zip(known).map(move |(row, known)| (row, known, known.value().abs() > smallest))
         });
-        locks.resize(factors.len(), 0.0);
-        for (((row, &known, short), factor), lock) in above.zip(factors).zip(&mut locks) {
+        fixed_sides.resize(factors.len(), 0.0);
+        for (((row, &known, short), factor), lock) in above.zip(factors).zip(&mut fixed_sides) {
             let multiplier = factor * row.scale / (largest * largest);
             let kept = row.equation() || short;
-            if kept || multiplier.abs() > pressing {
+            if kept || multiplier.abs() > zero_multiplier {
                 let inequality = !kept && *lock == 0.0;
                 let side = [known.value(), *lock, multiplier].into_iter().find(|side| *side != 0.0);
                 let side = if side > Some(0.0) { row.upper } else { row.lower };
@@ -266,13 +268,13 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
                     continue;
                 }
                 let value = Double::from(side) + known;
-                held.push(Held { a: &row.a, value, multiplier, inequality });
-                if inequality && multiplier.abs() > locking {
+                held.push(Active { a: &row.a, value, multiplier, inequality });
+                if inequality && multiplier.abs() > fixing_multiplier {
                     *lock = multiplier.signum();
                 }
             }
         }
-        // The rows that are short of their side.
+        // The rows with a residual.
         let smallest = smallest(rows);
         let mut short = vec![];
         for (row, residual) in rows.iter().zip(&answer.residuals[k]) {
@@ -283,8 +285,8 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
         }
         let (found, wrong) = least(n, &held, &short);
         if wrong.iter().any(|wrong| *wrong) {
-            // A row that pulls instead of pressing: does it matter?
-            let others: Vec<Held<'_>> =
+            // The multiplier has the wrong sign; it counts where it is above rounding.
+            let others: Vec<Active<'_>> =
                 held.into_iter().zip(&wrong).filter(|(_, wrong)| !**wrong).map(|(held, _)| held).collect();
             let (better, _) = least(n, &others, &short);
             let change = found.iter().zip(&better).map(|(a, b)| (*a - *b).value().abs()).fold(0.0, f64::max);
@@ -306,7 +308,7 @@ pub fn reference(draw: &Draw, answer: &Answer) -> Result<Vec<Vec<f64>>, String> 
 pub fn spread(draw: &Draw, answer: &Answer, rng: &mut Pcg64) -> Result<f64, String> {
     let known = reference(draw, answer)?;
     let mut most: f64 = 0.0;
-    for _ in 0..NUDGES {
+    for _ in 0..PERTURBATIONS {
         let mut nudged = draw.clone();
         for a in nudged.levels.iter_mut().flatten().flat_map(|row| &mut row.a) {
             *a *= 1.0 + f64::EPSILON * f64::from(rng.random_range(-1..=1));
@@ -318,16 +320,16 @@ pub fn spread(draw: &Draw, answer: &Answer, rng: &mut Pcg64) -> Result<f64, Stri
     Ok(most)
 }
 
-/// Least squares of `short` (row, side, weight) with `held` exactly held: residuals before weighting, and which of `held`
-/// have a multiplier of the wrong sign.
-fn least(n: usize, held: &[Held<'_>], short: &[(&[f64], Double, f64)]) -> (Vec<Double>, Vec<bool>) {
+/// Least squares of `short` (row, limit, weight) with `held` as equations: residuals before weighting, and which of `held` have
+/// a multiplier of the wrong sign.
+fn least(n: usize, held: &[Active<'_>], short: &[(&[f64], Double, f64)]) -> (Vec<Double>, Vec<bool>) {
     let plain = |a: &[f64]| a.iter().map(|a| Double::from(*a)).collect::<Vec<_>>();
     let axpy = |y: &mut [Double], factor: Double, x: &[Double]| {
         for (y, x) in y.iter_mut().zip(x) {
             *y += factor * *x;
         }
     };
-    // Orthonormal directions of the held rows, the longest rest first; `x` satisfies them.
+    // Orthonormal directions of the active rows, the largest remainder first; `x` satisfies them.
     let mut rests: Vec<Vec<Double>> = held.iter().map(|held| plain(held.a)).collect();
     let mut directions: Vec<Vec<Double>> = vec![];
     let mut order: Vec<usize> = vec![];
@@ -350,7 +352,7 @@ fn least(n: usize, held: &[Held<'_>], short: &[(&[f64], Double, f64)]) -> (Vec<D
         order.push(next);
         directions.push(direction);
     }
-    // The short rows in what is left, weighted, as columns.
+    // The rows with residuals in the null space, weighted, as columns.
     let mut columns = vec![vec![Double::ZERO; short.len()]; n];
     let mut residuals = vec![];
     for (i, (a, side, weight)) in short.iter().enumerate() {
@@ -378,7 +380,7 @@ fn least(n: usize, held: &[Held<'_>], short: &[(&[f64], Double, f64)]) -> (Vec<D
             axpy(column, -share, &direction);
         }
     }
-    // Multipliers: those of the answer, corrected on the rows that gave a direction.
+    // Multipliers of the answer, corrected for the independent rows.
     let mut gradient = vec![Double::ZERO; n];
     for ((a, _, weight), residual) in short.iter().zip(&residuals) {
         axpy(&mut gradient, *residual * Double::from(*weight), &plain(a));

@@ -1,9 +1,9 @@
 //! Compares equations and damped levels with the recursion of Baerlocher & Boulic, with rows towards zero, and with the
 //! optimality conditions.
 
-use crate::conditions::{Answer, misses};
+use crate::conditions::{Answer, violations};
 use crate::generator;
-use crate::generator::{Draw, Scaling, Wish, draw, empty_level, normal, random};
+use crate::generator::{Draw, DrawOptions, Scaling, draw, empty_level, normal, random};
 use crate::linear;
 use crate::{SAME, all_problems, difference, largest, seed, unscaled};
 use hierarchical_least_squares::{Problem, Solver, Status};
@@ -35,8 +35,8 @@ fn recursion(problem: &Problem) -> Vec<DVector<f64>> {
 /// Equations only, without bounds; each level scaled as a whole.
 fn equations(seed: u64, index: usize) -> Draw {
     let scaling = Scaling::ByLevel;
-    let wish = Wish { conflicting: index & 1 == 0, scaling, bounds: false, inequalities: false, largest: 60 };
-    draw(&mut random(seed, index), wish).0
+    let options = DrawOptions { conflicting: index & 1 == 0, scaling, bounds: false, inequalities: false, largest: 60 };
+    draw(&mut random(seed, index), options).0
 }
 
 #[test]
@@ -123,8 +123,9 @@ fn damping_equals_rows_towards_zero() {
     let tally = all_problems(1000, |index, tally| {
         let rng = &mut random(seed, index);
         let scaling = Scaling::ByLevel;
-        let wish = Wish { conflicting: index & 1 == 0, scaling, bounds: true, inequalities: true, largest: 20 };
-        let (draw, _) = draw(rng, wish);
+        let options =
+            DrawOptions { conflicting: index & 1 == 0, scaling, bounds: true, inequalities: true, largest: 20 };
+        let (draw, _) = draw(rng, options);
         let n = draw.n;
         let mut problem = draw.problem();
         problem.levels.truncate(2);
@@ -169,14 +170,14 @@ fn damped_levels_are_optimal_from_any_start() {
     let seed = seed() ^ 8;
     let tally = all_problems(5000, |index, tally| {
         let rng = &mut random(seed, index);
-        let wish = Wish {
+        let options = DrawOptions {
             conflicting: index & 1 == 0,
             scaling: Scaling::ByLevel,
             bounds: index & 2 == 0,
             inequalities: true,
             largest: 40,
         };
-        let (mut draw, _) = draw(rng, wish);
+        let (mut draw, _) = draw(rng, options);
         if index & 12 != 0 {
             draw.levels.push(rest(rng, draw.n));
         }
@@ -213,7 +214,7 @@ fn damped_levels_are_optimal_from_any_start() {
                     return about(format!("{count} levels, start {start}: {status:?}"));
                 }
                 let answer = Answer::of(&warm, count);
-                let seen = misses(&part, &draw.scales()[..count], &answer);
+                let seen = violations(&part, &draw.scales()[..count], &answer);
                 let fine = if little { seen.bounds == 0.0 && seen.stationarity < 1e-10 } else { seen.are_rounding() };
                 if !fine {
                     return about(format!("{count} levels, start {start}: {seen:?}"));
@@ -221,7 +222,7 @@ fn damped_levels_are_optimal_from_any_start() {
                 if little {
                     continue;
                 }
-                tally.misses.largest(&seen);
+                tally.violations.largest(&seen);
                 let residuals = unscaled(&draw, &answer.residuals);
                 if start == 0 && known.len() < count {
                     known.push(residuals[count - 1].clone());

@@ -1,8 +1,8 @@
 //! Checks refused, empty and badly scaled problems, and the oracle itself on answers that are known to be wrong.
 
-use crate::conditions::{Answer, misses};
+use crate::conditions::{Answer, violations};
 use crate::generator;
-use crate::generator::{Scaling, Wish, draw, empty_level, random};
+use crate::generator::{DrawOptions, Scaling, draw, empty_level, random};
 use crate::seed;
 use hierarchical_least_squares::{Level, Problem, Solver, Status};
 use rand::RngExt;
@@ -107,8 +107,9 @@ fn extreme_scales_give_finite_answers_or_errors() {
     for index in 0..3000 {
         let rng = &mut random(seed, index);
         let scaling = Scaling::ByRow;
-        let wish = Wish { conflicting: index & 1 == 0, scaling, bounds: true, inequalities: true, largest: 12 };
-        let (draw, _) = draw(rng, wish);
+        let options =
+            DrawOptions { conflicting: index & 1 == 0, scaling, bounds: true, inequalities: true, largest: 12 };
+        let (draw, _) = draw(rng, options);
         let mut problem = draw.problem();
         let (exponent, scattered) = ([10, 50, 150, 300][index / 2 % 4], index / 8 % 2 == 0);
         let common = 10.0_f64.powi(rng.random_range(-exponent..=exponent));
@@ -148,7 +149,7 @@ fn optimality_conditions_reject_wrong_answers() {
     let judge = |x: f64, push: f64| {
         let residuals = vec![vec![(x - 1.0).max(0.0)], vec![x - 3.0]];
         let multipliers = vec![(vec![0.0], vec![]), (vec![0.0], vec![push])];
-        misses(&problem, &[vec![1.0], vec![1.0]], &Answer { x: vec![x], residuals, multipliers })
+        violations(&problem, &[vec![1.0], vec![1.0]], &Answer { x: vec![x], residuals, multipliers })
     };
     assert!(judge(1.0, 2.0).are_rounding());
     // Below the limit; above it; without multiplier; off the limit by a residual.
@@ -160,5 +161,5 @@ fn optimality_conditions_reject_wrong_answers() {
     (pulled.levels[1].lower[0], pulled.levels[1].upper[0]) = (0.0, 0.0);
     let multipliers = vec![(vec![0.0], vec![]), (vec![0.0], vec![-1.0])];
     let answer = Answer { x: vec![1.0], residuals: vec![vec![0.0], vec![1.0]], multipliers };
-    assert!(!misses(&pulled, &[vec![1.0], vec![1.0]], &answer).are_rounding());
+    assert!(!violations(&pulled, &[vec![1.0], vec![1.0]], &answer).are_rounding());
 }

@@ -2,7 +2,7 @@
 
 use crate::conditions::{RESIDUAL, products, residual};
 use crate::double_double::Double;
-use crate::generator::{Scaling, Wish, draw, random};
+use crate::generator::{DrawOptions, Scaling, draw, random};
 use crate::{all_problems, largest, seed};
 use hierarchical_least_squares::{Problem, Solver, Status};
 
@@ -12,8 +12,9 @@ fn infeasible_hard_first_level_has_a_certificate() {
     let impossible = std::sync::atomic::AtomicUsize::new(0);
     let tally = all_problems(2000, |index, _| {
         let scaling = Scaling::ByLevel;
-        let wish = Wish { conflicting: true, scaling, bounds: index & 1 == 0, inequalities: true, largest: 60 };
-        let (draw, _) = draw(&mut random(seed, index), wish);
+        let options =
+            DrawOptions { conflicting: true, scaling, bounds: index & 1 == 0, inequalities: true, largest: 60 };
+        let (draw, _) = draw(&mut random(seed, index), options);
         let mut problem = draw.problem();
         problem.levels[0].hard = true;
         let mut solver = Solver::new();
@@ -80,8 +81,9 @@ fn first_infeasible_hard_level_is_named() {
     let seed = seed() ^ 6;
     let tally = all_problems(1000, |index, tally| {
         let scaling = if index & 2 == 0 { Scaling::ByLevel } else { Scaling::ByRow };
-        let wish = Wish { conflicting: index & 1 == 0, scaling, bounds: true, inequalities: true, largest: 40 };
-        let (draw, _) = draw(&mut random(seed, index), wish);
+        let options =
+            DrawOptions { conflicting: index & 1 == 0, scaling, bounds: true, inequalities: true, largest: 40 };
+        let (draw, _) = draw(&mut random(seed, index), options);
         tally.conflicting += usize::from(draw.conflicting);
         let mut problem = draw.problem();
         for level in &mut problem.levels {

@@ -1,6 +1,6 @@
 //! Draws random problems of known rank.
 //!
-//! Every level's rows, seen in the null space of the levels above, have singular values above `CLEAR` or below `NOTHING`,
+//! Every level's rows, seen in the null space of the levels above, have singular values above `CLEAR` or below `NEGLIGIBLE`,
 //! nothing between; a draw that does not is thrown away and counted. Two styles:
 //! - smooth: new directions from a random orthonormal basis with singular values in 0.1..1, and exact combinations of the
 //!   directions of the levels above;
@@ -16,9 +16,9 @@ use rand_pcg::Pcg64;
 
 /// Singular values that count are above the first, those that do not below the second.
 pub const CLEAR: f64 = 1e-2;
-pub const NOTHING: f64 = 1e-12;
+pub const NEGLIGIBLE: f64 = 1e-12;
 /// The square root of 1000.
-const NEAR: f64 = 31.6;
+const NEAR_SCALES: f64 = 31.6;
 
 /// `lower <= a x <= upper`, before its scale.
 #[derive(Clone, Debug)]
@@ -120,7 +120,7 @@ pub fn empty_level() -> Level {
 
 /// Kinds of rows that a draw may contain.
 #[derive(Clone, Copy, Debug)]
-pub struct Wish {
+pub struct DrawOptions {
     pub conflicting: bool,
     pub scaling: Scaling,
     pub bounds: bool,
@@ -134,10 +134,10 @@ pub fn random(seed: u64, index: usize) -> Pcg64 {
 }
 
 /// A problem, and how many draws were thrown away before it.
-pub fn draw(rng: &mut Pcg64, wish: Wish) -> (Draw, usize) {
+pub fn draw(rng: &mut Pcg64, options: DrawOptions) -> (Draw, usize) {
     let mut thrown = 0;
     loop {
-        let draw = attempt(rng, wish);
+        let draw = attempt(rng, options);
         if is_clear(&draw) {
             return (draw, thrown);
         }
@@ -145,15 +145,15 @@ pub fn draw(rng: &mut Pcg64, wish: Wish) -> (Draw, usize) {
     }
 }
 
-fn attempt(rng: &mut Pcg64, wish: Wish) -> Draw {
-    let n = log_integer(rng, 2, wish.largest);
+fn attempt(rng: &mut Pcg64, options: DrawOptions) -> Draw {
+    let n = log_integer(rng, 2, options.largest);
     let grid = rng.random_bool(0.25);
     let count = rng.random_range(1..=6);
     let matrices = if grid { grid_rows(rng, n, count) } else { smooth_rows(rng, n, count) };
     // Everything holds at this point, unless it is to conflict.
     let x = DVector::from_fn(n, |_, _| if grid { integer(rng, 2) } else { rng.random_range(-1.0..1.0) });
     let (mut lower, mut upper) = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]);
-    for i in (0..n).filter(|_| wish.bounds) {
+    for i in (0..n).filter(|_| options.bounds) {
         let kind = rng.random_range(0..20);
         if kind == 0 {
             (lower[i], upper[i]) = (x[i], x[i]);
@@ -168,10 +168,10 @@ fn attempt(rng: &mut Pcg64, wish: Wish) -> Draw {
     let must = rng.random_range(0..count);
     let mut levels = vec![];
     for (k, matrix) in matrices.iter().enumerate() {
-        let conflict = wish.conflicting && (k == must || rng.random_bool(0.6));
-        let mode = if wish.inequalities { rng.random_range(0..4) } else { 0 };
-        let middle = match wish.scaling {
-            Scaling::Near => log_uniform(rng, 1e-4 * NEAR, 1e4 / NEAR),
+        let conflict = options.conflicting && (k == must || rng.random_bool(0.6));
+        let mode = if options.inequalities { rng.random_range(0..4) } else { 0 };
+        let middle = match options.scaling {
+            Scaling::Near => log_uniform(rng, 1e-4 * NEAR_SCALES, 1e4 / NEAR_SCALES),
             _ => log_uniform(rng, 1e-4, 1e4),
         };
         let rows = matrix.row_iter().map(|a| {
@@ -190,16 +190,16 @@ fn attempt(rng: &mut Pcg64, wish: Wish) -> Draw {
                 2 => (target - slack(rng, grid), f64::INFINITY),
                 _ => (target - slack(rng, grid), target + slack(rng, grid)),
             };
-            let scale = match wish.scaling {
+            let scale = match options.scaling {
                 Scaling::ByLevel => middle,
-                Scaling::Near => middle * log_uniform(rng, 1.0 / NEAR, NEAR),
+                Scaling::Near => middle * log_uniform(rng, 1.0 / NEAR_SCALES, NEAR_SCALES),
                 Scaling::ByRow => log_uniform(rng, 1e-4, 1e4),
             };
             Row { a: a.iter().copied().collect(), lower, upper, scale }
         });
         levels.push(rows.collect());
     }
-    Draw { n, lower, upper, levels, conflicting: wish.conflicting, scaling: wish.scaling }
+    Draw { n, lower, upper, levels, conflicting: options.conflicting, scaling: options.scaling }
 }
 
 /// Distance to one limit; often zero, so that the row is just satisfied.
@@ -277,7 +277,7 @@ fn grid_rows(rng: &mut Pcg64, n: usize, levels: usize) -> Vec<DMatrix<f64>> {
 fn is_clear(draw: &Draw) -> bool {
     let mut free = DMatrix::identity(draw.n, draw.n);
     for rows in &draw.levels {
-        match null_space(&matrix_of(draw.n, rows.iter()), &free, CLEAR, NOTHING) {
+        match null_space(&matrix_of(draw.n, rows.iter()), &free, CLEAR, NEGLIGIBLE) {
             Some(next) => free = next,
             None => return false,
         }

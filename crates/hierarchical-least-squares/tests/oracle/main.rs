@@ -19,7 +19,7 @@ mod generator;
 mod linear;
 mod residuals;
 
-use crate::conditions::{Answer, Misses};
+use crate::conditions::{Answer, Violations};
 use crate::generator::Draw;
 use std::fmt::Write as _;
 
@@ -79,7 +79,7 @@ struct Tally {
     worst: f64,
     /// Difference to the residuals in 32 digits, where those decide.
     worst_reference: f64,
-    misses: Misses,
+    violations: Violations,
     failures: Vec<String>,
 }
 
@@ -94,7 +94,7 @@ impl Tally {
         self.decided += other.decided;
         self.worst = self.worst.max(other.worst);
         self.worst_reference = self.worst_reference.max(other.worst_reference);
-        self.misses.largest(&other.misses);
+        self.violations.largest(&other.violations);
         self.failures.extend(other.failures);
     }
 

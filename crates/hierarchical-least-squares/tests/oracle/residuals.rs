@@ -1,22 +1,22 @@
 //! Compares residuals with a cascade of quadratic programs solved by Clarabel and with 32 digits, and after a warm start.
 
-use crate::cascade::{Cascade, Trouble};
-use crate::conditions::{Answer, misses, reference, residual_of, spread};
-use crate::generator::{Draw, Scaling, Wish, draw, normal, random};
+use crate::cascade::{Cascade, CascadeError};
+use crate::conditions::{Answer, reference, residual_of, spread, violations};
+use crate::generator::{Draw, DrawOptions, Scaling, draw, normal, random};
 use crate::{SAME, Tally, all_problems, bits, difference, largest, length, seed, unscaled};
 use hierarchical_least_squares::{Solver, Status};
 use nalgebra::DVector;
 
 /// Half conflicting; half with bounds; half scaled by row, half by level. Of the conflicting ones that are scaled by row,
 /// half have their scales near each other.
-fn wish(index: usize) -> Wish {
+fn options(index: usize) -> DrawOptions {
     let bit = |i: usize| index >> i & 1 == 1;
     let scaling = match (bit(0), bit(1), bit(3)) {
         (_, false, _) => Scaling::ByLevel,
         (true, true, true) => Scaling::Near,
         _ => Scaling::ByRow,
     };
-    Wish { conflicting: bit(0), scaling, bounds: bit(2), inequalities: true, largest: 60 }
+    DrawOptions { conflicting: bit(0), scaling, bounds: bit(2), inequalities: true, largest: 60 }
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn harder_problems_of_other_seeds_are_solved() {
 }
 
 fn one_problem(seed: u64, index: usize, tally: &mut Tally) -> Result<(), String> {
-    let (draw, thrown) = draw(&mut random(seed, index), wish(index));
+    let (draw, thrown) = draw(&mut random(seed, index), options(index));
     tally.thrown += thrown;
     tally.conflicting += usize::from(draw.conflicting);
     let problem = draw.problem();
@@ -69,11 +69,11 @@ fn one_problem(seed: u64, index: usize, tally: &mut Tally) -> Result<(), String>
         return Err(about(format!("{status:?}")));
     }
 
-    let seen = misses(&problem, &draw.scales(), &answer);
+    let seen = violations(&problem, &draw.scales(), &answer);
     if !seen.are_rounding() {
         return Err(about(format!("{seen:?}")));
     }
-    tally.misses.largest(&seen);
+    tally.violations.largest(&seen);
     let mine = unscaled(&draw, &answer.residuals);
     if !draw.conflicting {
         let most = largest(mine.iter().flatten().copied());
@@ -94,8 +94,8 @@ fn one_problem(seed: u64, index: usize, tally: &mut Tally) -> Result<(), String>
             other => {
                 match other {
                     Ok(_) => tally.decided += 1,
-                    Err(Trouble::Unsolved) => tally.unsolved += 1,
-                    Err(Trouble::Unclear) => tally.unclear += 1,
+                    Err(CascadeError::Unsolved) => tally.unsolved += 1,
+                    Err(CascadeError::Unclear) => tally.unclear += 1,
                 }
                 let exact = reference(&draw, &answer).map_err(about)?;
                 let worst = largest(mine.iter().flatten().zip(exact.iter().flatten()).map(|(a, b)| a - b));
@@ -122,7 +122,7 @@ fn one_problem(seed: u64, index: usize, tally: &mut Tally) -> Result<(), String>
 }
 
 /// The largest difference to Clarabel's residuals in any row.
-fn by_row(draw: &Draw, mine: &[Vec<f64>]) -> Result<f64, Trouble> {
+fn by_row(draw: &Draw, mine: &[Vec<f64>]) -> Result<f64, CascadeError> {
     let mut cascade = Cascade::new(draw);
     let mut worst: f64 = 0.0;
     for (k, mine) in mine.iter().enumerate() {
@@ -180,9 +180,14 @@ fn warm_start_changes_no_residual() {
     let tally = all_problems(2000, |index, _| {
         let rng = &mut random(seed, index);
         let scaling = if index & 2 == 0 { Scaling::ByLevel } else { Scaling::Near };
-        let wish =
-            Wish { conflicting: index & 1 == 0, scaling, bounds: index & 4 == 0, inequalities: true, largest: 40 };
-        let (first, _) = draw(rng, wish);
+        let options = DrawOptions {
+            conflicting: index & 1 == 0,
+            scaling,
+            bounds: index & 4 == 0,
+            inequalities: true,
+            largest: 40,
+        };
+        let (first, _) = draw(rng, options);
         let mut second = first.clone();
         for row in second.levels.iter_mut().flatten() {
             let shift = 0.1 * normal(rng);
@@ -201,7 +206,7 @@ fn warm_start_changes_no_residual() {
                 return Err(format!("{}: start {start}: {status:?}", second.describe()));
             }
             let answer = Answer::of(&solver, problem.levels.len());
-            let seen = misses(&problem, &second.scales(), &answer);
+            let seen = violations(&problem, &second.scales(), &answer);
             if !seen.are_rounding() {
                 return Err(format!("{}: start {start}: {seen:?}", second.describe()));
             }
