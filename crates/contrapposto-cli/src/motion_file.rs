@@ -1,21 +1,17 @@
 //! POSTURES and MOTION on the command line, and the loads that act on the body in them.
 
-mod ground;
-mod loads;
-
 use std::path::Path;
 
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
+use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError};
 use contrapposto_formats::motion::{self, Units, postures, read_table};
+use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::LoadArgs;
 use crate::fail::Fail;
 use crate::input::read;
-use crate::model_file::{Opened, Tissue};
-pub(crate) use ground::GroundReaction;
-pub(crate) use loads::{no_segment, patch};
 
 /// Held weights and forces, and ground reactions if there are any.
 pub(crate) fn loads_of(
@@ -25,13 +21,30 @@ pub(crate) fn loads_of(
 ) -> Result<(Vec<Load>, Option<GroundReaction>), Fail> {
     let mut loads = vec![];
     for text in &args.load {
-        loads.push(loads::weight(model, text)?);
+        loads.push(loads::weight(model, text).map_err(|error| Fail::Refused(format!("--load \"{text}\": {error}")))?);
     }
     for text in &args.force {
-        loads.push(loads::force(model, text)?);
+        loads.push(loads::force(model, text).map_err(|error| Fail::Refused(format!("--force \"{text}\": {error}")))?);
     }
-    let ground = args.grf.as_ref().map(|path| GroundReaction::read(path, &args.grf_on, model, notes)).transpose()?;
+    let ground = args.grf.as_deref().map(|path| ground_reaction(path, &args.grf_on, model, notes)).transpose()?;
     Ok((loads, ground))
+}
+
+/// The table of --grf; notes say on which segments its plates are taken to act.
+fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<String>) -> Result<GroundReaction, Fail> {
+    let name = path.display().to_string();
+    let bytes = read(path, motion::MOST_BYTES as u64)?;
+    let ground = GroundReaction::read(&name, &bytes, on, model).map_err(|error| match error {
+        GroundReactionError::Table(error) => Fail::from(error),
+        GroundReactionError::Count { .. } => Fail::Refused(format!("--grf-on {error}")),
+        GroundReactionError::Segment(_) => Fail::Refused(format!("--grf-on: {error}")),
+        GroundReactionError::Unknown { .. } => Fail::Refused(format!("{error} with --grf-on SEG,SEG")),
+        error => Fail::Refused(error.to_string()),
+    })?;
+    for (label, segment) in ground.guessed() {
+        notes.push(format!("`{label}` of {name} is taken to act on `{segment}`; --grf-on says otherwise"));
+    }
+    Ok(ground)
 }
 
 /// The postures of a table, with their times. `accepted`: what the file may be.
@@ -74,11 +87,11 @@ fn first_of(names: &[String]) -> String {
 }
 
 /// Says which coordinates leave their range, and which what their built-in curve is meant for.
-pub(crate) fn outside(opened: &Opened, frames: &[(f64, Posture)], notes: &mut Vec<String>) {
+pub(crate) fn outside(opened: &SourcedModel, frames: &[(f64, Posture)], notes: &mut Vec<String>) {
     /// Beyond a limit without a word, rad or m.
     const SLACK: f64 = 1e-3;
     let model = &opened.model;
-    let tissue = Tissue::new(opened);
+    let ranges = opened.passive_ranges();
     let (mut beyond, mut held) = (vec![], vec![]);
     for (index, coordinate) in model.coordinates().iter().enumerate() {
         let (min, max) = coordinate.range;
@@ -89,7 +102,7 @@ pub(crate) fn outside(opened: &Opened, frames: &[(f64, Posture)], notes: &mut Ve
         if any(&|value| value < min - SLACK || value > max + SLACK) {
             beyond.push(format!("`{}`", coordinate.name));
         }
-        if any(&|value| tissue.holds(index, value)) {
+        if ranges[index].is_some_and(|(min, max)| any(&|value| value < min - SLACK || value > max + SLACK)) {
             held.push(format!("`{}`", coordinate.name));
         }
     }

@@ -6,26 +6,32 @@
 pub mod animation;
 pub mod body;
 pub use contrapposto::math::expression;
+pub mod loads;
 pub mod mjcf;
 pub mod motion;
 pub mod numbers;
 pub mod osim;
+pub mod tissue;
 pub mod urdf;
 pub mod write;
 pub mod xml;
 
+mod adult_text;
 mod decisions_csv;
 mod input_error;
 mod minimize;
+mod model_file;
 mod overlay;
 mod pose;
 mod scenario;
 mod summary;
 mod trajectory_csv;
 
+pub use adult_text::{AdultTextError, adult_size};
 pub use decisions_csv::{decisions_csv, relief_sentence};
 pub use input_error::{InputError, nearest, utf8};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
+pub use model_file::{ModelFileError, ModelFormat, read_model};
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{

@@ -6,13 +6,15 @@ use contrapposto::assessment::assess as assessed;
 use contrapposto::assessment::{AssessSettings, Assessment, Instant};
 use contrapposto::contact::Support;
 use contrapposto::model::{CoordinateKind, Model, Side};
+use contrapposto_formats::loads::{no_segment, patch};
 use contrapposto_formats::motion::write_sto;
+use contrapposto_formats::tissue::SourcedModel;
 use nalgebra::Vector3;
 
 use crate::args::AssessArgs;
 use crate::fail::Fail;
-use crate::model_file::{Opened, Tissue, open};
-use crate::motion_file::{loads_of, no_segment, outside, patch, read_motion};
+use crate::model_file::open;
+use crate::motion_file::{loads_of, outside, read_motion};
 use crate::output::{Folder, print, tell};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{Shots, report_of_assessment};
@@ -39,7 +41,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let motion = read_motion(&args.motion, accepted, &args.under, model, &mut notes)?;
     let (held, ground) = loads_of(&args.under, model, &mut notes)?;
     if let Some(ground) = &ground {
-        ground.check(motion.iter().map(|(time, _)| *time))?;
+        ground.check(motion.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))?;
     }
     if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
         let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
@@ -47,7 +49,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     }
     let settings = AssessSettings {
         supports: supports(args, model)?,
-        passive_ranges: Tissue::new(&opened).ranges().to_vec(),
+        passive_ranges: opened.passive_ranges(),
         ..AssessSettings::default()
     };
     outside(&opened, &motion, &mut notes);
@@ -104,7 +106,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
 fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
     let mut patches = vec![];
     for text in &args.patch {
-        patches.push(patch(model, text)?);
+        patches.push(patch(model, text).map_err(|error| Fail::Refused(format!("--patch \"{text}\": {error}")))?);
     }
     let mut supports: Vec<Support> = vec![];
     for name in &args.support {
@@ -133,7 +135,7 @@ fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
 }
 
 /// What makes the numbers doubtful.
-fn warnings(args: &AssessArgs, opened: &Opened, found: &Assessment, frames: usize) -> Vec<String> {
+fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames: usize) -> Vec<String> {
     let mut warnings = vec![];
     let (force, moment) = (found.residual_force, found.residual_moment);
     let least = RESIDUAL * (opened.model.mass() * opened.model.gravity().norm()).max(1.0);

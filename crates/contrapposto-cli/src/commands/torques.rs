@@ -5,11 +5,13 @@ use std::path::Path;
 use contrapposto::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
+use contrapposto_formats::loads::GroundReaction;
+use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::TorquesArgs;
 use crate::fail::Fail;
-use crate::model_file::{Opened, Tissue, open};
-use crate::motion_file::{GroundReaction, loads_of, outside, read_motion};
+use crate::model_file::open;
+use crate::motion_file::{loads_of, outside, read_motion};
 use crate::output::{Folder, Pending, folder_and_name, tell};
 use crate::view::residual::Residual;
 use crate::view::text::torques as text;
@@ -17,7 +19,7 @@ use crate::view::torque_rows::{Frame, Order};
 
 /// What the command works on.
 struct Job {
-    opened: Opened,
+    opened: SourcedModel,
     frames: Vec<(f64, Posture)>,
     loads: Vec<Load>,
     ground: Option<GroundReaction>,
@@ -104,7 +106,7 @@ fn table(
 
 impl Job {
     fn body(&self) -> JointTorques {
-        JointTorques::with_passive_ranges(&self.opened.model, Tissue::new(&self.opened).ranges())
+        JointTorques::with_passive_ranges(&self.opened.model, &self.opened.passive_ranges())
     }
 
     /// Everything that could go wrong in a frame, before the first one is printed.
@@ -115,7 +117,8 @@ impl Job {
             body.update(&self.opened.model, posture, &[], quantities)
                 .map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
         }
-        self.ground.as_ref().map_or(Ok(()), |ground| ground.check(self.frames.iter().map(|(time, _)| *time)))
+        let Some(ground) = &self.ground else { return Ok(()) };
+        ground.check(self.frames.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))
     }
 
     /// Computes frame after frame.

@@ -7,11 +7,11 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::math::Function;
 use contrapposto::model::{Coordinate, CoordinateKind, JointKind, Model};
 use contrapposto::passive::{PassiveLaw, Term};
+use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
 
 use super::plain_table;
 use super::sources::{Known, Seen, Source};
-use crate::model_file::{Opened, Tissue};
 
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
@@ -100,7 +100,7 @@ struct FatigueText {
     source: Option<Source>,
 }
 
-pub(crate) fn report<'a>(opened: &'a Opened, file: &'a str) -> Report<'a> {
+pub(crate) fn report<'a>(opened: &'a SourcedModel, file: &'a str) -> Report<'a> {
     let model = &opened.model;
     let coordinates = model.coordinates();
     Report {
@@ -136,7 +136,7 @@ pub(crate) fn report<'a>(opened: &'a Opened, file: &'a str) -> Report<'a> {
     }
 }
 
-fn text<'a>(opened: &Opened, model: &'a Model, index: usize, coordinate: &'a Coordinate) -> CoordinateText<'a> {
+fn text<'a>(opened: &SourcedModel, model: &'a Model, index: usize, coordinate: &'a Coordinate) -> CoordinateText<'a> {
     let known = Known::of(opened, index);
     let (kind, unit) = match coordinate.kind {
         CoordinateKind::Rotation => ("rotation", "rad"),
@@ -219,20 +219,22 @@ fn law_word(law: &PassiveLaw) -> String {
 }
 
 /// Passive torque at both limits of the range, the rest of the body at its default; `None` where a limit or a law is missing.
-fn at_limits(opened: &Opened, index: usize) -> Option<[f64; 2]> {
+fn at_limits(opened: &SourcedModel, index: usize) -> Option<[f64; 2]> {
     let (model, coordinate) = (&opened.model, &opened.model.coordinates()[index]);
-    coordinate.passive.as_ref()?;
+    let law = coordinate.passive.as_ref()?;
+    let ranges = opened.passive_ranges();
     let mut posture = model.default_posture();
-    let mut tissue = Tissue::new(opened);
     let mut at = |limit: f64| {
         posture.values_mut()[index] = limit;
-        tissue.place(posture.values());
-        Some(tissue.torque(model, index)).filter(|torque| limit.is_finite() && torque.is_finite())
+        let within =
+            |(value, range): (&f64, &Option<(f64, f64)>)| range.map_or(*value, |(min, max)| value.max(min).min(max));
+        let values: Vec<f64> = posture.values().iter().zip(&ranges).map(within).collect();
+        Some(law.torque(index, &values)).filter(|torque| limit.is_finite() && torque.is_finite())
     };
     Some([at(coordinate.range.0)?, at(coordinate.range.1)?])
 }
 
-pub(crate) fn readable(opened: &Opened, file: &str) -> String {
+pub(crate) fn readable(opened: &SourcedModel, file: &str) -> String {
     let model = &opened.model;
     let gravity = model.gravity();
     let mut text = format!(
@@ -272,7 +274,7 @@ pub(crate) fn readable(opened: &Opened, file: &str) -> String {
     text
 }
 
-fn coordinates(opened: &Opened, seen: &mut Seen) -> comfy_table::Table {
+fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
     use contrapposto::model::CoordinateKind::{Quaternion, Rotation, Translation};
     let model = &opened.model;
     let mut table = plain_table();

@@ -1,11 +1,11 @@
-//! Where does a number of a coordinate come from, and how far can it be trusted?
+//! The origin of every number of a coordinate, and how far it can be trusted.
 
 use std::fmt::Write;
 
 use contrapposto::model::data::{self, Reference};
+use contrapposto_formats::ModelFormat;
+use contrapposto_formats::tissue::{Origin, SourcedModel};
 use serde::Serialize;
-
-use crate::model_file::{Format, Opened, Origin};
 
 /// Status and source of a number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,7 +42,7 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    pub(crate) fn of(opened: &Opened, index: usize) -> Self {
+    pub(crate) fn of(opened: &SourcedModel, index: usize) -> Self {
         let origins = &opened.origins[index];
         let coordinate = &opened.model.coordinates()[index];
         let library = data::library();
@@ -77,8 +77,8 @@ impl Known {
 }
 
 /// Curves of the trunk differ between the sexes; the library's list names the man's.
-fn of_sex(row: &'static data::CurveRow, opened: &Opened) -> &'static data::CurveRow {
-    let female = opened.format == Format::Adult && opened.model.name().ends_with(", female");
+fn of_sex(row: &'static data::CurveRow, opened: &SourcedModel) -> &'static data::CurveRow {
+    let female = opened.format == ModelFormat::Adult && opened.model.name().ends_with(", female");
     let hers = row.name.strip_suffix("_male").filter(|_| female).map(|stem| format!("{stem}_female"));
     hers.and_then(|name| data::library().curve(&name)).unwrap_or(row)
 }

@@ -1,10 +1,10 @@
-//! `--load "hand_r 3kg"` and `--force "hand_r 0,-20,0 at 0,-0.08,0 world"`.
+//! Reads loads and patches from short texts: `hand_r 3kg`, `hand_r 0,-20,0 at 0,-0.08,0 world`.
 
 use contrapposto::model::Model;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use nalgebra::Vector3;
 
-use crate::fail::Fail;
+use crate::input_error::nearest;
 
 const PATCH_FORM: &str = "\"SEGMENT X,Y,Z X,Y,Z ...\" (m, the segment's axes): \
     \"calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0\"";
@@ -12,9 +12,32 @@ const LOAD_FORM: &str = "\"SEGMENT MASSkg\" or \"SEGMENT MASSkg at X,Y,Z\" (m, t
 const FORCE_FORM: &str = "\"SEGMENT FX,FY,FZ\" (N), then if wanted \"at X,Y,Z\" (m, the segment's axes), then if wanted \
     \"world\" or \"segment\" (the force's axes): \"hand_r 0,-20,0 at 0,-0.08,0 world\"";
 
-/// A held weight.
-pub(super) fn weight(model: &Model, text: &str) -> Result<Load, Fail> {
-    let refuse = |problem: String| Fail::Refused(format!("--load \"{text}\": {problem}\n  accepted: {LOAD_FORM}"));
+/// Why a text is no load or patch of the model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{problem}\n  accepted: {accepted}")]
+pub struct LoadTextError {
+    /// The part that is wrong, and why.
+    pub problem: String,
+    /// The accepted form, with an example.
+    pub accepted: &'static str,
+}
+
+/// A held weight: `SEGMENT MASSkg`, at the segment's centre of mass, or `SEGMENT MASSkg at X,Y,Z` (m, the segment's axes).
+///
+/// ```
+/// use contrapposto::model::{Adult, adult};
+/// use contrapposto::statics::LoadKind;
+/// use contrapposto_formats::loads::weight;
+/// let model = adult(&Adult::default())?;
+/// let load = weight(&model, "hand_r 3kg at 0,-0.08,0")?;
+/// assert_eq!(load.kind, LoadKind::Weight(3.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`LoadTextError`] names the segment or number that is not understood, and the accepted form.
+pub fn weight(model: &Model, text: &str) -> Result<Load, LoadTextError> {
+    let refuse = |problem: String| LoadTextError { problem, accepted: LOAD_FORM };
     let (segment, words) = segment(model, text).map_err(refuse)?;
     let words: Vec<&str> = words.split_whitespace().collect();
     let (mass, rest) = match words.as_slice() {
@@ -32,9 +55,13 @@ pub(super) fn weight(model: &Model, text: &str) -> Result<Load, Fail> {
     checked(model, Load { segment, point, kind: LoadKind::Weight(mass) }).map_err(refuse)
 }
 
-/// A force.
-pub(super) fn force(model: &Model, text: &str) -> Result<Load, Fail> {
-    let refuse = |problem: String| Fail::Refused(format!("--force \"{text}\": {problem}\n  accepted: {FORCE_FORM}"));
+/// A force (N): `SEGMENT FX,FY,FZ`, then, where wanted, `at X,Y,Z` (m, the segment's axes), and `world` or `segment` (the axes of
+/// the force; world where nothing is said).
+///
+/// # Errors
+/// As [`weight`].
+pub fn force(model: &Model, text: &str) -> Result<Load, LoadTextError> {
+    let refuse = |problem: String| LoadTextError { problem, accepted: FORCE_FORM };
     let (segment, words) = segment(model, text).map_err(refuse)?;
     let words: Vec<&str> = words.split_whitespace().collect();
     let (force, rest) = match words.as_slice() {
@@ -53,9 +80,12 @@ pub(super) fn force(model: &Model, text: &str) -> Result<Load, Fail> {
     checked(model, Load { segment, point, kind: LoadKind::Force(force, fixed_in) }).map_err(refuse)
 }
 
-/// Where a segment touches what supports it: the segment, and corners in its frame.
-pub(crate) fn patch(model: &Model, text: &str) -> Result<(usize, Vec<Vector3<f64>>), Fail> {
-    let refuse = |problem: String| Fail::Refused(format!("--patch \"{text}\": {problem}\n  accepted: {PATCH_FORM}"));
+/// The patch on which a segment is supported, `SEGMENT X,Y,Z X,Y,Z ...`: index of the segment, and corners in its frame, m.
+///
+/// # Errors
+/// As [`weight`].
+pub fn patch(model: &Model, text: &str) -> Result<(usize, Vec<Vector3<f64>>), LoadTextError> {
+    let refuse = |problem: String| LoadTextError { problem, accepted: PATCH_FORM };
     let (segment, words) = segment(model, text).map_err(refuse)?;
     let corners = words.split_whitespace().map(vector).collect::<Result<Vec<_>, _>>().map_err(refuse)?;
     if corners.is_empty() { Err(refuse("the corners are missing".to_owned())) } else { Ok((segment, corners)) }
@@ -81,11 +111,10 @@ fn segment(model: &Model, text: &str) -> Result<(usize, String), String> {
 }
 
 /// "the model has no segment `han_r`; did you mean `hand_r`?"
-pub(crate) fn no_segment(model: &Model, given: &str) -> String {
+pub fn no_segment(model: &Model, given: &str) -> String {
     let names = || model.segments().iter().map(|segment| segment.name.as_str());
     // The distance of two words costs their product.
-    let near =
-        Some(given).filter(|given| given.len() <= 64).and_then(|given| contrapposto_formats::nearest(given, names()));
+    let near = Some(given).filter(|given| given.len() <= 64).and_then(|given| nearest(given, names()));
     let hint = match near {
         Some(name) => format!("did you mean `{name}`?"),
         None => format!("there are: {}", names().take(60).collect::<Vec<_>>().join(", ")),
@@ -108,8 +137,9 @@ fn number(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
     use super::{force, weight};
-    use crate::fail::Fail;
     use contrapposto::model::{Adult, Model, adult};
     use contrapposto::statics::{FixedIn, LoadKind};
     use nalgebra::Vector3;
@@ -119,26 +149,25 @@ mod tests {
     }
 
     #[test]
-    fn the_accepted_forms() {
+    fn accepted_forms_give_mass_force_point_and_axes() {
         let model = model();
         let hand = model.segment("hand_r").unwrap();
         for text in ["hand_r 3kg", " hand_r  3 kg ", "hand_r 3.0kg"] {
-            let load = weight(&model, text).ok().unwrap();
+            let load = weight(&model, text).unwrap();
             assert_eq!((load.segment, load.kind), (hand, LoadKind::Weight(3.0)), "{text}");
             assert_eq!(load.point, model.segments()[hand].center_of_mass);
         }
-        assert_eq!(weight(&model, "hand_r 3kg at 0,-0.08, 0").ok().unwrap().point, Vector3::new(0.0, -0.08, 0.0));
-        let load = force(&model, "hand_r 0,-20,0 at 0,-0.08,0 segment").ok().unwrap();
+        assert_eq!(weight(&model, "hand_r 3kg at 0,-0.08, 0").unwrap().point, Vector3::new(0.0, -0.08, 0.0));
+        let load = force(&model, "hand_r 0,-20,0 at 0,-0.08,0 segment").unwrap();
         assert_eq!(load.kind, LoadKind::Force(Vector3::new(0.0, -20.0, 0.0), FixedIn::Segment));
-        let load = force(&model, "hand_r 0 , -20 , 0").ok().unwrap();
+        let load = force(&model, "hand_r 0 , -20 , 0").unwrap();
         assert_eq!(load.kind, LoadKind::Force(Vector3::new(0.0, -20.0, 0.0), FixedIn::World));
         assert_eq!(load.point, model.segments()[hand].center_of_mass);
     }
 
     #[test]
-    fn refused_with_the_accepted_form() {
+    fn other_forms_are_refused_with_the_accepted_one() {
         let model = model();
-        let told = |fail: Fail| if let Fail::Refused(message) = fail { message } else { String::new() };
         for (text, part) in [
             ("han_r 3kg", "did you mean `hand_r`"),
             ("hand_r", "the mass is missing"),
@@ -149,7 +178,7 @@ mod tests {
             ("hand_r 3kg on 0,0,0", "`on 0,0,0` is not understood"),
             ("hand_r 3kg at 0,0", "holds 2 numbers"),
         ] {
-            let message = told(weight(&model, text).unwrap_err());
+            let message = weight(&model, text).unwrap_err().to_string();
             assert!(message.contains(part) && message.contains("accepted:"), "{message}");
         }
         for (text, part) in [
@@ -158,7 +187,7 @@ mod tests {
             ("hand_r", "holds 1 numbers|the force is missing"),
             ("hand_r 0,-20,0 sideways", "`sideways` is not understood"),
         ] {
-            let message = told(force(&model, text).unwrap_err());
+            let message = force(&model, text).unwrap_err().to_string();
             assert!(part.split('|').any(|part| message.contains(part)), "{message}");
         }
     }

@@ -1,19 +1,38 @@
-//! `adult:female,1.65m,60kg`
+//! Reads the size of the built-in adult from a short text: `adult`, `adult:female,1.65m,60kg`.
 
 use contrapposto::model::{Adult, Sex};
-
-use crate::fail::Fail;
 
 const ACCEPTED: &str = "accepted: `adult` (de Leva's reference man), or `adult:` and sex, stature and mass: \
     `adult:female,1.65m,60kg`";
 
-/// The adult that MODEL asks for; `None` where it names a file.
-pub(crate) fn adult_size(text: &str) -> Option<Result<Adult, Fail>> {
+/// Why a text is no size of the built-in adult.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{text}`: {problem}\n  {ACCEPTED}")]
+pub struct AdultTextError {
+    /// The text.
+    pub text: String,
+    /// The part that is wrong, and why.
+    pub problem: String,
+}
+
+/// The size of the adult that `text` names, stature in m and mass in kg; `None` where the text does not begin with `adult`.
+///
+/// ```
+/// use contrapposto_formats::adult_size;
+/// let size = adult_size("adult:female,1.65m,60kg").expect("a name of the adult")?;
+/// assert_eq!((size.stature, size.mass), (1.65, 60.0));
+/// assert!(adult_size("subject.osim").is_none());
+/// # Ok::<(), contrapposto_formats::AdultTextError>(())
+/// ```
+///
+/// # Errors
+/// [`AdultTextError`] names the part that is neither a sex, a stature nor a mass, that is missing, or that is given twice.
+pub fn adult_size(text: &str) -> Option<Result<Adult, AdultTextError>> {
     if text == "adult" {
         return Some(Ok(Adult::default()));
     }
     let rest = text.strip_prefix("adult:")?;
-    Some(parsed(rest).map_err(|problem| Fail::Refused(format!("`{text}`: {problem}\n  {ACCEPTED}"))))
+    Some(parsed(rest).map_err(|problem| AdultTextError { text: text.to_owned(), problem }))
 }
 
 fn parsed(text: &str) -> Result<Adult, String> {
@@ -30,7 +49,7 @@ fn parsed(text: &str) -> Result<Adult, String> {
                 } else if let Some(number) = part.strip_suffix('m') {
                     stature.replace(size(number, part)?).is_some()
                 } else if part.is_empty() {
-                    return Err("something is missing between the commas".to_owned());
+                    return Err("a part between the commas is empty".to_owned());
                 } else {
                     return Err(format!(
                         "`{part}` is neither a sex (female, male), a stature (1.65m) nor a mass (60kg)"
@@ -39,7 +58,7 @@ fn parsed(text: &str) -> Result<Adult, String> {
             }
         };
         if twice {
-            return Err(format!("`{part}` says the same thing a second time"));
+            return Err(format!("`{part}` repeats a size that was given before"));
         }
     }
     let missing = |what: &str| format!("the {what} is missing");
@@ -58,11 +77,13 @@ fn size(number: &str, part: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
     use super::parsed;
     use contrapposto::model::Sex;
 
     #[test]
-    fn sizes_in_any_order() {
+    fn parts_in_any_order_give_the_size_and_wrong_parts_are_named() {
         for text in ["female,1.65m,60kg", "60 kg, 165 cm, female"] {
             let size = parsed(text).unwrap();
             assert_eq!((size.sex, size.mass), (Sex::Female, 60.0));
@@ -71,9 +92,9 @@ mod tests {
         for (text, part) in [
             ("female,1.65,60kg", "`1.65` is neither"),
             ("female,60kg", "stature is missing"),
-            ("female,male,60kg", "second time"),
+            ("female,male,60kg", "given before"),
             ("female,nanm,60kg", "`nanm` does not begin"),
-            ("", "missing between"),
+            ("", "between the commas is empty"),
         ] {
             let error = parsed(text).unwrap_err();
             assert!(error.contains(part), "{text}: {error}");

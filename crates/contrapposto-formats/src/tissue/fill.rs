@@ -1,17 +1,17 @@
-//! Passive laws and muscle groups of the built-in adult for models that have none, by the standard OpenSim names.
+//! Fills in passive laws and muscle groups of the built-in adult where a model has none, by the standard OpenSim names.
 //!
 //! A name alone is not trusted: older lower-limb models count the knee the other way round. The turning axis of the
 //! coordinate must lie along that of the adult's, or against it, and then its curve runs the other way. Both are taken in
 //! ground axes at zero angles, which both must have as OpenSim does: x forward, y up, z right.
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{Adult, Coordinate, CoordinateKind, Model, MuscleGroup, adult, data};
+use contrapposto::model::{Adult, AdultError, Coordinate, CoordinateKind, Model, MuscleGroup, adult, data};
 use contrapposto::passive::{Coupled, PassiveLaw};
 use contrapposto::strength::Strength;
 use nalgebra::Vector3;
 
-use super::{Format, Origin, Origins};
-use crate::fail::Fail;
+use super::{Origin, Origins};
+use crate::model_file::ModelFormat;
 
 /// Names of published models that differ from those of Rajagopal2016, which the adult has.
 const OTHER_NAMES: [(&str, &str); 3] =
@@ -29,11 +29,11 @@ const BEYOND: f64 = 0.1;
 /// Fills what is unknown, and says so, joint by joint.
 pub(super) fn fill(
     model: Model,
-    format: Format,
+    format: ModelFormat,
     origins: &mut [Origins],
     notes: &mut Vec<String>,
-) -> Result<Model, Fail> {
-    let twin = adult(&Adult::default()).map_err(|error| Fail::job("adult", error))?;
+) -> Result<Model, AdultError> {
+    let twin = adult(&Adult::default())?;
     let signs = Signs::new(&model, format, &twin);
     let mut changed = model.clone();
     let mut unknown = vec![];
@@ -109,10 +109,10 @@ struct Signs<'a> {
 }
 
 impl<'a> Signs<'a> {
-    fn new(model: &'a Model, format: Format, twin: &'a Model) -> Self {
+    fn new(model: &'a Model, format: ModelFormat, twin: &'a Model) -> Self {
         let down = model.gravity();
         let along = down.dot(&-Vector3::y()) / down.norm();
-        let upright = if down.norm() > 0.0 { along > 0.99 } else { format == Format::OpenSim };
+        let upright = if down.norm() > 0.0 { along > 0.99 } else { format == ModelFormat::OpenSim };
         let elsewhere = "its direction cannot be verified, for gravity does not act along -y, so that the file's axes are not \
             OpenSim's (x forward, y up, z right)";
         Self { model, twin, elsewhere: (!upright).then(|| elsewhere.to_owned()) }

@@ -1,0 +1,252 @@
+//! Reads ground reactions from tables as OpenSim writes them, and gives their loads at a time.
+//!
+//! Force and point in ground axes, and a couple about that point, for every force plate: `ground_force_vx`, `ground_force_px`,
+//! `ground_torque_x` and so on, with anything before `ground` or after `force` to tell the plates apart (`1_ground_force_vx`,
+//! `ground_force_r_vx`).
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::statics::{FixedIn, Load, LoadKind};
+use nalgebra::{Point3, Vector3};
+
+use super::text::no_segment;
+use crate::input_error::InputError;
+use crate::motion::{Table, read_table};
+
+/// Time beyond the table's ends that rounding may give, s.
+const SLACK: f64 = 1e-6;
+
+/// Why a table holds no ground reactions of the model.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GroundReactionError {
+    /// The file is no table.
+    #[error(transparent)]
+    Table(#[from] InputError),
+    /// No column is the force of a plate.
+    #[error(
+        "{table}: no column is named like `ground_force_vx` (with ground_force_px and, if wanted, ground_torque_x)"
+    )]
+    NoPlates {
+        /// Name of the table.
+        table: String,
+    },
+    /// A column that must stand beside another one does not.
+    #[error("{table}: there is `{label}`, but no `{missing}`")]
+    Column {
+        /// Name of the table.
+        table: String,
+        /// The column that is there.
+        label: String,
+        /// The column that is not.
+        missing: String,
+    },
+    /// Not as many segments are given as the table has plates.
+    #[error("names {given} segments; {table} has {} ground reactions ({})", plates.len(), plates.join(", "))]
+    Count {
+        /// Name of the table.
+        table: String,
+        /// Number of segments given.
+        given: usize,
+        /// First column of every plate.
+        plates: Vec<String>,
+    },
+    /// A given segment is not in the model.
+    #[error("{0}")]
+    Segment(String),
+    /// The segment of a plate follows neither from what is given nor from the label.
+    #[error("{table}: the segment that `{label}` acts on is not known: name one segment a plate")]
+    Unknown {
+        /// Name of the table.
+        table: String,
+        /// First column of the plate.
+        label: String,
+    },
+    /// The table has no rows.
+    #[error("{table}: holds no rows")]
+    Empty {
+        /// Name of the table.
+        table: String,
+    },
+    /// A time lies outside of the table.
+    #[error("frame {frame} at {time} s has no ground reaction: {table} goes from {first} s to {last} s")]
+    Outside {
+        /// Name of the table.
+        table: String,
+        /// Number of the frame, counted from 0.
+        frame: usize,
+        /// Its time, s.
+        time: f64,
+        /// First time of the table, s.
+        first: f64,
+        /// Last time of the table, s.
+        last: f64,
+    },
+}
+
+/// Ground reactions over time.
+#[derive(Clone, Debug)]
+pub struct GroundReaction {
+    name: String,
+    table: Table,
+    plates: Vec<Plate>,
+    /// Column label and segment name of every plate whose segment was guessed.
+    guessed: Vec<(String, &'static str)>,
+}
+
+#[derive(Clone, Debug)]
+struct Plate {
+    segment: usize,
+    /// Columns (x, y, z) of force, point and couple.
+    columns: [[usize; 3]; 3],
+    coupled: bool,
+}
+
+impl GroundReaction {
+    /// Reads a table (`.mot`, `.sto` or CSV) of the name `name`. `segments` names the segments that the plates act on, in the order
+    /// of their columns; where it is empty they are guessed: by a side in the label, else the right foot, then the left one.
+    ///
+    /// ```
+    /// use contrapposto::kinematics::Kinematics;
+    /// use contrapposto::model::{Adult, adult};
+    /// use contrapposto_formats::loads::GroundReaction;
+    /// let table = "time,ground_force_vx,ground_force_vy,ground_force_vz,ground_force_px,ground_force_py,ground_force_pz\n\
+    ///     0,0,600,0,0.1,0,0.1\n1,0,700,0,0.1,0,0.1\n";
+    /// let model = adult(&Adult::default())?;
+    /// let ground = GroundReaction::read("forces.csv", table.as_bytes(), &["calcn_r"], &model)?;
+    /// ground.check([0.5])?;
+    /// let mut loads = vec![];
+    /// ground.loads(0.5, &model, &Kinematics::new(&model), &mut loads);
+    /// assert_eq!(loads.len(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`GroundReactionError`] when the bytes are no table, a column of a plate is missing, or a segment is not known.
+    pub fn read<S: AsRef<str>>(
+        name: &str,
+        bytes: &[u8],
+        segments: &[S],
+        model: &Model,
+    ) -> Result<Self, GroundReactionError> {
+        let table = read_table(name, bytes)?;
+        let labels: Vec<String> = table.columns.iter().map(|label| label.to_ascii_lowercase()).collect();
+        let found: Vec<Columns> =
+            labels.iter().filter_map(|label| Columns::find(name, label, &labels)).collect::<Result<_, _>>()?;
+        let table_name = || name.to_owned();
+        if found.is_empty() {
+            return Err(GroundReactionError::NoPlates { table: table_name() });
+        }
+        if !segments.is_empty() && segments.len() != found.len() {
+            let plates = found.into_iter().map(|columns| columns.label).collect();
+            return Err(GroundReactionError::Count { table: table_name(), given: segments.len(), plates });
+        }
+        let (mut plates, mut guessed) = (vec![], vec![]);
+        for (i, columns) in found.into_iter().enumerate() {
+            let segment = match segments.get(i).map(AsRef::as_ref) {
+                Some(given) => {
+                    model.segment(given).ok_or_else(|| GroundReactionError::Segment(no_segment(model, given)))?
+                }
+                None => {
+                    let guess = columns.guess(i);
+                    let unknown = || GroundReactionError::Unknown { table: table_name(), label: columns.label.clone() };
+                    let segment = model.segment(guess).ok_or_else(unknown)?;
+                    guessed.push((columns.label.clone(), guess));
+                    segment
+                }
+            };
+            plates.push(Plate { segment, columns: columns.columns, coupled: columns.coupled });
+        }
+        Ok(Self { name: table_name(), table, plates, guessed })
+    }
+
+    /// First column and segment of every plate whose segment was guessed.
+    pub fn guessed(&self) -> &[(String, &'static str)] {
+        &self.guessed
+    }
+
+    /// Checks that the table has forces at all `times` (s).
+    ///
+    /// # Errors
+    /// [`GroundReactionError::Outside`] names the first time that lies outside of the table.
+    pub fn check(&self, times: impl IntoIterator<Item = f64>) -> Result<(), GroundReactionError> {
+        let all = &self.table.times;
+        let table = || self.name.clone();
+        let (Some(&first), Some(&last)) = (all.first(), all.last()) else {
+            return Err(GroundReactionError::Empty { table: table() });
+        };
+        match times.into_iter().enumerate().find(|(_, time)| *time < first - SLACK || *time > last + SLACK) {
+            Some((frame, time)) => Err(GroundReactionError::Outside { table: table(), frame, time, first, last }),
+            None => Ok(()),
+        }
+    }
+
+    /// Adds the loads at `time` (s), interpolated, in the posture that `kinematics` holds: world-fixed forces (N) and couples (N m) at
+    /// the points of the segments that coincide with the measured points.
+    pub fn loads(&self, time: f64, model: &Model, kinematics: &Kinematics, loads: &mut Vec<Load>) {
+        let Table { times, rows, .. } = &self.table;
+        let after = times.partition_point(|t| *t <= time).min(times.len() - 1);
+        let before = after.saturating_sub(1);
+        let span = times[after] - times[before];
+        let share = if span > 0.0 { ((time - times[before]) / span).clamp(0.0, 1.0) } else { 0.0 };
+        let value = |column: usize| rows[before][column] + share * (rows[after][column] - rows[before][column]);
+        for plate in &self.plates {
+            let [force, point, couple] = plate.columns.map(|columns| Vector3::from(columns.map(value)));
+            let segment = plate.segment;
+            let at = kinematics.placement(model, segment).inverse() * Point3::from(point);
+            loads.push(Load { segment, point: at.coords, kind: LoadKind::Force(force, FixedIn::World) });
+            if plate.coupled {
+                loads.push(Load { segment, point: at.coords, kind: LoadKind::Couple(couple, FixedIn::World) });
+            }
+        }
+    }
+}
+
+/// The columns of one plate.
+struct Columns {
+    label: String,
+    /// What tells the plate from others.
+    marks: String,
+    columns: [[usize; 3]; 3],
+    coupled: bool,
+}
+
+impl Columns {
+    /// The plate whose `ground_force_vx` this is.
+    fn find(table: &str, label: &str, labels: &[String]) -> Option<Result<Self, GroundReactionError>> {
+        let (before, rest) = label.split_once("ground_force")?;
+        let between = rest.strip_suffix("_vx")?;
+        let column = |label: String| labels.iter().position(|other| *other == label).ok_or(label);
+        let three = |stem: &str, kind: &str| -> Result<[usize; 3], String> {
+            let label = |axis| format!("{before}ground_{stem}{between}_{kind}{axis}");
+            Ok([column(label("x"))?, column(label("y"))?, column(label("z"))?])
+        };
+        let missing = |missing: String| {
+            let (table, label) = (table.to_owned(), label.to_owned());
+            GroundReactionError::Column { table, label, missing }
+        };
+        let (force, point) = match (three("force", "v"), three("force", "p")) {
+            (Ok(force), Ok(point)) => (force, point),
+            (Err(other), _) | (_, Err(other)) => return Some(Err(missing(other))),
+        };
+        let couple = three("torque", "").or_else(|_| three("moment", "m")).or_else(|_| three("moment", ""));
+        let marks = format!("{before}{between}");
+        let coupled = couple.is_ok();
+        let columns = [force, point, couple.unwrap_or(point)];
+        Some(Ok(Self { label: label.to_owned(), marks, columns, coupled }))
+    }
+
+    /// The foot it probably acts on: by a side in the label, else right, then left.
+    fn guess(&self, i: usize) -> &'static str {
+        let mut words = self.marks.split(|c: char| !c.is_ascii_alphanumeric());
+        match words.find_map(|word| match word {
+            "r" | "right" => Some(0),
+            "l" | "left" => Some(1),
+            _ => None,
+        }) {
+            Some(0) => "calcn_r",
+            Some(_) => "calcn_l",
+            None => ["calcn_r", "calcn_l"].get(i).copied().unwrap_or_default(),
+        }
+    }
+}

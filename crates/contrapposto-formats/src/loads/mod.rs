@@ -1,0 +1,7 @@
+//! Loads on a body from texts and measured tables: held weights, forces, and ground reactions.
+
+mod ground_reaction;
+mod text;
+
+pub use ground_reaction::{GroundReaction, GroundReactionError};
+pub use text::{LoadTextError, force, no_segment, patch, weight};

@@ -1,0 +1,163 @@
+//! Completes models of other programs with passive torque and strength, and keeps the origin of every number.
+//!
+//! Published models hold no passive torque of most joints and no strength. [`SourcedModel`] reads a model file, lays an overlay over
+//! it ([`SourcedModel::lay_over`]) and fills in what is still missing from the built-in data ([`SourcedModel::fill`]).
+
+mod fill;
+
+use contrapposto::model::{Adult, AdultError, Model, adult};
+
+use crate::body::BodyRoot;
+use crate::input_error::InputError;
+use crate::model_file::{ModelFileError, ModelFormat, read_model};
+use crate::overlay::overlay;
+
+/// Where a number of a coordinate comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Origin {
+    /// The model file.
+    #[default]
+    File,
+    /// The overlay.
+    Overlay,
+    /// The built-in data.
+    Library,
+}
+
+/// Where the numbers of one coordinate come from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Origins {
+    /// The coordinate of the built-in adult whose data are used.
+    pub twin: Option<String>,
+    /// Range (rad) that the built-in passive law is meant for, in the coordinate's direction.
+    pub meant: Option<(f64, f64)>,
+    /// Of the range.
+    pub range: Origin,
+    /// Of the passive law.
+    pub passive: Origin,
+    /// Of the strength of both muscle groups.
+    pub strength: Origin,
+    /// Of the fatigue law of both muscle groups.
+    pub fatigue: Origin,
+}
+
+/// A model, and the origin of its numbers.
+#[derive(Clone, Debug)]
+pub struct SourcedModel {
+    /// The model.
+    pub model: Model,
+    /// Format of its file.
+    pub format: ModelFormat,
+    /// By coordinate.
+    pub origins: Vec<Origins>,
+    /// What was ignored, changed or filled in, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl SourcedModel {
+    /// Reads a model file: [`read_model`].
+    ///
+    /// ```
+    /// use contrapposto_formats::tissue::SourcedModel;
+    /// let urdf = r#"<robot name="arm">
+    ///   <link name="base"/>
+    ///   <link name="forearm"><inertial><mass value="1.5"/>
+    ///     <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+    ///   <joint name="elbow_flex_r" type="revolute"><parent link="base"/><child link="forearm"/>
+    ///     <axis xyz="0 0 1"/><limit lower="0" upper="2.5" effort="0" velocity="0"/></joint>
+    /// </robot>"#;
+    /// let no_includes = &mut |_: &str| Err("none".to_owned());
+    /// let file = SourcedModel::read("arm.urdf", urdf.as_bytes(), None, no_includes)?;
+    /// let filled = file.fill()?;
+    /// // A URDF file has gravity along -z, so that its axes are not known to be OpenSim's.
+    /// assert!(filled.model.coordinates()[0].passive.is_none());
+    /// assert!(filled.notes[0].contains("the built-in one is not applied"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`read_model`].
+    pub fn read(
+        name: &str,
+        bytes: &[u8],
+        root: Option<BodyRoot>,
+        include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, ModelFileError> {
+        let (imported, format) = read_model(name, bytes, root, include)?;
+        let origins = vec![Origins::default(); imported.model.coordinates().len()];
+        Ok(Self { model: imported.model, format, origins, notes: gathered(imported.notes) })
+    }
+
+    /// The built-in adult.
+    ///
+    /// # Errors
+    /// [`AdultError`] when the size is not that of an adult.
+    pub fn adult(size: &Adult) -> Result<Self, AdultError> {
+        let model = adult(size)?;
+        let library = Origin::Library;
+        let origins = model.coordinates().iter().map(|coordinate| {
+            let (twin, meant) = (Some(coordinate.name.clone()), Some(coordinate.range));
+            Origins { twin, meant, range: library, passive: library, strength: library, fatigue: library }
+        });
+        Ok(Self { origins: origins.collect(), model, format: ModelFormat::Adult, notes: vec![] })
+    }
+
+    /// Lays the overlay in `bytes` over the model: [`overlay`].
+    ///
+    /// # Errors
+    /// [`InputError`] says what is wrong, where, and what would be right.
+    pub fn lay_over(mut self, name: &str, bytes: &[u8]) -> Result<Self, InputError> {
+        let laid = overlay(name, bytes, self.model)?;
+        for change in laid.changes {
+            let origins = &mut self.origins[change.coordinate];
+            for (changed, origin) in [
+                (change.range, &mut origins.range),
+                (change.passive, &mut origins.passive),
+                (change.strength, &mut origins.strength),
+                (change.fatigue, &mut origins.fatigue),
+            ] {
+                if changed {
+                    *origin = Origin::Overlay;
+                }
+            }
+            self.notes.push(change.note);
+        }
+        self.model = laid.model;
+        Ok(self)
+    }
+
+    /// Fills in passive laws and muscle groups that the model does not have, from the built-in adult, by the standard OpenSim names.
+    /// A coordinate is filled where its turning axis lies along that of the adult's (or against it; its curve runs the other way
+    /// then) and gravity acts along -y; a note says of each what was filled, or why not. The adult itself stays as it is.
+    ///
+    /// # Errors
+    /// [`AdultError`] when the built-in adult cannot be built.
+    pub fn fill(mut self) -> Result<Self, AdultError> {
+        if self.format != ModelFormat::Adult {
+            self.model = fill::fill(self.model, self.format, &mut self.origins, &mut self.notes)?;
+        }
+        Ok(self)
+    }
+
+    /// By coordinate: the range (rad) outside of which its passive torque stays what it is at the nearer end; `None` for none.
+    ///
+    /// Published exponentials reach 10^15 N m at angles that no joint has and published models allow. The range of a built-in curve
+    /// is that of the adult's coordinate, or that of the overlay.
+    pub fn passive_ranges(&self) -> Vec<Option<(f64, f64)>> {
+        let ranges = self.origins.iter().zip(self.model.coordinates()).map(|(origins, coordinate)| {
+            let meant = if origins.range == Origin::Overlay { Some(coordinate.range) } else { origins.meant };
+            meant.filter(|_| origins.passive == Origin::Library && coordinate.passive.is_some())
+        });
+        ranges.collect()
+    }
+}
+
+/// One note for everything that was ignored, before the others.
+fn gathered(notes: Vec<String>) -> Vec<String> {
+    let (past, mut rest): (Vec<String>, Vec<String>) = notes.into_iter().partition(|note| note.ends_with(" ignored"));
+    if !past.is_empty() {
+        let kinds: Vec<&str> = past.iter().map(|note| note.trim_end_matches(" ignored")).collect();
+        rest.insert(0, format!("not needed at rest and ignored: {}", kinds.join(", ")));
+    }
+    rest
+}
