@@ -1,4 +1,4 @@
-//! How does a failure reach the user and the shell?
+//! Failures, as the user reads them and as the exit code tells them to the shell.
 
 use std::fmt::Display;
 use std::io::Write;

@@ -20,7 +20,12 @@ pub(crate) fn tell(kind: &str, text: &str) {
     let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }
 
-/// What a failed write to standard output means.
+/// A JSON file of that name.
+pub(crate) fn json_text(name: &str, value: &impl serde::Serialize) -> Result<String, Fail> {
+    Ok(serde_json::to_string_pretty(value).map_err(|error| Fail::job(name, error))? + "\n")
+}
+
+/// The failure that a failed write to standard output is.
 pub(crate) fn stdout_failed(error: std::io::Error) -> Fail {
     match error.kind() {
         ErrorKind::BrokenPipe => Fail::BrokenPipe,

@@ -2,12 +2,12 @@
 
 use contrapposto::model::{Adult, Sex};
 
-const ACCEPTED: &str = "accepted: `adult` (de Leva's reference man), or `adult:` and sex, stature and mass: \
+const ADULT_FORM: &str = "accepted: `adult` (de Leva's reference man), or `adult:` and sex, stature and mass: \
     `adult:female,1.65m,60kg`";
 
 /// Why a text is no size of the built-in adult.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{text}`: {problem}\n  {ACCEPTED}")]
+#[error("`{text}`: {problem}\n  {ADULT_FORM}")]
 pub struct AdultTextError {
     /// The text.
     pub text: String,

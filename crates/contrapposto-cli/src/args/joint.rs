@@ -1,4 +1,4 @@
-//! What can be asked of a single joint?
+//! Arguments of the commands about single joints and published figures.
 
 use std::path::PathBuf;
 

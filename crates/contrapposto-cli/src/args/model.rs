@@ -1,4 +1,4 @@
-//! What can be asked of a model, and of a motion of it?
+//! Arguments of the commands about a model file and motions of it.
 
 use std::path::PathBuf;
 

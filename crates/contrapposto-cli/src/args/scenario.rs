@@ -1,4 +1,4 @@
-//! What can be asked of a scenario?
+//! Arguments of the commands about scenario files.
 
 use std::path::PathBuf;
 

@@ -15,14 +15,14 @@ use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
 use crate::motion_file::{loads_of, outside, read_motion};
-use crate::output::{Folder, print, tell};
+use crate::output::{Folder, json_text, print, tell};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{Shots, report_of_assessment};
 use crate::view::text::assess::{AssessText, report};
 use crate::view::text::torques::{header, row};
 use crate::view::torque_rows::{Frame, Order};
 
-const FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
+const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
 /// A residual of this share of the body's weight is worth a word.
@@ -88,16 +88,16 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         figures_of_assessment(&title, model, &settings.supports, shots.frames(), worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
-    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
+    let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
     let page = shots.map(|shots| report_of_assessment(&title, &shots, &found, &settings.supports, &held, &warnings));
     let text = AssessText::new(model, &args.motion, &times, &found, warnings, files);
-    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("assess.json", error))? + "\n";
+    let json = json_text("assess.json", &text)?;
     if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
         let fatigue = tables.fatigue()?;
         let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes);
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
-        Folder::open(out)?.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
+        Folder::open(out)?.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
     print(&if args.json { json } else { report(&text) })
 }

@@ -1,5 +1,4 @@
-//! `contrapposto compare`: what differs between postures? Each scenario is carried out as its file asks, then drawn and tabled
-//! side by side.
+//! `contrapposto compare`: carries out several scenarios, and draws and tables their last postures side by side.
 
 use std::path::Path;
 
@@ -10,7 +9,7 @@ use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
 
 use crate::args::CompareArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, print, tell};
+use crate::output::{Folder, json_text, print, tell};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
 use crate::view::body;
@@ -29,7 +28,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
     }
     let files = ["compare.json", "compare.svg", "compare.png"].map(str::to_owned).to_vec();
     let text = CompareText::new(&stances, files);
-    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("compare.json", error))? + "\n";
+    let json = json_text("compare.json", &text)?;
     let picture = body_figure(&picture(&stances)?);
     let [svg, png] = both("compare", &picture)?;
     let folder = Folder::open(&args.out)?;

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use crate::args::{ElbowCurve, FiguresArgs};
 use crate::fail::Fail;
-use crate::output::{Folder, print};
+use crate::output::{Folder, json_text, print};
 use crate::view::charts::Sweep;
 use crate::view::text::plain_table;
 use crate::view::text::simulate::{cases, story};
@@ -106,8 +106,7 @@ pub(crate) fn figures(args: &FiguresArgs) -> Result<(), Fail> {
         texts.push(draw(figure, args.curve, &folder, &mut table)?);
     }
     if args.json {
-        let json = serde_json::to_string_pretty(&texts).map_err(|error| Fail::job("JSON", error))?;
-        return print(&(json + "\n"));
+        return print(&json_text("JSON", &texts)?);
     }
     print(&format!("{table}\npictures in {}\n", args.out.display()))
 }

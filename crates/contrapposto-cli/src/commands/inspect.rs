@@ -3,7 +3,7 @@
 use crate::args::InspectArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
-use crate::output::print;
+use crate::output::{json_text, print};
 use crate::view::text::inspect::{readable, report};
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Fail> {
@@ -11,8 +11,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Fail> {
     let file = args.model.model.display().to_string();
     if args.json {
         let text = report(&opened, &file);
-        let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("JSON", error))?;
-        return print(&(json + "\n"));
+        return print(&json_text("JSON", &text)?);
     }
     print(&readable(&opened, &file))
 }

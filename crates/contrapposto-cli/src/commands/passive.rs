@@ -9,11 +9,11 @@ use serde::Serialize;
 
 use crate::args::PassiveArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, print};
+use crate::output::{Folder, json_text, print};
 use crate::view::charts::angle_label;
 
 /// Number of intervals of the drawn curve.
-const INTERVALS: usize = 300;
+const CURVE_INTERVALS: usize = 300;
 
 #[derive(Serialize)]
 struct PassiveText {
@@ -55,8 +55,7 @@ fn list(json: bool) -> Result<(), Fail> {
     });
     if json {
         let listed: Vec<Listed> = listed.collect();
-        let json = serde_json::to_string_pretty(&listed).map_err(|error| Fail::job("JSON", error))?;
-        return print(&(json + "\n"));
+        return print(&json_text("JSON", &listed)?);
     }
     let mut text = String::new();
     for Listed { coordinate, curve, status, source } in listed {
@@ -97,8 +96,8 @@ pub(crate) fn passive(args: &PassiveArgs) -> Result<(), Fail> {
         slope_nm_per_rad: vec![],
         files: vec![],
     };
-    for i in 0..=INTERVALS {
-        let angle = min + (max - min) * i as f64 / INTERVALS as f64;
+    for i in 0..=CURVE_INTERVALS {
+        let angle = min + (max - min) * i as f64 / CURVE_INTERVALS as f64;
         let (torque, slope) = curve.torque_and_slope(angle);
         text.angle_deg.push(angle.to_degrees());
         text.torque_nm.push(torque);
@@ -109,8 +108,7 @@ pub(crate) fn passive(args: &PassiveArgs) -> Result<(), Fail> {
         draw(&folder, &mut text)?;
     }
     if args.json {
-        let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("JSON", error))?;
-        return print(&(json + "\n"));
+        return print(&json_text("JSON", &text)?);
     }
     let [at_min, at_max] = text.torque_at_limits_nm;
     print(&format!(

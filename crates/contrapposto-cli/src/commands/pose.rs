@@ -9,13 +9,13 @@ use contrapposto_plot::body_figure;
 
 use crate::args::PoseArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, print, tell};
+use crate::output::{Folder, json_text, print, tell};
 use crate::scenario_file::ScenarioFile;
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
 use crate::view::text::pose::{all_left, reached, report, subtitle, tasks};
 
-const FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
+const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
@@ -30,7 +30,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));
     let pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
-    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
+    let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let text = PoseText::new(&scenario, &pose, names.collect());
     let json = write(&scenario, &pose, &text, &figures, &args.out)?;
     let folder = Folder::open(&args.out)?;
@@ -51,13 +51,13 @@ fn write(
     let title = if scenario.title.is_empty() { "pose" } else { &scenario.title };
     let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
-    let json = serde_json::to_string_pretty(text).map_err(|error| Fail::job("pose.json", error))? + "\n";
+    let json = json_text("pose.json", &text)?;
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let page = report_of_pose(scenario, pose, text)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
-    Folder::open(out)?.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
+    Folder::open(out)?.write(&POSE_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     Ok(json)
 }
 

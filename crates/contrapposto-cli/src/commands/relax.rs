@@ -13,7 +13,7 @@ use contrapposto_plot::{BodyFigure, body_figure};
 
 use crate::args::RelaxArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, print, tell};
+use crate::output::{Folder, json_text, print, tell};
 use crate::progress::spinner;
 use crate::scenario_file::ScenarioFile;
 use crate::view::body;
@@ -21,7 +21,8 @@ use crate::view::frame::frame_of_posture;
 use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibria};
 use crate::view::text::relax::{RelaxText, percent, report};
 
-const FILES: [&str; 6] = ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
+const RELAX_FILES: [&str; 6] =
+    ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
 /// Largest change of a joint in one step, rad.
 const STEP: f64 = 0.1;
 /// Most steps of the last stage of each posture.
@@ -56,10 +57,10 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         error => Fail::Job(format!("{name}: {error}")),
     })?;
     let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
-    let names = FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
+    let names = RELAX_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
     let text = RelaxText::new(&scenario, &found, files);
-    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("relax.json", error))? + "\n";
+    let json = json_text("relax.json", &text)?;
     let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, &figures, out)).transpose()?;
     let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
     print(&if args.json { json } else { report(&text) + page.as_deref().unwrap_or_default() })
@@ -86,7 +87,7 @@ fn write(
     let page = report_of_equilibria(scenario, found)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
-    folder.write(&FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
+    folder.write(&RELAX_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     Ok(folder)
 }
 

@@ -12,7 +12,7 @@ use contrapposto_formats::{SummaryText, decisions_csv, read_scenario};
 use self::snapshot::{SNAPSHOT, go_on, save};
 use crate::args::{DemoArgs, SimulateArgs};
 use crate::fail::Fail;
-use crate::output::{Folder, print};
+use crate::output::{Folder, json_text, print};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
 use crate::view::figures::{figures_of_run, pictures_of_run};
@@ -122,7 +122,7 @@ fn write(
     contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
     let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
     let text = SummaryText::new(scenario, summary, files);
-    let json = serde_json::to_string_pretty(&text).map_err(|error| Fail::job("summary.json", error))? + "\n";
+    let json = json_text("summary.json", &text)?;
     contents.push(("summary.json", json.clone().into_bytes()));
     folder.write(&contents)?;
     Ok(json)

@@ -17,7 +17,7 @@ use crate::fail::Fail;
 const MOST_POINTS: usize = 4096;
 
 /// Number of intervals of a torque curve over the range.
-const INTERVALS: usize = 720;
+const SWEEP_INTERVALS: usize = 720;
 
 /// The torques of one coordinate over its range, everything else held.
 pub(crate) struct Sweep<'a> {
@@ -52,8 +52,8 @@ impl<'a> Sweep<'a> {
         let (min, max) = self.model.coordinates()[self.coordinate].range;
         let mut zeros: Vec<f64> = vec![];
         let mut before = (min, self.active(min)?);
-        for i in 1..=INTERVALS {
-            let angle = min + (max - min) * i as f64 / INTERVALS as f64;
+        for i in 1..=SWEEP_INTERVALS {
+            let angle = min + (max - min) * i as f64 / SWEEP_INTERVALS as f64;
             let torque = self.active(angle)?;
             if torque == 0.0 || (torque > 0.0) != (before.1 > 0.0) {
                 let sweep = std::cell::RefCell::new(&mut *self);
@@ -83,8 +83,8 @@ impl<'a> Sweep<'a> {
             zero_torque_deg: self.zeros()?,
             ..TorqueBalance::default()
         };
-        for i in 0..=INTERVALS {
-            let angle = min + (max - min) * i as f64 / INTERVALS as f64;
+        for i in 0..=SWEEP_INTERVALS {
+            let angle = min + (max - min) * i as f64 / SWEEP_INTERVALS as f64;
             let (external, passive) = self.torques(angle)?;
             chart.angles_deg.push(angle.to_degrees());
             chart.external_nm.push(external);

@@ -1,4 +1,4 @@
-//! What does a posture that is held still ask of the muscles? External, passive and active torque, contact forces of least effort.
+//! Computes torques, contact forces and loads of a posture that is held still.
 
 use contrapposto::assessment::{AssessSettings, assess};
 use contrapposto::contact::Support;
@@ -13,7 +13,7 @@ use crate::fail::Fail;
 pub(crate) struct Held {
     /// What it asks for. Where the supports cannot hold it, with the root held besides, as if by hand.
     pub(crate) frame: Frame,
-    /// Do the supports hold it? True without supports.
+    /// Whether the supports hold it; true without supports.
     pub(crate) holds: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What is kept of a run for its tables and pictures, in bounded memory.
+//! Keeps samples of a run for its tables and pictures, in bounded memory.
 
 use contrapposto::hybrid::Case;
 use contrapposto::joint_torques::active_torque;
@@ -97,7 +97,7 @@ impl Recording {
         self.centers.truncate(rows);
     }
 
-    /// Is it what `scenario` gives, up to sample number `samples`?
+    /// Whether it is what `scenario` gives, up to sample number `samples`.
     pub(crate) fn fits(&self, scenario: &Scenario, samples: u64) -> bool {
         let new = Self::new(scenario);
         let (rows, n) = (samples.div_ceil(new.every) as usize, new.coordinates);

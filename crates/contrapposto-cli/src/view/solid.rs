@@ -1,4 +1,4 @@
-//! How thick is each segment? Its volume is that of its mass in water; its length joins its joints.
+//! Computes the solid shape of every segment: hulls of balls between its joints, whose volume is that of its mass in water.
 
 use contrapposto::model::Model;
 use contrapposto_report::{Ball, balls_of};
@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 /// Density of a body, kg/m3.
 const WATER: f64 = 1000.0;
 /// Points nearer than this, m, are one.
-const NEAR: f64 = 1e-6;
+const SAME_POINT: f64 = 1e-6;
 /// Radius at the edge of a sole, m.
 const EDGE: f64 = 0.012;
 
@@ -20,7 +20,10 @@ pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
         let end = child.in_parent.translation.vector;
         // A joint in the sole, as that of the toes, makes nothing thicker.
         let within = upwards(&segment.patch, joint).is_some_and(|up| up.dot(&(end - segment.patch[0])) < EDGE);
-        if (end - joint).norm() > NEAR && !within && ends.iter().all(|(other, _)| (other - end).norm() > NEAR) {
+        if (end - joint).norm() > SAME_POINT
+            && !within
+            && ends.iter().all(|(other, _)| (other - end).norm() > SAME_POINT)
+        {
             ends.push((end, child.mass));
         }
     }
@@ -35,7 +38,7 @@ pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
             let neck = 0.55 * skull[0][3];
             return vec![vec![ball(joint, neck), ball(joint + reach, neck)], skull];
         }
-        [] if reach.norm() > NEAR => points.push(ball(joint + 2.0 * reach, 0.75)),
+        [] if reach.norm() > SAME_POINT => points.push(ball(joint + 2.0 * reach, 0.75)),
         [] if segment.mass > 0.0 => points = vec![ball(segment.center_of_mass, 1.0)],
         [] => return vec![],
         // A limb is slimmer at its far end, a spine is not.

@@ -11,7 +11,7 @@ use super::frame::Frame;
 use crate::fail::Fail;
 
 /// Planes that are nearer to each other, m, are one.
-const NEAR: f64 = 0.02;
+const SAME_PLANE: f64 = 0.02;
 /// So little of the body, m, may be below the ground.
 const SUNK: f64 = 0.05;
 /// A piece is so much larger than the patches on it, on every side, m.
@@ -85,12 +85,14 @@ pub(super) fn surroundings(
     let mut still = vec![true; at_start.len()];
     for frame in frames {
         for (i, (normal, points)) in see(&frame.posture)?.iter().enumerate() {
-            still[i] &= points.iter().zip(&at_start[i].1).all(|(now, then)| normal.dot(&(now - then)).abs() < NEAR);
+            still[i] &=
+                points.iter().zip(&at_start[i].1).all(|(now, then)| normal.dot(&(now - then)).abs() < SAME_PLANE);
         }
     }
     for ((normal, points), _) in at_start.into_iter().zip(still).filter(|(_, still)| *still) {
         let height = Plane { normal, points: points.clone() }.height();
-        let same = |plane: &&mut Plane| plane.normal.dot(&normal) > 0.999 && (plane.height() - height).abs() < NEAR;
+        let same =
+            |plane: &&mut Plane| plane.normal.dot(&normal) > 0.999 && (plane.height() - height).abs() < SAME_PLANE;
         match planes.iter_mut().find(same) {
             Some(plane) => plane.points.extend(points),
             None => planes.push(Plane { normal, points }),
@@ -101,7 +103,8 @@ pub(super) fn surroundings(
     let lowest = heights.fold(f64::INFINITY, f64::min);
     let ground = planes.iter().filter(|plane| plane.is_level()).map(Plane::height).min_by(f64::total_cmp);
     let ground = ground.filter(|height| *height < lowest + SUNK);
-    let other = |plane: &&Plane| !(plane.is_level() && ground.is_some_and(|height| plane.height() < height + NEAR));
+    let other =
+        |plane: &&Plane| !(plane.is_level() && ground.is_some_and(|height| plane.height() < height + SAME_PLANE));
     let surfaces = planes.iter().filter(other).map(Plane::piece).collect();
     Ok(Surroundings { ground: ground.or_else(|| pushed_from(supports, frames, turn)), surfaces })
 }

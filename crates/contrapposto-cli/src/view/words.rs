@@ -4,6 +4,11 @@ use contrapposto::model::Model;
 
 use super::axes::visible;
 
+/// Most rows of a table that a reader is shown.
+pub(crate) const MOST_ROWS: usize = 10;
+/// Most joints, muscle groups or directions of a posture that are listed.
+pub(crate) const MOST_JOINTS_SHOWN: usize = 3;
+
 /// `hip_adduction_r` is `right hip adduction`, `calcn_l` is `left foot`.
 pub(crate) fn plain(name: &str) -> String {
     let (stem, side) = match name.rsplit_once('_') {

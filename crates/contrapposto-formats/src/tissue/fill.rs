@@ -10,7 +10,7 @@ use contrapposto::passive::{Coupled, PassiveLaw};
 use contrapposto::strength::Strength;
 use nalgebra::Vector3;
 
-use super::{Origin, Origins};
+use super::origin::{Origin, Origins};
 use crate::model_file::ModelFormat;
 
 /// Names of published models that differ from those of Rajagopal2016, which the adult has.
@@ -100,7 +100,7 @@ fn known<'a>(twin: &'a Model, name: &str) -> Option<(usize, &'a Coordinate)> {
     Some((index, &twin.coordinates()[index]))
 }
 
-/// Which way do coordinates turn?
+/// The senses in which coordinates turn, against those of the built-in adult.
 struct Signs<'a> {
     model: &'a Model,
     twin: &'a Model,

@@ -16,10 +16,7 @@ use crate::view::film::MOST_FRAMES;
 use crate::view::frame::Frame;
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
-use crate::view::words::{group, percent, plain, sentence, value};
-
-/// So many groups are told of.
-const SHOWN: usize = 10;
+use crate::view::words::{MOST_ROWS, group, percent, plain, sentence, value};
 
 /// Moments of a motion, as many as a page shows.
 pub(crate) struct Shots<'a> {
@@ -154,7 +151,7 @@ pub(crate) fn report_of_assessment(
     report.table = Table {
         heading: "Over the whole motion".to_owned(),
         columns: ["Muscle group", "Peak load", "At", "Fatigue at the end", "Fails"].map(str::to_owned).to_vec(),
-        rows: working.iter().take(SHOWN).map(row).collect(),
+        rows: working.iter().take(MOST_ROWS).map(row).collect(),
     };
     Ok(contrapposto_report::write(&report))
 }
@@ -163,7 +160,7 @@ pub(crate) fn report_of_assessment(
 fn entries(shots: &Shots<'_>, working: &[&GroupAssessment], shown: &[usize]) -> Vec<Entry> {
     let model = shots.model;
     let mut entries = vec![];
-    for found in working.iter().take(SHOWN) {
+    for found in working.iter().take(MOST_ROWS) {
         let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
         if let Some(time) = found.exhausted_at {
             let text = format!("{} fails: it can no longer hold what is asked.", name(model, found));

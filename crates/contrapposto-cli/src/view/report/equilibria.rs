@@ -13,10 +13,7 @@ use crate::view::frame::{Frame, frame_of_posture};
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
-use crate::view::words::{how_long, list, percent, plain, value};
-
-/// So many joints and directions are told of each posture.
-const SHOWN: usize = 3;
+use crate::view::words::{MOST_JOINTS_SHOWN, how_long, list, percent, plain, value};
 
 /// `--figures` of all postures of least effort.
 pub(crate) fn figures_of_equilibria(
@@ -129,7 +126,7 @@ fn verdict(model: &Model, found: &RelaxedPosture) -> String {
         Some(Equilibrium::Unstable) => {
             let name = |&(i, _): &(usize, f64)| plain(&model.coordinates()[i].name);
             let direction = |direction: &Direction| {
-                let joints: Vec<String> = direction.joints.iter().take(SHOWN).map(name).collect();
+                let joints: Vec<String> = direction.joints.iter().take(MOST_JOINTS_SHOWN).map(name).collect();
                 let grows = direction.growth_time().map(|time| format!(" (a sway grows e-fold in {time:.2} s)"));
                 format!("{}{}", list(&joints), grows.unwrap_or_default())
             };
@@ -144,7 +141,7 @@ fn told(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String
     if supports.is_empty() {
         told = vec![format!("Effort {:.4}.", found.relaxed.effort)];
     }
-    let hanging = found.hanging.iter().take(SHOWN).map(|joint| {
+    let hanging = found.hanging.iter().take(MOST_JOINTS_SHOWN).map(|joint| {
         let i = joint.coordinate;
         let at = value(model, i, frame.posture[i]);
         format!(

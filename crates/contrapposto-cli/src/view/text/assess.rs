@@ -9,9 +9,8 @@ use contrapposto::model::{CoordinateKind, Model};
 use serde::Serialize;
 
 use super::plain_table;
+use crate::view::words::MOST_ROWS;
 
-/// So many groups stand in the table.
-const SHOWN: usize = 10;
 /// For so many of them relief is told.
 const RELIEVED: usize = 3;
 
@@ -160,7 +159,7 @@ pub(crate) fn report(text: &AssessText) -> String {
     let working: Vec<&GroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
     let mut table = plain_table();
     table.set_header(["muscle group", "peak load", "at", "fatigue at the end", "fails"]);
-    for group in working.iter().take(SHOWN) {
+    for group in working.iter().take(MOST_ROWS) {
         table.add_row([
             group.name(),
             format!("{:.0} %", 100.0 * group.peak_load.value),
@@ -170,8 +169,8 @@ pub(crate) fn report(text: &AssessText) -> String {
         ]);
     }
     let mut out = format!("{table}\n");
-    if working.len() > SHOWN {
-        let _ = writeln!(out, "and {} less loaded ones, which --json shows", working.len() - SHOWN);
+    if working.len() > MOST_ROWS {
+        let _ = writeln!(out, "and {} less loaded ones, which --json shows", working.len() - MOST_ROWS);
     }
     out.push_str("\nrelief, if that joint alone moved:\n");
     for group in working.iter().take(RELIEVED) {

@@ -9,10 +9,8 @@ use serde::Serialize;
 use super::plain_table;
 use crate::view::axes::pelvis_list;
 use crate::view::frame::Frame;
-use crate::view::words::{group as group_in_words, plain};
+use crate::view::words::{MOST_ROWS, group as group_in_words, plain};
 
-/// So many muscle groups and angles stand in the table.
-const SHOWN: usize = 10;
 /// Smaller differences, of strength and in degrees, are not worth a line.
 const SAME: f64 = 5e-4;
 const SAME_ANGLE: f64 = 0.05;
@@ -200,7 +198,7 @@ pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
     }
     out += &format!("\n{}\n", whole(stances, text));
     let letters = |what: &str| stances.iter().map(|s| format!("{what} {}", s.letter)).collect::<Vec<_>>();
-    let groups: Vec<&GroupText> = text.groups.iter().filter(|g| g.difference >= SAME).take(SHOWN).collect();
+    let groups: Vec<&GroupText> = text.groups.iter().filter(|g| g.difference >= SAME).take(MOST_ROWS).collect();
     if !groups.is_empty() {
         let mut table = plain_table();
         table.set_header([vec!["muscle group".to_owned()], letters("load"), letters("ligaments")].concat());
@@ -214,7 +212,7 @@ pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
         );
     }
     let angles = |c: &&CoordinateText| c.unit == "rad" && c.difference.to_degrees() >= SAME_ANGLE;
-    let angles: Vec<&CoordinateText> = text.coordinates.iter().filter(angles).take(SHOWN).collect();
+    let angles: Vec<&CoordinateText> = text.coordinates.iter().filter(angles).take(MOST_ROWS).collect();
     if !angles.is_empty() {
         let mut table = plain_table();
         table.set_header([vec!["angle, deg".to_owned()], letters("in"), vec!["difference".to_owned()]].concat());

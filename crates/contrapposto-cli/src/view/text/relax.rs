@@ -13,10 +13,8 @@ use contrapposto_formats::RelaxScenario;
 use serde::Serialize;
 
 use super::plain_table;
+use crate::view::words::MOST_JOINTS_SHOWN;
 use crate::view::words::how_long;
-
-/// So many joints and groups are told of each posture.
-const SHOWN: usize = 3;
 
 /// The whole file.
 #[derive(Serialize)]
@@ -268,13 +266,13 @@ impl PostureText {
                 let _ = writeln!(out, "  {what}: {}", list.join("; "));
             }
         };
-        let hanging = self.hanging.iter().take(SHOWN).map(|joint| {
+        let hanging = self.hanging.iter().take(MOST_JOINTS_SHOWN).map(|joint| {
             let share = percent(joint.share);
             let at = format!("{} at {:.1} deg", joint.coordinate, joint.value.to_degrees());
             format!("{at}, {:.1} N m, {share} of what weight asks", joint.passive_nm)
         });
         line("hangs on ligaments", hanging.collect());
-        let work = self.groups.iter().take(SHOWN);
+        let work = self.groups.iter().take(MOST_JOINTS_SHOWN);
         line(
             "works",
             work.map(|group| format!("{} {:.1} N m, {}", group.name(), group.active_nm, percent(group.relative_load)))
@@ -287,8 +285,8 @@ impl PostureText {
                 None => "for ever, as far as muscles go".to_owned(),
             }],
         );
-        let unstable = self.unstable.iter().take(SHOWN).map(|direction| {
-            let joints = direction.joints.iter().take(SHOWN);
+        let unstable = self.unstable.iter().take(MOST_JOINTS_SHOWN).map(|direction| {
+            let joints = direction.joints.iter().take(MOST_JOINTS_SHOWN);
             let joints: Vec<String> =
                 joints.map(|joint| format!("{} {}", joint.coordinate, percent(joint.share))).collect();
             let grows = direction.growth_time_s.map(|time| format!(" (grows by e in {time:.2} s)"));
