@@ -171,7 +171,7 @@ fn a_pose_that_its_feet_cannot_hold_has_no_loads() {
         assert!(group["relative_load"][0].is_null() && group["relative_load"][1].is_f64());
     }
     let svg = std::fs::read_to_string(folder.path().join("compare.svg")).unwrap();
-    assert!(svg.contains("nothing holds it") && svg.contains("load not known"));
+    assert!(svg.contains("supports cannot hold it") && svg.contains("load not known"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use contrapposto::hybrid::{Carrier, Equilibrium, Outcome, Strategy};
+use contrapposto::hybrid::{Outcome, Strategy, goal_in_words};
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::simulation::{ReliefLog, ReliefRecord};
 
@@ -45,7 +45,7 @@ pub fn decisions_csv(model: &Model, log: &ReliefLog) -> String {
     text
 }
 
-/// What happened, for people: who asked, for what, and what came of it.
+/// One sentence about a relief: the tired group, its goal, and the result.
 pub fn relief_sentence(model: &Model, record: &ReliefRecord) -> String {
     let coordinate = &model.coordinates()[record.coordinate];
     let shown = |x: f64| match coordinate.kind {
@@ -57,41 +57,30 @@ pub fn relief_sentence(model: &Model, record: &ReliefRecord) -> String {
     let tired = format!("{}, {}, tired to {:.2}", coordinate.name, group(coordinate, record), record.fatigue);
     let Some(decision) = record.decision else {
         return format!(
-            "{tired}: what is more important holds it fast, or what it tried cost more than it gave; it waits"
+            "{tired}: supports, tasks or a more tired group prevent its relief, or its relief cost more than it gained; it waits"
         );
     };
     let goal = decision.goal.unwrap_or(record.value.0);
-    let kind = match decision.equilibrium {
-        Some(Equilibrium::Stable(Carrier::Ligaments)) => ", where ligaments hold it",
-        Some(Equilibrium::Stable(Carrier::Gravity)) => ", where the load keeps it like a pendulum",
-        Some(Equilibrium::Unstable) => ", a balance held by attention",
-        None => "",
-    };
-    let wish = match decision.outcome {
-        Outcome::Stay => format!("stays at {}", shown(goal)),
-        Outcome::Active => format!("asks for where muscles work well, {}{kind}", shown(goal)),
-        Outcome::Passive => format!("asks for a rest at {}{kind}", shown(goal)),
-        Outcome::AtLimit => format!("asks for the end of its range, {}, where least is left to hold", shown(goal)),
-        Outcome::None => "finds no answer in the printed tables".to_owned(),
-    };
+    let verb = if matches!(decision.outcome, Outcome::Stay | Outcome::None) { "stays at" } else { "goes to" };
+    let answer = format!("{verb} {}, {}", shown(goal), goal_in_words(&decision));
     let (from, to) = (shown(record.value.0), shown(record.value.1));
     let way = if from == to { format!("at {to} throughout") } else { format!("from {from} to {to}") };
     let mut sentence =
-        format!("{tired}, {wish}: {way}, active torque from {:.1} to {:.1} {unit}", record.active.0, record.active.1);
+        format!("{tired}, {answer}: {way}, active torque from {:.1} to {:.1} {unit}", record.active.0, record.active.1);
     // Beyond its first goal it followed one that moved.
     let left = |goal: f64| (goal - record.value.1) * (goal - record.value.0).signum();
     let short = decision.goal.is_some_and(|goal| left(goal) > REACHED);
     let mut reasons = vec![];
     if record.deferred > 0 {
-        reasons.push(format!("supports, tasks or a more tired group stood against it in {} steps", record.deferred));
+        reasons.push(format!("supports, tasks or a more tired group prevented it in {} steps", record.deferred));
     }
     if record.taken_back > 0 {
-        reasons.push(format!("{} steps made things worse and were taken back", record.taken_back));
+        reasons.push(format!("{} steps increased the load and were reversed", record.taken_back));
     }
     match (short, reasons.is_empty()) {
-        (true, true) => sentence.push_str("; it had not got there when the answer changed or relief ended"),
+        (true, true) => sentence.push_str("; the decision changed, or relief ended, before it reached its goal"),
         (true, false) => {
-            let _ = write!(sentence, "; it got no farther: {}", reasons.join(", "));
+            let _ = write!(sentence, "; it did not reach its goal: {}", reasons.join(", "));
         }
         (false, false) => {
             let _ = write!(sentence, "; {}", reasons.join(", "));
@@ -123,7 +112,7 @@ fn quoted(text: &str) -> String {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
-    use contrapposto::hybrid::{Case, Decision};
+    use contrapposto::hybrid::{Carrier, Case, Decision, Equilibrium};
     use contrapposto::model::{Adult, Side, adult};
     use contrapposto::passive::SlopeAngles;
 
@@ -168,17 +157,20 @@ mod tests {
     fn a_relief_that_fell_short_says_why() {
         let way = |end: &str| {
             format!(
-                "hip_flexion_r, hip extension, tired to 0.60, asks for a rest at 102.0 deg, where ligaments hold it: from \
-                 10.0 deg to {end} deg, active torque from -12.6 to -18.2 N m"
+                "hip_flexion_r, hip extension, tired to 0.60, goes to 102.0 deg, a balance near the end of its \
+                 range, stable by ligaments: from 10.0 deg to {end} deg, active torque from -12.6 to -18.2 N m"
             )
         };
         assert_eq!(told(102.0, 0, 0), way("102.0"));
-        assert_eq!(told(26.0, 0, 0), way("26.0") + "; it had not got there when the answer changed or relief ended");
-        let stood = "supports, tasks or a more tired group stood against it in 8 steps";
-        assert_eq!(told(26.0, 8, 0), way("26.0") + "; it got no farther: " + stood);
-        let worse = "5 steps made things worse and were taken back";
-        assert_eq!(told(26.0, 8, 5), way("26.0") + "; it got no farther: " + stood + ", " + worse);
-        // A goal that moved away is followed beyond where it was.
+        assert_eq!(
+            told(26.0, 0, 0),
+            way("26.0") + "; the decision changed, or relief ended, before it reached its goal"
+        );
+        let stood = "supports, tasks or a more tired group prevented it in 8 steps";
+        assert_eq!(told(26.0, 8, 0), way("26.0") + "; it did not reach its goal: " + stood);
+        let worse = "5 steps increased the load and were reversed";
+        assert_eq!(told(26.0, 8, 5), way("26.0") + "; it did not reach its goal: " + stood + ", " + worse);
+        // A goal that moves away is followed beyond its first value.
         assert_eq!(told(110.0, 0, 5), way("110.0") + "; " + worse);
     }
 }

@@ -6,7 +6,9 @@ use contrapposto::assessment::assess as assessed;
 use contrapposto::assessment::{AssessSettings, Assessment, Instant};
 use contrapposto::contact::Support;
 use contrapposto::model::{CoordinateKind, Model, Side};
-use contrapposto_formats::loads::{no_segment, patch};
+use contrapposto::posture::Posture;
+use contrapposto::statics::Load;
+use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::SourcedModel;
 use nalgebra::Vector3;
@@ -30,30 +32,23 @@ const RESIDUAL: f64 = 1e-6;
 /// The same for the share of frames in which the body moves too fast to count as held.
 const FAST_SHARE: f64 = 0.05;
 
+/// What is assessed.
+struct Given {
+    /// Times (s) and postures.
+    motion: Vec<(f64, Posture)>,
+    /// Loads at all times.
+    held: Vec<Load>,
+    ground: Option<GroundReaction>,
+    settings: AssessSettings,
+}
+
 pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     if args.model.model == Path::new("-") && args.motion == Path::new("-") {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
     let mut opened = open(&args.model, true)?;
-    let mut notes = std::mem::take(&mut opened.notes);
+    let Given { motion, held, ground, settings } = given(args, &mut opened)?;
     let model = &opened.model;
-    let accepted = "MOTION is a .mot, .sto or .csv file";
-    let motion = read_motion(&args.motion, accepted, &args.under, model, &mut notes)?;
-    let (held, ground) = loads_of(&args.under, model, &mut notes)?;
-    if let Some(ground) = &ground {
-        ground.check(motion.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))?;
-    }
-    if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
-        let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
-        return Err(Fail::Refused(why.to_owned()));
-    }
-    let settings = AssessSettings {
-        supports: supports(args, model)?,
-        passive_ranges: opened.passive_ranges(),
-        ..AssessSettings::default()
-    };
-    outside(&opened, &motion, &mut notes);
-    notes.iter().for_each(|note| tell("note", note));
 
     let mut tables = Tables::new(model, motion.len());
     let mut shots = args.out.as_ref().map(|_| Shots::new(model, motion.len()));
@@ -81,17 +76,16 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let warnings = warnings(args, &opened, &found, motion.len());
     warnings.iter().for_each(|warning| tell("warning", warning));
 
-    let times = tables.times.clone();
     let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let figures = shots.as_ref().filter(|_| args.figures).map(|shots| {
         let worst = found.groups.iter().map(|group| group.coordinate);
         figures_of_assessment(&title, model, &settings.supports, shots.frames(), worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
+    let page = shots.map(|shots| report_of_assessment(&title, &shots, &found, &settings.supports, &held, &warnings));
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let page = shots.map(|shots| report_of_assessment(&title, &shots, &found, &settings.supports, &held, &warnings));
-    let text = AssessText::new(model, &args.motion, &times, &found, warnings, files);
+    let text = AssessText::new(model, &args.motion, &tables.times, &found, warnings, files);
     let json = json_text("assess.json", &text)?;
     if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
         let fatigue = tables.fatigue()?;
@@ -100,6 +94,29 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         Folder::open(out)?.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
     print(&if args.json { json } else { report(&text) })
+}
+
+/// The motion, the loads and the settings of an assessment, checked; notes about them go to standard error.
+fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
+    let mut notes = std::mem::take(&mut opened.notes);
+    let model = &opened.model;
+    let motion = read_motion(&args.motion, "MOTION is a .mot, .sto or .csv file", &args.under, model, &mut notes)?;
+    let (held, ground) = loads_of(&args.under, model, &mut notes)?;
+    if let Some(ground) = &ground {
+        ground.check(motion.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))?;
+    }
+    if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
+        let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
+        return Err(Fail::Refused(why.to_owned()));
+    }
+    let settings = AssessSettings {
+        supports: supports(args, model)?,
+        passive_ranges: opened.passive_ranges(),
+        ..AssessSettings::default()
+    };
+    outside(opened, &motion, &mut notes);
+    notes.iter().for_each(|note| tell("note", note));
+    Ok(Given { motion, held, ground, settings })
 }
 
 /// What carries the body, on horizontal ground.

@@ -109,7 +109,7 @@ fn picture(stances: &[Stance]) -> Result<BodyFigure, Fail> {
         posture.title = format!("{}: {}", stance.letter, stance.title);
         posture.notes = match &stance.frame {
             Some(frame) => body::key_numbers(&stance.model, &stance.supports, frame),
-            None => vec!["nothing holds it".to_owned()],
+            None => vec!["supports cannot hold it".to_owned()],
         };
         postures.push(posture);
     }

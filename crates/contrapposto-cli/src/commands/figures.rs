@@ -136,37 +136,10 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
         let mut scenario = scenario.clone();
         scenario.strategy.kind = strategy;
         scenario.strategy.minimum_decrease_ratio = ratio;
-        let mut path = vec![];
-        let summary = run(&scenario, |sample| path.push((sample.posture[elbow].to_degrees(), sample.active[elbow])))
-            .map_err(|error| Fail::job(format!("figure {}", figure.number), error))?;
-        let summary = &summary.coordinates[elbow];
-        let text = RunText {
-            strategy: if strategy == ACTIVE { "active" } else { "passive" },
-            minimum_decrease_ratio: ratio,
-            start_deg: scenario.start.values()[elbow].to_degrees(),
-            cases: summary.cases.iter().map(|case| case.number()).collect(),
-            iterations: iterations(&summary.iterations),
-            final_deg: summary.final_value.to_degrees(),
-            final_active_nm: summary.final_torques[2],
-        };
-        let verdict = verdict(figure, summary);
-        table.add_row([
-            figure.number.to_string(),
-            if strategy == ACTIVE { format!("active, R_min {ratio}") } else { "passive".to_owned() },
-            cases(summary),
-            format!("{:.1} deg", text.final_deg),
-            verdict.to_owned(),
-        ]);
-        let note = if verdict == "yes" { String::new() } else { format!(" ({verdict})") };
-        let title = if panels.is_empty() { scenario.title.as_str() } else { "" };
-        let mut panel = sweep.balance(title, &(story(&scenario, summary) + &note), tolerance)?;
-        let (start, goal) = (path.first().copied(), path.last().copied());
-        for (point, label, role) in [(start, "start", SketchRole::Start), (goal, "end", SketchRole::Goal)] {
-            if let Some((angle, _)) = point {
-                panel.postures.push(sweep.sketch(&format!("{label}, {angle:.1} deg"), angle, role)?);
-            }
+        if !panels.is_empty() {
+            scenario.title.clear();
         }
-        (panel.path, panel.start, panel.goal) = (path, start, goal);
+        let (text, panel) = carry_out(figure, &scenario, elbow, &mut sweep, table)?;
         panels.push(panel);
         runs.push(text);
     }
@@ -175,6 +148,49 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
     let png = picture.png().map_err(|error| Fail::job(&names[1], error))?;
     folder.write(&[(&names[0], picture.svg().into_bytes()), (&names[1], png)])?;
     Ok(FigureText { figure: figure.number, runs, zero_torque_deg: zeros, files: names.to_vec() })
+}
+
+/// One run of a figure: its row of the table, its text, and its panel.
+fn carry_out(
+    figure: &Published,
+    scenario: &Scenario,
+    elbow: usize,
+    sweep: &mut Sweep<'_>,
+    table: &mut Table,
+) -> Result<(RunText, TorqueBalance), Fail> {
+    let (strategy, ratio) = (scenario.strategy.kind, scenario.strategy.minimum_decrease_ratio);
+    let mut path = vec![];
+    let summary = run(scenario, |sample| path.push((sample.posture[elbow].to_degrees(), sample.active[elbow])))
+        .map_err(|error| Fail::job(format!("figure {}", figure.number), error))?;
+    let summary = &summary.coordinates[elbow];
+    let text = RunText {
+        strategy: if strategy == ACTIVE { "active" } else { "passive" },
+        minimum_decrease_ratio: ratio,
+        start_deg: scenario.start.values()[elbow].to_degrees(),
+        cases: summary.cases.iter().map(|case| case.number()).collect(),
+        iterations: iterations(&summary.iterations),
+        final_deg: summary.final_value.to_degrees(),
+        final_active_nm: summary.final_torques[2],
+    };
+    let verdict = verdict(figure, summary);
+    table.add_row([
+        figure.number.to_string(),
+        if strategy == ACTIVE { format!("active, R_min {ratio}") } else { "passive".to_owned() },
+        cases(summary),
+        format!("{:.1} deg", text.final_deg),
+        verdict.to_owned(),
+    ]);
+    let note = if verdict == "yes" { String::new() } else { format!(" ({verdict})") };
+    let tolerance = scenario.relief.torque_tolerance;
+    let mut panel = sweep.balance(&scenario.title, &(story(scenario, summary) + &note), tolerance)?;
+    let (start, goal) = (path.first().copied(), path.last().copied());
+    for (point, label, role) in [(start, "start", SketchRole::Start), (goal, "end", SketchRole::Goal)] {
+        if let Some((angle, _)) = point {
+            panel.postures.push(sweep.sketch(&format!("{label}, {angle:.1} deg"), angle, role)?);
+        }
+    }
+    (panel.path, panel.start, panel.goal) = (path, start, goal);
+    Ok((text, panel))
 }
 
 /// How the cases that occurred compare with the printed ones.

@@ -2,6 +2,7 @@
 
 pub(crate) mod assess;
 pub(crate) mod compare;
+mod group;
 pub(crate) mod inspect;
 pub(crate) mod pose;
 pub(crate) mod relax;

@@ -20,13 +20,13 @@ const OTHER_NAMES: [(&str, &str); 3] =
 /// Coordinates that published models count from another zero than the adult: from full supination, not from mid-way.
 const OTHER_ZERO: [&str; 2] = ["pro_sup_r", "pro_sup_l"];
 
-/// How well two axes must agree: the cosine of 60 deg.
+/// Least |cosine| between two axes that agree: that of 60 deg.
 const AGREE: f64 = 0.5;
 
-/// Range that may reach beyond the curve's own without a word, rad.
+/// Largest excess of a range over that of its curve for which no note is given, rad.
 const BEYOND: f64 = 0.1;
 
-/// Fills what is unknown, and says so, joint by joint.
+/// Fills in unknown passive laws and strength; a note says of each joint what was done.
 pub(super) fn fill(
     model: Model,
     format: ModelFormat,
@@ -39,49 +39,20 @@ pub(super) fn fill(
     let mut unknown = vec![];
     for index in 0..model.coordinates().len() {
         let coordinate = &model.coordinates()[index];
-        let name = coordinate.name.clone();
         if coordinate.kind != CoordinateKind::Rotation || model.is_dependent(index) {
             continue;
         }
-        if coordinate.passive.is_some() {
-            // The file's own tissue stays; of muscles no file says how strong they are.
-            let Some((own, found)) = known(&twin, &name).filter(|_| coordinate.groups.is_none()) else { continue };
-            if let (Some(groups), Ok(sign)) = (found.groups.clone(), signs.sign(index, own)) {
-                notes.push(format!("`{name}`: strength from the built-in data, passive torque from the file"));
-                changed = changed.with_groups(index, turned(groups, sign));
-                let origins = &mut origins[index];
-                (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
-                origins.twin = Some(found.name.clone());
+        let Some((own, found)) = known(&twin, &coordinate.name) else {
+            if coordinate.passive.is_none() {
+                unknown.push(format!("`{}`", coordinate.name));
             }
-            continue;
-        }
-        let Some((own, found)) = known(&twin, &name) else {
-            unknown.push(format!("`{name}`"));
             continue;
         };
-        // The root has no tissue.
-        let Some(law) = &found.passive else { continue };
-        let filled = signs.sign(index, own).and_then(|sign| {
-            let law = law_for(law, &signs, coordinate, found, sign)?;
-            Ok((law, sign))
-        });
-        match filled {
-            Err(why) => notes
-                .push(format!("`{name}`: no passive torque in the file, and the built-in one is not applied: {why}")),
-            Ok((law, sign)) => {
-                notes.push(said(coordinate, found, sign));
-                let groups = found.groups.clone().filter(|_| coordinate.groups.is_none());
-                changed = changed.with_passive_law(index, Some(law));
-                let origins = &mut origins[index];
-                origins.passive = Origin::Library;
-                origins.twin = Some(found.name.clone());
-                origins.meant = Some(mirrored(found.range, sign));
-                if let Some(groups) = groups {
-                    changed = changed.with_groups(index, turned(groups, sign));
-                    (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
-                }
-            }
-        }
+        let filling = Filling { signs: &signs, index, own, found, coordinate };
+        changed = match coordinate.passive {
+            Some(_) => filling.strength(changed, &mut origins[index], notes),
+            None => filling.tissue(changed, &mut origins[index], notes),
+        };
     }
     if !unknown.is_empty() {
         let all = unknown.len();
@@ -91,6 +62,62 @@ pub(super) fn fill(
         notes.push(format!("no passive torque is known for {all} coordinates, which have none: {list}{more}"));
     }
     Ok(changed)
+}
+
+/// A coordinate of the model, and the adult's of that name.
+struct Filling<'a> {
+    signs: &'a Signs<'a>,
+    index: usize,
+    /// Index of the adult's coordinate.
+    own: usize,
+    found: &'a Coordinate,
+    coordinate: &'a Coordinate,
+}
+
+impl Filling<'_> {
+    /// Muscle groups only: the file's own tissue stays, and no file says how strong its muscles are.
+    fn strength(&self, model: Model, origins: &mut Origins, notes: &mut Vec<String>) -> Model {
+        if self.coordinate.groups.is_some() {
+            return model;
+        }
+        let (Some(groups), Ok(sign)) = (self.found.groups.clone(), self.signs.sign(self.index, self.own)) else {
+            return model;
+        };
+        let name = &self.coordinate.name;
+        notes.push(format!("`{name}`: strength from the built-in data, passive torque from the file"));
+        (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
+        origins.twin = Some(self.found.name.clone());
+        model.with_groups(self.index, turned(groups, sign))
+    }
+
+    /// Passive law, and muscle groups where there are none.
+    fn tissue(&self, model: Model, origins: &mut Origins, notes: &mut Vec<String>) -> Model {
+        let Self { signs, index, own, found, coordinate } = *self;
+        // The root has no tissue.
+        let Some(law) = &found.passive else { return model };
+        let filled = signs.sign(index, own).and_then(|sign| {
+            let law = law_for(law, signs, coordinate, found, sign)?;
+            Ok((law, sign))
+        });
+        let (law, sign) = match filled {
+            Ok(filled) => filled,
+            Err(why) => {
+                let name = &coordinate.name;
+                notes.push(format!(
+                    "`{name}`: no passive torque in the file, and the built-in one is not applied: {why}"
+                ));
+                return model;
+            }
+        };
+        notes.push(said(coordinate, found, sign));
+        origins.passive = Origin::Library;
+        origins.twin = Some(found.name.clone());
+        origins.meant = Some(mirrored(found.range, sign));
+        let model = model.with_passive_law(index, Some(law));
+        let Some(groups) = found.groups.clone().filter(|_| coordinate.groups.is_none()) else { return model };
+        (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
+        model.with_groups(index, turned(groups, sign))
+    }
 }
 
 /// The adult's coordinate of that name.
@@ -191,7 +218,7 @@ fn law_for(
                     .coordinates()
                     .iter()
                     .position(|c| known(signs.twin, &c.name).is_some_and(|(index, _)| index == theirs));
-                // What the law depends on must be there, and turn the way it says.
+                // The neighbouring joint must be there, and turn the way the law says.
                 let index = index.ok_or_else(|| format!("its law needs `{name}`, which the model does not have"))?;
                 let turned = signs.sign(index, theirs).map_err(|why| format!("its law needs `{name}`, but {why}"))?;
                 *slot = Some((index, turned * their_sign));

@@ -2,7 +2,7 @@
 
 use super::{Carrier, Case, Decision, Equilibrium, Outcome, Problem, Strategy};
 
-/// The decision in words, angles in degrees, torques in N m.
+/// The decision and its reason in one sentence, angles in degrees, torques in N m.
 ///
 /// ```
 /// use contrapposto::hybrid::{Problem, Strategy, explain, minimise};
@@ -70,12 +70,29 @@ pub fn explain(problem: &Problem, decision: &Decision) -> String {
             _ => format!("balance at {goal:.2} deg takes {torque:.3} N m off the muscles"),
         },
     };
-    let kind = match decision.equilibrium {
-        Some(Equilibrium::Stable(Carrier::Ligaments)) => ", stable by ligaments",
-        Some(Equilibrium::Stable(Carrier::Gravity)) => ", stable by the load, as a pendulum",
-        Some(Equilibrium::Unstable) => ", an unstable balance held by attention",
-        None => "",
-    };
+    let kind =
+        decision.equilibrium.map_or_else(String::new, |equilibrium| format!(", {}", equilibrium_in_words(equilibrium)));
     let beyond = if decision.beyond_tables { "; the printed table has no such answer" } else { "" };
     format!("case {} ({strategy} strategy): {body}{kind}{beyond}", decision.case)
+}
+
+/// The goal of a decision in words that follow its value: `a balance near the end of its range, stable by ligaments`.
+pub fn goal_in_words(decision: &Decision) -> String {
+    let place = match (decision.outcome, decision.equilibrium) {
+        (Outcome::Stay, _) => return "where muscles hold almost nothing".to_owned(),
+        (Outcome::None, _) => return "because the printed tables give no goal".to_owned(),
+        (Outcome::AtLimit, _) => return "the end of its range, where muscles hold least".to_owned(),
+        (Outcome::Active, None) => return "in the middle of its range, where muscles hold least".to_owned(),
+        (Outcome::Active, Some(_)) => "a balance in the middle of its range",
+        (Outcome::Passive, _) => "a balance near the end of its range",
+    };
+    decision.equilibrium.map_or(place.to_owned(), |kind| format!("{place}, {}", equilibrium_in_words(kind)))
+}
+
+fn equilibrium_in_words(equilibrium: Equilibrium) -> &'static str {
+    match equilibrium {
+        Equilibrium::Stable(Carrier::Ligaments) => "stable by ligaments",
+        Equilibrium::Stable(Carrier::Gravity) => "stable by the load, as a pendulum",
+        Equilibrium::Unstable => "unstable, held by attention",
+    }
 }

@@ -13,7 +13,7 @@ mod minimise;
 mod problem;
 
 pub use case::{Carrier, Case, Decision, Equilibrium, Outcome, Strategy};
-pub use explain::explain;
+pub use explain::{explain, goal_in_words};
 pub use extrapolation::Extrapolation;
 pub use minimise::{minimise, minimise_literal};
 pub use problem::{Problem, ProblemError};

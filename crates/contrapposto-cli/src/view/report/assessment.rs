@@ -1,4 +1,4 @@
-//! The page of `assess`: a recorded motion, who fails first, and what would relieve it.
+//! The page of `assess`: a recorded motion, the muscle groups that fail, and relief.
 
 use contrapposto::assessment::{Assessment, GroupAssessment, Instant, PeakKind, Proposal};
 use contrapposto::contact::Support;
@@ -105,40 +105,57 @@ pub(crate) fn report_of_assessment(
     let times = frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), working.first().map_or(0, |group| group.coordinate))?;
     let span = last.time - first.time;
-    report.headline = match working.first() {
-        None => "No muscle has anything to hold.".to_owned(),
-        Some(worst) => match worst.exhausted_at {
-            Some(time) => {
-                format!("{} fails first: at {time:.1} s it can no longer hold what is asked.", name(model, worst))
-            }
-            None => format!(
-                "No muscle group fails in {span:.1} s; {} tires most, to {}.",
-                lower(&name(model, worst)),
-                percent(worst.peak_fatigue.value)
-            ),
-        },
-    };
+    report.headline = headline(model, working.first().copied(), span);
     report.reasons = warnings.iter().map(|warning| sentence(warning) + ".").collect();
     report
         .reasons
-        .push("Each posture counts as held at rest; loads change in a straight line from one to the next.".to_owned());
+        .push("Each posture is treated as held at rest; loads are interpolated linearly between postures.".to_owned());
+    report.figures = figures(model, found, &working, format!("{} postures", shots.instants), span);
+    report.list = List {
+        heading: "Muscle groups that fail, and relief by one joint".to_owned(),
+        entries: entries(shots, &working, &shown),
+        none: "None: no group fails, and no joint alone gives relief.".to_owned(),
+    };
+    report.table = table(model, &working);
+    Ok(contrapposto_report::write(&report))
+}
+
+fn headline(model: &Model, worst: Option<&GroupAssessment>, span: f64) -> String {
+    let Some(worst) = worst else { return "No muscle needs any torque.".to_owned() };
+    let group = name(model, worst);
+    match worst.exhausted_at {
+        Some(time) => format!("{group} fails first: from {time:.1} s on it cannot give the torque that is needed."),
+        None => {
+            let fatigue = percent(worst.peak_fatigue.value);
+            format!("No muscle group fails in {span:.1} s; {} tires most, to {fatigue}.", lower(&group))
+        }
+    }
+}
+
+fn figures(
+    model: &Model,
+    found: &Assessment,
+    working: &[&GroupAssessment],
+    postures: String,
+    span: f64,
+) -> Vec<Figure> {
     let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
     let failed: Vec<f64> = found.groups.iter().filter_map(|group| group.exhausted_at).collect();
     let earliest = failed.first().map_or_else(String::new, |time| format!("the first at {time:.1} s"));
-    report.figures.push(figure("Muscle groups that fail", format!("{} of {}", failed.len(), working.len()), earliest));
+    let mut figures =
+        vec![figure("Muscle groups that fail", format!("{} of {}", failed.len(), working.len()), earliest)];
     if let Some(tired) = working.iter().max_by(|a, b| a.peak_fatigue.value.total_cmp(&b.peak_fatigue.value)) {
-        report.figures.push(figure("Greatest fatigue", percent(tired.peak_fatigue.value), name(model, tired)));
+        figures.push(figure("Greatest fatigue", percent(tired.peak_fatigue.value), name(model, tired)));
     }
     if let Some(hard) = working.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value)) {
         let note = format!("{}, at {:.1} s", name(model, hard), hard.peak_load.time);
-        report.figures.push(figure("Greatest load", percent(hard.peak_load.value), note));
+        figures.push(figure("Greatest load", percent(hard.peak_load.value), note));
     }
-    report.figures.push(figure("The motion lasts", format!("{span:.1} s"), format!("{} postures", shots.instants)));
-    report.list = List {
-        heading: "Who fails, and what would relieve it".to_owned(),
-        entries: entries(shots, &working, &shown),
-        none: "Nothing: no group fails, and none has relief to be found by its joint alone.".to_owned(),
-    };
+    figures.push(figure("The motion lasts", format!("{span:.1} s"), postures));
+    figures
+}
+
+fn table(model: &Model, working: &[&GroupAssessment]) -> Table {
     let row = |group: &&GroupAssessment| {
         vec![
             name(model, group),
@@ -148,22 +165,21 @@ pub(crate) fn report_of_assessment(
             group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at {time:.1} s")),
         ]
     };
-    report.table = Table {
+    Table {
         heading: "Over the whole motion".to_owned(),
         columns: ["Muscle group", "Peak load", "At", "Fatigue at the end", "Fails"].map(str::to_owned).to_vec(),
         rows: working.iter().take(MOST_ROWS).map(row).collect(),
-    };
-    Ok(contrapposto_report::write(&report))
+    }
 }
 
-/// When groups fail, and what would relieve them at their peaks.
+/// The times at which groups fail, and relief at their peaks.
 fn entries(shots: &Shots<'_>, working: &[&GroupAssessment], shown: &[usize]) -> Vec<Entry> {
     let model = shots.model;
     let mut entries = vec![];
     for found in working.iter().take(MOST_ROWS) {
         let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
         if let Some(time) = found.exhausted_at {
-            let text = format!("{} fails: it can no longer hold what is asked.", name(model, found));
+            let text = format!("{} fails: it cannot give the torque that is needed.", name(model, found));
             entries.push(Entry { frame: shots.nearest(time), joint, text });
         }
         if model.coordinates()[found.coordinate].kind != CoordinateKind::Rotation {
@@ -180,7 +196,7 @@ fn entries(shots: &Shots<'_>, working: &[&GroupAssessment], shown: &[usize]) -> 
     entries
 }
 
-/// What both strategies propose at a peak; once, where they agree.
+/// The proposals of both strategies at a peak; one where they agree.
 fn relief(model: &Model, found: &GroupAssessment, peak: &[Proposal]) -> String {
     let i = found.coordinate;
     let what = match peak[0].at {
@@ -194,15 +210,10 @@ fn relief(model: &Model, found: &GroupAssessment, peak: &[Proposal]) -> String {
     let answers: Vec<String> = peak.iter().map(told).collect();
     let agree = answers.iter().all(|answer| *answer == answers[0]);
     let relief = match answers.as_slice() {
-        [active, passive] if !agree => format!("Ready, {active} Relaxed, {passive}"),
+        [active, passive] if !agree => format!("Active strategy: {active} Passive strategy: {passive}"),
         answers => sentence(&answers[0]),
     };
-    format!(
-        "{}: {what}. If {} alone moved: {}",
-        name(model, found),
-        plain(&model.coordinates()[i].name),
-        lower(&relief)
-    )
+    format!("{}: {what}. If only {} moved: {}", name(model, found), plain(&model.coordinates()[i].name), lower(&relief))
 }
 
 /// `Right elbow flexion`: the group.

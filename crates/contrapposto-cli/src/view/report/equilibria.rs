@@ -58,21 +58,25 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
     let more = found.postures.get(1).map(|next| percent(next.relaxed.effort / best.relaxed.effort - 1.0));
     report.headline = match (found.postures.len(), &more) {
         (n, Some(more)) => {
-            format!("{n} ways to rest: {} takes the least effort, the next {more} more.", hangs(model, best))
+            format!(
+                "{n} resting postures. The first takes the least effort: {}; the next one takes {more} more.",
+                hangs(model, best)
+            )
         }
-        _ => format!("One way to rest: {}.", hangs(model, best)),
+        _ => format!("One resting posture: {}.", hangs(model, best)),
     };
     report.reasons.push(verdict(model, best));
     let mut searched = format!("{} starts were tried", found.starts);
     for (count, what) in
-        [(found.fell, "fell"), (found.yielded, "kept tasks or supports less well than these and are left out")]
+        [(found.fell, "fell"), (found.yielded, "were left out because tasks or supports were kept less well")]
     {
         if count > 0 {
             searched += &format!(", {count} {what}");
         }
     }
     report.reasons.push(searched + ".");
-    let note = more.map_or_else(|| "sum of squared loads".to_owned(), |more| format!("the next takes {more} more"));
+    let note =
+        more.map_or_else(|| "sum of squared relative loads".to_owned(), |more| format!("the next takes {more} more"));
     report.figures.push(figure("Least effort", format!("{:.4}", best.relaxed.effort), &note));
     figures_of(model, frame, &supports, &mut report);
     let row = |(i, (posture, frame)): (usize, (&RelaxedPosture, &Frame))| {
@@ -82,7 +86,7 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
     };
     report.table = Table {
         heading: "Side by side".to_owned(),
-        columns: ["Posture", "Effort", "Weight on", "Held by", "Hardest worked"].map(str::to_owned).to_vec(),
+        columns: ["Posture", "Effort", "Weight on", "Held by", "Highest load"].map(str::to_owned).to_vec(),
         rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
     };
     Ok(contrapposto_report::write(&report))
@@ -98,7 +102,7 @@ fn speaking(found: &RelaxedPosture) -> usize {
 fn hangs(model: &Model, found: &RelaxedPosture) -> String {
     match found.hanging.first() {
         Some(joint) => format!("hanging on the ligaments of {}", plain(&model.coordinates()[joint.coordinate].name)),
-        None => "a posture without ligaments that carry".to_owned(),
+        None => "no joint hangs on its ligaments".to_owned(),
     }
 }
 
@@ -118,10 +122,10 @@ fn verdict(model: &Model, found: &RelaxedPosture) -> String {
     match found.stability.equilibrium {
         None => "Its supports leave nothing free to move.".to_owned(),
         Some(Equilibrium::Stable(Carrier::Ligaments)) => {
-            "Pushed, it comes back by itself: ligaments hold it.".to_owned()
+            "It is stable: after a push, ligaments bring it back.".to_owned()
         }
         Some(Equilibrium::Stable(Carrier::Gravity)) => {
-            "Pushed, it comes back by itself: its weight holds it.".to_owned()
+            "It is stable: after a push, its weight brings it back.".to_owned()
         }
         Some(Equilibrium::Unstable) => {
             let name = |&(i, _): &(usize, f64)| plain(&model.coordinates()[i].name);
@@ -131,7 +135,7 @@ fn verdict(model: &Model, found: &RelaxedPosture) -> String {
                 format!("{}{}", list(&joints), grows.unwrap_or_default())
             };
             let worst: Vec<String> = found.stability.unstable().iter().take(1).map(direction).collect();
-            format!("It does not stay by itself; what must be attended to most: {}.", worst.join(""))
+            format!("It is unstable; the direction that needs most attention: {}.", worst.join(""))
         }
     }
 }
@@ -159,11 +163,11 @@ fn told(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String
     });
     told.push(verdict(model, found));
     if let Some((name, load)) = hardest(model, frame) {
-        told.push(format!("Works hardest: {name}, {}.", percent(load)));
+        told.push(format!("Highest load: {name}, {}.", percent(load)));
     }
     told.push(match fails_first(model, frame) {
-        Some((name, time)) => format!("Can be held: {}, then {name} gives up.", how_long(time)),
-        None => "Can be held for ever, as far as muscles go.".to_owned(),
+        Some((name, time)) => format!("Endurance: {}, then {name} fails.", how_long(time)),
+        None => "Endurance: no limit by muscles.".to_owned(),
     });
     told.join(" ")
 }

@@ -24,16 +24,16 @@ pub(super) fn figure(label: &str, value: String, note: &str) -> Figure {
     Figure { label: label.to_owned(), value, note: note.to_owned() }
 }
 
-/// Who carries, and who works hardest.
+/// Shares of the supports, the highest load, and the endurance.
 pub(super) fn figures_of(model: &Model, frame: &Frame, supports: &[String], report: &mut Report) {
     let contacts = frame.standing.iter().flat_map(|standing| &standing.contacts);
     for (contact, name) in contacts.zip(supports).take(4) {
         report.figures.push(figure(&format!("Weight on {name}"), percent(contact.share), ""));
     }
     if let Some((name, load)) = hardest(model, frame).filter(|(_, load)| *load > 0.0) {
-        report.figures.push(figure("Hardest worked", percent(load), &sentence(&name)));
+        report.figures.push(figure("Highest load", percent(load), &sentence(&name)));
     }
     if let Some((name, time)) = fails_first(model, frame) {
-        report.figures.push(figure("Can be held", how_long(time), &format!("then {name} gives up")));
+        report.figures.push(figure("Endurance", how_long(time), &format!("then {name} fails")));
     }
 }

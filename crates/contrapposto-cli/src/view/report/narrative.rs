@@ -46,26 +46,26 @@ struct Story<'a> {
 impl Story<'_> {
     fn of_slouch(&self, list: f64) -> String {
         let side = if list > 0.0 { "right" } else { "left" };
-        format!("Slouched: the pelvis hangs {:.0}° down to the {side}, and {}.", list.abs(), self.weight())
+        format!("Slouched: the pelvis drops {:.0}° to the {side}, and {}.", list.abs(), self.weight())
     }
 
     fn of_level(&self, list: f64) -> String {
         format!("No slouch: the pelvis ends level (within {:.0}°), and {}.", list.abs().ceil().max(1.0), self.weight())
     }
 
-    /// Nobody asked for relief.
+    /// No muscle group needed relief.
     fn of_rest(&self, seconds: f64) -> String {
         let hardest = match hardest(&self.scenario.model, self.last) {
-            Some((name, load)) => format!("; {name} works hardest, at {} of its strength", percent(load)),
+            Some((name, load)) => format!("; {name} has the highest load, {} of its strength", percent(load)),
             None => String::new(),
         };
-        format!("It holds: in {} no muscle got so tired that it asked for relief{hardest}.", how_long(seconds))
+        format!("The posture holds: in {} no muscle became so tired that it needed relief{hardest}.", how_long(seconds))
     }
 
     fn weight(&self) -> String {
         match self.heaviest() {
             Some((name, share)) => format!("{} of the weight is on the {name}", percent(share)),
-            None => "nothing carries it".to_owned(),
+            None => "no support carries weight".to_owned(),
         }
     }
 
@@ -101,7 +101,7 @@ impl Story<'_> {
         if let Some((group, fatigue)) = tired(&scenario.model, main, first).filter(|(_, fatigue)| *fatigue >= critical)
         {
             reasons.push(format!(
-                "Why: the muscles of {group} were tired from the start ({}) and asked for rest.",
+                "Reason: the muscles of {group} were tired from the start ({}) and needed relief.",
                 percent(fatigue)
             ));
         }
@@ -122,17 +122,17 @@ impl Story<'_> {
                 0.005..0.5 => format!("only {}", percent(share)),
                 _ => percent(share),
             };
-            reasons.push(format!("Ligaments carry {part} of the {whole:.1} N m that pull on {name}{before}."));
+            reasons.push(format!("Ligaments carry {part} of the external torque of {whole:.1} N m at {name}{before}."));
         }
         reasons
     }
 
     fn end(&self, film: &Film, summary: &Summary) -> String {
         let how = match summary.reason {
-            StopReason::Settled => "nothing moved any more",
-            StopReason::Duration => "its whole duration",
+            StopReason::Settled => "the posture no longer changed",
+            StopReason::Duration => "its full duration",
             StopReason::Interrupted => "it was interrupted",
-            StopReason::Fell => "nothing held the body any more",
+            StopReason::Fell => "the supports could no longer hold the body",
         };
         let why = summary.fall.map_or(String::new(), |fall| format!(" {}.", sentence(&fall.to_string())));
         let told = film.events.len() as u64;
@@ -149,9 +149,9 @@ impl Story<'_> {
         let mut figures = vec![];
         if let Some((before, after)) = standing {
             let side = |list: f64| if list > 0.0 { "right" } else { "left" };
-            let down = if after.abs() < 0.05 { "level".to_owned() } else { format!("down to the {}", side(after)) };
+            let down = if after.abs() < 0.05 { "level".to_owned() } else { format!("to the {}", side(after)) };
             let note = format!("{down}; {:.1}° at the start", before.abs());
-            figures.push(figure("Pelvis hangs", format!("{:.1}°", after.abs()), note));
+            figures.push(figure("Pelvis drops", format!("{:.1}°", after.abs()), note));
         }
         let shares =
             |frame: &Frame| frame.standing.as_ref().map(|s| s.contacts.iter().map(|c| c.share).collect::<Vec<_>>());
@@ -174,7 +174,7 @@ impl Story<'_> {
             ));
             let [before, after] = [first, last].map(|frame| frame.active(main).abs());
             figures.push(figure(
-                "Its muscles hold",
+                "Its active torque",
                 format!("{after:.1} N m"),
                 format!("{before:.1} N m at the start"),
             ));
@@ -183,7 +183,7 @@ impl Story<'_> {
             figures.push(figure(
                 "Ligaments carry",
                 percent(share),
-                format!("of what pulls on {}", plain(&scenario.model.coordinates()[main].name)),
+                format!("of the external torque at {}", plain(&scenario.model.coordinates()[main].name)),
             ));
         }
         let [before, after] = [first, last].map(Frame::effort);
@@ -194,10 +194,10 @@ impl Story<'_> {
         figures.push(figure(
             "Effort of all muscles",
             change,
-            format!("sum of squared loads, {before:.3} to {after:.3}"),
+            format!("sum of squared relative loads, {before:.3} to {after:.3}"),
         ));
         if let Some((name, load)) = hardest(&scenario.model, last) {
-            figures.push(figure("Hardest worked", percent(load), name));
+            figures.push(figure("Highest load", percent(load), name));
         }
         figures
     }

@@ -32,41 +32,45 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &SolvedPosture, text
     report.targets = targets(scenario, pose)?.into_iter().map(|target| turn.point(target)).collect();
     let all: Vec<_> = tasks(text).collect();
     let done = all.iter().filter(|entries| reached(entries)).count();
-    // What is asked of the rest of the body is left by as much as everything above it needs.
+    // Posture and effort tasks take what tasks of higher priority leave.
     let rest = |task: &str| task.starts_with("posture") || task.starts_with("effort");
     let missing = all.iter().filter(|entries| !reached(entries) && !rest(&entries[0].task));
     let missing: Vec<String> =
         missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), left(entries))).collect();
     report.headline = match (missing.is_empty(), done == all.len()) {
-        (true, true) => "Everything is reached.".to_owned(),
-        (true, false) => "All is reached; the rest of the body is as near to what is asked as that allows.".to_owned(),
-        _ => format!("Not everything is reached: {}.", list(&missing)),
+        (true, true) => "All tasks are reached.".to_owned(),
+        (true, false) => {
+            "All targets are reached; posture and effort tasks come as near to their goals as these allow.".to_owned()
+        }
+        _ => format!("Not all tasks are reached: {}.", list(&missing)),
     };
     report.reasons = match pose.reason {
         Reason::Reached => vec![],
         Reason::Converged if missing.is_empty() => vec![],
-        Reason::Converged => vec!["What is left is as near as the tasks above it allow.".to_owned()],
-        Reason::StepLimit => vec!["The largest number of steps was made, and the body still moves.".to_owned()],
+        Reason::Converged => {
+            vec!["The remaining errors are the smallest that tasks of higher priority allow.".to_owned()]
+        }
+        Reason::StepLimit => vec!["The step limit was reached before the posture converged.".to_owned()],
     };
     if !text.supports_hold {
-        report.reasons.push("The supports do not stay where they are.".to_owned());
+        report.reasons.push("The supports move from their places.".to_owned());
     }
     let free = !root_rates(model).is_empty();
     report.reasons.extend(if !holds {
-        Some("Supports that only push cannot hold the body in this posture: it would fall; torques are those of a body that is held at its root besides.".to_owned())
+        Some("The supports, which can only push, cannot hold the body in this posture: it would fall. The torques are those of a body whose root is also held.".to_owned())
     } else {
         let nothing = scenario.supports.is_empty() && free;
-        nothing.then(|| "Where supports touch is not known, so torques are those of a body that is held at its root.".to_owned())
+        nothing.then(|| "No supports are given, so the torques are those of a body whose root is held.".to_owned())
     });
     report.figures.push(figure("Tasks reached", format!("{done} of {}", all.len()), "supports among them"));
     figures_of(model, frame, &carriers(&scene), &mut report);
     let row = |entries: &&[PoseLevelText]| {
-        let mark = if reached(entries) { "reached" } else { "as near as those above allow" };
+        let mark = if reached(entries) { "reached" } else { "limited by higher priorities" };
         vec![entries[0].priority.to_string(), plain_task(&entries[0].task), left(entries), mark.to_owned()]
     };
     report.table = Table {
-        heading: "What is left of the tasks, the most important first".to_owned(),
-        columns: ["Priority", "Task", "What is left", ""].map(str::to_owned).to_vec(),
+        heading: "Remaining errors of the tasks, highest priority first".to_owned(),
+        columns: ["Priority", "Task", "Remaining error", ""].map(str::to_owned).to_vec(),
         rows: all.iter().map(row).collect(),
     };
     Ok(contrapposto_report::write(&report))

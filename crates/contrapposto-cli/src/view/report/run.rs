@@ -24,9 +24,9 @@ pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary:
     let mut report = scene.report(Moments::Times(times), main_coordinate(scenario, summary))?;
     report.levels = Some([scenario.hysteresis.critical_level, scenario.hysteresis.recovery_level]);
     report.list = List {
-        heading: "What was decided".to_owned(),
+        heading: "Decisions".to_owned(),
         entries: entries(scenario, &film, &shown),
-        none: "Nothing: no muscle group asked for relief.".to_owned(),
+        none: "None: no muscle group needed relief.".to_owned(),
     };
     narrative::tell(scenario, &film, summary, &shown, &mut report);
     Ok(contrapposto_report::write(&report))

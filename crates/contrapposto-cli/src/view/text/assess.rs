@@ -1,4 +1,4 @@
-//! What `assess.json` says, and the table for readers.
+//! `assess.json`, and the terminal table of a recorded motion.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,6 +8,7 @@ use contrapposto::hybrid::Strategy;
 use contrapposto::model::{CoordinateKind, Model};
 use serde::Serialize;
 
+use super::group::GroupName;
 use super::plain_table;
 use crate::view::words::MOST_ROWS;
 
@@ -23,7 +24,7 @@ pub(crate) struct AssessText {
     start_s: f64,
     end_s: f64,
     /// Every group of known strength, the worst first.
-    groups: Vec<GroupText>,
+    groups: Vec<AssessedGroupText>,
     /// What the root lacks at most: neither loads nor supports give it.
     residual_force_n: PeakText,
     residual_moment_nm: PeakText,
@@ -43,11 +44,9 @@ struct PeakText {
 }
 
 #[derive(Serialize)]
-struct GroupText {
-    group: String,
-    coordinate: String,
-    /// `positive` or `negative`: the sign of its torque.
-    side: &'static str,
+struct AssessedGroupText {
+    #[serde(flatten)]
+    name: GroupName,
     /// Active torque over strength.
     peak_load: PeakText,
     peak_fatigue: PeakText,
@@ -93,7 +92,7 @@ impl AssessText {
             frames: times.len(),
             start_s: times.first().copied().unwrap_or_default(),
             end_s: times.last().copied().unwrap_or_default(),
-            groups: found.groups.iter().map(|group| GroupText::new(model, group)).collect(),
+            groups: found.groups.iter().map(|group| AssessedGroupText::new(model, group)).collect(),
             residual_force_n: found.residual_force.into(),
             residual_moment_nm: found.residual_moment.into(),
             unheld_frames: found.unheld,
@@ -105,28 +104,20 @@ impl AssessText {
     }
 }
 
-impl GroupText {
+impl AssessedGroupText {
     fn new(model: &Model, found: &GroupAssessment) -> Self {
-        let coordinate = &model.coordinates()[found.coordinate];
-        let group = coordinate.groups.as_ref().map(|groups| groups[found.side.index()].name.clone());
         Self {
-            group: group.unwrap_or_default(),
-            coordinate: coordinate.name.clone(),
-            side: found.side.word(),
+            name: GroupName::new(model, found.coordinate, found.side),
             peak_load: found.peak_load.into(),
             peak_fatigue: found.peak_fatigue.into(),
             fatigue_at_end: found.fatigue,
             exhausted_at_s: found.exhausted_at,
             // Relief of a slide is no angle.
-            proposals: match coordinate.kind {
+            proposals: match model.coordinates()[found.coordinate].kind {
                 CoordinateKind::Rotation => found.proposals.iter().map(ProposalText::new).collect(),
                 _ => vec![],
             },
         }
-    }
-
-    fn name(&self) -> String {
-        format!("{} ({})", self.group, self.coordinate)
     }
 }
 
@@ -156,12 +147,12 @@ impl ProposalText {
 
 /// The worst groups, what would relieve them, and who fails first.
 pub(crate) fn report(text: &AssessText) -> String {
-    let working: Vec<&GroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
+    let working: Vec<&AssessedGroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
     let mut table = plain_table();
     table.set_header(["muscle group", "peak load", "at", "fatigue at the end", "fails"]);
     for group in working.iter().take(MOST_ROWS) {
         table.add_row([
-            group.name(),
+            group.name.to_string(),
             format!("{:.0} %", 100.0 * group.peak_load.value),
             format!("{:.2} s", group.peak_load.at_s),
             format!("{:.2}", group.fatigue_at_end),
@@ -170,19 +161,19 @@ pub(crate) fn report(text: &AssessText) -> String {
     }
     let mut out = format!("{table}\n");
     if working.len() > MOST_ROWS {
-        let _ = writeln!(out, "and {} less loaded ones, which --json shows", working.len() - MOST_ROWS);
+        let _ = writeln!(out, "and {} groups with lower loads, which --json lists", working.len() - MOST_ROWS);
     }
     out.push_str("\nrelief, if that joint alone moved:\n");
     for group in working.iter().take(RELIEVED) {
         if group.proposals.is_empty() {
-            let _ = writeln!(out, "{}: no falling passive curve of this joint is known", group.name());
+            let _ = writeln!(out, "{}: no falling passive curve of this joint is known", group.name);
         }
         let mut told: Vec<String> = vec![];
         for peak in group.proposals.chunk_by(|a, b| a.at == b.at) {
             let sentences = sentences(peak);
             if sentences != told {
                 let ProposalText { at, time_s, angle_deg, .. } = peak[0];
-                let _ = writeln!(out, "{}, greatest {at} at {time_s:.2} s, {angle_deg:.1} deg:", group.name());
+                let _ = writeln!(out, "{}, greatest {at} at {time_s:.2} s, {angle_deg:.1} deg:", group.name);
                 for sentence in &sentences {
                     let _ = writeln!(out, "  {sentence}");
                 }
@@ -192,7 +183,7 @@ pub(crate) fn report(text: &AssessText) -> String {
     }
     let first = working.first().and_then(|group| Some((group, group.exhausted_at_s?)));
     let _ = match first {
-        Some((group, time)) => writeln!(out, "\nfails first: {} at {time:.1} s", group.name()),
+        Some((group, time)) => writeln!(out, "\nfails first: {} at {time:.1} s", group.name),
         None => writeln!(out, "\nno group fails from {} s to {} s", text.start_s, text.end_s),
     };
     out

@@ -1,4 +1,4 @@
-//! What `compare.json` says, and the table for readers. Bodies are compared by names: of coordinates, and of their muscle groups.
+//! `compare.json`, and the terminal tables of postures side by side. Bodies are compared by names of coordinates and muscle groups.
 
 use std::collections::BTreeMap;
 
@@ -6,6 +6,7 @@ use contrapposto::contact::Support;
 use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
 use serde::Serialize;
 
+use super::group::GroupName;
 use super::plain_table;
 use crate::view::axes::pelvis_list;
 use crate::view::frame::Frame;
@@ -34,18 +35,18 @@ pub(crate) struct Stance {
 /// The whole file.
 #[derive(Serialize)]
 pub(crate) struct CompareText {
-    postures: Vec<PostureText>,
+    postures: Vec<StanceText>,
     /// Muscle groups that all bodies have, those that differ most first.
-    groups: Vec<GroupText>,
+    groups: Vec<GroupDifferenceText>,
     /// Coordinates that all bodies have, those that differ most first.
-    coordinates: Vec<CoordinateText>,
+    coordinates: Vec<CoordinateDifferenceText>,
     /// Coordinates that some body does not have.
     not_in_all: Vec<String>,
     files: Vec<String>,
 }
 
 #[derive(Serialize)]
-struct PostureText {
+struct StanceText {
     file: String,
     title: String,
     model: String,
@@ -53,7 +54,7 @@ struct PostureText {
     how: String,
     /// Sum of (active torque / strength)^2; `null` where the supports cannot hold it.
     effort: Option<f64>,
-    supports: Vec<ShareText>,
+    supports: Vec<SupportShareText>,
     /// How far the pelvis hangs down to its right.
     pelvis_list_deg: Option<f64>,
     /// rad, m, components of quaternions.
@@ -61,7 +62,7 @@ struct PostureText {
 }
 
 #[derive(Serialize)]
-struct ShareText {
+struct SupportShareText {
     segment: String,
     /// Of the weight of the body.
     share: Option<f64>,
@@ -69,11 +70,9 @@ struct ShareText {
 
 /// A muscle group; numbers by posture.
 #[derive(Serialize)]
-struct GroupText {
-    group: String,
-    coordinate: String,
-    /// `positive` or `negative`: the sign of its torque.
-    side: &'static str,
+struct GroupDifferenceText {
+    #[serde(flatten)]
+    name: GroupName,
     /// Active torque over strength.
     relative_load: Vec<Option<f64>>,
     /// What ligaments carry in its stead, over its strength.
@@ -83,7 +82,7 @@ struct GroupText {
 
 /// A coordinate; its values by posture.
 #[derive(Serialize)]
-struct CoordinateText {
+struct CoordinateDifferenceText {
     coordinate: String,
     unit: &'static str,
     value: Vec<f64>,
@@ -93,7 +92,7 @@ struct CoordinateText {
 impl CompareText {
     pub(crate) fn new(stances: &[Stance], files: Vec<String>) -> Self {
         let mut text = Self {
-            postures: stances.iter().map(PostureText::new).collect(),
+            postures: stances.iter().map(StanceText::new).collect(),
             groups: vec![],
             coordinates: vec![],
             not_in_all: vec![],
@@ -117,7 +116,8 @@ impl CompareText {
         }
         // Of equals the first in the body.
         text.groups.sort_by(|a, b| b.difference.total_cmp(&a.difference));
-        let weight = |c: &CoordinateText| if c.unit == "rad" { c.difference.to_degrees() } else { 1e3 * c.difference };
+        let weight =
+            |c: &CoordinateDifferenceText| if c.unit == "rad" { c.difference.to_degrees() } else { 1e3 * c.difference };
         text.coordinates.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
         text
     }
@@ -131,17 +131,21 @@ impl CompareText {
             CoordinateKind::Quaternion => "1",
         };
         let difference = spread(value.iter().copied());
-        self.coordinates.push(CoordinateText { coordinate: coordinate.name.clone(), unit, value, difference });
-        let groups = stances.iter().zip(places).map(|(stance, &i)| stance.model.coordinates()[i].groups.as_ref());
-        let Some(groups) = groups.collect::<Option<Vec<_>>>() else { return };
+        self.coordinates.push(CoordinateDifferenceText {
+            coordinate: coordinate.name.clone(),
+            unit,
+            value,
+            difference,
+        });
+        if stances.iter().zip(places).any(|(stance, &i)| stance.model.coordinates()[i].groups.is_none()) {
+            return;
+        }
         for side in Side::BOTH {
             let numbers = stances.iter().zip(places).map(|(stance, &i)| work(stance, i, side));
             let (relative_load, on_ligaments): (Vec<_>, Vec<_>) = numbers.map(Option::unzip).unzip();
             let difference = [&relative_load, &on_ligaments].map(|list| spread(list.iter().flatten().copied()));
-            self.groups.push(GroupText {
-                group: groups[0][side.index()].name.clone(),
-                coordinate: coordinate.name.clone(),
-                side: side.word(),
+            self.groups.push(GroupDifferenceText {
+                name: GroupName::new(&stances[0].model, places[0], side),
                 relative_load,
                 on_ligaments,
                 difference: difference[0].max(difference[1]),
@@ -168,11 +172,11 @@ fn spread(values: impl Iterator<Item = f64>) -> f64 {
     (high - low).max(0.0)
 }
 
-impl PostureText {
+impl StanceText {
     fn new(stance: &Stance) -> Self {
         let contacts =
             stance.frame.as_ref().and_then(|frame| frame.standing.as_ref()).map(|standing| &standing.contacts);
-        let share = |(i, support): (usize, &Support)| ShareText {
+        let share = |(i, support): (usize, &Support)| SupportShareText {
             segment: stance.model.segments()[support.segment].name.clone(),
             share: contacts.and_then(|contacts| contacts.get(i)).map(|contact| contact.share),
         };
@@ -198,21 +202,22 @@ pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
     }
     out += &format!("\n{}\n", whole(stances, text));
     let letters = |what: &str| stances.iter().map(|s| format!("{what} {}", s.letter)).collect::<Vec<_>>();
-    let groups: Vec<&GroupText> = text.groups.iter().filter(|g| g.difference >= SAME).take(MOST_ROWS).collect();
+    let groups: Vec<&GroupDifferenceText> =
+        text.groups.iter().filter(|g| g.difference >= SAME).take(MOST_ROWS).collect();
     if !groups.is_empty() {
         let mut table = plain_table();
         table.set_header([vec!["muscle group".to_owned()], letters("load"), letters("ligaments")].concat());
         for group in groups {
-            let name = group_in_words(&group.group, &group.coordinate);
+            let name = group_in_words(&group.name.group, &group.name.coordinate);
             let numbers = group.relative_load.iter().chain(&group.on_ligaments).map(|value| percent(*value));
             table.add_row(std::iter::once(name).chain(numbers));
         }
         out += &format!(
-            "\nMuscles that differ most: what they do, and what ligaments carry in their stead, of their strength\n{table}\n"
+            "\nMuscle groups that differ most: their load, and the torque that ligaments carry instead, as shares of strength\n{table}\n"
         );
     }
-    let angles = |c: &&CoordinateText| c.unit == "rad" && c.difference.to_degrees() >= SAME_ANGLE;
-    let angles: Vec<&CoordinateText> = text.coordinates.iter().filter(angles).take(MOST_ROWS).collect();
+    let angles = |c: &&CoordinateDifferenceText| c.unit == "rad" && c.difference.to_degrees() >= SAME_ANGLE;
+    let angles: Vec<&CoordinateDifferenceText> = text.coordinates.iter().filter(angles).take(MOST_ROWS).collect();
     if !angles.is_empty() {
         let mut table = plain_table();
         table.set_header([vec!["angle, deg".to_owned()], letters("in"), vec!["difference".to_owned()]].concat());
@@ -225,7 +230,7 @@ pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
     }
     if let Some((first, rest)) = text.not_in_all.split_first() {
         let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
-        out += &format!("\nnot compared, for not all bodies have it: {first}{more}\n");
+        out += &format!("\nnot compared, because not all bodies have it: {first}{more}\n");
     }
     out + "\n"
 }
@@ -234,7 +239,7 @@ pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
 fn whole(stances: &[Stance], text: &CompareText) -> comfy_table::Table {
     let mut table = plain_table();
     table.set_header(std::iter::once(String::new()).chain(stances.iter().map(|stance| stance.letter.to_string())));
-    let mut row = |label: String, cell: &dyn Fn(&PostureText) -> String| {
+    let mut row = |label: String, cell: &dyn Fn(&StanceText) -> String| {
         table.add_row(std::iter::once(label).chain(text.postures.iter().map(cell)));
     };
     let known = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
@@ -252,7 +257,7 @@ fn whole(stances: &[Stance], text: &CompareText) -> comfy_table::Table {
         });
     }
     if text.postures.iter().any(|posture| posture.pelvis_list_deg.is_some()) {
-        row("pelvis hangs".to_owned(), &|posture| {
+        row("pelvis drops".to_owned(), &|posture| {
             known(posture.pelvis_list_deg.map(|list| match number(list.abs()).as_str() {
                 "0.0" => "level".to_owned(),
                 angle => format!("{angle} deg {}", if list > 0.0 { "right" } else { "left" }),

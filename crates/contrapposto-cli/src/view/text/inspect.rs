@@ -24,7 +24,7 @@ pub(crate) struct Report<'a> {
     center_of_mass_m: Option<[f64; 3]>,
     segments: Vec<SegmentText<'a>>,
     coordinate_order: Vec<&'a str>,
-    coordinates: BTreeMap<&'a str, CoordinateText<'a>>,
+    coordinates: BTreeMap<&'a str, InspectedCoordinateText<'a>>,
     /// What was ignored, changed or filled in, one sentence each.
     notes: &'a [String],
 }
@@ -48,7 +48,7 @@ struct JointText<'a> {
 }
 
 #[derive(Serialize)]
-struct CoordinateText<'a> {
+struct InspectedCoordinateText<'a> {
     /// `rotation`, `translation` or `quaternion`.
     kind: &'static str,
     /// Unit of range and default.
@@ -82,12 +82,12 @@ struct PassiveText {
 
 #[derive(Serialize)]
 struct StrengthText<'a> {
-    positive: GroupText<'a>,
-    negative: GroupText<'a>,
+    positive: GroupStrengthText<'a>,
+    negative: GroupStrengthText<'a>,
 }
 
 #[derive(Serialize)]
-struct GroupText<'a> {
+struct GroupStrengthText<'a> {
     name: &'a str,
     peak_nm: f64,
     at_rad: f64,
@@ -136,7 +136,12 @@ pub(crate) fn report<'a>(opened: &'a SourcedModel, file: &'a str) -> Report<'a> 
     }
 }
 
-fn text<'a>(opened: &SourcedModel, model: &'a Model, index: usize, coordinate: &'a Coordinate) -> CoordinateText<'a> {
+fn text<'a>(
+    opened: &SourcedModel,
+    model: &'a Model,
+    index: usize,
+    coordinate: &'a Coordinate,
+) -> InspectedCoordinateText<'a> {
     let known = Known::of(opened, index);
     let (kind, unit) = match coordinate.kind {
         CoordinateKind::Rotation => ("rotation", "rad"),
@@ -149,10 +154,10 @@ fn text<'a>(opened: &SourcedModel, model: &'a Model, index: usize, coordinate: &
         let source = known.strength.get(side).or(known.strength.first()).cloned();
         coordinate.groups.as_ref().map(|groups| {
             let group = &groups[side];
-            GroupText { name: &group.name, peak_nm: group.strength.peak, at_rad: group.strength.best, source }
+            GroupStrengthText { name: &group.name, peak_nm: group.strength.peak, at_rad: group.strength.best, source }
         })
     };
-    CoordinateText {
+    InspectedCoordinateText {
         kind,
         unit,
         positive: &coordinate.positive,
@@ -275,7 +280,6 @@ pub(crate) fn readable(opened: &SourcedModel, file: &str) -> String {
 }
 
 fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
-    use contrapposto::model::CoordinateKind::{Quaternion, Rotation, Translation};
     let model = &opened.model;
     let mut table = plain_table();
     table.set_header([
@@ -289,23 +293,7 @@ fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
     ]);
     for (index, coordinate) in model.coordinates().iter().enumerate() {
         let known = Known::of(opened, index);
-        let shown = |x: f64| match coordinate.kind {
-            _ if x.is_infinite() => "none".to_owned(),
-            Rotation => format!("{:.1}", x.to_degrees()),
-            _ => format!("{x:.3}"),
-        };
-        let unit = match coordinate.kind {
-            Rotation => " deg",
-            Translation => " m",
-            Quaternion => "",
-        };
-        let (min, max) = coordinate.range;
-        let mut range = format!("{} .. {}{unit}", shown(min), shown(max));
-        if let Some(coupling) = model.couplings().iter().find(|coupling| coupling.dependent == index) {
-            range = format!("follows {}", model.coordinates()[coupling.independent].name);
-        } else if coordinate.locked {
-            range.push_str(", locked");
-        }
+        let [range, default] = range_and_default(model, index);
         let passive = match &coordinate.passive {
             None => String::new(),
             Some(law) => {
@@ -325,7 +313,6 @@ fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
                 format!("{}{}", known.class.unwrap_or("of a class"), seen.mark(known.fatigue.as_ref())),
             ),
         };
-        let default = format!("{}{unit}", shown(coordinate.default));
         let range = format!("{range}{}", seen.mark(known.range.as_ref()));
         table.add_row([
             coordinate.name.clone(),
@@ -338,4 +325,26 @@ fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
         ]);
     }
     table
+}
+
+/// Range and default of a coordinate, in deg or m; the independent coordinate instead of the range of a dependent one.
+fn range_and_default(model: &Model, index: usize) -> [String; 2] {
+    let coordinate = &model.coordinates()[index];
+    let shown = |x: f64| match coordinate.kind {
+        _ if x.is_infinite() => "none".to_owned(),
+        CoordinateKind::Rotation => format!("{:.1}", x.to_degrees()),
+        _ => format!("{x:.3}"),
+    };
+    let unit = match coordinate.kind {
+        CoordinateKind::Rotation => " deg",
+        CoordinateKind::Translation => " m",
+        CoordinateKind::Quaternion => "",
+    };
+    let (min, max) = coordinate.range;
+    let locked = if coordinate.locked { ", locked" } else { "" };
+    let range = match model.couplings().iter().find(|coupling| coupling.dependent == index) {
+        Some(coupling) => format!("follows {}", model.coordinates()[coupling.independent].name),
+        None => format!("{} .. {}{unit}{locked}", shown(min), shown(max)),
+    };
+    [range, format!("{}{unit}", shown(coordinate.default))]
 }

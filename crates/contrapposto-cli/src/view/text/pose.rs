@@ -6,13 +6,13 @@ use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 use super::plain_table;
 use crate::output::Folder;
 
-/// `left: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
+/// `remaining: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
 pub(crate) fn subtitle(text: &PoseText) -> String {
     let missing: Vec<String> = tasks(text)
         .filter(|entries| !reached(entries))
         .map(|entries| format!("{} {}", entries[0].task, all_left(entries)))
         .collect();
-    if missing.is_empty() { "everything is reached".to_owned() } else { format!("left: {}", missing.join("; ")) }
+    if missing.is_empty() { "all tasks are reached".to_owned() } else { format!("remaining: {}", missing.join("; ")) }
 }
 
 /// The entries of each task: one, or one for each of its units.
@@ -41,7 +41,7 @@ fn left(level: &PoseLevelText) -> String {
 
 pub(crate) fn report(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText, folder: &Folder) -> String {
     let mut table = plain_table();
-    table.set_header(["priority", "task", "what is left", ""]);
+    table.set_header(["priority", "task", "remaining error", ""]);
     for entries in tasks(text) {
         table.add_row([
             entries[0].priority.to_string(),
@@ -51,9 +51,9 @@ pub(crate) fn report(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseT
         ]);
     }
     let reason = match pose.reason {
-        Reason::Reached => "everything is reached",
-        Reason::Converged => "nothing moves any more: what is left is as near as the tasks above allow",
-        Reason::StepLimit => "the largest number of steps was made, and the body still moves",
+        Reason::Reached => "all tasks are reached",
+        Reason::Converged => "converged: the remaining errors are the smallest that tasks of higher priority allow",
+        Reason::StepLimit => "the step limit was reached before the posture converged",
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
     let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };

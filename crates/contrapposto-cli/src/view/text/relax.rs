@@ -1,4 +1,4 @@
-//! What `relax.json` says, and the table for readers.
+//! `relax.json`, and the terminal table of the postures of least effort.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,6 +12,7 @@ use contrapposto::tasks::Task;
 use contrapposto_formats::RelaxScenario;
 use serde::Serialize;
 
+use super::group::GroupName;
 use super::plain_table;
 use crate::view::words::MOST_JOINTS_SHOWN;
 use crate::view::words::how_long;
@@ -29,12 +30,12 @@ pub(crate) struct RelaxText {
     steps: usize,
     coordinate_order: Vec<String>,
     /// The one of least effort first.
-    pub(crate) postures: Vec<PostureText>,
+    pub(crate) postures: Vec<RelaxedPostureText>,
     files: Vec<String>,
 }
 
 #[derive(Serialize)]
-pub(crate) struct PostureText {
+pub(crate) struct RelaxedPostureText {
     /// Sum of (active torque / strength)^2 over the coordinates of the effort task.
     pub(crate) effort: f64,
     /// `false`: it still moved after the largest number of steps; effort still fell, by little.
@@ -47,16 +48,16 @@ pub(crate) struct PostureText {
     free_directions: usize,
     /// Size of the part of the stiffness without energy, against the rest.
     stiffness_without_energy: f64,
-    supports: Vec<SupportText>,
+    supports: Vec<CarriedText>,
     /// Errors of the tasks, lengths in their units.
-    tasks: Vec<TaskText>,
+    tasks: Vec<TaskErrorText>,
     slip: f64,
     /// Joints whose ligaments carry half or more of what weight and loads ask.
     hanging: Vec<HangingText>,
     /// Groups that work, the hardest first.
-    groups: Vec<GroupText>,
+    groups: Vec<WorkText>,
     /// The group that gives up first when nobody shifts, from a rested start; `null`: it can be held for ever.
-    fails_first: Option<GroupText>,
+    fails_first: Option<WorkText>,
     /// rad, m, components of quaternions.
     coordinates: BTreeMap<String, f64>,
     /// Starts that led here.
@@ -81,7 +82,7 @@ struct ShareText {
 }
 
 #[derive(Serialize)]
-pub(crate) struct SupportText {
+pub(crate) struct CarriedText {
     segment: String,
     share: f64,
     force_n: [f64; 3],
@@ -89,7 +90,7 @@ pub(crate) struct SupportText {
 }
 
 #[derive(Serialize)]
-struct TaskText {
+struct TaskErrorText {
     task: String,
     error: f64,
 }
@@ -104,11 +105,9 @@ struct HangingText {
 }
 
 #[derive(Serialize)]
-struct GroupText {
-    group: String,
-    coordinate: String,
-    /// `positive` or `negative`: the sign of its torque.
-    side: &'static str,
+struct WorkText {
+    #[serde(flatten)]
+    name: GroupName,
     active_nm: f64,
     relative_load: f64,
     /// How long it can hold this from a rested start; `null`: for ever.
@@ -126,17 +125,17 @@ impl RelaxText {
             left_out: found.yielded,
             steps: found.steps,
             coordinate_order: names.collect(),
-            postures: found.postures.iter().map(|posture| PostureText::new(scenario, posture)).collect(),
+            postures: found.postures.iter().map(|posture| RelaxedPostureText::new(scenario, posture)).collect(),
             files,
         }
     }
 }
 
-impl PostureText {
+impl RelaxedPostureText {
     fn new(scenario: &RelaxScenario, found: &RelaxedPosture) -> Self {
         let model = &scenario.model;
         let name = |i: usize| model.coordinates()[i].name.clone();
-        let supports = scenario.supports.iter().zip(&found.supports).map(|(support, carried)| SupportText {
+        let supports = scenario.supports.iter().zip(&found.supports).map(|(support, carried)| CarriedText {
             segment: model.segments()[support.segment].name.clone(),
             share: carried.share,
             force_n: carried.force.into(),
@@ -152,17 +151,11 @@ impl PostureText {
             passive_nm: hanging.passive,
             share: hanging.share(),
         });
-        let group = |work: &Work| {
-            let coordinate = &model.coordinates()[work.coordinate];
-            let group = coordinate.groups.as_ref().map(|groups| groups[work.side.index()].name.clone());
-            GroupText {
-                group: group.unwrap_or_default(),
-                coordinate: coordinate.name.clone(),
-                side: work.side.word(),
-                active_nm: work.active,
-                relative_load: work.relative_load(),
-                endurance_s: work.endurance.is_finite().then_some(work.endurance),
-            }
+        let group = |work: &Work| WorkText {
+            name: GroupName::new(model, work.coordinate, work.side),
+            active_nm: work.active,
+            relative_load: work.relative_load(),
+            endurance_s: work.endurance.is_finite().then_some(work.endurance),
         };
         let values = found.relaxed.posture.values().iter().copied();
         Self {
@@ -178,7 +171,7 @@ impl PostureText {
             stiffness_without_energy: found.stability.without_energy,
             supports: supports.collect(),
             tasks: tasks
-                .map(|((_, labels), level)| TaskText { task: labels.join(" + "), error: level.length })
+                .map(|((_, labels), level)| TaskErrorText { task: labels.join(" + "), error: level.length })
                 .collect(),
             slip: found.relaxed.slip,
             hanging: hanging.collect(),
@@ -209,7 +202,7 @@ pub(crate) fn percent(share: f64) -> String {
 }
 
 /// `calcn_r 85 %, calcn_l 15 %`.
-pub(crate) fn weight(posture: &PostureText) -> String {
+pub(crate) fn weight(posture: &RelaxedPostureText) -> String {
     let shares = posture.supports.iter().map(|support| format!("{} {}", support.segment, percent(support.share)));
     shares.collect::<Vec<_>>().join(", ")
 }
@@ -217,9 +210,9 @@ pub(crate) fn weight(posture: &PostureText) -> String {
 /// One row a posture, then what is to be said of each.
 pub(crate) fn report(text: &RelaxText) -> String {
     let mut table = plain_table();
-    table.set_header(["posture", "effort", "weight on", "held by", "hardest worked"]);
+    table.set_header(["posture", "effort", "weight on", "held by", "highest load"]);
     for (i, posture) in text.postures.iter().enumerate() {
-        let hardest = posture.groups.first().map(|group| format!("{}, {}", group.name(), percent(group.relative_load)));
+        let hardest = posture.groups.first().map(|group| format!("{}, {}", group.name, percent(group.relative_load)));
         table.add_row([
             (i + 1).to_string(),
             format!("{:.4}", posture.effort),
@@ -234,7 +227,8 @@ pub(crate) fn report(text: &RelaxText) -> String {
         let _ = write!(out, "\nposture {}:\n{}", i + 1, posture.words());
     }
     let _ = write!(out, "\n{} start{}", text.starts, if text.starts == 1 { "" } else { "s" });
-    for (count, what) in [(text.fell, "fell"), (text.left_out, "left out, tasks or supports not kept as well as here")]
+    for (count, what) in
+        [(text.fell, "fell"), (text.left_out, "left out because tasks or supports were kept less well")]
     {
         if count > 0 {
             let _ = write!(out, ", {count} {what}");
@@ -244,13 +238,7 @@ pub(crate) fn report(text: &RelaxText) -> String {
     out
 }
 
-impl GroupText {
-    fn name(&self) -> String {
-        format!("{} ({})", self.group, self.coordinate)
-    }
-}
-
-impl PostureText {
+impl RelaxedPostureText {
     fn held(&self) -> String {
         match (self.held_by, self.unstable.len()) {
             (Some("attention"), 1) => "attention, in 1 direction".to_owned(),
@@ -269,20 +257,20 @@ impl PostureText {
         let hanging = self.hanging.iter().take(MOST_JOINTS_SHOWN).map(|joint| {
             let share = percent(joint.share);
             let at = format!("{} at {:.1} deg", joint.coordinate, joint.value.to_degrees());
-            format!("{at}, {:.1} N m, {share} of what weight asks", joint.passive_nm)
+            format!("{at}, {:.1} N m, {share} of the external torque", joint.passive_nm)
         });
         line("hangs on ligaments", hanging.collect());
         let work = self.groups.iter().take(MOST_JOINTS_SHOWN);
         line(
-            "works",
-            work.map(|group| format!("{} {:.1} N m, {}", group.name(), group.active_nm, percent(group.relative_load)))
+            "highest loads",
+            work.map(|group| format!("{} {:.1} N m, {}", group.name, group.active_nm, percent(group.relative_load)))
                 .collect(),
         );
         line(
-            "can be held",
+            "endurance",
             vec![match self.fails_first.as_ref().and_then(|group| Some((group, group.endurance_s?))) {
-                Some((group, time)) => format!("{}, then {} gives up", how_long(time), group.name()),
-                None => "for ever, as far as muscles go".to_owned(),
+                Some((group, time)) => format!("{}, then {} fails", how_long(time), group.name),
+                None => "no limit by muscles".to_owned(),
             }],
         );
         let unstable = self.unstable.iter().take(MOST_JOINTS_SHOWN).map(|direction| {
@@ -292,14 +280,14 @@ impl PostureText {
             let grows = direction.growth_time_s.map(|time| format!(" (grows by e in {time:.2} s)"));
             joints.join(", ") + grows.as_deref().unwrap_or_default()
         });
-        line("attention to", unstable.collect());
+        line("unstable", unstable.collect());
         let left = self.tasks.iter().filter(|task| task.error > 1e-6);
         line("not reached", left.map(|task| format!("{} by {:.4} (m, rad)", task.task, task.error)).collect());
         if self.slip > 1e-6 {
             line("supports slip", vec![format!("by {:.1e} (m, rad)", self.slip)]);
         }
         if !self.settled {
-            line("still moving", vec!["the largest number of steps was made; effort may yet fall a little".to_owned()]);
+            line("not converged", vec!["the step limit was reached; effort may still fall a little".to_owned()]);
         }
         out
     }

@@ -21,7 +21,7 @@ pub(crate) fn story(scenario: &Scenario, summary: &CoordinateSummary) -> String 
 /// `cases 3.1 x6, 3.3 x33, 2.1 x1`.
 pub(crate) fn cases(summary: &CoordinateSummary) -> String {
     if summary.case_changes == 0 {
-        return "no relief asked for".to_owned();
+        return "no relief needed".to_owned();
     }
     let count = |case: Case| summary.iterations[case as usize];
     let mut kinds = summary.cases.clone();
@@ -60,7 +60,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) ->
     }
     let reason = match summary.reason {
         StopReason::Settled => "settled",
-        StopReason::Duration => "ran its whole duration",
+        StopReason::Duration => "ran its full duration",
         StopReason::Interrupted => "interrupted",
         StopReason::Fell => "fell",
     };
