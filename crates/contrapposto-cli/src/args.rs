@@ -29,9 +29,9 @@ pub(crate) enum Verb {
     Demo(DemoArgs),
     /// Solve one posture: supports and tasks in order of priority in, posture out.
     Pose(PoseArgs),
-    /// Find the different postures of least effort under the tasks, and say what holds each.
+    /// Find the different postures of least effort under the tasks, and their stability.
     Relax(RelaxArgs),
-    /// Carry out two to five scenarios and show their postures side by side: a picture, and what differs.
+    /// Carry out two to five scenarios and show their postures side by side: a picture, and the differences.
     Compare(CompareArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.
     Figures(FiguresArgs),
@@ -39,11 +39,11 @@ pub(crate) enum Verb {
     Minimize(MinimizeArgs),
     /// Draw the passive torque of a coordinate, with its limits and source.
     Passive(PassiveArgs),
-    /// Show a model: segments, masses, joints, coordinates, what was ignored, and where every number comes from.
+    /// Show a model: segments, masses, joints, coordinates, notes about ignored parts, and the source of every number.
     Inspect(InspectArgs),
     /// External, passive and active torque of every coordinate, for one posture or a motion.
     Torques(TorquesArgs),
-    /// Which muscle group fails first in a recorded motion, when, and what would relieve it.
+    /// Find the muscle group that fails first in a recorded motion, when, and which change of posture would relieve it.
     Assess(AssessArgs),
     /// Write a model in another format: OpenSim, URDF or MJCF.
     Convert(ConvertArgs),

@@ -21,7 +21,7 @@ pub(crate) enum Fail {
 }
 
 impl Fail {
-    /// The job could not do `what`.
+    /// A failure of the job at `what`.
     pub(crate) fn job(what: impl Display, error: impl Display) -> Self {
         Self::Job(format!("{what}: {error}"))
     }

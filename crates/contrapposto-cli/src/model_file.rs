@@ -14,7 +14,7 @@ use crate::args::{ModelArgs, PassiveFrom, RootChoice};
 use crate::fail::Fail;
 use crate::input::read;
 
-/// Opens MODEL and lays over it what was asked for. `filled`: unknown passive laws of a file are filled in from the built-in library
+/// Opens MODEL, with --overlay and --passive. `filled`: unknown passive laws of a file are filled in from the built-in library
 /// where neither --passive nor --overlay is given.
 pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
     let root = args.root.map(RootChoice::body);

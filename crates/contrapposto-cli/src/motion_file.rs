@@ -47,7 +47,7 @@ fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<St
     Ok(ground)
 }
 
-/// The postures of a table, with their times. `accepted`: what the file may be.
+/// The postures of a table, with their times. `accepted`: the sentence that names the accepted files.
 pub(crate) fn read_motion(
     path: &Path,
     accepted: &str,
@@ -68,8 +68,8 @@ pub(crate) fn read_motion(
     };
     let read = postures(&table, &name, &bytes, model, units)?;
     for (names, what) in [
-        (&read.missing, "coordinates without a column stand at their default"),
-        (&read.unknown, "columns that are no coordinate of the model are passed over"),
+        (&read.missing, "coordinates have no column and stay at their default"),
+        (&read.unknown, "columns are no coordinate of the model and are ignored"),
     ] {
         if !names.is_empty() {
             notes.push(format!("{name}: {} {what}: {}", names.len(), first_of(names)));
@@ -86,8 +86,8 @@ fn first_of(names: &[String]) -> String {
     format!("{}{more}", names.iter().take(12).map(String::as_str).collect::<Vec<_>>().join(", "))
 }
 
-/// Says which coordinates leave their range, and which what their built-in curve is meant for.
-pub(crate) fn outside(opened: &SourcedModel, frames: &[(f64, Posture)], notes: &mut Vec<String>) {
+/// Notes the coordinates that leave their range, and those that leave the range of their built-in curve.
+pub(crate) fn note_values_out_of_range(opened: &SourcedModel, frames: &[(f64, Posture)], notes: &mut Vec<String>) {
     /// Beyond a limit without a word, rad or m.
     const SLACK: f64 = 1e-3;
     let model = &opened.model;
@@ -108,7 +108,7 @@ pub(crate) fn outside(opened: &SourcedModel, frames: &[(f64, Posture)], notes: &
     }
     for (names, what) in [
         (beyond, "outside their range in some frame"),
-        (held, "outside what their built-in curve is meant for in some frame, passive torque held at its limit"),
+        (held, "outside the range of their built-in curve in some frame, passive torque held at its limit"),
     ] {
         if !names.is_empty() {
             notes.push(format!("{what}: {}", first_of(&names)));

@@ -15,7 +15,7 @@ pub(crate) fn print(text: &str) -> Result<(), Fail> {
 }
 
 /// Tells standard error something that is no failure.
-pub(crate) fn tell(kind: &str, text: &str) {
+pub(crate) fn print_note(kind: &str, text: &str) {
     // Nothing is left to try when standard error is closed.
     let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }

@@ -10,7 +10,7 @@ use crate::args::{ModelArgs, RootChoice};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::open;
-use crate::output::tell;
+use crate::output::print_note;
 
 /// A scenario file that was read, not yet understood.
 pub(crate) struct ScenarioFile {
@@ -33,7 +33,7 @@ impl ScenarioFile {
 fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<Model>, Fail> {
     let Some(file) = scenario_model(name, bytes)? else { return Ok(None) };
     let opened = open(&model_args(scenario, &file), true)?;
-    opened.notes.iter().for_each(|note| tell("note", note));
+    opened.notes.iter().for_each(|note| print_note("note", note));
     Ok(Some(opened.model))
 }
 

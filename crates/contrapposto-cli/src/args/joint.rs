@@ -64,7 +64,7 @@ pub(crate) struct PassiveArgs {
     /// List the built-in curves by coordinate, with status and source.
     #[arg(long, conflicts_with_all = ["coordinate", "out"])]
     pub(crate) list: bool,
-    /// Folder for the picture (default: this folder); with --json nothing is drawn unless it is given.
+    /// Folder for the picture (default: this folder); with --json a picture is drawn only if it is given.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the numbers as JSON.

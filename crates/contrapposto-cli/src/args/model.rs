@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, ValueEnum};
 use contrapposto_formats::body::BodyRoot;
 
-/// MODEL and what is laid over it.
+/// MODEL, and the options that complete it.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ModelArgs {
     /// Model file (.osim, .urdf, MJCF .xml), or the built-in adult: `adult`, `adult:female,1.65m,60kg`.
@@ -42,7 +42,7 @@ impl RootChoice {
 /// Where passive torque comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum PassiveFrom {
-    /// What the file (and overlay) do not have is taken from the built-in data, by standard names.
+    /// From the built-in data, by standard names, where the file (and overlay) have none.
     Library,
     /// Only what the file (and overlay) have.
     File,
@@ -86,7 +86,7 @@ pub(crate) struct TorquesArgs {
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto assess subject.osim lifting.mot --grf forces.mot --out out\n  \
     contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
-    Each posture counts as held at rest, and loads change in a straight line from one to the next. Writes assess.json, \
+    Each posture is treated as held at rest; loads are interpolated linearly between postures. Writes assess.json, \
     report.html, torques.sto and fatigue.sto into DIR.")]
 pub(crate) struct AssessArgs {
     #[command(flatten)]
@@ -95,7 +95,7 @@ pub(crate) struct AssessArgs {
     pub(crate) motion: PathBuf,
     #[command(flatten)]
     pub(crate) under: LoadArgs,
-    /// Segments that carry the body in every frame; their forces are found, at least effort of the muscles.
+    /// Segments that carry the body in every frame; their forces are computed for the least effort of the muscles.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", conflicts_with = "grf")]
     pub(crate) support: Vec<String>,
     /// Where a supporting segment touches, corners in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
@@ -113,10 +113,10 @@ pub(crate) struct AssessArgs {
     pub(crate) json: bool,
 }
 
-/// What pulls and pushes on a body in given postures, and how those are read.
+/// Loads on a body in given postures, and the unit of the postures.
 #[derive(Debug, clap::Args)]
 pub(crate) struct LoadArgs {
-    /// A held weight, at the segment's centre of mass unless told: "hand_r 3kg", "hand_r 3kg at 0,-0.08,0".
+    /// A held weight, at the segment's centre of mass unless a point is given: "hand_r 3kg", "hand_r 3kg at 0,-0.08,0".
     #[arg(long, value_name = "LOAD")]
     pub(crate) load: Vec<String>,
     /// A force (N) at a point of a segment (m): "hand_r 0,-20,0 at 0,-0.08,0 world" (or segment: its axes).
@@ -138,7 +138,7 @@ pub(crate) struct LoadArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto convert subject.osim subject.urdf\n\n\
-    The format is that of OUT's ending: .osim, .urdf, or .xml (MJCF). What the format cannot say is told.")]
+    The format is that of OUT's ending: .osim, .urdf, or .xml (MJCF). Parts that the format cannot express are listed.")]
 pub(crate) struct ConvertArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,

@@ -10,14 +10,14 @@ use clap::Parser;
     one joint torque-balance.svg/.png, for a body on its supports ground_reaction.mot and postures.svg/.png.\n\
     For other programs the body in motion: motion.glb (glTF: Blender, three.js, viewers), motion.bvh (BVH, in cm: animation programs), \
     motion.mot with model.osim (OpenSim).\n\
-    Ctrl-C ends a run with what is done, and a snapshot.json from which --resume goes on to the same bytes.")]
+    Ctrl-C ends a run, writes the results so far, and a snapshot.json from which --resume continues to the same bytes.")]
 pub(crate) struct SimulateArgs {
     /// Scenario file (TOML); `-` reads standard input.
     pub(crate) scenario: PathBuf,
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Go on from the snapshot that an interrupted run left in DIR.
+    /// Continue from the snapshot that an interrupted run left in DIR.
     #[arg(long)]
     pub(crate) resume: bool,
     /// Also draw, into DIR/figures, the body at the start, at its hardest and at the end, and of the five joints that matter most
@@ -42,8 +42,8 @@ pub(crate) struct DemoArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto pose scenarios/poses/reach-shelf.toml --out out\n\n\
-    Writes pose.json, report.html, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to those above it is no failure; supports \
-    that cannot hold, and steps that run out, are (exit code 1).")]
+    Writes pose.json, report.html, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to tasks of higher priority is no failure; \
+    supports that cannot hold, and the step limit, are (exit code 1).")]
 pub(crate) struct PoseArgs {
     /// Scenario file (TOML) with tasks; `-` reads standard input.
     pub(crate) scenario: PathBuf,
@@ -62,8 +62,8 @@ pub(crate) struct PoseArgs {
 #[command(after_help = "Examples:\n  contrapposto relax scenarios/stand-relaxed.toml --out out\n  \
     contrapposto relax scenarios/stand-relaxed.toml --json\n\n\
     Searches from starts of both strategies: coordinates at their active goals, at their passive goals, and mirror images. Writes \
-    relax.json, report.html, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] have no part in \
-    it. Exit code 1 when the supports cannot hold the body in any posture that was tried.")]
+    relax.json, report.html, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] are \
+    ignored. Exit code 1 when the supports cannot hold the body in any posture that was tried.")]
 pub(crate) struct RelaxArgs {
     /// Scenario file (TOML) with supports and tasks; `-` reads standard input.
     pub(crate) scenario: PathBuf,
@@ -82,7 +82,7 @@ pub(crate) struct RelaxArgs {
 #[command(
     after_help = "Example:\n  contrapposto compare scenarios/stand-ready.toml scenarios/stand-relaxed.toml --out out\n\n\
     A scenario with [run] is simulated, and its last posture taken; one without is posed. Writes compare.json and \
-    compare.svg/.png into DIR. Bodies may differ: what has the same name is compared."
+    compare.svg/.png into DIR. Bodies may differ: coordinates and muscle groups of the same name are compared."
 )]
 pub(crate) struct CompareArgs {
     /// Two to five scenario files (TOML); `-` reads standard input.

@@ -1,4 +1,4 @@
-//! `contrapposto assess`: which muscle group fails first in a recorded motion, when, and what would relieve it.
+//! `contrapposto assess`: the muscle group that fails first in a recorded motion, its time, and its relief.
 
 use std::path::Path;
 
@@ -16,10 +16,10 @@ use nalgebra::Vector3;
 use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
-use crate::motion_file::{loads_of, outside, read_motion};
-use crate::output::{Folder, json_text, print, tell};
+use crate::motion_file::{loads_of, note_values_out_of_range, read_motion};
+use crate::output::{Folder, json_text, print, print_note};
 use crate::view::figures::figures_of_assessment;
-use crate::view::report::assessment::{Shots, report_of_assessment};
+use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
 use crate::view::text::assess::{AssessText, report};
 use crate::view::text::torques::{header, row};
 use crate::view::torque_rows::{Frame, Order};
@@ -27,12 +27,12 @@ use crate::view::torque_rows::{Frame, Order};
 const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
-/// A residual of this share of the body's weight is worth a word.
+/// Least residual, as a share of the body's weight, that gives a warning.
 const RESIDUAL: f64 = 1e-6;
-/// The same for the share of frames in which the body moves too fast to count as held.
+/// Least share of frames with fast motion that gives a warning.
 const FAST_SHARE: f64 = 0.05;
 
-/// What is assessed.
+/// The motion and its loads, checked.
 struct Given {
     /// Times (s) and postures.
     motion: Vec<(f64, Posture)>,
@@ -51,7 +51,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let model = &opened.model;
 
     let mut tables = Tables::new(model, motion.len());
-    let mut shots = args.out.as_ref().map(|_| Shots::new(model, motion.len()));
+    let mut assessed_frames = args.out.as_ref().map(|_| AssessedFrames::new(model, motion.len()));
     let found = assessed(
         model,
         &motion,
@@ -63,10 +63,10 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         },
         &settings,
         |instant| {
-            tables.take(instant);
-            if let Some(shots) = &mut shots {
+            tables.record(instant);
+            if let Some(assessed_frames) = &mut assessed_frames {
                 let measured = ground.as_ref();
-                shots.take(instant, |loads| {
+                assessed_frames.record(instant, |loads| {
                     measured.iter().for_each(|g| g.loads(instant.time, model, instant.torques.kinematics(), loads));
                 });
             }
@@ -74,15 +74,17 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     )
     .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
     let warnings = warnings(args, &opened, &found, motion.len());
-    warnings.iter().for_each(|warning| tell("warning", warning));
+    warnings.iter().for_each(|warning| print_note("warning", warning));
 
     let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let figures = shots.as_ref().filter(|_| args.figures).map(|shots| {
+    let figures = assessed_frames.as_ref().filter(|_| args.figures).map(|assessed_frames| {
         let worst = found.groups.iter().map(|group| group.coordinate);
-        figures_of_assessment(&title, model, &settings.supports, shots.frames(), worst)
+        figures_of_assessment(&title, model, &settings.supports, assessed_frames.frames(), worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
-    let page = shots.map(|shots| report_of_assessment(&title, &shots, &found, &settings.supports, &held, &warnings));
+    let page = assessed_frames.map(|assessed_frames| {
+        report_of_assessment(&title, &assessed_frames, &found, &settings.supports, &held, &warnings)
+    });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
     let text = AssessText::new(model, &args.motion, &tables.times, &found, warnings, files);
@@ -114,12 +116,12 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
         passive_ranges: opened.passive_ranges(),
         ..AssessSettings::default()
     };
-    outside(opened, &motion, &mut notes);
-    notes.iter().for_each(|note| tell("note", note));
+    note_values_out_of_range(opened, &motion, &mut notes);
+    notes.iter().for_each(|note| print_note("note", note));
     Ok(Given { motion, held, ground, settings })
 }
 
-/// What carries the body, on horizontal ground.
+/// The supports, on horizontal ground.
 fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
     let mut patches = vec![];
     for text in &args.patch {
@@ -151,7 +153,7 @@ fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
     Ok(supports)
 }
 
-/// What makes the numbers doubtful.
+/// Reasons to doubt the numbers.
 fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames: usize) -> Vec<String> {
     let mut warnings = vec![];
     let (force, moment) = (found.residual_force, found.residual_moment);
@@ -163,7 +165,7 @@ fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames
         );
         warnings.push(if !args.support.is_empty() {
             format!(
-                "in {} of {frames} frames the supports cannot hold the body; what is missing: {missing}",
+                "in {} of {frames} frames the supports cannot hold the body; the missing force and moment: {missing}",
                 found.unheld
             )
         } else if args.under.grf.is_some() {
@@ -175,7 +177,7 @@ fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames
     if found.fast_share > FAST_SHARE {
         warnings.push(format!(
             "the centre of mass accelerates by more than 1 m/s2 in {:.0} percent of the frames (at most {:.1}, at {} s): \
-            torques of postures at rest say little of such a motion",
+            torques of postures at rest do not describe such a motion",
             100.0 * found.fast_share,
             found.acceleration.value,
             found.acceleration.time
@@ -205,7 +207,7 @@ impl<'a> Tables<'a> {
         Self { model, order, torques, working: working.collect(), times: vec![], fatigue: vec![] }
     }
 
-    fn take(&mut self, instant: &Instant) {
+    fn record(&mut self, instant: &Instant) {
         let Instant { index, time, torques, fatigue, load, .. } = *instant;
         let frame = Frame { center_of_mass: None, ..Frame::new(torques, self.model, &self.order, (index, time)) };
         self.torques.push_str(&row(&self.order, &frame, '\t'));

@@ -9,36 +9,36 @@ use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
 
 use crate::args::CompareArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print, tell};
+use crate::output::{Folder, json_text, print, print_note};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
 use crate::view::body;
 use crate::view::figures::both;
 use crate::view::frame::Frame;
 use crate::view::held::held;
-use crate::view::text::compare::{CompareText, Stance, report};
+use crate::view::text::compare::{CompareText, ComparedPosture, report};
 
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
     if args.scenarios.iter().filter(|path| *path == Path::new("-")).count() > 1 {
         return Err(Fail::Refused("standard input is one file: `-` can stand for one scenario only".to_owned()));
     }
-    let mut stances = vec![];
+    let mut postures = vec![];
     for (path, letter) in args.scenarios.iter().zip('A'..) {
-        stances.push(carry_out(path, letter)?);
+        postures.push(carry_out(path, letter)?);
     }
     let files = ["compare.json", "compare.svg", "compare.png"].map(str::to_owned).to_vec();
-    let text = CompareText::new(&stances, files);
+    let text = CompareText::new(&postures, files);
     let json = json_text("compare.json", &text)?;
-    let picture = body_figure(&picture(&stances)?);
+    let picture = body_figure(&picture(&postures)?);
     let [svg, png] = both("compare", &picture)?;
     let folder = Folder::open(&args.out)?;
     folder.write(&[("compare.json", json.as_bytes()), (&svg.0, &svg.1), (&png.0, &png.1)])?;
     let picture = folder.path(&svg.0);
-    print(&if args.json { json } else { report(&stances, &text) + &format!("picture: {}\n", picture.display()) })
+    print(&if args.json { json } else { report(&postures, &text) + &format!("picture: {}\n", picture.display()) })
 }
 
 /// A scenario with a duration is simulated, and its last posture taken; one without is posed.
-fn carry_out(path: &Path, letter: char) -> Result<Stance, Fail> {
+fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
     let ScenarioFile { name: file, bytes, model } = ScenarioFile::read(path)?;
     if !scenario_runs(&file, &bytes)? {
         return posed(&file, &bytes, model, letter);
@@ -57,7 +57,7 @@ fn carry_out(path: &Path, letter: char) -> Result<Stance, Fail> {
         return Err(Fail::job(&file, fall));
     }
     let Some(frame) = last else { return Err(Fail::job(&file, "the run has no sample")) };
-    Ok(Stance {
+    Ok(ComparedPosture {
         letter,
         title: title(&scenario.title, path),
         how: format!("simulated, {:.0} s", frame.time),
@@ -69,7 +69,12 @@ fn carry_out(path: &Path, letter: char) -> Result<Stance, Fail> {
     })
 }
 
-fn posed(file: &str, bytes: &[u8], model: Option<contrapposto::model::Model>, letter: char) -> Result<Stance, Fail> {
+fn posed(
+    file: &str,
+    bytes: &[u8],
+    model: Option<contrapposto::model::Model>,
+    letter: char,
+) -> Result<ComparedPosture, Fail> {
     let scenario = read_pose(file, bytes, model)?;
     let refused = |error: contrapposto::posture_solver::EngineError| Fail::Refused(format!("{file}: {error}"));
     let mut engine =
@@ -78,9 +83,12 @@ fn posed(file: &str, bytes: &[u8], model: Option<contrapposto::model::Model>, le
     let pose = engine.solve(&scenario.start).map_err(|error| Fail::job(file, error))?;
     let frame = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
     if frame.is_none() {
-        tell("note", &format!("{file}: its supports cannot hold the body in its last posture; loads are not known"));
+        print_note(
+            "note",
+            &format!("{file}: its supports cannot hold the body in its last posture; loads are not known"),
+        );
     }
-    Ok(Stance {
+    Ok(ComparedPosture {
         letter,
         title: title(&scenario.title, Path::new(file)),
         how: "posed".to_owned(),
@@ -99,19 +107,21 @@ fn title(title: &str, path: &Path) -> String {
 }
 
 /// The postures side by side.
-fn picture(stances: &[Stance]) -> Result<BodyFigure, Fail> {
-    let mut postures = vec![];
-    for stance in stances {
-        let mut posture = match &stance.frame {
-            Some(frame) => body::body(&stance.model, &stance.supports, frame)?,
-            None => BodyPosture { parts: body::parts(&stance.model, &stance.posture, None)?, ..BodyPosture::default() },
+fn picture(postures: &[ComparedPosture]) -> Result<BodyFigure, Fail> {
+    let mut drawn = vec![];
+    for compared in postures {
+        let mut posture = match &compared.frame {
+            Some(frame) => body::body(&compared.model, &compared.supports, frame)?,
+            None => {
+                BodyPosture { parts: body::parts(&compared.model, &compared.posture, None)?, ..BodyPosture::default() }
+            }
         };
-        posture.title = format!("{}: {}", stance.letter, stance.title);
-        posture.notes = match &stance.frame {
-            Some(frame) => body::key_numbers(&stance.model, &stance.supports, frame),
+        posture.title = format!("{}: {}", compared.letter, compared.title);
+        posture.notes = match &compared.frame {
+            Some(frame) => body::key_numbers(&compared.model, &compared.supports, frame),
             None => vec!["supports cannot hold it".to_owned()],
         };
-        postures.push(posture);
+        drawn.push(posture);
     }
-    Ok(BodyFigure { postures, ..BodyFigure::default() })
+    Ok(BodyFigure { postures: drawn, ..BodyFigure::default() })
 }

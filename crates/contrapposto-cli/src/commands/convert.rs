@@ -8,7 +8,7 @@ use contrapposto_formats::write::{self, WriteError, Written};
 use crate::args::ConvertArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
-use crate::output::{Folder, folder_and_name, print, tell};
+use crate::output::{Folder, folder_and_name, print, print_note};
 
 /// Writes a model as text.
 type Writer = fn(&Model) -> Result<Written, WriteError>;
@@ -18,15 +18,15 @@ pub(crate) fn convert(args: &ConvertArgs) -> Result<(), Fail> {
     let writer = writer(&args.out)?;
     let same = |a: &Path, b: &Path| a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b);
     if same(&args.model.model, &args.out) {
-        return Err(Fail::Refused(format!("{shown}: is the model itself; give another name")));
+        return Err(Fail::Refused(format!("{shown}: is the model file itself; give another name")));
     }
-    // What a file does not have is not invented for the next one, unless it is asked for.
+    // Passive torque and strength that the file does not have are not added, unless --passive library is given.
     let opened = open(&args.model, false)?;
     let written = writer(&opened.model).map_err(|error| Fail::Refused(format!("{shown}: {error}")))?;
     let (folder, name) = folder_and_name(&args.out)?;
     Folder::open(&folder)?.write(&[(&name, written.text.as_bytes())])?;
-    opened.notes.iter().for_each(|note| tell("note", note));
-    written.lost.iter().for_each(|lost| tell("lost", lost));
+    opened.notes.iter().for_each(|note| print_note("note", note));
+    written.lost.iter().for_each(|lost| print_note("lost", lost));
     let model = &opened.model;
     print(&format!(
         "{shown}: {} segments, {} coordinates, {:.4} kg; {} things lost\n",

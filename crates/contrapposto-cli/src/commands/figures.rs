@@ -17,7 +17,7 @@ use crate::fail::Fail;
 use crate::output::{Folder, json_text, print};
 use crate::view::charts::Sweep;
 use crate::view::text::plain_table;
-use crate::view::text::simulate::{cases, story};
+use crate::view::text::simulate::{cases, strategy_and_cases};
 
 /// One published figure.
 struct Published {
@@ -182,7 +182,7 @@ fn carry_out(
     ]);
     let note = if verdict == "yes" { String::new() } else { format!(" ({verdict})") };
     let tolerance = scenario.relief.torque_tolerance;
-    let mut panel = sweep.balance(&scenario.title, &(story(scenario, summary) + &note), tolerance)?;
+    let mut panel = sweep.balance(&scenario.title, &(strategy_and_cases(scenario, summary) + &note), tolerance)?;
     let (start, goal) = (path.first().copied(), path.last().copied());
     for (point, label, role) in [(start, "start", SketchRole::Start), (goal, "end", SketchRole::Goal)] {
         if let Some((angle, _)) = point {

@@ -1,4 +1,4 @@
-//! `contrapposto inspect`: what is in a model, what was ignored, and how far every number can be trusted.
+//! `contrapposto inspect`: the contents of a model, its ignored parts, and the source of every number.
 
 use crate::args::InspectArgs;
 use crate::fail::Fail;

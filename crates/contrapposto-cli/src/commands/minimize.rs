@@ -12,7 +12,7 @@ use crate::args::MinimizeArgs;
 use crate::fail::Fail;
 use crate::output::stdout_failed;
 
-/// What a bad line is answered with.
+/// The answer to a bad line.
 #[derive(Serialize)]
 struct BadLine {
     error: String,

@@ -68,7 +68,7 @@ fn list(json: bool) -> Result<(), Fail> {
     print(&text)
 }
 
-/// What is known under a name.
+/// A curve, its name, and the direction of its coordinate.
 struct Found {
     curve: PassiveCurve,
     curve_name: String,

@@ -9,11 +9,11 @@ use contrapposto_plot::body_figure;
 
 use crate::args::PoseArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print, tell};
+use crate::output::{Folder, json_text, print, print_note};
 use crate::scenario_file::ScenarioFile;
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
-use crate::view::text::pose::{all_left, reached, report, subtitle, tasks};
+use crate::view::text::pose::{all_remaining, reached, report, subtitle, tasks};
 
 const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
@@ -22,7 +22,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let scenario = read_pose(&name, &bytes, model)?;
     if !scenario.unused.is_empty() {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
-        tell("note", &format!("{} is for `simulate` and has no part in a pose", list.join(", ")));
+        print_note("note", &format!("{} is ignored by `pose`; it is for `simulate`", list.join(", ")));
     }
     let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
     let mut engine =
@@ -61,18 +61,18 @@ fn write(
     Ok(json)
 }
 
-/// A task that yields is no failure; supports that slip, and steps that ran out, are.
+/// A task that yields is no failure; supports that slip, and the step limit, are.
 fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText) -> Result<(), Fail> {
     if !text.supports_hold {
         let lost: Vec<String> = tasks(text)
             .filter(|entries| scenario.goals[entries[0].priority - 1].hard && !reached(entries))
-            .map(|entries| format!("{} {}", entries[0].task, all_left(entries)))
+            .map(|entries| format!("{} {}", entries[0].task, all_remaining(entries)))
             .collect();
-        return Err(Fail::Job(format!("supports do not stay where they are: {}", lost.join(", "))));
+        return Err(Fail::Job(format!("the supports move from their places: {}", lost.join(", "))));
     }
     match pose.reason {
         Reason::StepLimit => Err(Fail::Job(format!(
-            "no end after {} steps; the best posture is written. [solver] max_steps allows more",
+            "not converged after {} steps; the best posture is written. [solver] max_steps allows more",
             pose.steps
         ))),
         Reason::Reached | Reason::Converged => Ok(()),

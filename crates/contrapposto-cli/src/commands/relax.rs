@@ -13,7 +13,7 @@ use contrapposto_plot::{BodyFigure, body_figure};
 
 use crate::args::RelaxArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print, tell};
+use crate::output::{Folder, json_text, print, print_note};
 use crate::progress::spinner;
 use crate::scenario_file::ScenarioFile;
 use crate::view::body;
@@ -33,13 +33,13 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let scenario = read_relax(&name, &bytes, model)?;
     if !scenario.unused.is_empty() {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
-        tell(
+        print_note(
             "note",
-            &format!("{} {} no part in `relax`", list.join(", "), if list.len() == 1 { "has" } else { "have" }),
+            &format!("{} {} ignored by `relax`", list.join(", "), if list.len() == 1 { "is" } else { "are" }),
         );
     }
     if scenario.effort_added {
-        tell("note", "no task asks for effort; that of all muscles was added as the last one");
+        print_note("note", "no task is of kind `effort`; the effort of all muscles was added as the last task");
     }
     let search = Search {
         model: &scenario.model,

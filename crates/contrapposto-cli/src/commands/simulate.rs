@@ -56,7 +56,7 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
     // The start is always shown.
     while number == 0 || !INTERRUPTED.load(Ordering::Relaxed) {
         let Some(sample) = run.next_sample().map_err(failed)? else { break };
-        recording.take(number, &sample);
+        recording.record(number, &sample);
         number += 1;
         if number.is_multiple_of(256) {
             progress.set_position(sample.time as u64);
@@ -78,9 +78,9 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
     }
     print(&if json { json_text } else { report(scenario, &summary, &folder) })?;
     match summary.fall {
-        Some(fall) => Err(Fail::Job(format!("{fall}; what came before is in {}", out.display()))),
+        Some(fall) => Err(Fail::Job(format!("{fall}; the results before it are in {}", out.display()))),
         None if partial => Err(Fail::Job(format!(
-            "interrupted at {:.2} of {} s: what is done is in {}; the same command with --resume goes on",
+            "interrupted at {:.2} of {} s: the results so far are in {}; the same command with --resume continues",
             summary.end_time,
             scenario.run.duration,
             out.display()

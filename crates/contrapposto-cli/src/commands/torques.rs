@@ -1,4 +1,4 @@
-//! `contrapposto torques`: what gravity, loads, ligaments and muscles give at every coordinate of a body at rest.
+//! `contrapposto torques`: external, passive and active torque of every coordinate of a body at rest.
 
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use contrapposto_formats::tissue::SourcedModel;
 use crate::args::TorquesArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
-use crate::motion_file::{loads_of, outside, read_motion};
-use crate::output::{Folder, Pending, folder_and_name, tell};
+use crate::motion_file::{loads_of, note_values_out_of_range, read_motion};
+use crate::output::{Folder, Pending, folder_and_name, print_note};
 use crate::view::residual::Residual;
 use crate::view::text::torques as text;
 use crate::view::torque_rows::{Frame, Order};
 
-/// What the command works on.
+/// Model, frames and loads of the command.
 struct Job {
     opened: SourcedModel,
     frames: Vec<(f64, Posture)>,
@@ -42,10 +42,10 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         }
     };
     let (loads, ground) = loads_of(&args.under, model, &mut notes)?;
-    outside(&opened, &frames, &mut notes);
+    note_values_out_of_range(&opened, &frames, &mut notes);
     let job = Job { opened, frames, loads, ground, gradient: args.gradient };
     job.check()?;
-    notes.iter().for_each(|note| tell("note", note));
+    notes.iter().for_each(|note| print_note("note", note));
 
     let order = Order::new(&job.opened.model);
     let mut residual = Residual::new(&job.opened.model);
@@ -71,8 +71,8 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         (None, _) => table(&job, &order, ',', &mut residual, &mut sink)?,
     }
     out.finish()?;
-    if let Some((kind, text)) = residual.told(&job.opened.model, job.ground.is_some()) {
-        tell(kind, &text);
+    if let Some((kind, text)) = residual.message(&job.opened.model, job.ground.is_some()) {
+        print_note(kind, &text);
     }
     Ok(())
 }
@@ -109,7 +109,7 @@ impl Job {
         JointTorques::with_passive_ranges(&self.opened.model, &self.opened.passive_ranges())
     }
 
-    /// Everything that could go wrong in a frame, before the first one is printed.
+    /// Checks all frames before the first one is printed.
     fn check(&self) -> Result<(), Fail> {
         let mut body = self.body();
         let quantities = Quantities { passive_torque: true, ..Quantities::default() };
@@ -144,7 +144,7 @@ impl Job {
             if self.gradient {
                 frame = frame.with_gradient(body.gradient(), order);
             }
-            residual.take(&frame);
+            residual.record(&frame);
             visit(&frame)?;
         }
         Ok(())

@@ -8,7 +8,7 @@ use super::axes::directions;
 use super::recording::Recording;
 use super::solid::parts;
 use crate::fail::Fail;
-use crate::output::tell;
+use crate::output::print_note;
 
 /// Name and content of every file; one that a body cannot be written as is missing, and standard error says why.
 pub(crate) fn bodies(scenario: &Scenario, recording: &Recording) -> Result<Vec<(&'static str, Vec<u8>)>, Fail> {
@@ -29,7 +29,7 @@ pub(crate) fn bodies(scenario: &Scenario, recording: &Recording) -> Result<Vec<(
     ];
     match write::osim(model) {
         Ok(written) => files.push(("model.osim", written.text.into_bytes())),
-        Err(error) => tell("note", &format!("no model.osim: {error}")),
+        Err(error) => print_note("note", &format!("no model.osim: {error}")),
     }
     Ok(files)
 }

@@ -15,7 +15,7 @@ use super::solid;
 use super::words::{percent, plain};
 use crate::fail::Fail;
 
-/// Most supports whose share is told.
+/// Most supports whose share is listed.
 const MOST_SHARES: usize = 4;
 
 /// The parts of a body in a posture, in the colours of `load` (by coordinate) where it is known.
@@ -40,7 +40,7 @@ pub(crate) fn parts(model: &Model, posture: &[f64], load: Option<&[f64]>) -> Res
     Ok(parts)
 }
 
-/// The body of a frame: parts, contact forces, centre of mass, ground. Loads are shown where it is known what carries it.
+/// The body of a frame: parts, contact forces, centre of mass, ground. Loads are shown where they are known.
 pub(crate) fn body(model: &Model, supports: &[Support], frame: &Frame) -> Result<BodyPosture, Fail> {
     let turn = turn(model);
     let standing = frame.standing.as_ref();
@@ -57,7 +57,7 @@ pub(crate) fn body(model: &Model, supports: &[Support], frame: &Frame) -> Result
     })
 }
 
-/// Height of the lowest corner of what carries the body.
+/// Height of the lowest corner of the supports.
 fn ground(model: &Model, supports: &[Support], posture: &[f64]) -> Result<Option<f64>, Fail> {
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("picture", error))?;

@@ -19,7 +19,7 @@ const MOST_POINTS: usize = 4096;
 /// Number of intervals of a torque curve over the range.
 const SWEEP_INTERVALS: usize = 720;
 
-/// The torques of one coordinate over its range, everything else held.
+/// The torques of one coordinate over its range, all other coordinates held.
 pub(crate) struct Sweep<'a> {
     model: &'a Model,
     loads: &'a [Load],
@@ -123,7 +123,7 @@ fn sticks(model: &Model, kinematics: &Kinematics, coordinate: usize) -> Vec<Vec<
     let segments = model.segments();
     let origin = |segment| kinematics.placement(model, segment).translation.vector;
     let mut driven = vec![coordinate];
-    // Leaders stand before their followers.
+    // Independent coordinates stand before their dependent ones.
     for coupling in model.couplings() {
         if driven.contains(&coupling.independent) {
             driven.push(coupling.dependent);
@@ -160,7 +160,7 @@ fn sticks(model: &Model, kinematics: &Kinematics, coordinate: usize) -> Vec<Vec<
     lines
 }
 
-/// One coordinate over time, thinned to what a picture can show, with the reliefs it asked for.
+/// One coordinate over time, thinned to the points that a picture can show, with its reliefs.
 pub(crate) fn course(recording: &Recording, log: &ReliefLog, coordinate: usize) -> TimeLine {
     let mut line = TimeLine::default();
     let rows = recording.times().len();

@@ -3,7 +3,7 @@
 use contrapposto::hybrid::{Decision, Outcome, goal_in_words};
 use contrapposto::model::Model;
 
-use super::film::{Event, What};
+use super::excerpt::{Event, EventKind};
 use super::frame::Frame;
 use super::muscles::tired;
 use super::words::{percent, plain, sentence, value};
@@ -16,19 +16,19 @@ pub(crate) fn decision(model: &Model, event: &Event, frame: &Frame) -> String {
         Some((group, fatigue)) => format!("muscles of {group} are at {} fatigue", percent(fatigue)),
         None => "it needs relief".to_owned(),
     };
-    match &event.what {
-        What::Decided(decision) => {
+    match &event.kind {
+        EventKind::Decided(decision) => {
             let from = value(model, i, frame.posture[i]);
             let goal = decision.goal.map(|goal| value(model, i, goal)).unwrap_or_default();
             let answer = sentence(&answer(decision, &from, &goal));
             format!("{name}: {tired}. {answer} (case {})", decision.case)
         }
-        What::Waits => {
+        EventKind::Waits => {
             format!(
                 "{name}: {tired}; supports, tasks or a more tired group prevent its relief, or its relief cost more than it gained: it waits."
             )
         }
-        What::Recovered => format!("{name}: its muscles are rested; it needs no more relief."),
+        EventKind::Recovered => format!("{name}: its muscles are rested; it needs no more relief."),
     }
 }
 

@@ -1,4 +1,4 @@
-//! `--figures`: what the page shows, as pictures for paper. The body at the start, at its hardest and at the end; torques and
+//! Pictures of results: the body at the start, at its highest effort and at the end; torques and
 //! course of the joints that matter.
 
 use contrapposto::contact::Support;
@@ -10,12 +10,12 @@ use contrapposto_plot::{
 
 use super::axes::visible;
 use super::charts::{Sweep, angle_label, course};
-use super::film::Film;
+use super::excerpt::RunExcerpt;
 use super::frame::Frame;
 use super::recording::Recording;
 use super::scene::ANGLES;
 use super::selection::{main_coordinate, shown};
-use super::text::simulate::story;
+use super::text::simulate::strategy_and_cases;
 use super::{body, words};
 use crate::fail::Fail;
 
@@ -27,7 +27,7 @@ const MOST_JOINTS: usize = 5;
 const IDLE: f64 = 0.05;
 /// The hardest moment is one of its own if effort is so many times that of the start and of the end.
 const HARDER: f64 = 1.05;
-/// Who moves less, rad or m, is still.
+/// A coordinate that moves less, rad or m, is at rest.
 const STILL: f64 = 1e-3;
 
 /// Names, in [`FOLDER`], and contents of all figures of a run.
@@ -37,16 +37,16 @@ pub(crate) fn figures_of_run(
     summary: &Summary,
 ) -> Result<Vec<(String, Vec<u8>)>, Fail> {
     let model = &scenario.model;
-    let film = Film::new(scenario, recording, summary);
-    let mut figures = vec![("body".to_owned(), moments(&scenario.title, model, &scenario.supports, &film.frames)?)];
+    let excerpt = RunExcerpt::new(scenario, recording, summary);
+    let mut figures = vec![("body".to_owned(), moments(&scenario.title, model, &scenario.supports, &excerpt.frames)?)];
     for (number, i) in joints(scenario, summary).into_iter().enumerate() {
         let mut line = course(recording, &summary.reliefs, i);
-        line.subtitle = story(scenario, &summary.coordinates[i]);
+        line.subtitle = strategy_and_cases(scenario, &summary.coordinates[i]);
         line.critical_level = scenario.hysteresis.critical_level;
         line.recovery_level = scenario.hysteresis.recovery_level;
         let balance = match scenario.has_supports_or_tasks() {
-            true => been(model, &film.frames, i),
-            false => swept(scenario, &film.frames, i)?,
+            true => visited_torques(model, &excerpt.frames, i),
+            false => swept_torques(scenario, &excerpt.frames, i)?,
         };
         let balance = TorqueBalance { tolerance_nm: scenario.relief.torque_tolerance, ..balance };
         charts(&mut figures, &scenario.title, (number, &model.coordinates()[i]), balance, line);
@@ -84,7 +84,7 @@ pub(crate) fn figures_of_assessment(
             recovery_level: f64::NAN,
             ..TimeLine::default()
         };
-        charts(&mut figures, title, (number, &model.coordinates()[i]), been(model, frames, i), line);
+        charts(&mut figures, title, (number, &model.coordinates()[i]), visited_torques(model, frames, i), line);
     }
     files(&figures)
 }
@@ -107,7 +107,7 @@ pub(crate) fn figures_of_postures(
             title: title.to_owned(),
             subtitle: format!("{}, {name}", words::plain(&coordinate.name)),
             goal: None,
-            ..been(model, std::slice::from_ref(frame), i)
+            ..visited_torques(model, std::slice::from_ref(frame), i)
         };
         let panels: Vec<TorqueBalance> = frames.iter().zip(names).map(panel).collect();
         let name = format!("torque-balance-{}-{}", number + 1, plain_name(&coordinate.name));
@@ -176,7 +176,7 @@ pub(crate) fn pictures_of_run(
 ) -> Result<[Figure; 2], Fail> {
     let main = main_coordinate(scenario, summary);
     let coordinate = &scenario.model.coordinates()[main];
-    let subtitle = story(scenario, &summary.coordinates[main]);
+    let subtitle = strategy_and_cases(scenario, &summary.coordinates[main]);
     let mut line = course(recording, &summary.reliefs, main);
     line.title = scenario.title.clone();
     line.subtitle.clone_from(&subtitle);
@@ -238,15 +238,15 @@ fn joints(scenario: &Scenario, summary: &Summary) -> Vec<usize> {
     std::iter::once(main).chain(others).filter(turns).take(MOST_JOINTS).collect()
 }
 
-/// Torques of a joint over its range while everything else is held, and how they went.
-fn swept(scenario: &Scenario, frames: &[Frame], i: usize) -> Result<TorqueBalance, Fail> {
+/// Torques of a joint over its range while all other coordinates are held, and its active torque in the frames.
+fn swept_torques(scenario: &Scenario, frames: &[Frame], i: usize) -> Result<TorqueBalance, Fail> {
     let Some(last) = frames.last() else { return Ok(TorqueBalance::default()) };
     let chart = Sweep::new(&scenario.model, &scenario.loads, i, &last.posture).balance("", "", 0.0)?;
     Ok(with_path(chart, &scenario.model.coordinates()[i], frames, i))
 }
 
-/// Torques of a joint as far as they are known of a body that stands: passive over its range, external where it has been.
-fn been(model: &Model, frames: &[Frame], i: usize) -> TorqueBalance {
+/// Torques of a joint of a body on supports: passive torque over its range, external torque in the frames.
+fn visited_torques(model: &Model, frames: &[Frame], i: usize) -> TorqueBalance {
     let Some(last) = frames.last() else { return TorqueBalance::default() };
     let coordinate = &model.coordinates()[i];
     let ((min, max), mut values) = (coordinate.range, last.posture.clone());
@@ -263,7 +263,7 @@ fn been(model: &Model, frames: &[Frame], i: usize) -> TorqueBalance {
     with_path(chart, coordinate, frames, i)
 }
 
-/// Where active torque was.
+/// Adds the active torque of the frames.
 fn with_path(mut chart: TorqueBalance, coordinate: &Coordinate, frames: &[Frame], i: usize) -> TorqueBalance {
     chart.path = frames.iter().map(|frame| (visible(coordinate, frame.posture[i]), frame.active(i))).collect();
     (chart.start, chart.goal) = (chart.path.first().copied(), chart.path.last().copied());

@@ -95,19 +95,19 @@ impl Frame {
         active_torque(self.external[i], self.passive[i])
     }
 
-    /// Sum of squares of relative loads.
+    /// Effort: the sum of squares of relative loads.
     pub(crate) fn effort(&self) -> f64 {
         effort(&self.load)
     }
 
-    /// How much of what pulls on a coordinate passive tissue carries, 0..=1; `None` where next to nothing pulls.
+    /// Share of the external torque of a coordinate that passive tissue carries, 0..=1; `None` below 0.5 N m.
     pub(crate) fn carried(&self, i: usize) -> Option<f64> {
         let external = self.external[i];
         (external.abs() > 0.5).then(|| (-self.passive[i] / external).clamp(0.0, 1.0))
     }
 }
 
-/// As it was found: contact forces and torques are not computed anew.
+/// The frame of a posture of least effort, with the contact forces and torques that the search found.
 pub(crate) fn frame_of_posture(model: &Model, found: &RelaxedPosture) -> Result<Frame, Fail> {
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &found.relaxed.posture).map_err(|error| Fail::job("report", error))?;

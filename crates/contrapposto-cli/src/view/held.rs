@@ -11,14 +11,14 @@ use crate::fail::Fail;
 
 /// A posture that is held still.
 pub(crate) struct Held {
-    /// What it asks for. Where the supports cannot hold it, with the root held besides, as if by hand.
+    /// Torques, loads and contact forces. Where the supports cannot hold the posture, those of a body whose root is held too.
     pub(crate) frame: Frame,
     /// Whether the supports hold it; true without supports.
     pub(crate) holds: bool,
 }
 
 impl Held {
-    /// What it asks for, where that is known.
+    /// The frame, where the supports hold the posture.
     pub(crate) fn known(self) -> Option<Frame> {
         self.holds.then_some(self.frame)
     }

@@ -12,8 +12,8 @@ pub(crate) fn hardest(model: &Model, frame: &Frame) -> Option<(String, f64)> {
     Some((name, frame.load[i]))
 }
 
-/// The group that gives up first when a posture is held from a rested start and nobody shifts, and after how many seconds; none
-/// where all can hold for ever.
+/// The group that fails first when a posture is held from a rested start, and after how many seconds; `None` where all groups hold
+/// without limit.
 pub(crate) fn fails_first(model: &Model, frame: &Frame) -> Option<(String, f64)> {
     let time = |i: usize| {
         let groups = model.coordinates()[i].groups.as_ref()?;

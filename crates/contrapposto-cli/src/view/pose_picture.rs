@@ -1,4 +1,4 @@
-//! From a solved pose to its picture: the body, where it started, and what it should reach.
+//! The picture of a solved pose: the body, its start, and its targets.
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture_solver::SolvedPosture;
@@ -12,11 +12,11 @@ use super::body;
 use super::held::held;
 use crate::fail::Fail;
 
-/// What is drawn beside the body, ground, m.
+/// Marks beside the body, ground, m.
 #[derive(Default)]
 struct Marks {
     targets: Vec<Vector3<f64>>,
-    /// Lines of sight: eye, and what it should meet.
+    /// Lines of sight: eye and target.
     gazes: Vec<[Vector3<f64>; 2]>,
     /// Of mass.
     center: Option<Vector3<f64>>,
@@ -34,7 +34,7 @@ pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &SolvedPosture, subtit
     })
 }
 
-/// The body of a solved pose, with what it should reach.
+/// The body of a solved pose, with its targets.
 fn pose_posture(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<BodyPosture, Fail> {
     let model = &scenario.model;
     let frame = held(model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
@@ -49,7 +49,7 @@ fn pose_posture(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<BodyPos
     Ok(posture)
 }
 
-/// Places that the tasks of a pose ask for, ground, m.
+/// Targets of the tasks of a pose, ground, m.
 pub(crate) fn targets(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<Vec<Vector3<f64>>, Fail> {
     Ok(marks(scenario, pose)?.targets)
 }

@@ -66,7 +66,7 @@ impl Recording {
     }
 
     /// Takes in sample number `number`, counted from 0, if it is one of those that are kept.
-    pub(crate) fn take(&mut self, number: u64, sample: &Sample) {
+    pub(crate) fn record(&mut self, number: u64, sample: &Sample) {
         if !number.is_multiple_of(self.every) {
             return;
         }

@@ -1,4 +1,4 @@
-//! What the ground would have to give a body whose root is free: nobody's muscles do it.
+//! Computes the residual of a free root: the largest force and moment that neither loads nor muscles give.
 
 use contrapposto::model::{CoordinateKind, Model, Motion};
 
@@ -13,7 +13,7 @@ pub(crate) struct Residual {
 }
 
 impl Residual {
-    /// A joint to ground that slides in two directions at least and turns holds nothing.
+    /// The free roots of `model`: joints to ground that slide in two directions at least, and turn.
     pub(crate) fn new(model: &Model) -> Self {
         let order = Order::new(model);
         let mut roots = vec![];
@@ -39,7 +39,7 @@ impl Residual {
         Self { roots, largest }
     }
 
-    pub(crate) fn take(&mut self, frame: &Frame<'_>) {
+    pub(crate) fn record(&mut self, frame: &Frame<'_>) {
         for ((_, slides, turns), largest) in self.roots.iter().zip(&mut self.largest) {
             let size = |rows: &[usize]| rows.iter().map(|&row| frame.rows[row].active.powi(2)).sum::<f64>().sqrt();
             for (rows, largest) in [slides, turns].into_iter().zip(largest) {
@@ -51,8 +51,8 @@ impl Residual {
         }
     }
 
-    /// What to tell of it: how urgent, and the words.
-    pub(crate) fn told(&self, model: &Model, grounded: bool) -> Option<(&'static str, String)> {
+    /// A warning or note about the largest residual: its kind, and its text. `None` where it is negligible.
+    pub(crate) fn message(&self, model: &Model, grounded: bool) -> Option<(&'static str, String)> {
         let worst = self.roots.iter().zip(&self.largest).max_by(|a, b| a.1[0].0.total_cmp(&b.1[0].0))?;
         let ((joint, ..), [(force, at_force), (moment, at_moment)]) = worst;
         let weight = model.mass() * model.gravity().norm();
@@ -62,7 +62,7 @@ impl Residual {
         let residual =
             format!("residual force {force:.2} N (frame {at_force}), moment {moment:.2} N m (frame {at_moment})");
         Some(if grounded {
-            ("note", format!("`{joint}` still carries what muscles cannot give: {residual}"))
+            ("note", format!("`{joint}` still carries a residual that muscles cannot give: {residual}"))
         } else {
             let advice = "give what holds the body with --grf FILE.mot or --force";
             ("warning", format!("nothing holds the body up: `{joint}` carries a {residual}; {advice}"))

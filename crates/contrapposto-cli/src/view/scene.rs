@@ -18,18 +18,18 @@ use crate::fail::Fail;
 /// Angles at which the torques of a joint are drawn.
 pub(crate) const ANGLES: usize = 121;
 
-/// A body in some moments, and what it rests on.
+/// A body in some moments, and its supports.
 pub(crate) struct Scene<'a> {
     pub(crate) title: &'a str,
     pub(crate) model: &'a Model,
     /// Its posture before anything happened.
     pub(crate) start: &'a [f64],
     pub(crate) frames: &'a [Frame],
-    /// What carries it, in a place of its own.
+    /// Supports, which stay in their places.
     pub(crate) supports: &'a [Support],
     /// Segments of the contacts of every frame.
     pub(crate) carried: Vec<usize>,
-    /// What pulls on it while one joint alone is moved; `None` where that makes no sense, as under a body that stands.
+    /// Loads while one joint alone is moved; `None` for a body on supports, whose joints cannot move alone.
     pub(crate) held: Option<&'a [Load]>,
 }
 
@@ -84,16 +84,16 @@ impl<'a> Scene<'a> {
                 parts.push((s, Segment { name, balls, joints: joints.clone(), ..Segment::default() }));
             }
         }
-        let mut see = |posture: &[f64], parts: &mut [(usize, Segment)], put: fn(&mut Segment, [f64; 7])| {
+        let mut place = |posture: &[f64], parts: &mut [(usize, Segment)], put: fn(&mut Segment, [f64; 7])| {
             let posture = Posture::new(posture.to_vec());
             kinematics.update(model, &posture).map_err(|error| Fail::job("report", error))?;
             parts.iter_mut().for_each(|(s, part)| put(part, turn.place(&kinematics.placement(model, *s))));
             Ok::<(), Fail>(())
         };
         for frame in self.frames {
-            see(&frame.posture, &mut parts, |part, place| part.places.push(place))?;
+            place(&frame.posture, &mut parts, |part, place| part.places.push(place))?;
         }
-        see(self.start, &mut parts, |part, place| part.start = place)?;
+        place(self.start, &mut parts, |part, place| part.start = place)?;
         Ok(parts.into_iter().map(|(_, part)| part).collect())
     }
 

@@ -11,14 +11,14 @@ const SAME_POINT: f64 = 1e-6;
 /// Radius at the edge of a sole, m.
 const EDGE: f64 = 0.012;
 
-/// Hulls of balls that together are the segment, in its frame; none for one that is nothing but a frame.
+/// Hulls of balls that together are the segment, in its frame; none for a segment without mass, child or patch.
 pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
     let segment = &model.segments()[s];
     let joint = segment.in_segment.translation.vector;
     let mut ends: Vec<(Vector3<f64>, f64)> = vec![];
     for child in model.segments().iter().filter(|child| child.parent == Some(s)) {
         let end = child.in_parent.translation.vector;
-        // A joint in the sole, as that of the toes, makes nothing thicker.
+        // A joint in the sole, such as that of the toes, does not make the foot thicker.
         let within = upwards(&segment.patch, joint).is_some_and(|up| up.dot(&(end - segment.patch[0])) < EDGE);
         if (end - joint).norm() > SAME_POINT
             && !within
@@ -61,7 +61,7 @@ pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
     vec![balls]
 }
 
-/// Coordinates of the joint that moves a segment. What is welded on belongs to the joint of what it is welded to.
+/// Coordinates of the joint that moves a segment; a welded segment is moved by the joint of its carrier.
 pub(crate) fn joined_by(model: &Model, s: usize) -> std::ops::Range<usize> {
     let mut carrier = s;
     while let (true, Some(parent)) =

@@ -19,11 +19,11 @@ const MARGIN: f64 = 0.1;
 /// The least width of a piece, m.
 const WIDTH: f64 = 0.4;
 
-/// The ground, and everything else.
+/// The ground, and all other surfaces.
 pub(super) struct Surroundings {
     /// Height, m, where there is a ground.
     pub(super) ground: Option<f64>,
-    /// Corners of each piece, against the clock as the body sees it, m.
+    /// Corners of each piece, counter-clockwise as seen from the body, m.
     pub(super) surfaces: Vec<[[f64; 3]; 4]>,
 }
 
@@ -72,7 +72,7 @@ pub(super) fn surroundings(
     turn: &Turn,
 ) -> Result<Surroundings, Fail> {
     let mut kinematics = Kinematics::new(model);
-    let mut see = |posture: &[f64]| -> Result<Vec<Patch>, Fail> {
+    let mut place = |posture: &[f64]| -> Result<Vec<Patch>, Fail> {
         kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("report", error))?;
         let patch = |support: &Support| {
             let corner = |c: &Vector3<f64>| turn.0 * kinematics.station(model, support.segment, *c);
@@ -81,10 +81,10 @@ pub(super) fn surroundings(
         Ok(supports.iter().map(patch).collect())
     };
     let mut planes: Vec<Plane> = vec![];
-    let at_start = see(start)?;
+    let at_start = place(start)?;
     let mut still = vec![true; at_start.len()];
     for frame in frames {
-        for (i, (normal, points)) in see(&frame.posture)?.iter().enumerate() {
+        for (i, (normal, points)) in place(&frame.posture)?.iter().enumerate() {
             still[i] &=
                 points.iter().zip(&at_start[i].1).all(|(now, then)| normal.dot(&(now - then)).abs() < SAME_PLANE);
         }

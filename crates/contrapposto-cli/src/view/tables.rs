@@ -1,4 +1,4 @@
-//! The tables of a run: what a spreadsheet, OpenSim and our own `torques --grf` read.
+//! The tables of a run, for spreadsheets, OpenSim and `torques --grf`.
 
 use std::fmt::Display;
 
@@ -59,7 +59,7 @@ pub(crate) fn ground_reaction(scenario: &Scenario, recording: &Recording) -> Res
     write("ground_reaction.mot", scenario, recording, &labels, &rows)
 }
 
-/// So many columns a coordinate, `NAME_external` and so on.
+/// A table with one column for each part of each coordinate, `NAME_external` and so on.
 fn table(
     file: &'static str,
     scenario: &Scenario,

@@ -1,4 +1,4 @@
-//! External, passive and active torque of one frame, and in which order and under which names they are told.
+//! External, passive and active torque of one frame, and the order and names of their rows.
 
 use contrapposto::joint_torques::{JointTorques, active_torque};
 use contrapposto::model::{CoordinateKind, Model};
@@ -20,7 +20,7 @@ impl Torques {
     }
 }
 
-/// One rate that is told.
+/// A rate, its name and its unit.
 pub(crate) struct Row {
     /// `knee_angle_r`, `root_fx`, `root_mz`.
     pub(crate) name: String,
@@ -32,7 +32,7 @@ pub(crate) struct Row {
     pub(crate) coordinate: Option<usize>,
 }
 
-/// What is told of every frame, in which order.
+/// The rows of every frame, in their order.
 pub(crate) struct Order {
     /// Rates of coordinates that follow none.
     pub(crate) rows: Vec<Row>,

@@ -1,4 +1,4 @@
-//! A run that was left, as a file: `snapshot.json`.
+//! An interrupted run as a file: `snapshot.json`.
 
 use std::path::Path;
 
@@ -13,20 +13,20 @@ use crate::view::recording::Recording;
 /// Its name.
 pub(super) const SNAPSHOT: &str = "snapshot.json";
 
-/// Largest snapshot that is read, bytes; what a run writes is far smaller.
+/// Largest snapshot that is read, bytes; a run writes far smaller ones.
 const MOST_BYTES: u64 = 256 << 20;
 
 /// This program, whose next version may compute other bytes.
 const PROGRAM: &str = concat!("contrapposto ", env!("CARGO_PKG_VERSION"));
 
-/// Everything from which a run goes on.
+/// The state from which a run continues.
 #[derive(Serialize, Deserialize)]
 struct Saved<R, S> {
     program: String,
     /// Fingerprint of scenario and body.
     scenario: String,
     run: S,
-    /// Rows up to the present or, what is not needed, beyond it.
+    /// Rows up to the present; later ones are ignored.
     recording: R,
 }
 

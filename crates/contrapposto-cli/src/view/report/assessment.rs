@@ -12,14 +12,14 @@ use nalgebra::Vector3;
 
 use crate::fail::Fail;
 use crate::view::decision::answer;
-use crate::view::film::MOST_FRAMES;
+use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
 use crate::view::words::{MOST_ROWS, group, percent, plain, sentence, value};
 
 /// Moments of a motion, as many as a page shows.
-pub(crate) struct Shots<'a> {
+pub(crate) struct AssessedFrames<'a> {
     model: &'a Model,
     instants: usize,
     frames: Vec<Frame>,
@@ -27,13 +27,13 @@ pub(crate) struct Shots<'a> {
     pushed: Vec<usize>,
 }
 
-impl<'a> Shots<'a> {
+impl<'a> AssessedFrames<'a> {
     pub(crate) fn new(model: &'a Model, instants: usize) -> Self {
         Self { model, instants, frames: vec![], pushed: vec![] }
     }
 
-    /// Takes in an instant, if it is one of those that are shown. `measured`: what the ground was measured to push with.
-    pub(crate) fn take(&mut self, instant: &Instant, measured: impl FnOnce(&mut Vec<Load>)) {
+    /// Takes in an instant, if it is one of those that are shown. `measured` adds the measured forces of the ground.
+    pub(crate) fn record(&mut self, instant: &Instant, measured: impl FnOnce(&mut Vec<Load>)) {
         let stride = self.instants.div_ceil(MOST_FRAMES).max(1);
         if !instant.index.is_multiple_of(stride) && instant.index + 1 != self.instants {
             return;
@@ -83,25 +83,25 @@ impl<'a> Shots<'a> {
     }
 }
 
-/// The page of an assessment. `held`: what pulls on the body at all times.
+/// The page of an assessment. `held`: the loads at all times.
 pub(crate) fn report_of_assessment(
     title: &str,
-    shots: &Shots<'_>,
+    assessed_frames: &AssessedFrames<'_>,
     found: &Assessment,
     supports: &[Support],
     held: &[Load],
     warnings: &[String],
 ) -> Result<String, Fail> {
-    let Shots { model, frames, .. } = shots;
+    let AssessedFrames { model, frames, .. } = assessed_frames;
     let Some((first, last)) = frames.first().zip(frames.last()) else {
         return Ok(contrapposto_report::write(&contrapposto_report::Report::default()));
     };
     let working: Vec<&GroupAssessment> = found.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
     let shown = shown(model);
     let moved = |i: &&usize| frames.iter().any(|frame| (frame.posture[**i] - first.posture[**i]).abs() > 1e-6);
-    let alone = supports.is_empty() && shots.pushed.is_empty() && shown.iter().filter(moved).count() <= 1;
+    let alone = supports.is_empty() && assessed_frames.pushed.is_empty() && shown.iter().filter(moved).count() <= 1;
     let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, supports) };
-    scene.carried.extend(&shots.pushed);
+    scene.carried.extend(&assessed_frames.pushed);
     let times = frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), working.first().map_or(0, |group| group.coordinate))?;
     let span = last.time - first.time;
@@ -110,10 +110,10 @@ pub(crate) fn report_of_assessment(
     report
         .reasons
         .push("Each posture is treated as held at rest; loads are interpolated linearly between postures.".to_owned());
-    report.figures = figures(model, found, &working, format!("{} postures", shots.instants), span);
+    report.figures = figures(model, found, &working, format!("{} postures", assessed_frames.instants), span);
     report.list = List {
         heading: "Muscle groups that fail, and relief by one joint".to_owned(),
-        entries: entries(shots, &working, &shown),
+        entries: entries(assessed_frames, &working, &shown),
         none: "None: no group fails, and no joint alone gives relief.".to_owned(),
     };
     report.table = table(model, &working);
@@ -173,14 +173,14 @@ fn table(model: &Model, working: &[&GroupAssessment]) -> Table {
 }
 
 /// The times at which groups fail, and relief at their peaks.
-fn entries(shots: &Shots<'_>, working: &[&GroupAssessment], shown: &[usize]) -> Vec<Entry> {
-    let model = shots.model;
+fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], shown: &[usize]) -> Vec<Entry> {
+    let model = assessed_frames.model;
     let mut entries = vec![];
     for found in working.iter().take(MOST_ROWS) {
         let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
         if let Some(time) = found.exhausted_at {
             let text = format!("{} fails: it cannot give the torque that is needed.", name(model, found));
-            entries.push(Entry { frame: shots.nearest(time), joint, text });
+            entries.push(Entry { frame: assessed_frames.nearest(time), joint, text });
         }
         if model.coordinates()[found.coordinate].kind != CoordinateKind::Rotation {
             continue;
@@ -188,7 +188,11 @@ fn entries(shots: &Shots<'_>, working: &[&GroupAssessment], shown: &[usize]) -> 
         for peak in found.proposals.chunk_by(|a, b| a.at == b.at) {
             let moves = |proposal: &Proposal| !matches!(proposal.decision.outcome, Outcome::Stay | Outcome::None);
             if peak.iter().any(moves) {
-                entries.push(Entry { frame: shots.nearest(peak[0].time), joint, text: relief(model, found, peak) });
+                entries.push(Entry {
+                    frame: assessed_frames.nearest(peak[0].time),
+                    joint,
+                    text: relief(model, found, peak),
+                });
             }
         }
     }

@@ -39,13 +39,13 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
     let frames = frames_of_postures(model, &found.postures)?;
     let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports);
     let shown = shown(model);
-    let first = found.postures.first().map_or(0, speaking);
+    let first = found.postures.first().map_or(0, main_coordinate_of);
     let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;
     let supports = carriers(&scene);
     let entry = |(frame, posture): (usize, &RelaxedPosture)| Entry {
         frame,
-        joint: shown.iter().position(|&i| i == speaking(posture)).unwrap_or(0),
-        text: told(model, posture, &frames[frame], &supports),
+        joint: shown.iter().position(|&i| i == main_coordinate_of(posture)).unwrap_or(0),
+        text: description(model, posture, &frames[frame], &supports),
     };
     report.list = List {
         heading: "Postures of least effort".to_owned(),
@@ -60,10 +60,10 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
         (n, Some(more)) => {
             format!(
                 "{n} resting postures. The first takes the least effort: {}; the next one takes {more} more.",
-                hangs(model, best)
+                hanging_in_words(model, best)
             )
         }
-        _ => format!("One resting posture: {}.", hangs(model, best)),
+        _ => format!("One resting posture: {}.", hanging_in_words(model, best)),
     };
     report.reasons.push(verdict(model, best));
     let mut searched = format!("{} starts were tried", found.starts);
@@ -93,13 +93,13 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
 }
 
 /// The coordinate that says most of a posture: the one that hangs on its ligaments, else the hardest worked.
-fn speaking(found: &RelaxedPosture) -> usize {
+fn main_coordinate_of(found: &RelaxedPosture) -> usize {
     let hanging = found.hanging.first().map(|hanging| hanging.coordinate);
     hanging.or_else(|| found.work.first().map(|work| work.coordinate)).unwrap_or(0)
 }
 
 /// `hanging on the ligaments of right hip adduction`.
-fn hangs(model: &Model, found: &RelaxedPosture) -> String {
+fn hanging_in_words(model: &Model, found: &RelaxedPosture) -> String {
     match found.hanging.first() {
         Some(joint) => format!("hanging on the ligaments of {}", plain(&model.coordinates()[joint.coordinate].name)),
         None => "no joint hangs on its ligaments".to_owned(),
@@ -140,10 +140,10 @@ fn verdict(model: &Model, found: &RelaxedPosture) -> String {
     }
 }
 
-fn told(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String]) -> String {
-    let mut told = vec![format!("Effort {:.4}; weight on {}.", found.relaxed.effort, weight(frame, supports))];
+fn description(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String]) -> String {
+    let mut sentences = vec![format!("Effort {:.4}; weight on {}.", found.relaxed.effort, weight(frame, supports))];
     if supports.is_empty() {
-        told = vec![format!("Effort {:.4}.", found.relaxed.effort)];
+        sentences = vec![format!("Effort {:.4}.", found.relaxed.effort)];
     }
     let hanging = found.hanging.iter().take(MOST_JOINTS_SHOWN).map(|joint| {
         let i = joint.coordinate;
@@ -156,18 +156,18 @@ fn told(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &[String
         )
     });
     let hanging: Vec<String> = hanging.collect();
-    told.push(if hanging.is_empty() {
+    sentences.push(if hanging.is_empty() {
         "No joint hangs on its ligaments.".to_owned()
     } else {
         format!("Hangs on ligaments: {}.", list(&hanging))
     });
-    told.push(verdict(model, found));
+    sentences.push(verdict(model, found));
     if let Some((name, load)) = hardest(model, frame) {
-        told.push(format!("Highest load: {name}, {}.", percent(load)));
+        sentences.push(format!("Highest load: {name}, {}.", percent(load)));
     }
-    told.push(match fails_first(model, frame) {
+    sentences.push(match fails_first(model, frame) {
         Some((name, time)) => format!("Endurance: {}, then {name} fails.", how_long(time)),
         None => "Endurance: no limit by muscles.".to_owned(),
     });
-    told.join(" ")
+    sentences.join(" ")
 }

@@ -8,7 +8,7 @@ use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
 use crate::view::words::{how_long, percent, plain, sentence};
 
-/// Names of what carries the body.
+/// Names of the segments that carry the body.
 pub(super) fn carriers(scene: &Scene<'_>) -> Vec<String> {
     scene.carried.iter().map(|&segment| plain(&scene.model.segments()[segment].name)).collect()
 }

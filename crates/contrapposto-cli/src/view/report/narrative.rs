@@ -4,7 +4,7 @@ use contrapposto::simulation::{Scenario, StopReason, Summary};
 use contrapposto_report::{Figure, Report};
 
 use crate::view::axes::pelvis_list;
-use crate::view::film::Film;
+use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
 use crate::view::muscles::{hardest, tired};
 use crate::view::words::{how_long, percent, plain, sentence, value};
@@ -15,35 +15,42 @@ const LEVEL: f64 = 4.0;
 const STAYED: f64 = 0.5;
 
 /// Fills in headline, reasons and figures.
-pub(super) fn tell(scenario: &Scenario, film: &Film, summary: &Summary, shown: &[usize], report: &mut Report) {
-    let (Some(first), Some(last), Some(&main)) = (film.frames.first(), film.frames.last(), shown.get(report.main))
+pub(super) fn write(
+    scenario: &Scenario,
+    excerpt: &RunExcerpt,
+    summary: &Summary,
+    shown: &[usize],
+    report: &mut Report,
+) {
+    let (Some(first), Some(last), Some(&main)) =
+        (excerpt.frames.first(), excerpt.frames.last(), shown.get(report.main))
     else {
         return;
     };
-    let story = Story { scenario, first, last, main };
+    let narrative = Narrative { scenario, first, last, main };
     let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
     let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
     report.headline = match standing {
-        Some((_, list)) if list.abs() >= LEVEL => story.of_slouch(list),
-        _ if film.happened == 0 => story.of_rest(summary.end_time),
-        Some((_, list)) => story.of_level(list),
-        None => story.of_joint(),
+        Some((_, list)) if list.abs() >= LEVEL => narrative.of_slouch(list),
+        _ if excerpt.happened == 0 => narrative.of_rest(summary.end_time),
+        Some((_, list)) => narrative.of_level(list),
+        None => narrative.of_joint(),
     };
-    report.reasons = story.reasons(standing.is_some());
-    report.reasons.push(story.end(film, summary));
-    report.figures = story.figures(standing);
+    report.reasons = narrative.reasons(standing.is_some());
+    report.reasons.push(narrative.end(excerpt, summary));
+    report.figures = narrative.figures(standing);
 }
 
-struct Story<'a> {
+struct Narrative<'a> {
     scenario: &'a Scenario,
     first: &'a Frame,
     last: &'a Frame,
     main: usize,
 }
 
-impl Story<'_> {
+impl Narrative<'_> {
     fn of_slouch(&self, list: f64) -> String {
         let side = if list > 0.0 { "right" } else { "left" };
         format!("Slouched: the pelvis drops {:.0}° to the {side}, and {}.", list.abs(), self.weight())
@@ -127,7 +134,7 @@ impl Story<'_> {
         reasons
     }
 
-    fn end(&self, film: &Film, summary: &Summary) -> String {
+    fn end(&self, excerpt: &RunExcerpt, summary: &Summary) -> String {
         let how = match summary.reason {
             StopReason::Settled => "the posture no longer changed",
             StopReason::Duration => "its full duration",
@@ -135,10 +142,10 @@ impl Story<'_> {
             StopReason::Fell => "the supports could no longer hold the body",
         };
         let why = summary.fall.map_or(String::new(), |fall| format!(" {}.", sentence(&fall.to_string())));
-        let told = film.events.len() as u64;
-        let more = match film.happened - told {
+        let told = excerpt.events.len() as u64;
+        let more = match excerpt.happened - told {
             0 => String::new(),
-            more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", film.happened),
+            more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", excerpt.happened),
         };
         format!("The run ended after {:.0} s: {how}.{why}{more}", summary.end_time)
     }

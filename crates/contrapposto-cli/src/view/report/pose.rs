@@ -36,7 +36,7 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &SolvedPosture, text
     let rest = |task: &str| task.starts_with("posture") || task.starts_with("effort");
     let missing = all.iter().filter(|entries| !reached(entries) && !rest(&entries[0].task));
     let missing: Vec<String> =
-        missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), left(entries))).collect();
+        missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), remaining(entries))).collect();
     report.headline = match (missing.is_empty(), done == all.len()) {
         (true, true) => "All tasks are reached.".to_owned(),
         (true, false) => {
@@ -66,7 +66,7 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &SolvedPosture, text
     figures_of(model, frame, &carriers(&scene), &mut report);
     let row = |entries: &&[PoseLevelText]| {
         let mark = if reached(entries) { "reached" } else { "limited by higher priorities" };
-        vec![entries[0].priority.to_string(), plain_task(&entries[0].task), left(entries), mark.to_owned()]
+        vec![entries[0].priority.to_string(), plain_task(&entries[0].task), remaining(entries), mark.to_owned()]
     };
     report.table = Table {
         heading: "Remaining errors of the tasks, highest priority first".to_owned(),
@@ -90,7 +90,7 @@ fn plain_task(task: &str) -> String {
 }
 
 /// `12.3 mm, 4.5°`; `nothing` where it is reached.
-fn left(entries: &[PoseLevelText]) -> String {
+fn remaining(entries: &[PoseLevelText]) -> String {
     let text = |level: &PoseLevelText| match level.unit {
         "m" => format!("{:.1} mm", 1e3 * level.residual),
         "rad" => format!("{:.1}°", level.residual.to_degrees()),

@@ -6,37 +6,37 @@ use contrapposto_report::{Entry, List, Moments};
 use super::narrative;
 use crate::fail::Fail;
 use crate::view::decision::decision;
-use crate::view::film::{Event, Film};
+use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::recording::Recording;
 use crate::view::scene::Scene;
 use crate::view::selection::{main_coordinate, shown};
 
 /// The page of a run.
 pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary: &Summary) -> Result<String, Fail> {
-    let film = Film::new(scenario, recording, summary);
+    let excerpt = RunExcerpt::new(scenario, recording, summary);
     let shown = shown(&scenario.model);
-    let start = film.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
+    let start = excerpt.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
     let scene = Scene {
         held: (!scenario.has_supports_or_tasks()).then_some(scenario.loads.as_slice()),
-        ..Scene::of(&scenario.title, &scenario.model, start, &film.frames, &scenario.supports)
+        ..Scene::of(&scenario.title, &scenario.model, start, &excerpt.frames, &scenario.supports)
     };
-    let times = film.frames.iter().map(|frame| frame.time).collect();
+    let times = excerpt.frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), main_coordinate(scenario, summary))?;
     report.levels = Some([scenario.hysteresis.critical_level, scenario.hysteresis.recovery_level]);
     report.list = List {
         heading: "Decisions".to_owned(),
-        entries: entries(scenario, &film, &shown),
+        entries: entries(scenario, &excerpt, &shown),
         none: "None: no muscle group needed relief.".to_owned(),
     };
-    narrative::tell(scenario, &film, summary, &shown, &mut report);
+    narrative::write(scenario, &excerpt, summary, &shown, &mut report);
     Ok(contrapposto_report::write(&report))
 }
 
-fn entries(scenario: &Scenario, film: &Film, shown: &[usize]) -> Vec<Entry> {
+fn entries(scenario: &Scenario, excerpt: &RunExcerpt, shown: &[usize]) -> Vec<Entry> {
     let entry = |event: &Event| {
         let joint = shown.iter().position(|&i| i == event.coordinate)?;
-        let frame = film.frames.iter().position(|frame| frame.time >= event.time)?;
-        Some(Entry { frame, joint, text: decision(&scenario.model, event, &film.frames[frame]) })
+        let frame = excerpt.frames.iter().position(|frame| frame.time >= event.time)?;
+        Some(Entry { frame, joint, text: decision(&scenario.model, event, &excerpt.frames[frame]) })
     };
-    film.events.iter().filter_map(entry).collect()
+    excerpt.events.iter().filter_map(entry).collect()
 }

@@ -12,7 +12,7 @@ use super::group::GroupName;
 use super::plain_table;
 use crate::view::words::MOST_ROWS;
 
-/// For so many of them relief is told.
+/// Most groups whose relief is listed.
 const RELIEVED: usize = 3;
 
 /// The whole file.
@@ -25,7 +25,7 @@ pub(crate) struct AssessText {
     end_s: f64,
     /// Every group of known strength, the worst first.
     groups: Vec<AssessedGroupText>,
-    /// What the root lacks at most: neither loads nor supports give it.
+    /// Largest residual of the root, which neither loads nor supports give.
     residual_force_n: PeakText,
     residual_moment_nm: PeakText,
     /// Frames in which the supports cannot hold the body.
@@ -145,7 +145,7 @@ impl ProposalText {
     }
 }
 
-/// The worst groups, what would relieve them, and who fails first.
+/// The worst groups, their relief, and the group that fails first.
 pub(crate) fn report(text: &AssessText) -> String {
     let working: Vec<&AssessedGroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
     let mut table = plain_table();
@@ -189,7 +189,7 @@ pub(crate) fn report(text: &AssessText) -> String {
     out
 }
 
-/// What the strategies say at a peak; once, where they agree.
+/// The sentences of the strategies at a peak; one where they agree.
 fn sentences(peak: &[ProposalText]) -> Vec<String> {
     let agree = peak.iter().all(|proposal| proposal.goal_deg == peak[0].goal_deg);
     let all = peak.iter().map(|proposal| proposal.sentence.clone());

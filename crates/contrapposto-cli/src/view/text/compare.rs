@@ -12,12 +12,12 @@ use crate::view::axes::pelvis_list;
 use crate::view::frame::Frame;
 use crate::view::words::{MOST_ROWS, group as group_in_words, plain};
 
-/// Smaller differences, of strength and in degrees, are not worth a line.
+/// Least differences, as shares of strength and in degrees, that have a line.
 const SAME: f64 = 5e-4;
 const SAME_ANGLE: f64 = 0.05;
 
 /// A scenario carried out.
-pub(crate) struct Stance {
+pub(crate) struct ComparedPosture {
     /// `A`, `B` and so on.
     pub(crate) letter: char,
     pub(crate) file: String,
@@ -35,7 +35,7 @@ pub(crate) struct Stance {
 /// The whole file.
 #[derive(Serialize)]
 pub(crate) struct CompareText {
-    postures: Vec<StanceText>,
+    postures: Vec<ComparedPostureText>,
     /// Muscle groups that all bodies have, those that differ most first.
     groups: Vec<GroupDifferenceText>,
     /// Coordinates that all bodies have, those that differ most first.
@@ -46,7 +46,7 @@ pub(crate) struct CompareText {
 }
 
 #[derive(Serialize)]
-struct StanceText {
+struct ComparedPostureText {
     file: String,
     title: String,
     model: String,
@@ -75,7 +75,7 @@ struct GroupDifferenceText {
     name: GroupName,
     /// Active torque over strength.
     relative_load: Vec<Option<f64>>,
-    /// What ligaments carry in its stead, over its strength.
+    /// The torque that ligaments carry instead, over its strength.
     on_ligaments: Vec<Option<f64>>,
     difference: f64,
 }
@@ -90,23 +90,23 @@ struct CoordinateDifferenceText {
 }
 
 impl CompareText {
-    pub(crate) fn new(stances: &[Stance], files: Vec<String>) -> Self {
+    pub(crate) fn new(postures: &[ComparedPosture], files: Vec<String>) -> Self {
         let mut text = Self {
-            postures: stances.iter().map(StanceText::new).collect(),
+            postures: postures.iter().map(ComparedPostureText::new).collect(),
             groups: vec![],
             coordinates: vec![],
             not_in_all: vec![],
             files,
         };
-        for (s, stance) in stances.iter().enumerate() {
+        for (s, stance) in postures.iter().enumerate() {
             for coordinate in stance.model.coordinates() {
-                let same = |other: &Stance| {
+                let same = |other: &ComparedPosture| {
                     let i = other.model.coordinate(&coordinate.name)?;
                     (other.model.coordinates()[i].kind == coordinate.kind).then_some(i)
                 };
-                let places: Option<Vec<usize>> = stances.iter().map(same).collect();
+                let places: Option<Vec<usize>> = postures.iter().map(same).collect();
                 match places {
-                    Some(places) if s == 0 => text.take(stances, coordinate, &places),
+                    Some(places) if s == 0 => text.take(postures, coordinate, &places),
                     None if !text.not_in_all.contains(&coordinate.name) => {
                         text.not_in_all.push(coordinate.name.clone());
                     }
@@ -123,8 +123,8 @@ impl CompareText {
     }
 
     /// A coordinate that all have, `places` of it.
-    fn take(&mut self, stances: &[Stance], coordinate: &Coordinate, places: &[usize]) {
-        let value: Vec<f64> = stances.iter().zip(places).map(|(stance, &i)| stance.posture[i]).collect();
+    fn take(&mut self, postures: &[ComparedPosture], coordinate: &Coordinate, places: &[usize]) {
+        let value: Vec<f64> = postures.iter().zip(places).map(|(stance, &i)| stance.posture[i]).collect();
         let unit = match coordinate.kind {
             CoordinateKind::Rotation => "rad",
             CoordinateKind::Translation => "m",
@@ -137,15 +137,15 @@ impl CompareText {
             value,
             difference,
         });
-        if stances.iter().zip(places).any(|(stance, &i)| stance.model.coordinates()[i].groups.is_none()) {
+        if postures.iter().zip(places).any(|(stance, &i)| stance.model.coordinates()[i].groups.is_none()) {
             return;
         }
         for side in Side::BOTH {
-            let numbers = stances.iter().zip(places).map(|(stance, &i)| work(stance, i, side));
+            let numbers = postures.iter().zip(places).map(|(stance, &i)| work(stance, i, side));
             let (relative_load, on_ligaments): (Vec<_>, Vec<_>) = numbers.map(Option::unzip).unzip();
             let difference = [&relative_load, &on_ligaments].map(|list| spread(list.iter().flatten().copied()));
             self.groups.push(GroupDifferenceText {
-                name: GroupName::new(&stances[0].model, places[0], side),
+                name: GroupName::new(&postures[0].model, places[0], side),
                 relative_load,
                 on_ligaments,
                 difference: difference[0].max(difference[1]),
@@ -154,8 +154,8 @@ impl CompareText {
     }
 }
 
-/// Load of a group, and what ligaments carry in its stead, as shares of its strength.
-fn work(stance: &Stance, i: usize, side: Side) -> Option<(f64, f64)> {
+/// Load of a group, and the torque that ligaments carry instead, as shares of its strength.
+fn work(stance: &ComparedPosture, i: usize, side: Side) -> Option<(f64, f64)> {
     let frame = stance.frame.as_ref()?;
     let group = &stance.model.coordinates()[i].groups.as_ref()?[side.index()];
     let load = if Side::of(frame.active(i)) == side { frame.load[i] } else { 0.0 };
@@ -166,14 +166,14 @@ fn work(stance: &Stance, i: usize, side: Side) -> Option<(f64, f64)> {
     Some((load, if spared { carried / strength } else { 0.0 }))
 }
 
-/// Largest minus smallest; of nothing, 0.
+/// Largest minus smallest; 0 without values.
 fn spread(values: impl Iterator<Item = f64>) -> f64 {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     (high - low).max(0.0)
 }
 
-impl StanceText {
-    fn new(stance: &Stance) -> Self {
+impl ComparedPostureText {
+    fn new(stance: &ComparedPosture) -> Self {
         let contacts =
             stance.frame.as_ref().and_then(|frame| frame.standing.as_ref()).map(|standing| &standing.contacts);
         let share = |(i, support): (usize, &Support)| SupportShareText {
@@ -195,13 +195,13 @@ impl StanceText {
 }
 
 /// The table for readers.
-pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
+pub(crate) fn report(postures: &[ComparedPosture], text: &CompareText) -> String {
     let mut out = String::new();
-    for (stance, posture) in stances.iter().zip(&text.postures) {
+    for (stance, posture) in postures.iter().zip(&text.postures) {
         out += &format!("{}: {} ({}, {})\n", stance.letter, stance.title, posture.file, stance.how);
     }
-    out += &format!("\n{}\n", whole(stances, text));
-    let letters = |what: &str| stances.iter().map(|s| format!("{what} {}", s.letter)).collect::<Vec<_>>();
+    out += &format!("\n{}\n", whole(postures, text));
+    let letters = |what: &str| postures.iter().map(|s| format!("{what} {}", s.letter)).collect::<Vec<_>>();
     let groups: Vec<&GroupDifferenceText> =
         text.groups.iter().filter(|g| g.difference >= SAME).take(MOST_ROWS).collect();
     if !groups.is_empty() {
@@ -236,10 +236,10 @@ pub(crate) fn report(stances: &[Stance], text: &CompareText) -> String {
 }
 
 /// Effort, shares and pelvis.
-fn whole(stances: &[Stance], text: &CompareText) -> comfy_table::Table {
+fn whole(postures: &[ComparedPosture], text: &CompareText) -> comfy_table::Table {
     let mut table = plain_table();
-    table.set_header(std::iter::once(String::new()).chain(stances.iter().map(|stance| stance.letter.to_string())));
-    let mut row = |label: String, cell: &dyn Fn(&StanceText) -> String| {
+    table.set_header(std::iter::once(String::new()).chain(postures.iter().map(|stance| stance.letter.to_string())));
+    let mut row = |label: String, cell: &dyn Fn(&ComparedPostureText) -> String| {
         table.add_row(std::iter::once(label).chain(text.postures.iter().map(cell)));
     };
     let known = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
@@ -267,7 +267,7 @@ fn whole(stances: &[Stance], text: &CompareText) -> comfy_table::Table {
     table
 }
 
-/// One decimal, and no minus before nothing.
+/// One decimal, without the sign of -0.
 fn number(value: f64) -> String {
     let text = format!("{value:.1}");
     if text == "-0.0" { "0.0".to_owned() } else { text }

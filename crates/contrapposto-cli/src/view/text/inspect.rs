@@ -1,4 +1,4 @@
-//! Everything that is known of a model, as `inspect --json` prints it and as tables for readers.
+//! The contents of a model, as `inspect --json` prints them and as terminal tables.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -25,7 +25,7 @@ pub(crate) struct Report<'a> {
     segments: Vec<SegmentText<'a>>,
     coordinate_order: Vec<&'a str>,
     coordinates: BTreeMap<&'a str, InspectedCoordinateText<'a>>,
-    /// What was ignored, changed or filled in, one sentence each.
+    /// Parts that were ignored, changed or filled in, one sentence each.
     notes: &'a [String],
 }
 

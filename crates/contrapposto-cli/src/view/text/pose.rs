@@ -10,7 +10,7 @@ use crate::output::Folder;
 pub(crate) fn subtitle(text: &PoseText) -> String {
     let missing: Vec<String> = tasks(text)
         .filter(|entries| !reached(entries))
-        .map(|entries| format!("{} {}", entries[0].task, all_left(entries)))
+        .map(|entries| format!("{} {}", entries[0].task, all_remaining(entries)))
         .collect();
     if missing.is_empty() { "all tasks are reached".to_owned() } else { format!("remaining: {}", missing.join("; ")) }
 }
@@ -24,18 +24,18 @@ pub(crate) fn reached(entries: &[PoseLevelText]) -> bool {
     entries.iter().all(|entry| entry.reached)
 }
 
-pub(crate) fn all_left(entries: &[PoseLevelText]) -> String {
-    entries.iter().map(left).collect::<Vec<_>>().join(", ")
+pub(crate) fn all_remaining(entries: &[PoseLevelText]) -> String {
+    entries.iter().map(remaining).collect::<Vec<_>>().join(", ")
 }
 
 /// `0.412 mm`, in units that people read.
-fn left(level: &PoseLevelText) -> String {
+fn remaining(level: &PoseLevelText) -> String {
     let (value, unit) = match level.unit {
         "m" => (1e3 * level.residual, " mm"),
         "rad" => (level.residual.to_degrees(), " deg"),
         _ => (level.residual, " of strength"),
     };
-    // What counts as nothing is not worth its digits.
+    // An error below the tolerance is written without its digits.
     if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn report(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseT
         table.add_row([
             entries[0].priority.to_string(),
             entries[0].task.clone(),
-            all_left(entries),
+            all_remaining(entries),
             if reached(entries) { "reached" } else { "" }.to_owned(),
         ]);
     }

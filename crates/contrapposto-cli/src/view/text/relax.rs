@@ -52,11 +52,11 @@ pub(crate) struct RelaxedPostureText {
     /// Errors of the tasks, lengths in their units.
     tasks: Vec<TaskErrorText>,
     slip: f64,
-    /// Joints whose ligaments carry half or more of what weight and loads ask.
+    /// Joints whose ligaments carry half or more of the external torque.
     hanging: Vec<HangingText>,
     /// Groups that work, the hardest first.
     groups: Vec<WorkText>,
-    /// The group that gives up first when nobody shifts, from a rested start; `null`: it can be held for ever.
+    /// The group that fails first when the posture is held from a rested start; `null`: none.
     fails_first: Option<WorkText>,
     /// rad, m, components of quaternions.
     coordinates: BTreeMap<String, f64>,
@@ -207,7 +207,7 @@ pub(crate) fn weight(posture: &RelaxedPostureText) -> String {
     shares.collect::<Vec<_>>().join(", ")
 }
 
-/// One row a posture, then what is to be said of each.
+/// One row a posture, then the details of each.
 pub(crate) fn report(text: &RelaxText) -> String {
     let mut table = plain_table();
     table.set_header(["posture", "effort", "weight on", "held by", "highest load"]);

@@ -9,7 +9,7 @@ use super::plain_table;
 use crate::output::Folder;
 
 /// `active, R_min 0.2: cases 3.1 x6, 3.3 x33, 2.1 x1`.
-pub(crate) fn story(scenario: &Scenario, summary: &CoordinateSummary) -> String {
+pub(crate) fn strategy_and_cases(scenario: &Scenario, summary: &CoordinateSummary) -> String {
     let ratio = scenario.strategy.minimum_decrease_ratio;
     let strategy = match scenario.strategy.kind {
         contrapposto::hybrid::Strategy::Active => format!("active strategy, R_min {ratio}"),

@@ -23,12 +23,12 @@ impl Source {
         Self { status: status.to_string(), source: source.clone(), note: note.clone() }
     }
 
-    fn told(status: &str) -> Self {
+    fn of_status(status: &str) -> Self {
         Self { status: status.to_owned(), source: String::new(), note: String::new() }
     }
 }
 
-/// What is known of the numbers of a coordinate.
+/// The sources of the numbers of a coordinate.
 #[derive(Debug, Default)]
 pub(crate) struct Known {
     pub(crate) range: Option<Source>,
@@ -49,8 +49,8 @@ impl Known {
         let sources = origins.twin.as_deref().and_then(|twin| library.sources(twin));
         let sources = sources.as_ref();
         let pick = |origin, reference: Option<&Reference>| match origin {
-            Origin::File => Some(Source::told("from the file")),
-            Origin::Overlay => Some(Source::told("from the overlay")),
+            Origin::File => Some(Source::of_status("from the file")),
+            Origin::Overlay => Some(Source::of_status("from the overlay")),
             Origin::Library => reference.map(Source::reference),
         };
         let mut known = Self { range: pick(origins.range, sources.map(|s| s.range)), ..Self::default() };
@@ -88,7 +88,7 @@ fn of_sex(row: &'static data::CurveRow, opened: &SourcedModel) -> &'static data:
 pub(crate) struct Seen(Vec<Source>);
 
 impl Seen {
-    /// ` verified [3]`; nothing where the file itself is the source.
+    /// ` verified [3]`; empty where the file itself is the source.
     pub(crate) fn mark(&mut self, source: Option<&Source>) -> String {
         let Some(source) = source.filter(|source| source.status != "from the file") else { return String::new() };
         if source.source.is_empty() {

@@ -164,7 +164,7 @@ fn cells(row: &Row, torques: &Torques, frame: &Frame<'_>) -> [String; 6] {
     [row.name.clone(), at, external, passive, active, if row.turns { "N m" } else { "N" }.to_owned()]
 }
 
-/// Three places, and no minus before nothing.
+/// Three decimals, without the sign of -0.
 fn shown(value: f64) -> String {
     let text = format!("{value:.3}");
     if text == "-0.000" { "0.000".to_owned() } else { text }

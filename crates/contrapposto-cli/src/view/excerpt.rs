@@ -1,4 +1,4 @@
-//! A run as a page shows it: some hundred moments, those of decisions among them.
+//! Selects the moments of a run that a page shows: some hundred frames, those of decisions among them.
 
 use contrapposto::hybrid::Decision;
 use contrapposto::simulation::{Scenario, Summary};
@@ -8,23 +8,23 @@ use super::recording::Recording;
 
 /// Most frames besides those of decisions.
 pub(crate) const MOST_FRAMES: usize = 600;
-/// Most decisions that are told.
+/// Most events that are listed.
 const MOST_EVENTS: usize = 120;
 
-/// What was decided.
+/// One event of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Event {
     pub(crate) time: f64,
     pub(crate) coordinate: usize,
-    pub(crate) what: What,
+    pub(crate) kind: EventKind,
 }
 
-/// What happened to a coordinate.
+/// The kind of an event.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum What {
-    /// A tired group asked for relief, and this is the answer.
+pub(crate) enum EventKind {
+    /// A tired group needed relief, and this was decided.
     Decided(Decision),
-    /// It asked, but something more important holds the joint, or relief was taken back too often.
+    /// A tired group needed relief, but supports, tasks or a more tired group prevent it, or relief was reversed too often.
     Waits,
     /// No group of it needs relief any more.
     Recovered,
@@ -32,16 +32,16 @@ pub(crate) enum What {
 
 /// A run, as far as a page shows it.
 #[derive(Debug)]
-pub(crate) struct Film {
+pub(crate) struct RunExcerpt {
     /// Its moments, the first and the last among them.
     pub(crate) frames: Vec<Frame>,
-    /// What was decided, in the order of time; the first ones of a long list.
+    /// Events in the order of time; the first ones of a long list.
     pub(crate) events: Vec<Event>,
-    /// How much was decided in all.
+    /// Number of all events.
     pub(crate) happened: u64,
 }
 
-impl Film {
+impl RunExcerpt {
     pub(crate) fn new(scenario: &Scenario, recording: &Recording, summary: &Summary) -> Self {
         let times = recording.times();
         let row_of = |time: f64| times.partition_point(|&t| t < time).min(times.len().saturating_sub(1));
@@ -49,16 +49,16 @@ impl Film {
         let records = &summary.reliefs.records;
         for record in records {
             let (time, coordinate) = (record.time.0, record.coordinate);
-            events.push(Event { time, coordinate, what: record.decision.map_or(What::Waits, What::Decided) });
+            events.push(Event { time, coordinate, kind: record.decision.map_or(EventKind::Waits, EventKind::Decided) });
             let next = records.iter().find(|r| r.coordinate == coordinate && r.time.0 >= record.time.1);
             let until = next.map_or(times.len(), |next| times.partition_point(|&t| t < next.time.0));
-            // A joint may have nothing to ask for long before it has recovered.
+            // A joint may need no relief long before it has recovered.
             let rested = |row: &usize| {
                 let fatigue = recording.row(*row).fatigue[coordinate];
                 fatigue.iter().all(|level| *level <= scenario.hysteresis.recovery_level)
             };
             if let Some(row) = (times.partition_point(|&t| t < record.time.1)..until).find(rested) {
-                events.push(Event { time: times[row], coordinate, what: What::Recovered });
+                events.push(Event { time: times[row], coordinate, kind: EventKind::Recovered });
             }
         }
         events.sort_by(|a, b| a.time.total_cmp(&b.time));
