@@ -118,7 +118,7 @@ fn convert_writes_what_reads_back() {
         assert!((external(out.to_str().unwrap()) - external(&model)).abs() < 1e-9, "{name}");
     }
     let told = refused(&["convert", &model, &model]);
-    assert!(told.contains("is the model itself"), "{told}");
+    assert!(told.contains("is the model file itself"), "{told}");
     let told = refused(&["convert", &model, folder.path().join("out.fbx").to_str().unwrap()]);
     assert!(told.contains(".osim, .urdf"), "{told}");
     assert!(!folder.path().join("out.fbx").exists());

@@ -137,6 +137,9 @@ impl GroundReaction {
         if found.is_empty() {
             return Err(GroundReactionError::NoPlates { table: table_name() });
         }
+        if table.times.is_empty() {
+            return Err(GroundReactionError::Empty { table: table_name() });
+        }
         if !segments.is_empty() && segments.len() != found.len() {
             let plates = found.into_iter().map(|columns| columns.label).collect();
             return Err(GroundReactionError::Count { table: table_name(), given: segments.len(), plates });
