@@ -275,7 +275,7 @@ fn page_and_figures_have_the_same_colours() {
     for (i, stop) in stops.iter().enumerate() {
         let colour = stop.map(|v| format!("{:02x}", (255.0 * v).round() as u8)).concat();
         let svg = drawn(0.3 * i as f64 / (stops.len() - 1) as f64);
-        assert!(svg.contains(&format!("fill=\"#{colour}\" />")), "{colour}");
+        assert!(svg.contains(&format!("fill=\"#{colour}\"/>")), "{colour}");
     }
     for pair in ends.windows(2) {
         let load = 0.5 * (pair[0] + pair[1]);
