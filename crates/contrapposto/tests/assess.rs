@@ -1,5 +1,4 @@
-//! Assessment of a given motion: sampling does not matter, sides do not matter, peaks are where they are, and what is not in order
-//! is refused.
+//! Tests the assessment of a given motion: rates of sampling, mirrored bodies, peaks, supports, and refused motions.
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
@@ -38,7 +37,7 @@ fn group<'a>(model: &Model, found: &'a Assessment, name: &str, side: Side) -> &'
 /// A posture held for ten minutes is the same in two rows as in six hundred, and torques that change in a straight line between
 /// two rows are those of rows between them.
 #[test]
-fn rows_between_change_nothing() {
+fn a_held_posture_in_2_rows_and_in_600_gives_the_same_assessment() {
     let model = body();
     let level = bent(&model, &[("elbow_flex_r", 90.0)]);
     let two = holding(&model, "hand_r", &[(0.0, level.clone()), (600.0, level.clone())]);
@@ -55,7 +54,7 @@ fn rows_between_change_nothing() {
 }
 
 #[test]
-fn left_mirrors_right() {
+fn the_same_motion_of_left_and_right_arm_gives_the_same_load_and_fatigue() {
     let model = body();
     let of = |side: &str| {
         let elbow = format!("elbow_flex_{side}");
@@ -72,7 +71,7 @@ fn left_mirrors_right() {
 
 /// The load is greatest in the middle, where the forearm is level; fatigue at the end.
 #[test]
-fn peaks_and_proposals() {
+fn load_peaks_where_the_forearm_is_level_and_fatigue_at_the_end() {
     let model = body();
     let angles = [20.0, 50.0, 90.0, 50.0, 20.0];
     let motion: Vec<_> = angles
@@ -97,7 +96,7 @@ fn peaks_and_proposals() {
 
 /// Without supports the root lacks the whole weight; on both feet nothing.
 #[test]
-fn supports_hold_the_root() {
+fn the_root_lacks_the_whole_weight_without_supports_and_nothing_on_two_feet() {
     let model = body();
     let motion = [(0.0, model.default_posture()), (1.0, bent(&model, &[("arm_flex_r", 40.0)]))];
     let weight = model.mass() * model.gravity().norm();
@@ -131,7 +130,7 @@ fn supports_hold_the_root() {
 
 /// A pelvis that goes up as a parabola accelerates by twice its coefficient, whatever the rate of frames.
 #[test]
-fn the_centre_of_mass_accelerates() {
+fn a_pelvis_that_rises_as_a_parabola_accelerates_by_twice_its_coefficient() {
     let model = body();
     let height = model.coordinate("pelvis_ty").unwrap();
     for rate in [20.0, 100.0, 1000.0] {
@@ -150,7 +149,7 @@ fn the_centre_of_mass_accelerates() {
 }
 
 #[test]
-fn what_is_not_in_order_is_refused() {
+fn motions_too_long_out_of_order_or_of_another_model_are_refused() {
     let model = body();
     let at = |time: f64| (time, model.default_posture());
     let try_it = |motion: &[(f64, Posture)]| assess(&model, motion, |_, _, _| {}, &AssessSettings::default(), |_| {});

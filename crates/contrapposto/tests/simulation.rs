@@ -1,4 +1,4 @@
-//! Does the loop do what its parts promise together? Rest is enforced, the balance of torques holds, nothing leaves its range.
+//! Tests the loop of a simulation: recovery, balance of torques, ranges, events and time steps.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
@@ -48,7 +48,7 @@ fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
 }
 
 #[test]
-fn relief_lasts_until_the_group_has_rested() {
+fn relief_of_a_loaded_elbow_lasts_until_its_group_has_recovered() {
     let (scenario, elbow) = loaded_elbow(10.0, 600.0);
     let (mut began, mut ended, mut load_at_trip) = (None, None, 0.0);
     run(&scenario, |sample| {
@@ -70,7 +70,7 @@ fn relief_lasts_until_the_group_has_rested() {
 }
 
 #[test]
-fn every_sample_is_balanced_and_in_range() {
+fn in_every_sample_torques_add_up_to_zero_and_coordinates_are_in_range() {
     let (scenario, _) = loaded_elbow(4.0, 300.0);
     let mut relieved = 0;
     run(&scenario, |sample| {
@@ -86,7 +86,7 @@ fn every_sample_is_balanced_and_in_range() {
 }
 
 #[test]
-fn the_same_scenario_gives_the_same_bits() {
+fn two_runs_of_one_scenario_give_the_same_bits() {
     let (scenario, _) = loaded_elbow(6.0, 120.0);
     let record = || {
         let mut bits: Vec<u64> = vec![];
@@ -100,9 +100,8 @@ fn the_same_scenario_gives_the_same_bits() {
     assert!(record() == record(), "two runs differ");
 }
 
-/// Who waits for something to happen is not done when nothing moves any more.
 #[test]
-fn a_settled_run_waits_for_what_is_to_come() {
+fn a_settled_run_with_an_event_to_come_ends_after_the_event() {
     let (mut scenario, _) = loaded_elbow(10.0, 600.0);
     scenario.start_fatigue.fill([0.7; 2]);
     scenario.run.stop_when_settled = true;
@@ -133,9 +132,9 @@ fn a_settled_run_waits_for_what_is_to_come() {
     }
 }
 
-/// Where nothing moves, a coarse time step tires as a fine one does, under loads that come and go.
+/// Under loads that come and go.
 #[test]
-fn fatigue_does_not_depend_on_the_time_step() {
+fn fatigue_of_a_held_posture_is_the_same_at_time_steps_from_5_ms_to_60_s() {
     let (mut scenario, elbow) = loaded_elbow(4.0, 600.0);
     scenario.free.fill(false);
     scenario.hysteresis = Hysteresis { critical_level: 1.0, recovery_level: 0.0 };

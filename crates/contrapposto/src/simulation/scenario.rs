@@ -21,7 +21,7 @@ pub enum Tables {
     Literal,
 }
 
-/// What kind of relief is wanted.
+/// The kind of relief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrategySettings {
     /// Active or passive.
@@ -30,7 +30,7 @@ pub struct StrategySettings {
     pub minimum_decrease_ratio: f64,
 }
 
-/// How relief is carried out.
+/// Step sizes and tolerances of relief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliefSettings {
     /// `beta` of Eq. 9, above 0, below 1.
@@ -43,7 +43,7 @@ pub struct ReliefSettings {
     pub tables: Tables,
 }
 
-/// How long, and how finely.
+/// Duration and time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunSettings {
     /// Simulated time, s, not negative.
@@ -66,7 +66,7 @@ impl RunSettings {
     }
 }
 
-/// What the body should do besides finding relief.
+/// Tasks of the body besides relief.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskSettings {
     /// Tasks of one priority.
@@ -75,53 +75,53 @@ pub struct TaskSettings {
     pub above_relief: bool,
 }
 
-/// Something that changes during a run.
+/// A change during a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Event {
-    /// When, s.
+    /// Time of the change, s.
     pub time: f64,
     /// Strategy of every coordinate from then on.
     pub strategies: Option<Vec<Strategy>>,
     /// Loads from then on.
     pub loads: Option<Vec<Load>>,
-    /// Places in [`Scenario::tasks`] and what is asked there from then on.
+    /// Indices into [`Scenario::tasks`], and the tasks there from then on.
     pub tasks: Vec<(usize, PriorityLevel)>,
 }
 
 /// A complete experiment.
 #[derive(Clone, Debug)]
 pub struct Scenario {
-    /// Its name.
+    /// The name of the experiment.
     pub title: String,
     /// The body.
     pub model: Model,
-    /// Where it starts, inside all ranges.
+    /// The posture at the start, inside all ranges.
     pub start: Posture,
-    /// Which coordinates may move, one flag each.
+    /// Whether each coordinate may move.
     pub free: Vec<bool>,
-    /// What pulls on it besides its weight.
+    /// Loads besides the weight of the body.
     pub loads: Vec<Load>,
-    /// What carries the body. Without supports its root is held as if by hand.
+    /// Supports of the body. Without supports the root is held as if by hand.
     pub supports: Vec<Support>,
-    /// What it should do, the most important first.
+    /// Tasks, the most important first.
     pub tasks: Vec<TaskSettings>,
-    /// What changes on the way, the earliest first.
+    /// Changes during the run, the earliest first.
     pub events: Vec<Event>,
-    /// Relief wanted.
+    /// The kind of relief.
     pub strategy: StrategySettings,
     /// Strategy of every coordinate at the start, where it is another than [`Scenario::strategy`]; empty for none.
     pub strategies: Vec<Strategy>,
-    /// Relief carried out.
+    /// Step sizes and tolerances of relief.
     pub relief: ReliefSettings,
-    /// When relief begins and ends.
+    /// Fatigue at which relief begins and ends.
     pub hysteresis: Hysteresis,
     /// Fatigue at the start of the positive and negative group of every coordinate, 0..=1.
     pub start_fatigue: Vec<[f64; 2]>,
-    /// How long.
+    /// Duration and time step.
     pub run: RunSettings,
 }
 
-/// Why an experiment was refused.
+/// The reason for which an experiment was refused or a run ended.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScenarioError {
@@ -145,7 +145,7 @@ pub enum ScenarioError {
     /// No posture was found near the start in which the supports hold the body.
     #[error("the supports cannot hold the body near the start: {0}")]
     CannotStand(Missing),
-    /// An event has thrown the body off balance; nothing near holds it.
+    /// An event has thrown the body off balance, and no posture near was found in which the supports hold it.
     #[error("{0}")]
     Falls(Fall),
     /// A posture, a load or a passive law was refused while torques were computed.
@@ -167,7 +167,7 @@ pub enum ScenarioError {
         /// Its range.
         range: (f64, f64),
     },
-    /// A setting has no meaning.
+    /// A setting is outside the values that it may have.
     #[error("{name} is {value}; it must be {accepted}")]
     Setting {
         /// Its name with unit.
@@ -177,7 +177,7 @@ pub enum ScenarioError {
         /// What would be accepted.
         accepted: &'static str,
     },
-    /// A coordinate is free but nothing is known of its passive torque, so no relief can be found for it.
+    /// A coordinate is free but has no passive curve, so that no relief can be computed for it.
     #[error("`{0}` is free, but has no passive curve to find relief with; lock it or give it one")]
     NoPassiveCurve(String),
 }
