@@ -45,8 +45,8 @@ pub struct Engine<'a> {
 }
 
 impl<'a> Engine<'a> {
-    /// For a body without supports (inverse kinematics): checks the levels, the most important first. Locked and dependent coordinates do
-    /// not change on their own.
+    /// For a body without supports (inverse kinematics): checks the levels, the most important first. Locked and
+    /// dependent coordinates do not change on their own.
     ///
     /// # Errors
     /// [`EngineError`] names the first thing that does not fit the model.
@@ -61,8 +61,8 @@ impl<'a> Engine<'a> {
         Ok(Self::with_rule(settings, ContactForces::without_supports(model), rule))
     }
 
-    /// For a body on supports, in equilibrium, or with a fixed root: supports keep the placements that they have in `start`; contact forces
-    /// are found with the posture. One level may be effort.
+    /// For a body on supports, in equilibrium, or with a fixed root: supports keep the placements that they have in
+    /// `start`; contact forces are found with the posture. One level may be effort.
     ///
     /// # Errors
     /// As [`Engine::new`].
@@ -101,7 +101,8 @@ impl<'a> Engine<'a> {
         self.settings.lock(rate);
     }
 
-    /// The levels, to move targets between steps. A changed level must still fit the model; effort must stay where it is.
+    /// The levels, to move targets between steps. A changed level must still fit the model; effort must stay where it
+    /// is.
     pub fn levels_mut(&mut self) -> &mut [PriorityLevel] {
         &mut self.settings.levels
     }
@@ -168,8 +169,8 @@ impl<'a> Engine<'a> {
         Ok(self.iterate.evaluate(&self.settings, posture)?)
     }
 
-    /// One step: moves `posture` toward the levels, within ranges and [`Options::max_step`]. Where the last step is rejected, this one begins
-    /// where that one had begun.
+    /// One step: moves `posture` toward the levels, within ranges and [`Options::max_step`]. Where the last step is
+    /// rejected, this one begins where that one had begun.
     ///
     /// # Errors
     /// [`EngineError`] when the posture does not fit the model; it is not moved then.
@@ -187,7 +188,8 @@ impl<'a> Engine<'a> {
         Ok(step)
     }
 
-    /// Linearises at `posture`, or, if the step that led there is rejected, at the posture before; returns whether it was rejected.
+    /// Linearises at `posture`, or, if the step that led there is rejected, at the posture before; returns whether it
+    /// was rejected.
     fn linearise_or_go_back(&mut self, posture: &mut Posture) -> Result<bool, EngineError> {
         self.linearise(posture)?;
         let merit_rose = self.rule.merit_rose(&self.settings, &self.solver);
@@ -221,8 +223,9 @@ impl<'a> Engine<'a> {
         self.slope.forget();
     }
 
-    /// Steps until they are short or change the merit little. With effort, [`Options::local_minima`] are compared first. Without supports the
-    /// largest step shrinks after a third of the largest number of steps, so that the body comes to rest whatever it is asked.
+    /// Steps until they are short or change the merit little. With effort, [`Options::local_minima`] are compared
+    /// first. Without supports the largest step shrinks after a third of the largest number of steps, so that the body
+    /// comes to rest whatever it is asked.
     ///
     /// # Errors
     /// As [`Engine::step`].
@@ -267,8 +270,8 @@ impl<'a> Engine<'a> {
         Ok(SolvedPosture { posture, levels, effort, slip, balance, reason, steps })
     }
 
-    /// Moves `posture` to the lowest of the local minima that are compared; returns whether nothing is left for steps to do, and the number
-    /// of steps that it took.
+    /// Moves `posture` to the lowest of the local minima that are compared; returns whether nothing is left for steps
+    /// to do, and the number of steps that it took.
     fn compare_local_minima(&mut self, posture: &mut Posture) -> Result<(bool, usize), EngineError> {
         let count = self.settings.options.local_minima;
         if count == 0 || !self.settings.can_descend() {
@@ -284,8 +287,9 @@ impl<'a> Engine<'a> {
         Ok((minimum.converged && held && self.settings.effort_is_last(), minimum.steps))
     }
 
-    /// Moves `posture` to the nearest local minimum of effort under the supports and the levels above effort, and returns whether it did: not
-    /// if that is farther away than the largest step, or if levels below effort would be passed over.
+    /// Moves `posture` to the nearest local minimum of effort under the supports and the levels above effort, and
+    /// returns whether it did: not if that is farther away than the largest step, or if levels below effort would be
+    /// passed over.
     ///
     /// # Errors
     /// [`EngineError::Body`] when the posture does not fit the model.
@@ -300,8 +304,9 @@ impl<'a> Engine<'a> {
         Ok(descended)
     }
 
-    /// Slope of the external torque of `rate`, N m/rad, along the least motion that moves it while supports stay where they are and the first
-    /// `above` levels keep their values; contact forces are solved anew along it. `None` where the rate cannot move so.
+    /// Slope of the external torque of `rate`, N m/rad, along the least motion that moves it while supports stay where
+    /// they are and the first `above` levels keep their values; contact forces are solved anew along it. `None` where
+    /// the rate cannot move so.
     ///
     /// # Errors
     /// [`EngineError`] when the posture does not fit the model.

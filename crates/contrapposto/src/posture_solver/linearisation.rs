@@ -1,8 +1,8 @@
 //! Writes the problem of one step: rows of all levels, and bounds of the step.
 //!
-//! Unknown are the changes of all rates and, on supports, of all contact forces. In strict order of priority: friction and
-//! equilibrium of the root, places of the supports, greatest shares of the supports, then the caller's levels. A row is
-//! `lower - value <= J step <= upper - value` ([`crate::tasks`]).
+//! Unknown are the changes of all rates and, on supports, of all contact forces. In strict order of priority: friction
+//! and equilibrium of the root, places of the supports, greatest shares of the supports, then the caller's levels. A
+//! row is `lower - value <= J step <= upper - value` ([`crate::tasks`]).
 
 use super::iterate::Iterate;
 use super::settings::Settings;
@@ -110,8 +110,8 @@ impl Linearisation {
         self.problem.levels[0].hard = true;
     }
 
-    /// Bounds of the step: ranges, `trust_radius` (rad or m), and contact forces that only push. Locked rates do not change; a
-    /// coordinate outside its range comes back by at most the trust radius.
+    /// Bounds of the step: ranges, `trust_radius` (rad or m), and contact forces that only push. Locked rates do not
+    /// change; a coordinate outside its range comes back by at most the trust radius.
     pub(super) fn bound(&mut self, settings: &Settings<'_>, iterate: &Iterate, trust_radius: f64) {
         let (model, posture) = (settings.model, iterate.torques.posture());
         let Problem { lower, upper, .. } = &mut self.problem;

@@ -1,16 +1,16 @@
 //! The step rule of the merit function: for bodies on supports, where effort is lowered while the levels above it hold.
 //!
-//! Effort is a sum of squares under nonlinear constraints. A step is one of Gauss-Newton with the whole second derivative of the Lagrangian
-//! ([`crate::effort::hessian`]) within a trust region; it is rejected where it raises
+//! Effort is a sum of squares under nonlinear constraints. A step is one of Gauss-Newton with the whole second
+//! derivative of the Lagrangian ([`crate::effort::hessian`]) within a trust region; it is rejected where it raises
 //!
 //! ```text
 //! merit = |e|^2 / 2 + penalty * sum of |errors of the levels above|         penalty above every multiplier
 //! ```
 //!
-//! (Nocedal & Wright 2006, "Numerical Optimization", ch. 18). Contact forces, of which effort is a quadratic function, are solved anew
-//! in every posture (Kaufman 1975, "A variable projection method for solving separable nonlinear least squares problems"); in a step they
-//! are unknowns beside the posture, and the Newton level has their mixed second derivatives, too. Without an effort level every step
-//! counts.
+//! (Nocedal & Wright 2006, "Numerical Optimization", ch. 18). Contact forces, of which effort is a quadratic function,
+//! are solved anew in every posture (Kaufman 1975, "A variable projection method for solving separable nonlinear least
+//! squares problems"); in a step they are unknowns beside the posture, and the Newton level has their mixed second
+//! derivatives, too. Without an effort level every step counts.
 
 use super::iterate::Iterate;
 use super::linearisation::{Linearisation, missing};
@@ -238,8 +238,8 @@ fn limit_feasibility_step(level: &mut Level) {
     }
 }
 
-/// The multipliers of rows with a second derivative: of the root's equilibrium (the last rows of the first level), of the supports'
-/// places, and of the tasks above effort.
+/// The multipliers of rows with a second derivative: of the root's equilibrium (the last rows of the first level), of
+/// the supports' places, and of the tasks above effort.
 fn gather(effort: &EffortProblem<'_>, above: &[Level], first: usize, all: &[f64], gathered: &mut Vec<f64>) {
     gathered.clear();
     let mut rest = all;

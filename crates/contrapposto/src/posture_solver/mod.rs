@@ -1,11 +1,12 @@
-//! Solves for postures by steps of prioritised least squares: for tasks without supports (inverse kinematics), and for bodies on supports,
-//! with contact forces and effort.
+//! Solves for postures by steps of prioritised least squares: for tasks without supports (inverse kinematics), and for
+//! bodies on supports, with contact forces and effort.
 //!
-//! [`Engine`] makes a step, or a whole posture, from [`PriorityLevel`](crate::tasks::PriorityLevel)s. Ranges of motion and the largest step
-//! always hold; then the levels follow in their order. On supports, posture and contact forces are found together: friction and
-//! equilibrium of the root come first, then supports stay where they are, then no support carries more than its greatest share, then the
-//! priority levels follow, of which one may be effort. The contact forces of every posture are solved anew ([`crate::contact`]), so that
-//! the reported posture is in equilibrium exactly.
+//! [`Engine`] makes a step, or a whole posture, from [`PriorityLevel`](crate::tasks::PriorityLevel)s. Ranges of motion
+//! and the largest step always hold; then the levels follow in their order. On supports, posture and contact forces are
+//! found together: friction and equilibrium of the root come first, then supports stay where they are, then no support
+//! carries more than its greatest share, then the priority levels follow, of which one may be effort. The contact
+//! forces of every posture are solved anew ([`crate::contact`]), so that the reported posture is in equilibrium
+//! exactly.
 //!
 //! | File | Holds |
 //! |---|---|

@@ -4,9 +4,9 @@
 //! lambda = argmin |J^T r + A^T lambda|     over all unknowns that are not at a bound, A the rows above that are active
 //! ```
 //!
-//! This is the first-order estimate of Gill, Murray & Wright 1981, "Practical Optimization", section 6.6. The multipliers of the
-//! last step belong to the posture before it, and to a step that was cut short where it was longest; a second derivative built with
-//! them leads to steps that are rejected again and again.
+//! This is the first-order estimate of Gill, Murray & Wright 1981, "Practical Optimization", section 6.6. The
+//! multipliers of the last step belong to the posture before it, and to a step that was cut short where it was longest;
+//! a second derivative built with them leads to steps that are rejected again and again.
 
 use super::tolerances::{DEPENDENT_ROW, NO_ROOM};
 use hierarchical_least_squares::linalg::dot;
@@ -42,8 +42,8 @@ impl MultiplierEstimate {
         &self.multipliers
     }
 
-    /// Estimates the multipliers of `above` for a level with this `gradient`, `J^T r`. A row or bound is active if it is an
-    /// equation, or had a multiplier in the `last` step and has no room now.
+    /// Estimates the multipliers of `above` for a level with this `gradient`, `J^T r`. A row or bound is active if it
+    /// is an equation, or had a multiplier in the `last` step and has no room now.
     pub(super) fn estimate(&mut self, problem: &Problem, above: &[Level], last: Multipliers<'_>, gradient: &[f64]) {
         let n = problem.unknowns();
         let active = |multiplier: Option<&f64>, lower: f64, upper: f64| {
@@ -128,8 +128,8 @@ mod tests {
     use super::*;
     use hierarchical_least_squares::Solver;
 
-    /// Three rows above, one of them twice, two active bounds, and a level that cannot be reached: in the solution the estimate
-    /// equals the multipliers of the solver.
+    /// Three rows above, one of them twice, two active bounds, and a level that cannot be reached: in the solution the
+    /// estimate equals the multipliers of the solver.
     #[test]
     fn estimate_in_the_solution_of_an_unreachable_level_equals_the_multipliers_of_the_solver() {
         let mut random = Pcg64Mcg::new(5);

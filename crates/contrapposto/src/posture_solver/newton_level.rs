@@ -7,13 +7,15 @@
 //! H = J^T J + sum_i r_i r_i'' + sum_i lambda_i c_i''
 //! ```
 //!
-//! and steps that use `J^T J` alone approach that point slowly or oscillate around it. A Newton level has the rows `R p = -R^-T g` with
-//! `R^T R = H` and `g` the gradient of `L` (Pfeiffer, Escande & Rapoport 2018, "Singularity resolution in equality and inequality
-//! constrained hierarchical task-space control by adaptive nonlinear least squares", with another approximation of `H`). Along
-//! directions that the levels above fix, `H` may be made larger: no step goes there.
+//! and steps that use `J^T J` alone approach that point slowly or oscillate around it. A Newton level has the rows `R p
+//! = -R^-T g` with `R^T R = H` and `g` the gradient of `L` (Pfeiffer, Escande & Rapoport 2018, "Singularity resolution
+//! in equality and inequality constrained hierarchical task-space control by adaptive nonlinear least squares", with
+//! another approximation of `H`). Along directions that the levels above fix, `H` may be made larger: no step goes
+//! there.
 //!
-//! `H` may be indefinite. Two ways make it positive: [`NewtonLevel::write_with_absolute_curvature`] turns negative curvature round and
-//! leaves flat directions to the levels below; [`NewtonLevel::write_regularised`] adds to the diagonal.
+//! `H` may be indefinite. Two ways make it positive: [`NewtonLevel::write_with_absolute_curvature`] turns negative
+//! curvature round and leaves flat directions to the levels below; [`NewtonLevel::write_regularised`] adds to the
+//! diagonal.
 
 use super::linearisation::missing;
 use super::multiplier_estimate::MultiplierEstimate;
@@ -83,8 +85,9 @@ impl NewtonLevel {
         (0..n).fold(0.0, |size: f64, i| size.max(self.matrix[i * n + i].abs()))
     }
 
-    /// Makes the matrix larger along rows of the levels `above`: `weight` times a row of unit length. `share` is given the
-    /// multiplier of a row, its limits and its weight; it returns the row's part in the gradient, or `None` to leave the row out.
+    /// Makes the matrix larger along rows of the levels `above`: `weight` times a row of unit length. `share` is given
+    /// the multiplier of a row, its limits and its weight; it returns the row's part in the gradient, or `None` to
+    /// leave the row out.
     pub(super) fn weigh_rows(
         &mut self,
         above: &[Level],
@@ -115,8 +118,9 @@ impl NewtonLevel {
         }
     }
 
-    /// Writes the rows, negative curvature turned round. Pivots of a Cholesky factor as far as they are positive, then eigenvectors
-    /// of the rest; flat directions get no row and are left to the levels below. `size` is that of the largest diagonal entry.
+    /// Writes the rows, negative curvature turned round. Pivots of a Cholesky factor as far as they are positive, then
+    /// eigenvectors of the rest; flat directions get no row and are left to the levels below. `size` is that of the
+    /// largest diagonal entry.
     pub(super) fn write_with_absolute_curvature(&mut self, level: &mut Level, size: f64) {
         let n = self.row.len();
         let flat = FLAT_CURVATURE * size;
@@ -160,8 +164,9 @@ impl NewtonLevel {
         }
     }
 
-    /// Writes the rows, with `regularisation` on the diagonal of the first `rates` unknowns: at least the given one, and as large as
-    /// makes the matrix positive. A level that no regularisation makes positive keeps its first derivatives.
+    /// Writes the rows, with `regularisation` on the diagonal of the first `rates` unknowns: at least the given one,
+    /// and as large as makes the matrix positive. A level that no regularisation makes positive keeps its first
+    /// derivatives.
     pub(super) fn write_regularised(&mut self, level: &mut Level, rates: usize, regularisation: &mut f64) {
         let n = self.row.len();
         if !self.factor_regularised(rates, regularisation) {

@@ -15,11 +15,11 @@ pub struct Options {
     pub level_tolerance: f64,
     /// With effort: steps end when three in a row change the merit function by at most this share of it.
     pub merit_tolerance: f64,
-    /// With effort: a step that raises the merit function is rejected. Without rejection every step counts, and only the next one
-    /// is shorter: for a body in motion.
+    /// With effort: a step that raises the merit function is rejected. Without rejection every step counts, and only
+    /// the next one is shorter: for a body in motion.
     pub reject_steps: bool,
-    /// With effort: local minima that a solve compares before its steps; 1 for the nearest one, 0 for steps alone, which stay
-    /// nearest to the start.
+    /// With effort: local minima that a solve compares before its steps; 1 for the nearest one, 0 for steps alone,
+    /// which stay nearest to the start.
     pub local_minima: usize,
 }
 
@@ -61,8 +61,8 @@ pub struct Step {
 pub enum Reason {
     /// Every level is reached.
     Reached,
-    /// Steps have become as small as [`Options::step_tolerance`], or no longer lower the merit function; a level that is not reached
-    /// is as near as the levels above it allow.
+    /// Steps have become as small as [`Options::step_tolerance`], or no longer lower the merit function; a level that
+    /// is not reached is as near as the levels above it allow.
     Converged,
     /// The largest number of steps was made.
     StepLimit,

@@ -1,10 +1,10 @@
-//! The step rule of strict priorities: for tasks without supports, where the levels follow in their order and no level costs one above
-//! it anything (Baerlocher & Boulic 2004, "An inverse kinematics architecture enforcing an arbitrary number of strict priority
-//! levels").
+//! The step rule of strict priorities: for tasks without supports, where the levels follow in their order and no level
+//! costs one above it anything (Baerlocher & Boulic 2004, "An inverse kinematics architecture enforcing an arbitrary
+//! number of strict priority levels").
 //!
-//! Levels are damped by the errors of theirs and of the levels above. The first level that no longer comes nearer is out of reach and
-//! becomes a Newton level ([`super::newton_level`]), one at a time; the levels below wait until its steps are short. A step of a Newton
-//! level is rejected where it raises
+//! Levels are damped by the errors of theirs and of the levels above. The first level that no longer comes nearer is
+//! out of reach and becomes a Newton level ([`super::newton_level`]), one at a time; the levels below wait until its
+//! steps are short. A step of a Newton level is rejected where it raises
 //!
 //! ```text
 //! merit = |r| + penalty * sum of |errors of the levels above|        penalty above the multipliers, over |r|
@@ -97,7 +97,8 @@ impl PriorityRule {
         self.restoration_solver.forget();
     }
 
-    /// After a third of the largest number of steps the largest step shrinks, so that the body comes to rest whatever it is asked.
+    /// After a third of the largest number of steps the largest step shrinks, so that the body comes to rest whatever
+    /// it is asked.
     pub(super) fn cool_toward_last_step(&mut self, options: &Options) {
         let steps = (options.max_steps - options.max_steps / STEPS_BEFORE_COOLING).max(1);
         self.cooling = (COOLED_STEP * options.step_tolerance / options.max_step).powf(1.0 / steps as f64);
@@ -179,8 +180,9 @@ impl PriorityRule {
         Ok(())
     }
 
-    /// The first level that has stalled though all levels above it come nearer becomes the Newton level; or the last level, when steps no
-    /// longer shrink. One at a time: the rows of a Newton level have no second derivative of their own.
+    /// The first level that has stalled though all levels above it come nearer becomes the Newton level; or the last
+    /// level, when steps no longer shrink. One at a time: the rows of a Newton level have no second derivative of their
+    /// own.
     fn choose_newton_level(&mut self, level_tolerance: f64, solver: &Solver) {
         if let Some(k) = self.newton {
             if self.errors[k] <= level_tolerance {
@@ -210,8 +212,8 @@ impl PriorityRule {
         }
     }
 
-    /// Damps levels by the errors of theirs and of the levels above: far from the target a row says little about the way. The last level
-    /// is not damped, for no level below could suffer.
+    /// Damps levels by the errors of theirs and of the levels above: far from the target a row says little about the
+    /// way. The last level is not damped, for no level below could suffer.
     fn damp(&self, settings: &Settings<'_>, linearisation: &mut Linearisation) {
         let mut missing = 0.0;
         let last = settings.levels.len().saturating_sub(1);
@@ -257,7 +259,8 @@ impl PriorityRule {
         newton.write_with_absolute_curvature(&mut problem.levels[k], size);
     }
 
-    /// A long step of Newton level `k` leaves errors above it that grow with its square: takes them back with the least motion.
+    /// A long step of Newton level `k` leaves errors above it that grow with its square: takes them back with the least
+    /// motion.
     fn restore(
         &mut self,
         settings: &Settings<'_>,

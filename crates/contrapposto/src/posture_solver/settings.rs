@@ -1,4 +1,5 @@
-//! The problem as it is given: model, priority levels, supports, loads, locked coordinates and options. A step changes nothing here.
+//! The problem as it is given: model, priority levels, supports, loads, locked coordinates and options. A step changes
+//! nothing here.
 
 use nalgebra::Vector3;
 
@@ -15,7 +16,8 @@ use crate::posture::Posture;
 use crate::statics::Load;
 use crate::tasks::{Placement, PriorityLevel, Task};
 
-/// Levels of a problem on supports before those of the caller: friction and equilibrium, places of the supports, shares.
+/// Levels of a problem on supports before those of the caller: friction and equilibrium, places of the supports,
+/// shares.
 const CONTACT_LEVELS: usize = 3;
 
 /// See the module's text.

@@ -1,8 +1,9 @@
 //! Computes the slope of a joint's torque along the least motion that moves the joint while supports and tasks stay.
 //!
-//! `d = P e / (e^T P e)`, with `P` the projection on the motions that the constraints leave free and `e` the unit vector of the rate, is
-//! the least motion with `e^T d = 1`: the solution of one lexicographic problem. The slope is a central difference along `d`, of external
-//! torque and of the neighbours' part in the joint's passive torque; contact forces are solved anew on both sides.
+//! `d = P e / (e^T P e)`, with `P` the projection on the motions that the constraints leave free and `e` the unit
+//! vector of the rate, is the least motion with `e^T d = 1`: the solution of one lexicographic problem. The slope is a
+//! central difference along `d`, of external torque and of the neighbours' part in the joint's passive torque; contact
+//! forces are solved anew on both sides.
 
 use super::error::EngineError;
 use super::iterate::Iterate;
@@ -54,8 +55,8 @@ impl SlopeAlongMotion {
         self.contact.forget();
     }
 
-    /// Slope of the external torque of `rate` at the iterate, N m/rad, while supports and the first `above` levels keep their values;
-    /// `None` where the rate cannot move so.
+    /// Slope of the external torque of `rate` at the iterate, N m/rad, while supports and the first `above` levels keep
+    /// their values; `None` where the rate cannot move so.
     pub(super) fn slope(
         &mut self,
         settings: &Settings<'_>,
@@ -98,8 +99,8 @@ impl SlopeAlongMotion {
         }
     }
 
-    /// External torque, contact included, after `length` of the motion, and the neighbours' part in the passive torque. `None` where a
-    /// passive law gives no number: a little beyond a range it need not.
+    /// External torque, contact included, after `length` of the motion, and the neighbours' part in the passive torque.
+    /// `None` where a passive law gives no number: a little beyond a range it need not.
     fn torque_after(
         &mut self,
         settings: &Settings<'_>,

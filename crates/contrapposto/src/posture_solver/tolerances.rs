@@ -1,7 +1,7 @@
 //! Every tolerance and factor of the posture solver, with its unit.
 //!
-//! "Share" is a number without unit, of the quantity that the text names. A step is in rad or m; an error is in the unit of its row (m,
-//! rad, or a share of strength).
+//! "Share" is a number without unit, of the quantity that the text names. A step is in rad or m; an error is in the
+//! unit of its row (m, rad, or a share of strength).
 
 // Ranges, and differences along a motion.
 
@@ -21,7 +21,8 @@ pub(super) const DEPENDENT_ROW: f64 = 1e-10;
 
 // Newton level. The largest diagonal entry is that of its matrix.
 
-/// Share of the largest diagonal entry, for rows and bounds above that are active: so large that curvature along them does not matter.
+/// Share of the largest diagonal entry, for rows and bounds above that are active: so large that curvature along them
+/// does not matter.
 pub(super) const WEIGHT_OF_ACTIVE_ROWS: f64 = 1e2;
 /// Share of the largest diagonal entry; a direction of less curvature is flat, and left to the levels below.
 pub(super) const FLAT_CURVATURE: f64 = 1e-6;
@@ -52,7 +53,8 @@ pub(super) const STALLED_RESIDUAL: f64 = 0.5;
 pub(super) const STALLED_STEP: f64 = 0.5;
 /// Unit of the level. A level stalls only while the levels above it are nearer than this, all together.
 pub(super) const LEVELS_ABOVE_NEAR: f64 = 0.05;
-/// Unit of the level. While the levels above are nearer than this, half as many stalled steps are enough for the last level.
+/// Unit of the level. While the levels above are nearer than this, half as many stalled steps are enough for the last
+/// level.
 pub(super) const LEVELS_ABOVE_MET: f64 = 1e-3;
 /// rad or m. A Newton level has settled when no step is longer; levels below wait for that.
 pub(super) const SETTLED_STEP: f64 = 1e-4;
@@ -77,8 +79,8 @@ pub(super) const COOLED_STEP: f64 = 0.1;
 
 // Rule of the merit function.
 
-/// Length, in the units of a level's rows, that one step takes on: on the way to a far target the body stays where effort is little,
-/// and so comes to lower minima.
+/// Length, in the units of a level's rows, that one step takes on: on the way to a far target the body stays where
+/// effort is little, and so comes to lower minima.
 pub(super) const FEASIBILITY_STEP: f64 = 0.15;
 /// Share of the merit; a merit that grows by less has not grown.
 pub(super) const MERIT_SHARE_ROUNDING: f64 = 1e-12;

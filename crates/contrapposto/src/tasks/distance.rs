@@ -1,7 +1,7 @@
 //! Error and Jacobian of the distance of two points.
 //!
-//! `lower <= |a - b| <= upper`, m: one inequality, whose row is `n . (J_a - J_b)` with `n` the unit line from `b` to `a`. Where
-//! the points meet, `n` is ground x.
+//! `lower <= |a - b| <= upper`, m: one inequality, whose row is `n . (J_a - J_b)` with `n` the unit line from `b` to
+//! `a`. Where the points meet, `n` is ground x.
 
 use nalgebra::Vector3;
 

@@ -1,7 +1,7 @@
 //! Error and Jacobian of effort: active torque as a share of strength.
 //!
-//! Error `e = tau_a / S` of every asked coordinate, a share of the strength `S(q)` of the group that works (the sign of the
-//! active torque `tau_a = -(tau_p + tau_e)`), so between -1 and 1 for a posture that can be held. Its derivative is
+//! Error `e = tau_a / S` of every asked coordinate, a share of the strength `S(q)` of the group that works (the sign of
+//! the active torque `tau_a = -(tau_p + tau_e)`), so between -1 and 1 for a posture that can be held. Its derivative is
 //! `-(d tau_p/dq + d tau_e/dq)/S - tau_a S'/S^2`; it has a kink where the other group takes over, at `e = 0`.
 //!
 //! Passive torque is folded as external torque is: that of a dependent coordinate counts at its independent one. With
@@ -83,13 +83,14 @@ fn active(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
     active_torque(external(model, body, coordinate), passive(model, body, coordinate, [1.0, 0.0], None))
 }
 
-/// The error that a torque of 1 N m on a coordinate takes away: one over the strength of the group that works where the error is `error`.
+/// The error that a torque of 1 N m on a coordinate takes away: one over the strength of the group that works where the
+/// error is `error`.
 pub(crate) fn share_of_strength(model: &Model, body: &JointTorques, coordinate: usize, error: f64) -> f64 {
     1.0 / strength(model, body, coordinate, error).0
 }
 
-/// Adds the derivatives of an independent coordinate's passive torque, dependent coordinates folded in, to `row`, one entry a rate. Returns
-/// the torque.
+/// Adds the derivatives of an independent coordinate's passive torque, dependent coordinates folded in, to `row`, one
+/// entry a rate. Returns the torque.
 pub(crate) fn passive_row(model: &Model, body: &JointTorques, coordinate: usize, rate: usize, row: &mut [f64]) -> f64 {
     let torque = passive(model, body, coordinate, [1.0, 0.0], Some((rate, &mut *row)));
     body.kinematics().fold_columns(model, row);
@@ -108,9 +109,9 @@ fn strength(model: &Model, body: &JointTorques, coordinate: usize, active: f64) 
     })
 }
 
-/// Passive torque of a coordinate and of all that follow it, `[q', q'']` times: derivatives of the coordinate by that of
-/// `slopes`. Adds its derivatives by all rates, dependent coordinates not yet folded, to the row; the rate of the independent
-/// coordinate is given beside the row.
+/// Passive torque of a coordinate and of all that follow it, `[q', q'']` times: derivatives of the coordinate by that
+/// of `slopes`. Adds its derivatives by all rates, dependent coordinates not yet folded, to the row; the rate of the
+/// independent coordinate is given beside the row.
 fn passive(
     model: &Model,
     body: &JointTorques,

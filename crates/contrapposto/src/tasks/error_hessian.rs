@@ -1,7 +1,7 @@
 //! Computes the sum of second derivatives of the errors of tasks, `sum_i w_i r_i''`.
 //!
-//! Loads whose generalised forces are `sum_i w_i grad r_i` change with the posture as that sum does: it is their gradient of external torque
-//! (Eqs. 7, 8).
+//! Loads whose generalised forces are `sum_i w_i grad r_i` change with the posture as that sum does: it is their
+//! gradient of external torque (Eqs. 7, 8).
 
 use nalgebra::Vector3;
 
@@ -39,7 +39,8 @@ impl ErrorHessian {
         add_gradient_loads(task, model, weights, &mut self.loads);
     }
 
-    /// The sum in the posture of `kinematics`; its symmetric part counts. `None` for weights beyond the loads that a model accepts (1e9).
+    /// The sum in the posture of `kinematics`; its symmetric part counts. `None` for weights beyond the loads that a
+    /// model accepts (1e9).
     pub(crate) fn evaluate(&mut self, model: &Model, kinematics: &Kinematics) -> Option<&Gradient> {
         self.torque.update_weightless(model, kinematics, &self.loads).ok()?;
         self.torque.gradient(model, kinematics, &mut self.gradient);
@@ -47,8 +48,8 @@ impl ErrorHessian {
     }
 }
 
-/// Adds the loads whose generalised forces are `sum weights_i grad r_i` of its rows. Tasks of directions, distances, postures and
-/// effort are left out: their second derivatives are not known here.
+/// Adds the loads whose generalised forces are `sum weights_i grad r_i` of its rows. Tasks of directions, distances,
+/// postures and effort are left out: their second derivatives are not known here.
 fn add_gradient_loads(task: &Task, model: &Model, weights: &[f64], loads: &mut Vec<Load>) {
     let world = |segment, point, force| Load { segment, point, kind: LoadKind::Force(force, FixedIn::World) };
     let couple = |segment, v| Load { segment, point: Vector3::zeros(), kind: LoadKind::Couple(v, FixedIn::World) };

@@ -1,9 +1,9 @@
 //! Error and Jacobian of a direction of a segment toward a place in ground.
 //!
-//! `g` is the gaze, `d` the unit line from the eye to the target, both in ground. The error is the rotation vector that would
-//! turn the gaze onto the target, `a (g x d) / |g x d|` with `a` the angle between them; it has no part along the gaze, so two
-//! rows, along `u` and `v`, say it all: axes of the segment with `u, v, g` right-handed. With `d = x u + y v + z g`,
-//! `s = sqrt(x^2 + y^2)` and `f = a / s` it is `f (-y, x)`, rad.
+//! `g` is the gaze, `d` the unit line from the eye to the target, both in ground. The error is the rotation vector that
+//! would turn the gaze onto the target, `a (g x d) / |g x d|` with `a` the angle between them; it has no part along the
+//! gaze, so two rows, along `u` and `v`, say it all: axes of the segment with `u, v, g` right-handed. With `d = x u + y
+//! v + z g`, `s = sqrt(x^2 + y^2)` and `f = a / s` it is `f (-y, x)`, rad.
 //!
 //! Turning the segment by `w` and moving the eye by `e` change `d`, seen from the segment, by
 //! `d x w - (e - d (d . e)) / L`, `L` the distance; `df = h (x dx + y dy) - dz`, `h = (z s - a) / s^3`.

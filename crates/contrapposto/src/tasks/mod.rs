@@ -1,8 +1,8 @@
 //! Computes the error of every kind of task, its derivative by the generalised speeds, and its second derivative.
 //!
-//! Every kind has its errors in their own units (m, rad, shares of strength). An equation asks for error zero: its rows are
-//! `J step = -error`. An inequality allows a range: `lower - value <= J step <= upper - value`. To first order a step that satisfies the
-//! rows reaches the target; rows keep the scale of their unit (1 m counts as much as 1 rad).
+//! Every kind has its errors in their own units (m, rad, shares of strength). An equation asks for error zero: its rows
+//! are `J step = -error`. An inequality allows a range: `lower - value <= J step <= upper - value`. To first order a
+//! step that satisfies the rows reaches the target; rows keep the scale of their unit (1 m counts as much as 1 rad).
 
 mod center_of_mass;
 mod check;

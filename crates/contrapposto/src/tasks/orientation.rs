@@ -1,9 +1,10 @@
 //! Error and Jacobian of the rotation of a segment.
 //!
-//! Error `r = log(R R_t^-1)` in ground axes, rad: the turn that leads from the target to the present rotation, at most half a
-//! turn. An angular velocity `w` in ground axes changes it by `J_l^-1(r) w`, with the inverse of the left Jacobian of SO(3),
-//! `I - [r]/2 + c(|r|) [r]^2`, `c(a) = (1 - a/2 cot(a/2)) / a^2` (Sola, Deray & Atchuthan 2018, "A micro Lie theory for state
-//! estimation in robotics", Eq. 146). At exactly half a turn the error jumps to the other side.
+//! Error `r = log(R R_t^-1)` in ground axes, rad: the turn that leads from the target to the present rotation, at most
+//! half a turn. An angular velocity `w` in ground axes changes it by `J_l^-1(r) w`, with the inverse of the left
+//! Jacobian of SO(3), `I - [r]/2 + c(|r|) [r]^2`, `c(a) = (1 - a/2 cot(a/2)) / a^2` (Sola, Deray & Atchuthan 2018, "A
+//! micro Lie theory for state estimation in robotics", Eq. 146). At exactly half a turn the error jumps to the other
+//! side.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 

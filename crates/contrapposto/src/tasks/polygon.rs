@@ -1,7 +1,8 @@
 //! Computes the support polygon of points on the ground.
 //!
-//! The convex hull of the points seen along gravity, as half-planes `normal . x <= offset` in ground coordinates with unit
-//! normals square to gravity. Monotone chain (Andrew 1979, "Another efficient algorithm for convex hulls in two dimensions").
+//! The convex hull of the points seen along gravity, as half-planes `normal . x <= offset` in ground coordinates with
+//! unit normals square to gravity. Monotone chain (Andrew 1979, "Another efficient algorithm for convex hulls in two
+//! dimensions").
 
 use nalgebra::{Vector2, Vector3};
 
@@ -22,14 +23,14 @@ impl HalfPlane {
 }
 
 /// A hull thinner than this, m, counts as a stretch, and a shorter stretch as a place: corners so sharp would not hold.
-const THIN: f64 = 1e-6;
+const THIN_HULL: f64 = 1e-6;
 
 /// Corners nearer to each other than this, m, are one.
-const SAME: f64 = 1e-9;
+const SAME_CORNER: f64 = 1e-9;
 
-/// The half-planes whose intersection is the convex hull of `points` (ground, m) seen along `gravity`. Points on one line, or
-/// all in one place (to a micrometre), give the half-planes that close that stretch or place in. Empty without points or
-/// without gravity.
+/// The half-planes whose intersection is the convex hull of `points` (ground, m) seen along `gravity`. Points on one
+/// line, or all in one place (to a micrometre), give the half-planes that close that stretch or place in. Empty without
+/// points or without gravity.
 pub fn half_planes(points: &[Vector3<f64>], gravity: Vector3<f64>) -> Vec<HalfPlane> {
     let Some(down) = gravity.try_normalize(0.0) else { return vec![] };
     let right = down.cross(&Vector3::ith(down.iamin(), 1.0)).normalize();
@@ -54,10 +55,10 @@ pub fn half_planes(points: &[Vector3<f64>], gravity: Vector3<f64>) -> Vec<HalfPl
         return vec![];
     };
     let along = b - a;
-    if along.norm() < THIN {
+    if along.norm() < THIN_HULL {
         return four(&a, &a, Vector2::x());
     }
-    if corners.iter().all(|p| along.perp(&(p - a)).abs() < THIN * along.norm()) {
+    if corners.iter().all(|p| along.perp(&(p - a)).abs() < THIN_HULL * along.norm()) {
         return four(&a, &b, along);
     }
     let next = corners.iter().cycle().skip(1);
@@ -88,8 +89,8 @@ fn corners(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
     let mut hull = chain(&mut points.iter());
     hull.extend(chain(&mut points.iter().rev()));
     // Edges this short have the direction of their rounding errors.
-    hull.dedup_by(|q, p| (*q - *p).norm() < SAME);
-    if hull.len() > 1 && (hull[hull.len() - 1] - hull[0]).norm() < SAME {
+    hull.dedup_by(|q, p| (*q - *p).norm() < SAME_CORNER);
+    if hull.len() > 1 && (hull[hull.len() - 1] - hull[0]).norm() < SAME_CORNER {
         hull.pop();
     }
     hull

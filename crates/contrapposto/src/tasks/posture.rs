@@ -1,8 +1,8 @@
 //! Error and Jacobian of coordinates against wanted values.
 //!
-//! Error `q - target` of hinges and slides (rad, m), `log(q_t^-1 q)` of a ball in its own axes (rad; at most half a turn, where it
-//! jumps to the other side). Turning a ball by `w` changes its error by `J_r^-1(r) w`, the right Jacobian's inverse, which is
-//! the left one's of `-r`. Rows are multiplied with the weight of their rate.
+//! Error `q - target` of hinges and slides (rad, m), `log(q_t^-1 q)` of a ball in its own axes (rad; at most half a
+//! turn, where it jumps to the other side). Turning a ball by `w` changes its error by `J_r^-1(r) w`, the right
+//! Jacobian's inverse, which is the left one's of `-r`. Rows are multiplied with the weight of their rate.
 
 use super::check::{Check, TaskError};
 use super::orientation::inverse_left_jacobian;

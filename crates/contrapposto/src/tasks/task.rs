@@ -117,8 +117,8 @@ impl Task {
         }
     }
 
-    /// Adds the rows of the task to `level`, whose unknowns are the model's rates. Does not allocate once the level has had the space. The
-    /// task must have passed [`Task::check`].
+    /// Adds the rows of the task to `level`, whose unknowns are the model's rates. Does not allocate once the level has
+    /// had the space. The task must have passed [`Task::check`].
     ///
     /// # Panics
     /// When `body` was not updated with [`Task::quantities`].
@@ -135,8 +135,8 @@ impl Task {
         }
     }
 
-    /// Adds the true errors of the task, one a row, to `out`: present less wanted, in the row's unit; 0 where an inequality holds, and without
-    /// the weights of a posture task.
+    /// Adds the true errors of the task, one a row, to `out`: present less wanted, in the row's unit; 0 where an
+    /// inequality holds, and without the weights of a posture task.
     ///
     /// # Panics
     /// As [`Task::evaluate`].
