@@ -9,7 +9,7 @@
 //! a second derivative built with them leads to steps that are rejected again and again.
 
 use super::tolerances::{DEPENDENT_ROW, NO_ROOM};
-use hierarchical_least_squares::linalg::dot;
+use hierarchical_least_squares::linalg::{dot, semidefinite_cholesky, solve_lower_transposed};
 use hierarchical_least_squares::{Level, Multipliers, Problem};
 
 /// The estimate, with space that is kept.
@@ -90,33 +90,20 @@ impl MultiplierEstimate {
         let row = |r: usize| &rows[r * n..(r + 1) * n];
         factor.clear();
         factor.resize(m * m, 0.0);
+        for r in 0..m {
+            for c in 0..=r {
+                factor[r * m + c] = dot(row(r), row(c));
+            }
+        }
+        semidefinite_cholesky(factor, m, |square| DEPENDENT_ROW * square);
+        // Forward substitution, with the right-hand side of each row when its turn comes.
         solution.clear();
         for r in 0..m {
-            let mut right = -dot(row(r), gradient);
-            for c in 0..r {
-                let pivot = factor[c * m + c];
-                if pivot > 0.0 {
-                    let rest = dot(row(r), row(c)) - dot(&factor[r * m..r * m + c], &factor[c * m..c * m + c]);
-                    factor[r * m + c] = rest / pivot;
-                    right -= factor[r * m + c] * solution[c];
-                }
-            }
-            let whole = dot(row(r), row(r));
-            let new = whole - dot(&factor[r * m..r * m + r], &factor[r * m..r * m + r]);
-            if new > DEPENDENT_ROW * whole {
-                factor[r * m + r] = new.sqrt();
-                solution.push(right / new.sqrt());
-            } else {
-                solution.push(0.0);
-            }
+            let own = &factor[r * m..=r * m + r];
+            let right = (0..r).fold(-dot(row(r), gradient), |right, c| right - own[c] * solution[c]);
+            solution.push(if own[r] == 0.0 { 0.0 } else { right / own[r] });
         }
-        for r in (0..m).rev() {
-            let pivot = factor[r * m + r];
-            if pivot > 0.0 {
-                let below: f64 = (r + 1..m).map(|s| factor[s * m + r] * solution[s]).sum();
-                solution[r] = (solution[r] - below) / pivot;
-            }
-        }
+        solve_lower_transposed(factor, m, solution);
     }
 }
 
