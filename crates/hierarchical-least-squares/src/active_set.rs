@@ -236,9 +236,11 @@ impl ActiveSet {
             }
         }
         for row in 0..self.rows.of_level(k).end {
+            if self.working_set.states[row] != RowState::Inactive || !self.rows.is_nonzero(row) {
+                continue;
+            }
             let limits = self.rows.limits(problem, row);
-            let unlimited = limits.0.is_infinite() && limits.1.is_infinite();
-            if self.working_set.states[row] != RowState::Inactive || unlimited || !self.rows.is_nonzero(row) {
+            if limits.0.is_infinite() && limits.1.is_infinite() {
                 continue;
             }
             let change = self.rows.value(problem, row, &self.step);
@@ -294,6 +296,9 @@ impl ActiveSet {
 
     /// The active bound or row whose multiplier at level `k` violates its sign most; none where all signs are right.
     pub(crate) fn most_dual_infeasible(&self, k: usize, above: usize, size: f64) -> Option<Constraint> {
+        if size == 0.0 {
+            return None;
+        }
         let multipliers = self.multipliers.level(k);
         let set = &self.working_set;
         let zero = MULTIPLIER * size;
@@ -303,8 +308,10 @@ impl ActiveSet {
                 worst = Some((infeasibility, constraint));
             }
         };
-        for (i, side) in set.bounds.iter().enumerate().filter(|(i, _)| !set.fixed_bounds[*i]) {
-            consider(side.dual_infeasibility(multipliers.bounds[i]), Constraint::Bound(i));
+        for (i, (side, multiplier)) in set.bounds.iter().zip(multipliers.bounds).enumerate() {
+            if *side != Side::Inactive && !set.fixed_bounds[i] {
+                consider(side.dual_infeasibility(*multiplier), Constraint::Bound(i));
+            }
         }
         for constraint in &self.factor.constraints()[..above] {
             if let Constraint::Row(row) = *constraint
@@ -318,6 +325,9 @@ impl ActiveSet {
 
     /// Fixes, for all levels below, the bounds and rows that have a multiplier at level `k`.
     pub(crate) fn fix_constraints_with_multipliers(&mut self, k: usize, above: usize, size: f64) {
+        if size == 0.0 {
+            return;
+        }
         let multipliers = self.multipliers.level(k);
         let zero = MULTIPLIER * size;
         for (fixed, multiplier) in self.working_set.fixed_bounds.iter_mut().zip(multipliers.bounds) {

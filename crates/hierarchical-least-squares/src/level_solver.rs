@@ -57,7 +57,6 @@ impl LevelSolver {
     /// set.
     pub(crate) fn solve(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) -> bool {
         choose_residual_rows(problem, set, k);
-        self.y.clear();
         self.y.resize(problem.unknowns(), 0.0);
         loop {
             self.above = set.factor.len();
@@ -126,6 +125,7 @@ impl LevelSolver {
     }
 
     /// Applies the last reflection to the residual rows that are not in the factor, and updates their remainders.
+    #[inline]
     fn transform_rows_behind_pivot(&mut self, set: &ActiveSet) {
         let (r, width, padded) = (set.factor.len() - 1, set.factor.width(), set.factor.padded_width());
         let tail = self.transformed[self.rank * padded..].chunks_exact_mut(padded);
@@ -310,18 +310,19 @@ impl LevelSolver {
     /// Computes the gradient of the level, transformed, in `work`; and by unknown, in `gradient`, where the factor has columns
     /// left out.
     fn compute_gradient(&self, problem: &Problem, set: &mut ActiveSet, k: usize) {
+        if self.gradient_size == 0.0 {
+            return;
+        }
         let (above, padded) = (self.above, set.factor.padded_width());
         let by_unknown = !set.factor.columns_left_out().is_empty();
         set.work.fill(0.0);
         set.gradient.fill(0.0);
-        if self.gradient_size > 0.0 {
-            for (s, (residual, &row)) in self.residuals.iter().zip(&self.residual_rows).enumerate() {
-                let in_factor = s < self.rank;
-                let own = if in_factor { set.factor.lower_row(above + s) } else { &self.transformed[s * padded..] };
-                add_scaled(&mut set.work[..above], *residual, &own[..above]);
-                if by_unknown {
-                    add_scaled(&mut set.gradient, *residual, set.rows.coefficients(problem, row));
-                }
+        for (s, (residual, &row)) in self.residuals.iter().zip(&self.residual_rows).enumerate() {
+            let in_factor = s < self.rank;
+            let own = if in_factor { set.factor.lower_row(above + s) } else { &self.transformed[s * padded..] };
+            add_scaled(&mut set.work[..above], *residual, &own[..above]);
+            if by_unknown {
+                add_scaled(&mut set.gradient, *residual, set.rows.coefficients(problem, row));
             }
         }
         let damping = problem.levels[k].damping;

@@ -80,11 +80,13 @@ impl Rows {
     }
 
     /// The rows of level `k`.
+    #[inline]
     pub(crate) fn of_level(&self, k: usize) -> std::ops::Range<usize> {
         self.offsets[k]..self.offsets[k + 1]
     }
 
     /// Euclidean norm of a row.
+    #[inline]
     pub(crate) fn norm(&self, row: usize) -> f64 {
         self.norms[row]
     }
@@ -95,18 +97,21 @@ impl Rows {
     }
 
     /// Coefficients of a row.
+    #[inline]
     pub(crate) fn coefficients<'a>(&self, problem: &'a Problem, row: usize) -> &'a [f64] {
         let (n, (k, i)) = (problem.unknowns(), self.positions[row]);
         &problem.levels[k].matrix[i * n..(i + 1) * n]
     }
 
     /// Lower and upper limit of a row.
+    #[inline]
     pub(crate) fn limits(&self, problem: &Problem, row: usize) -> (f64, f64) {
         let (k, i) = self.positions[row];
         (problem.levels[k].lower[i], problem.levels[k].upper[i])
     }
 
     /// `a^T x` of a row.
+    #[inline]
     pub(crate) fn value(&self, problem: &Problem, row: usize, x: &[f64]) -> f64 {
         let a = self.coefficients(problem, row);
         self.single[row].map_or_else(|| dot(a, x), |column| a[column] * x[column])
@@ -120,11 +125,13 @@ impl Rows {
     }
 
     /// Size of rounding errors in the value of a row at an `x` of this norm.
+    #[inline]
     pub(crate) fn rounding(&self, row: usize, x_norm: f64) -> f64 {
         ROUNDING * (self.limits[row] + self.norms[row] * x_norm) + f64::MIN_POSITIVE
     }
 
     /// True for a row with a coefficient other than zero.
+    #[inline]
     pub(crate) fn is_nonzero(&self, row: usize) -> bool {
         self.norms[row] > ZERO_ROW
     }
