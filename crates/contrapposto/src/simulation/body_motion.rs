@@ -31,7 +31,7 @@ const REST_STEP: f64 = 1e-9;
 /// After so many slow time steps in a row the body descends to the local minimum of effort, if that is near.
 const SLOW_STEPS: u32 = 30;
 /// Convergence count of a body at rest.
-const AT_REST: u32 = u32::MAX;
+const RESTING: u32 = u32::MAX;
 /// A slope is computed anew when some coordinate has moved farther, rad or m.
 const SLOPE_VALIDITY: f64 = 0.005;
 /// Steps within which balance must be recovered after an event.
@@ -52,7 +52,7 @@ pub(super) struct BodyMotion<'a> {
     slopes: Vec<Option<Slope>>,
     /// The posture before the last step.
     before: Posture,
-    /// Slow steps in a row, [`AT_REST`] at rest.
+    /// Slow steps in a row, [`RESTING`] at rest.
     convergence_count: u32,
     /// Coordinates whose half-spaces the last step was to keep, and those of them that it did not keep.
     requested: Vec<usize>,
@@ -164,7 +164,7 @@ impl<'a> BodyMotion<'a> {
         self.convergence_count = count;
         let due = count > 0 && count.is_multiple_of(SLOW_STEPS);
         if due && (largest <= REST_STEP || self.engine.descend(posture)?) {
-            self.convergence_count = AT_REST;
+            self.convergence_count = RESTING;
         }
         Ok(())
     }
@@ -243,7 +243,7 @@ impl<'a> BodyMotion<'a> {
     }
 
     pub(super) fn is_at_rest(&self) -> bool {
-        self.convergence_count == AT_REST
+        self.convergence_count == RESTING
     }
 
     pub(super) fn contact(&self) -> &ContactForces {

@@ -207,18 +207,25 @@ impl Scenario {
             load.check(&self.model)?;
         }
         self.supports.iter().try_for_each(|support| support.check(&self.model))?;
-        let check = |task: usize, goal: &PriorityLevel| {
-            let tasks = goal.tasks.iter().map(|given| given.check(&self.model));
-            tasks.collect::<Result<(), _>>().map_err(|error| ScenarioError::Task { task, error })
-        };
-        self.tasks.iter().enumerate().try_for_each(|(i, task)| check(i, &task.goal))?;
+        self.tasks.iter().enumerate().try_for_each(|(i, task)| self.check_task(i, &task.goal))?;
         let count = self.model.coordinates().len() as f64;
-        let setting = |ok: bool, name, value, accepted| {
-            if ok { Ok(()) } else { Err(ScenarioError::Setting { name, value, accepted }) }
-        };
         setting(self.free.len() as f64 == count, "number of free flags", self.free.len() as f64, "one a coordinate")?;
         let given = self.strategies.len() as f64;
         setting(given == 0.0 || given == count, "number of strategies", given, "none, or one a coordinate")?;
+        self.check_events(count)?;
+        let given = self.start_fatigue.len() as f64;
+        setting(given == count, "number of fatigue pairs", given, "one a coordinate")?;
+        self.check_coordinates()?;
+        self.check_settings()
+    }
+
+    fn check_task(&self, task: usize, goal: &PriorityLevel) -> Result<(), ScenarioError> {
+        let refused = |error| ScenarioError::Task { task, error };
+        goal.tasks.iter().try_for_each(|given| given.check(&self.model)).map_err(refused)
+    }
+
+    /// `count`: number of coordinates.
+    fn check_events(&self, count: f64) -> Result<(), ScenarioError> {
         let mut before = 0.0;
         for event in &self.events {
             let accepted = "finite, not negative, and not before the event before it";
@@ -230,11 +237,13 @@ impl Scenario {
             for (i, goal) in &event.tasks {
                 let fits = self.tasks.get(*i).is_some_and(|task| alike(&task.goal, goal));
                 setting(fits, "place of a task that an event changes", *i as f64, "that of a task of the same kinds")?;
-                check(*i, goal)?;
+                self.check_task(*i, goal)?;
             }
         }
-        let given = self.start_fatigue.len() as f64;
-        setting(given == count, "number of fatigue pairs", given, "one a coordinate")?;
+        Ok(())
+    }
+
+    fn check_coordinates(&self) -> Result<(), ScenarioError> {
         for ((coordinate, &value), &free) in self.model.coordinates().iter().zip(self.start.values()).zip(&self.free) {
             let range = coordinate.range;
             if value < range.0 || value > range.1 {
@@ -244,6 +253,10 @@ impl Scenario {
                 return Err(ScenarioError::NoPassiveCurve(coordinate.name.clone()));
             }
         }
+        Ok(())
+    }
+
+    fn check_settings(&self) -> Result<(), ScenarioError> {
         for &value in self.start_fatigue.iter().flatten() {
             setting((0.0..=1.0).contains(&value), "fatigue at the start", value, "in 0..1")?;
         }
@@ -264,4 +277,8 @@ impl Scenario {
         setting(step > 0.0 && step <= 60.0, "time step (s)", step, "above 0, at most 60")?;
         setting(duration / step <= MOST_STEPS, "number of steps", duration / step, "ten million at most")
     }
+}
+
+fn setting(ok: bool, name: &'static str, value: f64, accepted: &'static str) -> Result<(), ScenarioError> {
+    if ok { Ok(()) } else { Err(ScenarioError::Setting { name, value, accepted }) }
 }
