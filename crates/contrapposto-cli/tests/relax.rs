@@ -41,6 +41,8 @@ fn one_leg_rests_by_a_slouch_or_level() {
     let efforts: Vec<f64> = postures.iter().map(|p| p["effort"].as_f64().unwrap()).collect();
     println!("hips {hips:?} deg, efforts {efforts:?}");
     assert!(hips[0] > 18.0 && hips[1] < 8.0 && efforts[0] < 0.7 * efforts[1]);
+    // Stored efforts, which a better search may lower.
+    assert!(efforts[0] < 0.059096706609611194 * (1.0 + 1e-6) && efforts[1] < 0.09693515634673341 * (1.0 + 1e-6));
     // The page shows both, as they stand in relax.json, to choose between.
     let page = page(&out);
     assert_eq!(page["names"], serde_json::json!(["posture 1", "posture 2"]));

@@ -1,0 +1,119 @@
+//! Results of a few scenarios against stored numbers: final torques, effort, which muscle group fails first and when.
+//!
+//! The tolerance of 1e-6 leaves room for the last digits in which the mathematical libraries of processors differ.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::{contrapposto, scenarios, write};
+
+const TOLERANCE: f64 = 1e-6;
+
+/// Compares relative to the greater of the stored number and one.
+fn assert_near(what: &str, found: &Value, stored: f64) {
+    let found = found.as_f64().unwrap_or_else(|| panic!("{what}: {found}"));
+    let difference = (found - stored).abs() / stored.abs().max(1.0);
+    assert!(difference < TOLERANCE, "{what}: {found}, stored {stored}, apart by {difference:e}");
+}
+
+/// Runs a verb of the program on a scenario file; the JSON file that it writes.
+fn result(verb: &str, scenario: &Path, file: &str) -> Value {
+    let out = tempfile::tempdir().unwrap();
+    let run = contrapposto([verb]).arg(scenario).arg("--out").arg(out.path()).run();
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    serde_json::from_slice(&std::fs::read(out.path().join(file)).unwrap()).unwrap()
+}
+
+/// Compares final angle (deg) and external, passive and active torque (N m) of a coordinate.
+fn assert_coordinate(summary: &Value, name: &str, stored: [f64; 4]) {
+    let keys = ["final_deg", "final_external_nm", "final_passive_nm", "final_active_nm"];
+    for (key, stored) in keys.into_iter().zip(stored) {
+        assert_near(&format!("{name} {key}"), &summary["coordinates"][name][key], stored);
+    }
+}
+
+#[test]
+fn figure_8_ends_at_the_stored_angle_with_the_stored_torques() {
+    let summary = result("simulate", &scenarios().join("figure-08.toml"), "summary.json");
+    assert_eq!((&summary["stopped"], &summary["samples"]), (&Value::from("settled"), &Value::from(40)));
+    let elbow = [93.52416741952305, 0.1782013447127355, -0.21786712499697966, 0.03966578028424417];
+    assert_coordinate(&summary, "elbow_flex_r", elbow);
+    assert_coordinate(&summary, "arm_flex_r", [90.0, -7.476028258746449, -1.0472017745696274, 8.523230033316075]);
+    assert_eq!(summary["coordinates"]["elbow_flex_r"]["cases"], serde_json::json!(["3.1", "3.3", "2.1"]));
+}
+
+/// A locked arm with 5 kg in the hand, the elbow at a right angle.
+const LOADED_ARM: &str = r#"
+format = 1
+title = "5 kg in the hand"
+[model]
+adult = { sex = "male", stature_m = 1.741, mass_kg = 73, part = "right_arm" }
+[posture]
+elbow_flex_r_deg = 90
+[coordinates]
+free = []
+[[load]]
+segment = "hand_r"
+mass_kg = 5
+[strategy]
+kind = "active"
+[run]
+duration_s = 400
+"#;
+
+#[test]
+fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_175_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = write(folder.path(), "arm.toml", LOADED_ARM);
+    let summary = result("simulate", Path::new(&scenario), "summary.json");
+    let first = &summary["failed_first"];
+    assert_eq!((&first["coordinate"], &first["group"]), (&Value::from("arm_flex_r"), &Value::from("shoulder flexion")));
+    let elbow = &summary["coordinates"]["elbow_flex_r"]["positive"]["exhausted_s"];
+    let wrist = &summary["coordinates"]["wrist_dev_r"]["negative"]["exhausted_s"];
+    // Times of samples, 1/30 s apart: one step of room.
+    for (time, stored) in [(&first["at_s"], 175.1), (wrist, 219.566_666_666_666_66), (elbow, 363.166_666_666_666_7)] {
+        assert!((time.as_f64().unwrap() - stored).abs() < 0.034, "{time}, stored {stored}");
+    }
+    let arm = [0.0, -19.42856656593811, 0.5241969775273483, 18.90436958841076];
+    assert_coordinate(&summary, "arm_flex_r", arm);
+    assert_coordinate(&summary, "wrist_dev_r", [0.0, 3.6375071893387116, 0.02264330552219259, -3.660150494860904]);
+}
+
+/// The start of a run is a minimum of effort that a search found: a better search may lower it.
+#[test]
+fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
+    let text = std::fs::read_to_string(scenarios().join("hold-tool.toml")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let short = text.replace("duration_s = 480", "duration_s = 1");
+    assert_ne!(short, text);
+    let scenario = write(folder.path(), "hold-tool.toml", &short);
+    let summary = result("simulate", Path::new(&scenario), "summary.json");
+    let effort = summary["standing"]["effort_at_start"].as_f64().unwrap();
+    assert!(effort > 0.0 && effort < 0.06373357394910872 * (1.0 + TOLERANCE), "{effort}");
+}
+
+#[test]
+fn reaching_for_a_shelf_gives_the_stored_posture() {
+    let pose = result("pose", &scenarios().join("poses/reach-shelf.toml"), "pose.json");
+    assert_eq!((&pose["reason"], &pose["supports_hold"]), (&Value::from("closest"), &Value::from(true)));
+    let stored = [
+        ("arm_flex_r", 1.5271308625915354),
+        ("arm_add_r", 0.04488765023507282),
+        ("elbow_flex_r", 0.9521331172956711),
+        ("hip_adduction_r", 0.06485976642390699),
+        ("lumbar_bending", 0.04389863688324022),
+        ("neck_rotation", -0.3770466503963654),
+        ("pelvis_ty", 0.8302126309369575),
+        ("subtalar_angle_l", 0.06485994982414416),
+    ];
+    stored.iter().for_each(|(name, value)| assert_near(name, &pose["coordinates"][*name], *value));
+    let center = [0.011246747415316557, 0.9262380198008042, 0.04849640352673144];
+    center
+        .iter()
+        .enumerate()
+        .for_each(|(i, value)| assert_near("centre of mass", &pose["center_of_mass_m"][i], *value));
+}
