@@ -1,4 +1,4 @@
-//! Where does every coordinate stand?
+//! Holds the values of all coordinates.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -64,7 +64,7 @@ impl Posture {
         &mut self.values
     }
 
-    /// Does it fit `model`?
+    /// Whether the posture fits `model`.
     ///
     /// # Errors
     /// [`PostureError`] names the first coordinate that does not.
@@ -88,7 +88,7 @@ impl Posture {
     }
 
     /// Moves by a step of rates (rad, m): angles and distances add, a ball's quaternion `q` becomes `q exp(step)`, of length 1,
-    /// and coordinates that follow others are set from their leaders; their own step does nothing. Does not allocate.
+    /// and dependent coordinates are set from their independent ones; their own step does nothing. Does not allocate.
     ///
     /// # Panics
     /// When posture or step has another length than the model needs.
@@ -150,7 +150,7 @@ impl Posture {
     }
 }
 
-/// What one rate, or the three of a ball, changes.
+/// The values that one rate, or the three of a ball, change.
 pub(crate) enum Part {
     Axis { rate: usize, coordinate: usize },
     Ball { rate: usize, first: usize },

@@ -1,4 +1,4 @@
-//! Which side of a plane must the posture stay on? `a^T theta <= b` (Eq. 4).
+//! Defines the half-space `a^T theta <= b` in which the posture must stay (Eq. 4).
 
 use serde::{Deserialize, Serialize};
 

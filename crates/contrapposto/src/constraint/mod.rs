@@ -1,4 +1,4 @@
-//! How does a goal angle become a rule that a posture must keep? Eqs. 4-6 and 9 of Rodriguez & Boulic 2007.
+//! Turns a goal angle into a constraint on the posture: Eqs. 4-6 and 9 of Rodriguez & Boulic 2007.
 
 mod half_space;
 mod relief;

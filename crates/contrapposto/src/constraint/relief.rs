@@ -1,4 +1,4 @@
-//! How far toward the goal in one step? Eq. 9.
+//! Computes the length of one step toward the goal angle (Eq. 9).
 //!
 //! `delta theta = min(beta (theta_g - theta_c), delta theta_max)` as printed clips upward motion only; the size is meant
 //! (docs/deviations.md, D2).

@@ -1,35 +1,36 @@
-//! Which contact forces keep a body in a posture in equilibrium, at least effort?
+//! Computes the contact forces of least effort that keep a body in equilibrium in a posture.
 //!
-//! Unknown are the forces at all corners, each as normal force and friction along two axes of its plane, in body weights. In
+//! The unknowns are the forces at all corners, each as normal force and friction along two axes of its plane, in body weights. In
 //! strict order of priority: friction stays inside its pyramid (and normal forces only push); the root is in equilibrium; no
-//! support carries more than its wished share; muscles work least, `sum (tau_a / S)^2`; the forces are small. Of supports whose
+//! support carries more than its share; muscles work least, `sum (tau_a / S)^2`; the forces are small. Of supports whose
 //! friction has no limit the first row is left out. Strength `S` is that of the group that works, which depends on the answer:
-//! signs that changed are put right until they agree.
+//! the solution is repeated with the active sides of the last one until they are consistent.
 
 use nalgebra::Vector3;
 
 use super::Support;
+use super::rows::{FORCES_PER_CORNER, Unknowns, bounds, friction_rows, share_row};
 use super::support::{SupportError, root_rates};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
 use crate::statics::{FixedIn, Load, LoadKind};
 use hierarchical_least_squares::{Level, Problem, Solver, Status};
 
-/// Is the root in equilibrium?
+/// Whether the root is in equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Balance {
     /// To rounding.
     Held,
     /// No forces that the supports can give hold the body in this posture.
     Short {
-        /// What is missing along the root's slides, N.
+        /// Missing force along the root's slides, N.
         force: f64,
-        /// What is missing about the root's hinges, N m.
+        /// Missing torque about the root's hinges, N m.
         moment: f64,
     },
 }
 
-/// What the solver leaves of the root's equations when they hold, in body weights (times 1 m).
+/// Greatest residual of the root's equations in equilibrium, in body weights (times 1 m).
 pub(super) const HELD: f64 = 1e-9;
 /// How often signs of active torque are put right.
 const SIGNS: usize = 12;
@@ -59,16 +60,9 @@ pub struct ContactForces {
     problem: Problem,
     solver: Solver,
     balance: Balance,
-    /// Of each rate: does it turn?
+    /// Whether each rate is an angle.
     turning: Vec<bool>,
 }
-
-/// No corner gives more than so many body weights. Straight legs would press patches that cannot slip apart with forces
-/// without end to spare a muscle a little.
-const LARGEST: f64 = 2.0;
-
-/// Unknowns of a corner.
-pub(crate) const OF_A_CORNER: usize = 3;
 
 impl ContactForces {
     /// Ready for `model` on its supports.
@@ -96,7 +90,7 @@ impl ContactForces {
             }
         }
         let n = model.rates().len();
-        let unknowns = OF_A_CORNER * loads.len();
+        let unknowns = FORCES_PER_CORNER * loads.len();
         let mut problem = Problem::new(unknowns);
         for i in 0..unknowns {
             (problem.lower[i], problem.upper[i]) = bounds(i);
@@ -174,7 +168,7 @@ impl ContactForces {
             kinematics.point_jacobian(model, load.segment, load.point, &mut self.jacobian);
             let (x, rest) = self.jacobian.split_at(n);
             let (y, z) = rest.split_at(n);
-            let columns = &mut self.columns[OF_A_CORNER * i * n..OF_A_CORNER * (i + 1) * n];
+            let columns = &mut self.columns[FORCES_PER_CORNER * i * n..FORCES_PER_CORNER * (i + 1) * n];
             for (column, axis) in columns.chunks_exact_mut(n.max(1)).zip(axes) {
                 let force = self.weight * axis;
                 for (((torque, x), y), z) in column.iter_mut().zip(x).zip(y).zip(z) {
@@ -268,7 +262,9 @@ impl ContactForces {
     }
 
     fn write_loads(&mut self) {
-        for ((load, axes), force) in self.loads.iter_mut().zip(&self.axes).zip(self.forces.chunks_exact(OF_A_CORNER)) {
+        for ((load, axes), force) in
+            self.loads.iter_mut().zip(&self.axes).zip(self.forces.chunks_exact(FORCES_PER_CORNER))
+        {
             let force: Vector3<f64> = axes.iter().zip(force).map(|(axis, share)| *share * *axis).sum();
             load.kind = LoadKind::Force(self.weight * force, FixedIn::World);
         }
@@ -284,7 +280,7 @@ impl ContactForces {
         &self.root
     }
 
-    /// What the last update found.
+    /// Result of the last update.
     pub fn balance(&self) -> Balance {
         self.balance
     }
@@ -310,7 +306,7 @@ impl ContactForces {
     }
 
     /// By corner: the directions of its three forces, ground axes.
-    pub fn axes(&self) -> &[[Vector3<f64>; OF_A_CORNER]] {
+    pub fn axes(&self) -> &[[Vector3<f64>; FORCES_PER_CORNER]] {
         &self.axes
     }
 
@@ -337,7 +333,7 @@ impl ContactForces {
 
     /// Normal force at a support as a share of body weight.
     pub fn share(&self, support: usize) -> f64 {
-        self.corners(support).map(|corner| self.forces[OF_A_CORNER * corner]).sum()
+        self.corners(support).map(|corner| self.forces[FORCES_PER_CORNER * corner]).sum()
     }
 
     /// Where the normal force of a support acts, ground, m; `None` where it carries nothing.
@@ -347,7 +343,7 @@ impl ContactForces {
             .corners(support)
             .map(|corner| {
                 let load = &self.loads[corner];
-                self.forces[OF_A_CORNER * corner] * kinematics.station(model, load.segment, load.point)
+                self.forces[FORCES_PER_CORNER * corner] * kinematics.station(model, load.segment, load.point)
             })
             .sum();
         (share > 1e-9).then(|| sum / share)
@@ -356,67 +352,4 @@ impl ContactForces {
 
 fn force_of(load: &Load) -> Vector3<f64> {
     if let LoadKind::Force(force, _) = load.kind { force } else { Vector3::zeros() }
-}
-
-/// Bounds of a force, in body weights: corners push and never pull.
-pub(crate) fn bounds(force: usize) -> (f64, f64) {
-    if force.is_multiple_of(OF_A_CORNER) { (0.0, LARGEST) } else { (-LARGEST, LARGEST) }
-}
-
-/// Where forces stand among the unknowns of a problem.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Unknowns<'a> {
-    /// Place of the first one.
-    pub(crate) first: usize,
-    /// Present forces, where the unknowns are their changes.
-    pub(crate) now: Option<&'a [f64]>,
-}
-
-impl Unknowns<'_> {
-    fn now(&self, force: usize) -> f64 {
-        self.now.map_or(0.0, |now| now[force])
-    }
-}
-
-/// Rows that keep the friction of a support's corners inside its pyramid. `row` has an entry for every unknown.
-pub(crate) fn friction_rows(
-    level: &mut Level,
-    row: &mut [f64],
-    support: &Support,
-    corners: std::ops::Range<usize>,
-    unknowns: Unknowns<'_>,
-) {
-    if support.friction.is_infinite() {
-        return;
-    }
-    let most = support.friction / (super::FACES as f64 / 2.0).sqrt();
-    for normal in corners.map(|corner| OF_A_CORNER * corner) {
-        for (axis, sign) in [(1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)] {
-            row.fill(0.0);
-            row[unknowns.first + normal] = -most;
-            row[unknowns.first + normal + axis] = sign;
-            let excess = sign * unknowns.now(normal + axis) - most * unknowns.now(normal);
-            level.push(row, f64::NEG_INFINITY, -excess);
-        }
-    }
-}
-
-/// The row that wishes a support to carry no more than its share; arguments as of [`friction_rows`].
-pub(crate) fn share_row(
-    level: &mut Level,
-    row: &mut [f64],
-    support: &Support,
-    corners: std::ops::Range<usize>,
-    unknowns: Unknowns<'_>,
-) {
-    if support.share_max >= 1.0 {
-        return;
-    }
-    row.fill(0.0);
-    let mut share = 0.0;
-    for normal in corners.map(|corner| OF_A_CORNER * corner) {
-        row[unknowns.first + normal] = 1.0;
-        share += unknowns.now(normal);
-    }
-    level.push(row, f64::NEG_INFINITY, support.share_max - share);
 }

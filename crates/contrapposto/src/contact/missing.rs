@@ -1,7 +1,7 @@
-//! A body cannot stand: which condition is not met, and by how many newtons or metres?
+//! Names the condition of equilibrium that a body without balance violates, and by how many newtons or metres.
 //!
-//! Two more problems of contact forces tell. In the first one supports on a common plane may also give a couple: about the
-//! normal as it comes (friction does not matter here), about the axes of the plane as small as may be. Such a couple `M` beside
+//! The answer comes from two more problems of contact forces. In the first one, supports on a common plane may also give a couple: about the
+//! normal as it comes (friction does not matter here), about the axes of the plane as small as possible. Such a couple `M` beside
 //! a normal force `N` is that force acting farther out by `n x M / N` (`n` the normal): so if this holds the root, weight and
 //! loads act that far outside the hull of all corners. In the second one nothing slips.
 
@@ -9,32 +9,33 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::forces::{Balance, ContactForces, HELD, OF_A_CORNER};
+use super::forces::{Balance, ContactForces, HELD};
+use super::rows::FORCES_PER_CORNER;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use hierarchical_least_squares::{Level, Problem, Solver, Status};
 
 /// Corners count as one plane if their heights over it differ by no more, m.
-const FLAT: f64 = 0.01;
+const SAME_PLANE: f64 = 0.01;
 /// Normals count as one if the cosine between them is no farther from 1.
 const PARALLEL: f64 = 1e-6;
-/// What acts no farther out is not why, m.
-const NEAR: f64 = 1e-6;
+/// A line of action no farther outside of the supports is not reported, m.
+const LEAST_LEAN: f64 = 1e-6;
 /// Unknown couples: about the normal and two axes of the plane.
 const COUPLES: usize = 3;
 
-/// What supports do not give.
+/// Force and torque that supports do not give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missing {
-    /// What is missing along the root's slides, N.
+    /// Missing force along the root's slides, N.
     pub force: f64,
-    /// What is missing about the root's hinges, N m.
+    /// Missing torque about the root's hinges, N m.
     pub moment: f64,
     /// Why.
     pub condition: Condition,
 }
 
-/// What keeps supports from holding a body.
+/// The reason why supports do not hold a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// There is none.
@@ -71,7 +72,7 @@ impl fmt::Display for Missing {
 }
 
 impl ContactForces {
-    /// What is missing after an update in the posture that `kinematics` holds; `None` where nothing is.
+    /// Missing force and torque after an update in the posture of `kinematics`; `None` in equilibrium.
     pub fn missing(&self, model: &Model, kinematics: &Kinematics) -> Option<Missing> {
         let Balance::Short { force, moment } = self.balance() else { return None };
         let condition = match self.beyond(model, kinematics) {
@@ -90,7 +91,7 @@ impl ContactForces {
         let heights = self.loads().iter();
         let heights = heights.map(|load| kinematics.station(model, load.segment, load.point).dot(&axes[0]));
         let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
-        if !one_way || high - low > FLAT {
+        if !one_way || high - low > SAME_PLANE {
             return None;
         }
         let turns = self.turns(model, kinematics)?;
@@ -112,9 +113,9 @@ impl ContactForces {
         }
         let solver = holds(&problem)?;
         let (forces, couple) = solver.solution().split_at(n);
-        let normal: f64 = forces.iter().step_by(OF_A_CORNER).sum();
+        let normal: f64 = forces.iter().step_by(FORCES_PER_CORNER).sum();
         let lean = axes[0].cross(&(couple[1] * axes[1] + couple[2] * axes[2])) / normal;
-        (normal > HELD && lean.norm() > NEAR).then_some(lean)
+        (normal > HELD && lean.norm() > LEAST_LEAN).then_some(lean)
     }
 
     /// How each of the root's rates turns the supports, ground; `None` if it does not turn all alike.

@@ -1,13 +1,14 @@
-//! What carries the body, and with which forces?
+//! Defines the supports that carry the body, and computes their forces.
 //!
-//! A [`Support`] is a patch of a segment on a plane: corners that can push, and rub as far as friction goes. [`ContactForces`]
-//! finds the forces at all corners that keep the root in equilibrium and, of these, the ones that spare the muscles most.
+//! A [`Support`] is a patch of a segment on a plane: its corners can push, and resist sliding up to the friction limit.
+//! [`ContactForces`] finds the forces at all corners that keep the root in equilibrium and, of these, those of least muscular effort.
 
 mod forces;
 mod missing;
+mod rows;
 mod support;
 
 pub use forces::{Balance, ContactForces};
-pub(crate) use forces::{Unknowns, bounds, friction_rows, share_row};
 pub use missing::{Condition, Missing};
+pub(crate) use rows::{Unknowns, bounds, friction_rows, share_row};
 pub use support::{FACES, Support, SupportError, root_rates};

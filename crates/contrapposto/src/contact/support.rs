@@ -1,4 +1,4 @@
-//! Which part of the body rests on what?
+//! Defines a support: a patch of a segment that rests on a plane.
 
 use nalgebra::Vector3;
 
@@ -19,7 +19,7 @@ pub struct Support {
     pub normal: Vector3<f64>,
     /// Coefficient of friction, not negative; infinite for a patch that cannot slip.
     pub friction: f64,
-    /// The normal force should not exceed this share of the whole weight, loads included; 1 or more for no wish.
+    /// Greatest share of the whole weight, loads included, that the normal force should carry; 1 or more for no limit.
     pub share_max: f64,
 }
 
@@ -44,13 +44,13 @@ pub enum SupportError {
         what: &'static str,
         /// The value.
         value: f64,
-        /// What would be accepted.
+        /// The values that would be accepted.
         accepted: &'static str,
     },
 }
 
 impl Support {
-    /// Does it fit `model`?
+    /// Whether the support fits `model`.
     ///
     /// # Errors
     /// [`SupportError`] names the first thing that does not.
@@ -81,7 +81,7 @@ impl Support {
     }
 }
 
-/// The rates at which the body as a whole moves against ground, held by no muscle: those of joints to ground that slide along
+/// The rates at which the body as a whole moves against ground, moved by no muscle: those of joints to ground that slide along
 /// two axes at least (or turn and slide freely) and have no muscle groups. Their torques must come from supports.
 pub fn root_rates(model: &Model) -> Vec<usize> {
     let mut found = vec![];

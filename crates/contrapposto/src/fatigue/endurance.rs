@@ -1,4 +1,4 @@
-//! How long can a constant load be held, and how does fatigue add up when it changes?
+//! Integrates fatigue from published endurance curves, which give the time a constant load can be held.
 //!
 //! Published endurance curves give the time `T(f)` to exhaustion at relative load `f`; fatigue grows by `dt / T(f)` and is
 //! exhausted at 1. The integral knows no recovery, so a named one is added: at rest fatigue falls as `exp(-k t)`.

@@ -1,4 +1,4 @@
-//! When does relief begin, and when does it end?
+//! Decides when the relief of a muscle group begins and when it ends.
 //!
 //! Rodriguez & Boulic 2007, section 3: the constraint switches on at a critical level and off at a lower one, which forces
 //! a least duration of recovery. The paper gives no numbers.
@@ -13,7 +13,7 @@ pub struct Hysteresis {
 }
 
 impl Hysteresis {
-    /// Is the group recovering, given whether it was and how tired it is?
+    /// Whether the group recovers now, given whether it recovered before and its fatigue.
     pub fn recovering(self, was_recovering: bool, fatigue: f64) -> bool {
         if was_recovering { fatigue > self.recovery_level } else { fatigue >= self.critical_level }
     }

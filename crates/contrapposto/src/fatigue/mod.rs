@@ -1,4 +1,4 @@
-//! How tired is a muscle group, and when must it rest?
+//! Computes the fatigue of a muscle group, and decides when the group must rest.
 //!
 //! Two laws, one scale: fatigue is 0 rested and 1 when the present load can no longer be held, so thresholds mean the same
 //! for both. Load is relative: |active torque| over strength at the present angle. This module knows nothing of posture.

@@ -1,4 +1,4 @@
-//! How do active, resting and fatigued shares of a muscle group exchange under load?
+//! Computes how the active, resting and fatigued shares of a muscle group change under load.
 //!
 //! Three-compartment controller with rest recovery, 3CC-r (Xia & Frey-Law 2008; Frey-Law, Looft & Heitsman 2012; Looft et
 //! al. 2018), all rates in 1/s:
@@ -16,7 +16,7 @@ const DRIVE: f64 = 10.0;
 const STEP: f64 = 0.05;
 
 /// Longest time under one load, s: more than a day, after which every group stands at its steady state.
-const LONGEST: f64 = 1e5;
+const LONGEST_TIME: f64 = 1e5;
 
 /// Rates of one muscle group.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl ThreeCompartment {
     /// controller catches up with a jump of the load. More than 1e5 s count as that.
     pub fn advance(&self, start: Compartments, load: f64, seconds: f64) -> Compartments {
         let load = load.clamp(0.0, 1.0);
-        let seconds = seconds.clamp(0.0, LONGEST);
+        let seconds = seconds.clamp(0.0, LONGEST_TIME);
         let steps = (seconds / STEP).ceil().max(1.0);
         let h = seconds / steps;
         let (mut active, mut fatigued) = (start.active, start.fatigued);

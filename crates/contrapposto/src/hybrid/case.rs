@@ -1,4 +1,4 @@
-//! What does a decision say? Cases, outcomes and the kind of balance at the goal.
+//! Defines the parts of a decision: the case, the outcome and the kind of balance at the goal.
 
 use crate::passive::SlopeAngles;
 use serde::{Deserialize, Serialize};
@@ -65,7 +65,7 @@ impl std::fmt::Display for Case {
     }
 }
 
-/// What becomes of the request.
+/// Outcome of the request for relief.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Outcome {
     /// The present angle is the goal.
@@ -93,7 +93,7 @@ impl Outcome {
     }
 }
 
-/// Who brings a stable balance back when it is disturbed: the larger of `-d tau_p` and `-d tau_e`.
+/// The torque that restores a stable balance: the larger of `-d tau_p` and `-d tau_e`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Carrier {
     /// Passive tissue.
@@ -102,22 +102,22 @@ pub enum Carrier {
     Gravity,
 }
 
-/// What kind of balance the goal is, if it is one. With muscles off the net torque is `-tau_a`, so a balance is stable
+/// Kind of balance at the goal, if it is a balance. With muscles off the net torque is `-tau_a`, so a balance is stable
 /// when `d tau_a / d theta > 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Equilibrium {
-    /// It returns by itself.
+    /// Stable: the joint returns by itself.
     Stable(Carrier),
-    /// It must be held by attention.
+    /// Unstable: muscles must correct every disturbance.
     Unstable,
 }
 
-/// What Tables 1 and 2 answer.
+/// The answer of Tables 1 and 2.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     /// The case of Table 1 that applied. Depends on the problem only.
     pub case: Case,
-    /// What became of it.
+    /// Outcome of the request.
     pub outcome: Outcome,
     /// The goal angle `theta_g`, rad, inside the range; `None` only for [`Outcome::None`].
     pub goal: Option<f64>,

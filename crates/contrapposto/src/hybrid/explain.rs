@@ -1,4 +1,4 @@
-//! Why was this decided? One plain sentence.
+//! Writes the reason of a decision as one sentence.
 
 use super::{Carrier, Case, Decision, Equilibrium, Outcome, Problem, Strategy};
 

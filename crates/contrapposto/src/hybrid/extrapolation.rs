@@ -1,4 +1,4 @@
-//! What would the active torque be at another angle, judged from here?
+//! Extrapolates the active torque from the present angle to another one.
 //!
 //! `tau_a(theta) = -(tau_p(theta) + tau_e + d tau_e (theta - theta_c))` (Rodriguez & Boulic 2007, section 2.2).
 

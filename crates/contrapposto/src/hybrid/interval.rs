@@ -1,4 +1,4 @@
-//! In which interval is a passive root searched? Table 2 of the paper.
+//! Gives the interval in which a passive root is searched: Table 2 of Rodriguez & Boulic 2007.
 
 use super::extrapolation::Point;
 

@@ -10,7 +10,7 @@ use super::interval::{opposite_sign, same_sign};
 use super::problem::{Problem, ProblemError};
 use crate::passive::SlopeAngles;
 
-/// What a branch of Table 1 asks for.
+/// The request of a branch of Table 1.
 enum Request {
     /// `theta_g := theta_c`.
     Stay,
@@ -20,7 +20,7 @@ enum Request {
     Least(f64),
 }
 
-/// What was found.
+/// Result of the search.
 #[derive(Clone, Copy)]
 enum Goal {
     /// The present angle.
@@ -206,7 +206,7 @@ fn wants_active(problem: &Problem, reading: Reading) -> bool {
     kept.unwrap_or(problem.strategy) == Strategy::Active
 }
 
-/// Is the active solution of case 3.1 good enough? `R > R_min`; once accepted, as long as it does not worsen (D4).
+/// Whether the active solution of case 3.1 is good enough: `R > R_min`; once accepted, as long as it does not worsen (D4).
 fn enough(problem: &Problem, decrease: f64, reading: Reading) -> bool {
     let kept = reading == Reading::Total && problem.accepted == Some(Strategy::Active);
     // At the goal itself R is zero but for rounding.
@@ -264,7 +264,7 @@ fn least_torque(problem: &Problem, active: &Extrapolation, present: f64) -> Goal
     best.1
 }
 
-/// So many ends of pieces are gathered at one look at the curve: more than any but a long table has.
+/// Ends of pieces that one pass over the curve gathers: more than any but a long table has.
 const GATHERED: usize = 8;
 
 /// The pieces of the range on which the extrapolated torque is monotone, from below.

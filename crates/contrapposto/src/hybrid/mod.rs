@@ -1,4 +1,4 @@
-//! At which angle does a tired joint carry its load with less active torque?
+//! Finds the angle at which a tired joint carries its load with less active torque.
 //!
 //! The hybrid minimisation of Rodriguez & Boulic 2007: the passive curve is known over the whole range, the external torque
 //! only by its present value and slope, so it is extrapolated as a straight line. [`minimise`] is total: every problem has

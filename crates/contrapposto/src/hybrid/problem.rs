@@ -1,4 +1,4 @@
-//! What does one decision need to know?
+//! Defines the input of one decision.
 
 use super::Strategy;
 use crate::passive::PassiveCurve;

@@ -1,4 +1,4 @@
-//! Where is the centre of mass of the whole body, and how does it move with every rate?
+//! Computes the centre of mass of the whole body and its Jacobian.
 //!
 //! Mass `m_d` and first moment `M_d = sum m_i x_i` of everything at and beyond mobility `d` are carried to the root once. A hinge
 //! `r` through `p_d` then moves the centre by `r x (M_d - m_d p_d) / m`, a slide by `r m_d / m`.
@@ -46,7 +46,7 @@ impl CenterOfMass {
         }
     }
 
-    /// What each mobility weighs itself, the start of the sums.
+    /// Mass and first moment of each mobility itself, the start of the sums.
     pub(crate) fn gather(&mut self, model: &Model, kinematics: &Kinematics) {
         self.whole = Carried { mass: model.fixed.0, first_moment: model.fixed.1 };
         for (i, (carried, mobility)) in self.carried.iter_mut().zip(&model.mobilities).enumerate() {

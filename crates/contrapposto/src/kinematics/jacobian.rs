@@ -1,8 +1,8 @@
-//! How fast does a point or segment move with every rate?
+//! Computes the Jacobians of points and rotations of segments.
 //!
 //! An elementary hinge (or axis of a ball) `r` through `p` moves a carried point `x` by `r x (x - p)` and turns its segment by
-//! `r`; a slide moves it by `r`. A drive `u = f(q)` gives its coordinate `f'(q)` times that, and a coordinate that follows
-//! another one hands its column to its leader with the slope of the coupling, as `statics/fold.rs` does with torques.
+//! `r`; a slide moves it by `r`. A drive `u = f(q)` gives its coordinate `f'(q)` times that, and the column of a
+//! dependent coordinate is added to that of its independent one, times the slope of the coupling, as `statics/fold.rs` does.
 //!
 //! All matrices have three rows (ground x, y, z) and one column a rate of the model, row after row.
 
@@ -56,8 +56,8 @@ impl Kinematics {
         self.fold_columns(model, rows);
     }
 
-    /// Rows of derivatives by rates as if nothing were coupled become rows with every follower's column folded into its
-    /// leader's. Does not allocate.
+    /// Rows of derivatives by rates as if nothing were coupled become rows with the column of every dependent coordinate
+    /// folded into that of its independent one. Does not allocate.
     pub fn fold_columns(&self, model: &Model, rows: &mut [f64]) {
         for (coupling, (slope, _)) in model.couplings.iter().zip(&self.couplings).rev() {
             let rate = |coordinate: usize| model.coordinates[coordinate].rate;

@@ -1,4 +1,4 @@
-//! Where is every part of the body in a posture?
+//! Computes the placement of every segment and axis in a posture.
 
 mod center_of_mass;
 mod jacobian;

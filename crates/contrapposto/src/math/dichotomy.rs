@@ -1,4 +1,4 @@
-//! Where is a continuous function zero, given an interval at whose ends its sign differs?
+//! Finds a root of a continuous function in an interval at whose ends its sign differs.
 //!
 //! The paper's `Dichotomy` (Rodriguez & Boulic 2007, Table 1): the bracket is halved until it cannot be halved any more.
 //! Newton steps are taken where they stay inside the bracket and shrink fast enough, so the usual cost is a handful of

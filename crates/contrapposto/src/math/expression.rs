@@ -1,8 +1,8 @@
-//! What does an OpenSim expression mean?
+//! Evaluates the expressions of OpenSim, with their slope.
 //!
 //! `ExpressionBasedCoordinateForce` writes a torque as a formula of the coordinate `q`, such as
 //! `-2*exp(-5*(q+0.1)) + k; k=3`. The grammar and the precedence are OpenSim's own (the Lepton parser): `-q^2` is `-(q^2)`,
-//! `2^3^2` is 512, white space does not count, there is no unary plus, and definitions follow after semicolons, each seeing
+//! `2^3^2` is 512, white space does not count, there is no unary plus, and definitions follow after semicolons, each may use
 //! those to its right. Where OpenSim simplifies before it evaluates and that changes a value, so do we: `0*x`, `0/x`, `0^x` and
 //! `x-x` are 0, `x/x` and `x^0` are 1. The slope is exact, by dual numbers. At rest `qdot` is 0.
 //!

@@ -28,7 +28,7 @@ pub enum Function {
         omega: f64,
         /// Angle at 0, rad.
         phase: f64,
-        /// What is added.
+        /// The constant that is added.
         offset: f64,
     },
     /// SIMM's natural cubic through points, and other piecewise cubics.
@@ -41,7 +41,7 @@ pub enum Function {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     knots: Vec<f64>,
-    /// Of each knot the value, slope, half the second and a sixth of the third derivative to its right; of the last knot to
+    /// Per knot the value, slope, half the second and a sixth of the third derivative to its right; of the last knot to
     /// its left.
     pieces: Vec<[f64; 4]>,
 }
@@ -77,7 +77,7 @@ pub enum SplineError {
     /// x must rise.
     #[error("two points are at x = {x}, or nearer than 1e-7; it must rise from point to point")]
     Stays {
-        /// Of the first.
+        /// The x of the first of the two.
         x: f64,
     },
 }
@@ -256,7 +256,7 @@ impl Spline {
         self.knots.iter().zip(&self.pieces).map(|(&x, piece)| (x, piece[0]))
     }
 
-    /// Are its points joined by straight lines?
+    /// Whether straight lines join its points.
     #[must_use]
     pub fn is_straight(&self) -> bool {
         self.pieces.iter().all(|piece| piece[2] == 0.0 && piece[3] == 0.0)

@@ -1,4 +1,4 @@
-//! Which smooth curve passes through falling data without ever overshooting?
+//! Interpolates falling data by a smooth curve that never overshoots.
 //!
 //! Piecewise cubic Hermite interpolation with the tangents of Fritsch & Carlson 1980 (SIAM J. Numer. Anal. 17:238-246):
 //! on every piece the curve lies between its two data points, so a falling table gives a falling curve.

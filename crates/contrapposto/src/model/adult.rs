@@ -1,66 +1,17 @@
-//! A good adult for whoever has no model: by sex, stature and mass, or by measured segment lengths.
+//! Builds the adult by sex, stature and mass, or by measured segment lengths.
 //!
 //! Masses, centres and inertias from de Leva 1996; joints, ranges, passive curves, strengths and fatigue classes from
 //! `data/adult.toml`. The shoulder girdle is fixed to the thorax; the pelvis stands on six ordinary root coordinates.
 
 use nalgebra::{Matrix3, Unit, Vector3};
-use serde::Deserialize;
 
+use super::adult_size::{Adult, Part, Sex};
 use super::data::{Along, CoordinateRow, GRAVITY, InRightArm, Library, Reference, SegmentRow, library};
 use super::{
     CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, Placement,
     SegmentSpec,
 };
 use crate::passive::{Coupled, PassiveError, PassiveLaw};
-
-/// Sex, as the body tables distinguish it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Sex {
-    /// De Leva's women.
-    Female,
-    /// De Leva's men.
-    Male,
-}
-
-/// How much of the body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// All of it.
-    Whole,
-    /// The right arm, on a trunk and head that are fixed in ground.
-    RightArm,
-}
-
-/// Size of the built-in adult.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Adult {
-    /// Whose proportions.
-    pub sex: Sex,
-    /// Stature, m, 1.2..=2.3.
-    pub stature: f64,
-    /// Mass, kg, 30..=250.
-    pub mass: f64,
-    /// How much of the body.
-    pub part: Part,
-    /// Measured segment lengths, m, by segment name without side (`femur`, `tibia`, `humerus`, `radius`, `hand`, ...); the
-    /// others follow stature. Masses stay shares of body mass.
-    pub lengths: Vec<(String, f64)>,
-}
-
-impl Default for Adult {
-    /// De Leva's reference man, 73.0 kg and 1.741 m, whole.
-    fn default() -> Self {
-        Self { sex: Sex::Male, stature: 1.741, mass: 73.0, part: Part::Whole, lengths: vec![] }
-    }
-}
-
-impl Adult {
-    /// The right arm of the reference man.
-    pub fn right_arm() -> Self {
-        Self { part: Part::RightArm, ..Self::default() }
-    }
-}
 
 /// Why an adult was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -326,7 +277,7 @@ fn direction(row: &SegmentRow) -> Vector3<f64> {
     }
 }
 
-/// What the body data say of a coordinate of the adult: its row's names and references.
+/// The row of the body data for a coordinate of the adult: its names and references.
 #[derive(Clone, Debug)]
 pub struct CoordinateSources<'a> {
     /// Name of the passive curve (a man's, where the sexes differ); `None` for the root.
@@ -337,9 +288,9 @@ pub struct CoordinateSources<'a> {
     pub fatigue_class: Option<&'a str>,
     /// Region of the body, for strategies by region.
     pub region: &'a str,
-    /// Of the range of motion.
+    /// Source of the range of motion.
     pub range: &'a Reference,
-    /// Of the strength of the positive and negative group.
+    /// Sources of the strength of the positive and the negative group.
     pub strength: Option<[&'a Reference; 2]>,
 }
 

@@ -1,11 +1,11 @@
-//! What is known of one coordinate: its range, its passive law and the two muscle groups that move it.
+//! Defines a coordinate: its range, its passive law and the two muscle groups that move it.
 
 use crate::fatigue::FatigueLaw;
 use crate::passive::{PassiveCurve, PassiveLaw};
 use crate::strength::Strength;
 use serde::{Deserialize, Serialize};
 
-/// What the number means.
+/// Meaning of the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoordinateKind {
     /// An angle, rad.
@@ -19,9 +19,9 @@ pub enum CoordinateKind {
 /// The two senses of a coordinate: the sign of the active torque that the group gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Side {
-    /// Pulls toward larger values.
+    /// Its torque increases the coordinate.
     Positive,
-    /// Pulls toward smaller values.
+    /// Its torque decreases the coordinate.
     Negative,
 }
 
@@ -85,7 +85,7 @@ pub struct Coordinate {
 }
 
 impl Coordinate {
-    /// Is enough known of its passive torque to find relief?
+    /// Whether its passive torque is a curve, which relief needs.
     pub fn can_be_relieved(&self) -> bool {
         matches!(self.passive, Some(PassiveLaw::Curve(_) | PassiveLaw::Coupled(_)))
     }
@@ -113,7 +113,7 @@ pub struct CoordinateSpec {
     pub groups: Option<[MuscleGroup; 2]>,
     /// Angle or distance, for joints driven by functions; the motion decides elsewhere.
     pub kind: CoordinateKind,
-    /// It is not meant to move.
+    /// Whether the coordinate keeps its default.
     pub locked: bool,
 }
 

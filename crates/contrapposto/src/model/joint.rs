@@ -1,4 +1,4 @@
-//! How may a segment move against its parent?
+//! Defines the kinds of joints: how a segment may move against its parent.
 
 use nalgebra::{Unit, Vector3};
 
@@ -39,7 +39,7 @@ pub enum JointKind {
     Driven(Vec<(Motion, Drive)>),
 }
 
-/// What gives the value of an elementary motion.
+/// The source of the value of an elementary motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// A coordinate itself, by its index.

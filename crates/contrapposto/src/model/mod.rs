@@ -1,20 +1,27 @@
-//! What is a body? An immutable tree of rigid segments, joined at coordinates that have a range and two muscle groups.
+//! Defines the body: an immutable tree of rigid segments, joined at coordinates with a range and two muscle groups.
 //!
 //! Ground axes of the built-in adult: x forward, y up, z right (ISB). Units: m, kg, rad, N m. A [`Model`] is built once
 //! with a [`ModelBuilder`] and never changes; everything computed lives elsewhere.
 
 mod adult;
+mod adult_size;
 mod builder;
 mod coordinate;
+mod coordinate_specs;
 pub mod data;
+mod error;
 mod joint;
 mod reduced;
+mod segment_spec;
 
-pub use adult::{Adult, AdultError, CoordinateSources, Part, Sex, adult};
-pub use builder::{ModelBuilder, ModelError, SegmentSpec};
+pub use adult::{AdultError, CoordinateSources, adult};
+pub use adult_size::{Adult, Part, Sex};
+pub use builder::ModelBuilder;
 pub use coordinate::{Coordinate, CoordinateKind, CoordinateSpec, MuscleGroup, Side};
+pub use error::ModelError;
 pub use joint::{Drive, JointKind, Motion};
 pub(crate) use reduced::reduced;
+pub use segment_spec::SegmentSpec;
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -72,7 +79,7 @@ pub(crate) struct Mobility {
     pub(crate) principal: Option<(usize, f64)>,
     /// The resting frame is turned against the parent's.
     pub(crate) turned: bool,
-    /// What gives its value; for a ball the first of its four coordinates.
+    /// Source of its value; for a ball the first of its four coordinates.
     pub(crate) drive: Drive,
     /// Its first elementary rate: one for a hinge or slide, three for a ball.
     pub(crate) rate: usize,
@@ -236,12 +243,12 @@ impl Model {
         self.elements[self.mobilities[mobility].rate..end].iter().flatten().copied()
     }
 
-    /// Coordinates that follow another one; a leader that follows itself stands before its followers.
+    /// Couplings of dependent coordinates; the coupling of a coordinate stands before the couplings that depend on it.
     pub fn couplings(&self) -> &[Coupling] {
         &self.couplings
     }
 
-    /// Does the coordinate follow another one?
+    /// Whether the coordinate depends on another one.
     pub fn is_dependent(&self, coordinate: usize) -> bool {
         self.couplings.iter().any(|coupling| coupling.dependent == coordinate)
     }

@@ -1,4 +1,4 @@
-//! Which torque does OpenSim's `CoordinateLimitForce` give?
+//! Computes the torque of OpenSim's `CoordinateLimitForce`.
 //!
 //! Zero between two limits; beyond them a spring that is switched on over a transition width `w` by the quintic step
 //! `S(x) = 10 x^3 - 15 x^4 + 6 x^5` (clipped to 0..1):

@@ -1,4 +1,4 @@
-//! Which torque do tissues give that stiffen exponentially toward both ends of a range?
+//! Computes the passive torque of tissues that stiffen exponentially toward both ends of a range.
 //!
 //! `tau(q) = sum_i a_i exp(r_i (q - q_i)) - k (q - q_mid) + c`, every exponential term falling (`a_i r_i <= 0`). With one term
 //! a side it is the canonical double exponential (Anderson & Pandy 1999; OpenSim's `ExponentialCoordinateLimitForce`);

@@ -1,4 +1,4 @@
-//! Which passive torque acts on a coordinate, whatever its form?
+//! Defines the passive torque of a coordinate, whatever its form.
 //!
 //! Relief needs a falling curve with a range ([`PassiveCurve`]); torques of imported models need more: laws coupled to
 //! neighbouring joints, and sums of whatever a file holds, falling or not.

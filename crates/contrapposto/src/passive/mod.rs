@@ -1,4 +1,4 @@
-//! How much torque do ligaments and connective tissue give at an angle?
+//! Computes the torque of ligaments and connective tissue at an angle.
 //!
 //! One contract for every published form: [`PassiveCurve`] answers torque, slope, energy, the flattest zone and the angles
 //! at which the slope has a given value, inside a closed range. One file per form, named after its author. Sign: torque
@@ -20,7 +20,7 @@ pub use reshape::Reshape;
 pub use riener_edrich1999::{CoupledTerm, RienerEdrich1999};
 pub use tabulated::Tabulated;
 
-/// What a curve is made of.
+/// The published form of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Form {
     /// Falling exponentials and a linear term: the canonical double exponential, OpenSim's
@@ -43,7 +43,7 @@ pub enum PassiveError {
         name: &'static str,
         /// The value given.
         value: f64,
-        /// What would be accepted.
+        /// The values that would be accepted.
         accepted: &'static str,
     },
     /// The torque rises with the angle somewhere in the range.
@@ -67,7 +67,7 @@ pub enum PassiveError {
     Table {
         /// Row, counted from 1.
         row: usize,
-        /// What is wrong with it.
+        /// The fault.
         problem: &'static str,
     },
 }
@@ -115,7 +115,7 @@ pub struct PassiveCurve {
 struct Zone {
     from: f64,
     to: f64,
-    /// What reshaping adds to the slope, N m/rad.
+    /// Slope that reshaping adds, N m/rad.
     added_slope: f64,
     /// The form's slope at both ends, without what is added.
     form_slopes: (f64, f64),
@@ -251,7 +251,7 @@ impl PassiveCurve {
             found = SlopeAngles { lower: Some(lower_end), upper: Some(upper_end) };
         } else if slope < self.flattest_slope {
             self.crossings(slope, |angle| {
-                // At a kink that is itself the flattest angle the side is told by where the curve is steeper.
+                // At a kink that is itself the flattest angle, the steeper neighbour decides the side.
                 let kink = lower_end == upper_end && angle == upper_end && self.steeper_beyond(angle, slope);
                 if angle <= lower_end && !kink {
                     found.lower = Some(found.lower.map_or(angle, |best| best.max(angle)));
@@ -263,7 +263,7 @@ impl PassiveCurve {
         found
     }
 
-    /// Does a zone begin at `angle` whose slope there is steeper than `slope`?
+    /// Whether a zone that begins at `angle` is steeper there than `slope`.
     fn steeper_beyond(&self, angle: f64, slope: f64) -> bool {
         self.zones.iter().any(|zone| zone.from == angle && zone.form_slopes.0 + zone.added_slope < slope)
     }

@@ -1,4 +1,4 @@
-//! How is a curve made strong enough near both limits?
+//! Adds linear terms to a curve near both limits, so that it outweighs the external torque there.
 //!
 //! Rodriguez & Boulic 2007, section 4.1, add two linear terms close to both extremes, so that passive torque there always
 //! outweighs the external one; the paper gives no coefficients. Here: inside a zone of stated width at each limit a linear

@@ -1,4 +1,4 @@
-//! Which torque do the two-joint muscles and ligaments of the leg give at hip, knee and ankle together?
+//! Computes the torque that the two-joint muscles and ligaments of the leg give at hip, knee and ankle together.
 //!
 //! Riener & Edrich 1999 (J. Biomech. 32:539-544), ten healthy adults, relaxed muscles included:
 //! `tau = sum_i sign_i exp(c0_i + c_hip,i hip + c_knee,i knee + c_ankle,i ankle) + constant`, hip and knee flexion and ankle

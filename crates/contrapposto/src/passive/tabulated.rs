@@ -1,4 +1,4 @@
-//! Which torque does a measured table give between its rows?
+//! Interpolates a measured table of passive torque.
 //!
 //! A monotone cubic (Fritsch & Carlson 1980) through the rows: smooth, and never outside the two neighbouring values.
 

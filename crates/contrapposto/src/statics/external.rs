@@ -49,7 +49,7 @@ impl Pull {
 /// External torque of every rate. Depends on posture and loads; filled by [`ExternalTorque::update`].
 #[derive(Clone, Debug)]
 pub struct ExternalTorque {
-    /// By rate, coupled ones folded into their leader.
+    /// By rate, dependent coordinates folded into their independent ones.
     torques: Vec<f64>,
     /// By rate, nothing coupled.
     raw: Vec<f64>,
@@ -113,7 +113,7 @@ impl ExternalTorque {
         Ok(())
     }
 
-    /// What pulls at each mobility itself.
+    /// Loads on each mobility itself.
     fn pull(&mut self, model: &Model, kinematics: &Kinematics, loads: &[Load]) -> Result<(), LoadError> {
         for load in loads {
             load.check(model)?;
@@ -216,7 +216,7 @@ impl ExternalTorque {
     }
 
     /// External torque of every rate, N m (N for slides), in the model's order. What a coordinate that follows another
-    /// one gives is folded into its leader, and its own entry is zero.
+    /// one gives is folded into its independent one, and its own entry is zero.
     pub fn torques(&self) -> &[f64] {
         &self.torques
     }
@@ -272,7 +272,7 @@ impl ExternalTorque {
         &self.center_of_mass
     }
 
-    /// What couples and body-fixed forces add to the gradient; neither is symmetric.
+    /// Adds the terms of couples and body-fixed forces to the gradient; neither is symmetric.
     fn add_twists(&self, model: &Model, kinematics: &Kinematics, matrix: &mut [f64]) {
         let n = model.elements.len();
         for (i, far) in model.mobilities.iter().enumerate() {
@@ -286,30 +286,51 @@ impl ExternalTorque {
                         matrix[element * n + other] += kinematics.axes[other].dot(&axis.cross(&pull.couple));
                     }
                 }
-                // What the far motion does to the body-fixed wrench it carries (moment about the ground origin).
+                // Change of the carried body-fixed wrench by the far motion (moment about the ground origin).
                 let (force, moment) = if far_slides {
                     (Vector3::zeros(), axis.cross(&pull.body_force))
                 } else {
                     let velocity = kinematics.origins[i].cross(&axis);
                     (axis.cross(&pull.body_force), axis.cross(&pull.body_moment) + velocity.cross(&pull.body_force))
                 };
+                let couple = if far_slides { Vector3::zeros() } else { axis.cross(&pull.couple) };
+                let twist = Twist { element, slides: far_slides, couple, force, moment };
                 let mut ancestor = far.parent;
                 while let Some(j) = ancestor {
-                    let near = &model.mobilities[j];
-                    ancestor = near.parent;
-                    for other in near.rate..near.rate + near.motion.rates() {
-                        let near_axis = kinematics.axes[other];
-                        if matches!(near.motion, Motion::Slide(_)) {
-                            matrix[other * n + element] += near_axis.dot(&force);
-                            continue;
-                        }
-                        if !far_slides {
-                            matrix[element * n + other] += near_axis.dot(&axis.cross(&pull.couple));
-                        }
-                        matrix[other * n + element] += near_axis.dot(&(moment - kinematics.origins[j].cross(&force)));
-                    }
+                    twist.add(model, kinematics, j, matrix);
+                    ancestor = model.mobilities[j].parent;
                 }
             }
+        }
+    }
+}
+
+/// Changes of the couple and of the body-fixed wrench that one elementary motion carries, by that motion.
+struct Twist {
+    /// The elementary motion.
+    element: usize,
+    slides: bool,
+    couple: Vector3<f64>,
+    force: Vector3<f64>,
+    /// About the ground origin.
+    moment: Vector3<f64>,
+}
+
+impl Twist {
+    /// Adds the entries of the motion and those of mobility `near`, one of its ancestors.
+    fn add(&self, model: &Model, kinematics: &Kinematics, near: usize, matrix: &mut [f64]) {
+        let (n, element) = (model.elements.len(), self.element);
+        let mobility = &model.mobilities[near];
+        for other in mobility.rate..mobility.rate + mobility.motion.rates() {
+            let axis = kinematics.axes[other];
+            if matches!(mobility.motion, Motion::Slide(_)) {
+                matrix[other * n + element] += axis.dot(&self.force);
+                continue;
+            }
+            if !self.slides {
+                matrix[element * n + other] += axis.dot(&self.couple);
+            }
+            matrix[other * n + element] += axis.dot(&(self.moment - kinematics.origins[near].cross(&self.force)));
         }
     }
 }

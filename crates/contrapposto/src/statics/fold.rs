@@ -1,22 +1,22 @@
-//! How do torques of elementary motions become torques of coordinates?
+//! Converts torques of elementary motions into torques of coordinates.
 //!
-//! By the chain rule. An elementary motion `u = f(q)` gives its coordinate `tau_q = f'(q) tau_u`; a coordinate that follows,
-//! `q_d = g(q_i)`, gives its leader `g'(q_i) tau_d`. Gradients follow with the second derivatives:
-//! `H_q = F^T H_u F + tau_u f''`, then `H_i = G^T H_q G + tau_d g''`. Chains of followers are folded from their ends, so the
-//! `tau_d` of a leader that follows has its own followers in it already.
+//! By the chain rule, an elementary motion `u = f(q)` gives its coordinate `tau_q = f'(q) tau_u`; a dependent coordinate
+//! `q_d = g(q_i)` gives its independent one `g'(q_i) tau_d`. Gradients follow with the second derivatives:
+//! `H_q = F^T H_u F + tau_u f''`, then `H_i = G^T H_q G + tau_d g''`. Chains of couplings are folded from their ends, so
+//! that `tau_d` contains the torques of the coordinates that depend on it.
 
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 
 /// `d external_i / d q_j`, N m/rad (or per m), rows and columns in the order of the model's rates. Rows and columns of
-/// coordinates that follow others are zero: they are folded into their leader.
+/// dependent coordinates are zero: they are folded into their independent one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
     n: usize,
     entries: Vec<f64>,
     /// The matrix of elementary motions, where it is not the same.
     elements: Vec<f64>,
-    /// Torque of each rate with its followers folded in, its own leader not yet served.
+    /// Torque of each rate with its dependent coordinates folded in, before it is folded itself.
     carried: Vec<f64>,
     /// Entries that plain weights and forces leave at zero may hold something.
     dirty: bool,
@@ -46,8 +46,8 @@ impl Gradient {
         &self.entries[row * self.n..(row + 1) * self.n]
     }
 
-    /// Is it its own mirror image? That of plain weights and forces is, which have a potential, where no ball turns about axes
-    /// that turn with it.
+    /// Whether the matrix is symmetric. The gradient of weights and world-fixed forces is, because they have a potential, unless a
+    /// ball turns about axes that turn with it.
     pub(crate) fn is_symmetric(&self) -> bool {
         self.symmetric
     }
@@ -110,7 +110,7 @@ impl Kinematics {
         }
     }
 
-    /// Torques by rate, as if nothing were coupled, become torques with every follower folded into its leader.
+    /// Folds torques by rate, computed as if nothing were coupled: every dependent coordinate into its independent one.
     pub fn fold_couplings(&self, model: &Model, raw: &[f64], folded: &mut [f64]) {
         folded.copy_from_slice(raw);
         for (coupling, (slope, _)) in model.couplings.iter().zip(&self.couplings).rev() {

@@ -1,4 +1,4 @@
-//! What pulls on the body besides its own weight?
+//! Defines the loads that act on the body besides its own weight.
 
 use nalgebra::Vector3;
 
@@ -24,14 +24,14 @@ pub enum LoadKind {
     Couple(Vector3<f64>, FixedIn),
 }
 
-/// Something that pulls on a point of a segment.
+/// A load on a point of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
     /// Index of the segment.
     pub segment: usize,
     /// Where, in the segment's frame, m.
     pub point: Vector3<f64>,
-    /// What.
+    /// Force, couple or weight.
     pub kind: LoadKind,
 }
 
@@ -54,7 +54,7 @@ pub enum LoadError {
         what: &'static str,
         /// The value.
         value: f64,
-        /// What would be accepted.
+        /// The values that would be accepted.
         accepted: &'static str,
     },
 }
@@ -66,7 +66,7 @@ impl Load {
         Self { segment, point, kind: LoadKind::Weight(mass) }
     }
 
-    /// Does it fit `model`?
+    /// Whether the load fits `model`.
     ///
     /// # Errors
     /// [`LoadError`] for a segment that is not there, or a number without meaning.

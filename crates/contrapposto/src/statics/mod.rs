@@ -1,4 +1,4 @@
-//! Which torque do weight and other loads, ligaments and muscles give at every joint of a body at rest?
+//! Computes the torques that weight, other loads and passive tissue give at every joint of a body at rest.
 //!
 //! `active + passive + external = 0` (Rodriguez & Boulic 2007, Eq. 1). Torques act in the direction of the coordinate;
 //! robotics' generalised gravity has the opposite sign of our external torque.

@@ -1,22 +1,22 @@
-//! Which torque do ligaments and other passive tissue give?
+//! Computes the torque of ligaments and other passive tissue of all coordinates.
 
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 
 /// Larger torque cannot be calculated with: squares of it must stay finite. N m, N for slides.
-const LARGEST: f64 = 1e50;
+const GREATEST_TORQUE: f64 = 1e50;
 
 /// A law of a file that gives no torque to calculate with in a posture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the passive torque of `{coordinate}` at {value:.6} (rad or m) is {torque:e} N m (or N); it must be finite and at most {LARGEST:e} in size"
+    "the passive torque of `{coordinate}` at {value:.6} (rad or m) is {torque:e} N m (or N); it must be finite and at most {GREATEST_TORQUE:e} in size"
 )]
 pub struct PassiveTorqueError {
     /// Name of the coordinate.
     pub coordinate: String,
     /// Where it stands, rad or m.
     pub value: f64,
-    /// What its law says there, N m or N.
+    /// Torque by its law, N m or N.
     pub torque: f64,
 }
 
@@ -60,7 +60,7 @@ impl PassiveTorque {
             *torque = 0.0;
             let Some((i, law)) = known else { continue };
             *torque = law.torque(i, &self.values);
-            if torque.is_nan() || torque.abs() > LARGEST {
+            if torque.is_nan() || torque.abs() > GREATEST_TORQUE {
                 let (coordinate, value) = (model.coordinates()[i].name.clone(), self.values[i]);
                 return Err(PassiveTorqueError { coordinate, value, torque: *torque });
             }

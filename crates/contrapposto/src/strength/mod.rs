@@ -1,4 +1,4 @@
-//! How much torque can a rested muscle group give at an angle?
+//! Computes the greatest torque that a rested muscle group can give at an angle.
 //!
 //! One shape: `S(q) = peak max(floor, cos(narrowness (q - best)))`. With `narrowness = 0` strength is the same everywhere.
 //! With Anderson, Madigan & Nussbaum 2007 (J. Biomech. 40:3105-3113, Table 3) `peak = C1 M g H`, `narrowness = C2`,

@@ -79,14 +79,14 @@ pub(super) fn binary(operation: Binary, a: Dual, b: Dual) -> Dual {
 }
 
 /// Where the series hands over to the continued fraction.
-const FAR: f64 = 2.5;
+const SERIES_END: f64 = 2.5;
 
 /// `erf(x) = 2/sqrt(pi) exp(-x^2) (x + 2 x^3/3 + 4 x^5/15 + ...)`: all terms of one sign (Abramowitz & Stegun 7.1.6).
 fn erf(x: f64) -> f64 {
     if x.is_nan() {
         return x;
     }
-    if x.abs() > FAR {
+    if x.abs() > SERIES_END {
         return x.signum() - x.signum() * erfc(x.abs());
     }
     let (mut term, mut sum, mut n) = (x, x, 0.0);
@@ -100,8 +100,8 @@ fn erf(x: f64) -> f64 {
 
 /// `erfc(x) = exp(-x^2)/sqrt(pi) 1/(x + (1/2)/(x + 1/(x + (3/2)/(x + ...))))` far out (Abramowitz & Stegun 7.1.14).
 fn erfc(x: f64) -> f64 {
-    if x <= FAR || x.is_nan() {
-        return if x < -FAR { 2.0 - erfc(-x) } else { 1.0 - erf(x) };
+    if x <= SERIES_END || x.is_nan() {
+        return if x < -SERIES_END { 2.0 - erfc(-x) } else { 1.0 - erf(x) };
     }
     let fraction = (1..=120).rev().fold(x, |below, k| x + 0.5 * f64::from(k) / below);
     0.5 * std::f64::consts::FRAC_2_SQRT_PI * (-x * x).exp() / fraction

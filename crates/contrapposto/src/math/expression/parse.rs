@@ -33,9 +33,9 @@ pub enum ExpressionError {
     Unexpected {
         /// Where.
         column: usize,
-        /// What stands there.
+        /// The text at that place.
         found: String,
-        /// What would be accepted.
+        /// The text that would be accepted.
         expected: &'static str,
     },
     /// Neither `q`, `qdot` nor defined.
@@ -165,7 +165,7 @@ pub(super) fn parse(text: &str) -> Result<(Vec<Node>, usize), ExpressionError> {
     let primary = pieces.next().unwrap_or_default();
     let definitions: Vec<&[Glyph]> = pieces.filter(|piece| !piece.is_empty()).collect();
     let mut builder = Builder::default();
-    // The last one first: each sees those to its right.
+    // The last definition first: each may use those to its right.
     for piece in definitions.into_iter().rev() {
         let column = piece[0].1;
         let equals = piece.iter().position(|g| g.0 == '=').ok_or(ExpressionError::Definition { column })?;

@@ -1,0 +1,52 @@
+//! Describes the built-in adult: sex, stature, mass and measured lengths.
+
+use serde::Deserialize;
+
+/// Sex, as the body tables distinguish it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sex {
+    /// De Leva's women.
+    Female,
+    /// De Leva's men.
+    Male,
+}
+
+/// How much of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// The right arm, on a trunk and head that are fixed in ground.
+    RightArm,
+}
+
+/// Size of the built-in adult.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Adult {
+    /// Sex whose proportions the body has.
+    pub sex: Sex,
+    /// Stature, m, 1.2..=2.3.
+    pub stature: f64,
+    /// Mass, kg, 30..=250.
+    pub mass: f64,
+    /// How much of the body.
+    pub part: Part,
+    /// Measured segment lengths, m, by segment name without side (`femur`, `tibia`, `humerus`, `radius`, `hand`, ...); the
+    /// others follow stature. Masses stay shares of body mass.
+    pub lengths: Vec<(String, f64)>,
+}
+
+impl Default for Adult {
+    /// De Leva's reference man, 73.0 kg and 1.741 m, whole.
+    fn default() -> Self {
+        Self { sex: Sex::Male, stature: 1.741, mass: 73.0, part: Part::Whole, lengths: vec![] }
+    }
+}
+
+impl Adult {
+    /// The right arm of the reference man.
+    pub fn right_arm() -> Self {
+        Self { part: Part::RightArm, ..Self::default() }
+    }
+}

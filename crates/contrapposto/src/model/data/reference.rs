@@ -1,0 +1,48 @@
+//! Defines the source of a number of the human body, and how far the number can be trusted.
+
+use serde::Deserialize;
+
+/// How far a number can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Status {
+    /// Read in the named source.
+    #[serde(rename = "verified")]
+    Verified,
+    /// Computed from verified numbers.
+    #[serde(rename = "derived")]
+    Derived,
+    /// Verified size, assumed shape.
+    #[serde(rename = "derived (partly assumed)")]
+    DerivedPartlyAssumed,
+    /// From memory; never cite as verified.
+    #[serde(rename = "recalled (unverified)")]
+    Recalled,
+    /// A design choice without a measurement behind it.
+    #[serde(rename = "assumed")]
+    Assumed,
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Verified => "verified",
+            Self::Derived => "derived",
+            Self::DerivedPartlyAssumed => "derived (partly assumed)",
+            Self::Recalled => "recalled (unverified)",
+            Self::Assumed => "assumed",
+        })
+    }
+}
+
+/// Where a number comes from.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// How far it can be trusted.
+    pub status: Status,
+    /// Author, year, place; or the reason of an assumption.
+    pub source: String,
+    /// Remark.
+    #[serde(default)]
+    pub note: String,
+}
