@@ -1,5 +1,4 @@
-//! What does the validator of glTF's own makers say of `motion.glb`? It comes from npm (`gltf-validator`) into a temporary folder;
-//! without node, npm or the registry this says so and passes.
+//! Checks `motion.glb` with the glTF validator of Khronos, which npm installs (`gltf-validator`) into a temporary folder.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on says where")]
 

@@ -1,4 +1,4 @@
-//! Hands held before the body, as in docs/holding-times.md: who gives up first, and in which class of Miedema et al. 1997?
+//! Hands held before the body, as in docs/holding-times.md: the group that fails first, and the class of Miedema et al. 1997.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

@@ -1,4 +1,4 @@
-//! Whole bodies over time, from the scenarios of the repository: who is relieved how?
+//! Whole bodies over time, from the scenarios of the repository: the reliefs and their effect.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

@@ -1,5 +1,5 @@
-//! Every scenario of the repository from its start to its end: is every sample in equilibrium, and does the run come out the
-//! same to the bit when it is taken up again at any mark, by any number of threads?
+//! Every scenario of the repository from its start to its end: every sample is in equilibrium, and the run gives
+//! the same bytes when it is continued from any snapshot, by any number of threads.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

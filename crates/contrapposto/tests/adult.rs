@@ -1,4 +1,4 @@
-//! Is the built-in adult the body of the data sheet, and does every coordinate turn the way its name says?
+//! Compares the built-in adult with the data sheet, and the direction of every coordinate with its name.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 

@@ -1,5 +1,5 @@
-//! Contact forces: do they hold the root, push and never pull, stay inside friction and patches, and spare the muscles as much as
-//! an independent solver can? Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
+//! Contact forces: they balance the root, push and never pull, stay inside friction and patches, and need no more effort
+//! than those of an independent solver. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 

@@ -1,4 +1,4 @@
-//! Does a muscle group tire and recover as the published laws say, on one scale for both?
+//! Compares fatigue and recovery of a muscle group with the published laws, on one scale for both.
 //!
 //! 3CC-r is compared with its closed form and with an Euler integration of the test's own, the endurance integral with
 //! the data sheet's check values, strength with differences. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.

@@ -1,5 +1,5 @@
-//! Do points, segments and the centre of mass move as their Jacobians say? Central differences on random bodies of every
-//! joint kind, driven joints and followers of followers included. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
+//! Compares the Jacobians of points, segments and the centre of mass with central differences on random bodies of every
+//! joint kind, driven joints and chains of couplings included. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 

@@ -1,6 +1,6 @@
-//! Does any stage remember what it should not? Each is asked about several postures in order, each twice, then in reverse, with the
-//! same workspace: answers are the same to the bit, those of a new workspace too, and the model is what it was. Where a stage is
-//! meant to remember, it is told to forget.
+//! No stage keeps hidden state: each computes several postures in order, each twice, then in reverse, with the
+//! same workspace: answers are the same to the bit, those of a new workspace too, and the model is what it was. A stage that
+//! keeps a state on purpose is restarted.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 

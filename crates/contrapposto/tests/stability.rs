@@ -1,4 +1,4 @@
-//! Does a posture come back by itself? Pendulums in closed form, stiffness against differences of torque, and the curvature of
+//! Tests the stability of postures: pendulums in closed form, stiffness against differences of torque, and the curvature of
 //! energy along motions that keep the feet in place. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]

@@ -1,4 +1,4 @@
-//! Is external torque right, and is its gradient right for every pair of joints?
+//! Compares external torque and its gradient for every pair of joints with independent computations.
 //!
 //! Random trees of every joint kind, with forward kinematics and Jacobians of the test's own: frames composed segment by
 //! segment, columns by `r x (x - p)`. Three derivations must agree: the crate's recursion, the virtual-work sum, and

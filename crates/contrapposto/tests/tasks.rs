@@ -1,5 +1,5 @@
-//! Does every task's Jacobian say how its error changes? Central differences on the whole adult and on random bodies with
-//! every joint kind, driven joints and followers. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
+//! Compares the Jacobian of every task with central differences of its error, on the whole adult and on random bodies with
+//! every joint kind, driven joints and couplings. Seeded; `CONTRAPPOSTO_SEED` chooses another seed.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 

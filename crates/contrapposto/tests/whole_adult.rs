@@ -1,4 +1,4 @@
-//! Is the whole built-in adult complete, symmetric, upright, and does every leg and spine coordinate turn the way its name says?
+//! The whole built-in adult is complete, symmetric and upright, and every leg and spine coordinate turns the way its name says.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
