@@ -5,7 +5,7 @@ mod include;
 
 use std::path::Path;
 
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::tissue::SourcedModel;
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size};
@@ -44,7 +44,7 @@ fn refused(error: impl std::fmt::Display) -> Fail {
     Fail::Refused(error.to_string())
 }
 
-fn file(path: &Path, root: Option<BodyRoot>) -> Result<SourcedModel, Fail> {
+fn file(path: &Path, root: Option<RootAttachment>) -> Result<SourcedModel, Fail> {
     let most = Limits::default().file_bytes as u64;
     let bytes = read(path, most)?;
     let name = path.display().to_string();

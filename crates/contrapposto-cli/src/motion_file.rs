@@ -33,7 +33,7 @@ pub(crate) fn loads_of(
 /// The table of --grf; notes say on which segments its plates are taken to act.
 fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<String>) -> Result<GroundReaction, Fail> {
     let name = path.display().to_string();
-    let bytes = read(path, motion::MOST_BYTES as u64)?;
+    let bytes = read(path, motion::MOST_TABLE_BYTES as u64)?;
     let ground = GroundReaction::read(&name, &bytes, on, model).map_err(|error| match error {
         GroundReactionError::Table(error) => Fail::from(error),
         GroundReactionError::Count { .. } => Fail::Refused(format!("--grf-on {error}")),
@@ -56,7 +56,7 @@ pub(crate) fn read_motion(
     notes: &mut Vec<String>,
 ) -> Result<Vec<(f64, Posture)>, Fail> {
     let name = path.display().to_string();
-    let bytes = read(path, motion::MOST_BYTES as u64).map_err(|fail| match fail {
+    let bytes = read(path, motion::MOST_TABLE_BYTES as u64).map_err(|fail| match fail {
         Fail::Refused(why) => Fail::Refused(format!("{why}\n  {accepted}")),
         other => other,
     })?;

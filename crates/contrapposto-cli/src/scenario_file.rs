@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use contrapposto::model::Model;
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{MOST_BYTES, ModelFile, scenario_model};
 
 use crate::args::{ModelArgs, RootChoice};
@@ -45,8 +45,8 @@ fn model_args(scenario: &Path, file: &ModelFile) -> ModelArgs {
         model: path(&file.file),
         overlay: file.overlay.as_ref().map(path),
         root: file.root.map(|root| match root {
-            BodyRoot::Fixed => RootChoice::Fixed,
-            BodyRoot::Free => RootChoice::Free,
+            RootAttachment::Fixed => RootChoice::Fixed,
+            RootAttachment::Free => RootChoice::Free,
         }),
         passive: None,
     }

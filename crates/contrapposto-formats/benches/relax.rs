@@ -1,4 +1,4 @@
-//! How good are least-effort postures, and how fast, beside SLSQP on Pinocchio's derivatives? For each target of a file of the
+//! Compares effort and time of least-effort postures with SLSQP on Pinocchio's derivatives. For each target of a file of the
 //! peer's answers: one solve from rest, the sum of squared active torques against the peer's, and the times of both.
 //!
 //! `cargo bench -p contrapposto-formats --bench relax -- FILE [local minima]`, FILE the answers that `50_posture_pinocchio.py` of the

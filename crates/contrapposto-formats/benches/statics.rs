@@ -1,4 +1,4 @@
-//! How long do kinematics, centre of mass, gravity torque and the full gradient take? On the published humans beside the
+//! Times kinematics, centre of mass, gravity torque and the full gradient: on the published humans beside the
 //! project (the models of the peers' benchmark; left out where they are not there), and on chains of 10 to 1,000 hinges.
 //!
 //! The peer's figures come from its own program in the same run: see docs/benchmarks.md.
@@ -12,7 +12,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec};
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::urdf;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Unit, Vector3};
@@ -69,7 +69,7 @@ fn humans(c: &mut Criterion) {
             println!("human{dof}: left out, its file is not on this machine");
             continue;
         };
-        for (root, word) in [(BodyRoot::Free, "free"), (BodyRoot::Fixed, "fixed")] {
+        for (root, word) in [(RootAttachment::Free, "free"), (RootAttachment::Fixed, "fixed")] {
             let options = urdf::Options { root, ..urdf::Options::default() };
             let model = urdf::read(&bytes, &file, &options).expect("a URDF").model().expect("a model").model;
             let hand = |name: &str| model.segment(name).expect("a hand");

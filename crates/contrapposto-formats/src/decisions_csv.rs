@@ -1,4 +1,4 @@
-//! `decisions.csv`: every relief of a run, one row each, with a plain sentence.
+//! Writes `decisions.csv`: every relief of a run, one row each, with a plain sentence.
 
 use std::fmt::Write;
 

@@ -1,15 +1,15 @@
-//! What is wrong with an input file, where, and what would be right?
+//! Errors of input files: the reason, the place, and the accepted alternative.
 
 use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 /// A refused input. Prints with file, line, column and a caret when shown through `miette`.
 #[derive(Debug)]
-pub struct InputError(Box<Complaint>);
+pub struct InputError(Box<Report>);
 
-/// What is wrong, where, and what would be right.
+/// The reason, the place, and the accepted alternative.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
-struct Complaint {
+struct Report {
     message: String,
     source_code: Excerpt,
     span: Option<SourceSpan>,
@@ -40,7 +40,7 @@ impl Diagnostic for InputError {
     }
 }
 
-/// An input text and its name, to complain about.
+/// An input text and its name, from which errors take their excerpts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
@@ -48,7 +48,7 @@ pub(crate) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// A complaint about `span` (bytes), or about the whole file.
+    /// An error at `span` (bytes), or in the whole file.
     pub(crate) fn error(
         &self,
         span: Option<std::ops::Range<usize>>,
@@ -63,7 +63,7 @@ impl Source<'_> {
             let end = range.end.min(line_end).min(boundary(&text, range.start + MOST_UNDERLINED));
             SourceSpan::from((range.start, end.saturating_sub(range.start)))
         });
-        InputError(Box::new(Complaint {
+        InputError(Box::new(Report {
             message: printable(&shortened(message.into())),
             source_code: Excerpt { name: printable(self.name), text },
             span,
@@ -76,7 +76,7 @@ impl Source<'_> {
 /// Longest underlined piece, bytes.
 const MOST_UNDERLINED: usize = 100;
 
-/// Longest excerpt, bytes: beyond it, only what stands next to the place is shown.
+/// Longest excerpt, bytes: of longer lines only the neighbourhood of the place is shown.
 const MOST_SHOWN: usize = 1000;
 
 /// Longest message, bytes.
@@ -124,7 +124,7 @@ fn boundary(text: &str, at: usize) -> usize {
     at
 }
 
-/// The text without what a terminal would obey (escapes, turned reading directions); every byte keeps its place.
+/// The text without the characters that a terminal obeys (escapes, turned reading directions); every byte keeps its place.
 fn printable(text: &str) -> String {
     let shown = |c: char| match c {
         '\n' | '\t' | '\r' => c,
@@ -149,7 +149,7 @@ pub(crate) fn shortened(mut message: String) -> String {
 ///
 /// # Errors
 /// [`InputError`] with line and column of the first byte that is not UTF-8.
-pub fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
+pub(crate) fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
     std::str::from_utf8(bytes).map_err(|error| {
         let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]).into_owned();
         let byte = bytes[error.valid_up_to()];
@@ -179,7 +179,7 @@ pub fn nearest<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// "did you mean ..." or the list of what there is.
+/// "did you mean ..." or the list of all names.
 pub(crate) fn suggestion<'a>(given: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> Option<String> {
     match nearest(given, names.clone()) {
         Some(name) => Some(format!("did you mean `{name}`?")),

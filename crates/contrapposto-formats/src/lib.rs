@@ -1,15 +1,13 @@
-//! Text from outside, text to outside: scenario files, models, motion, decision lines, tables and summaries.
+//! Reads and writes text: scenario files, model files, motion, decision lines, tables and summaries.
 //!
-//! Everything here reads bytes of strangers and is total: any input gives a value or an [`InputError`] with its place. The
-//! crate opens no files; the program does.
+//! The readers take bytes of unknown origin and are total: any input gives a value or an error with its place. The crate opens no
+//! files; the program does.
 
 pub mod animation;
-pub mod body;
-pub use contrapposto::math::expression;
 pub mod loads;
 pub mod mjcf;
+pub mod model_ir;
 pub mod motion;
-pub mod numbers;
 pub mod osim;
 pub mod tissue;
 pub mod urdf;
@@ -21,22 +19,26 @@ mod decisions_csv;
 mod input_error;
 mod minimize;
 mod model_file;
+mod numbers;
 mod overlay;
+mod passive_law;
 mod pose;
 mod scenario;
 mod summary;
+mod toml_file;
 mod trajectory_csv;
 
 pub use adult_text::{AdultTextError, adult_size};
 pub use decisions_csv::{decisions_csv, relief_sentence};
-pub use input_error::{InputError, nearest, utf8};
+pub use input_error::{InputError, nearest};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
 pub use model_file::{ModelFileError, ModelFormat, read_model};
+pub use numbers::NumberError;
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
-    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, ScenarioText, read_pose, read_relax, read_scenario,
-    scenario_model, scenario_runs, scenario_schema,
+    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, read_pose, read_relax, read_scenario, scenario_model,
+    scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use trajectory_csv::{TableRow, csv_header, csv_row};

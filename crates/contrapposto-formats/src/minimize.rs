@@ -1,12 +1,13 @@
-//! One joint decision a line: JSON in, JSON out.
+//! Reads one joint problem a line of JSON and writes its decision as JSON.
 
-use contrapposto::hybrid::{Decision, Equilibrium, Problem, Strategy, explain, minimise, minimise_literal};
-use contrapposto::passive::PassiveCurve;
+use contrapposto::hybrid::{Decision, Equilibrium, Problem, explain, minimise, minimise_literal};
+use contrapposto::passive::{DoubleExponential, PassiveCurve};
 use contrapposto::simulation::Tables;
 use serde::{Deserialize, Serialize};
 
 use crate::input_error::shortened;
-use crate::scenario::{DoubleExponentialText, StrategyKindText, double_exponential};
+use crate::passive_law::DoubleExponentialText;
+use crate::scenario::StrategyKindText;
 
 /// Longest line that is read, bytes.
 pub const MOST_LINE_BYTES: usize = 1 << 16;
@@ -67,26 +68,23 @@ impl DecisionLine {
 /// Decides one line.
 ///
 /// # Errors
-/// A message that says what is wrong with the line.
+/// A message that names the reason.
 pub fn minimize_line(line: &str, tables: Tables) -> Result<DecisionLine, String> {
-    let text: ProblemLine = serde_json::from_str(line).map_err(|error| complaint(line, &error))?;
+    let text: ProblemLine = serde_json::from_str(line).map_err(|error| reworded(line, &error))?;
     let [min, max] = text.range_deg;
     if min >= max {
         return Err(format!("range_deg is [{min}, {max}]; the lower limit must come first, below the upper one"));
     }
     // Degrees go to radians once, and the present angle with its limits, so that equal degrees stay equal.
     let range = (text.range_deg[0].to_radians(), text.range_deg[1].to_radians());
-    let form = double_exponential(&text.passive).form().map_err(|error| format!("passive: {error}"))?;
+    let form = DoubleExponential::from(text.passive).form().map_err(|error| format!("passive: {error}"))?;
     let curve = PassiveCurve::new(form, range, None).map_err(|error| format!("passive: {error}"))?;
     let problem = Problem {
         curve: &curve,
         angle: text.angle_deg.to_radians(),
         external_torque: text.external_nm,
         external_slope: text.external_slope_nm_per_rad,
-        strategy: match text.strategy {
-            StrategyKindText::Active => Strategy::Active,
-            StrategyKindText::Passive => Strategy::Passive,
-        },
+        strategy: text.strategy.into(),
         minimum_decrease_ratio: text.minimum_decrease_ratio,
         torque_tolerance: text.tolerance_nm,
         accepted: None,
@@ -103,8 +101,8 @@ pub fn minimize_line(line: &str, tables: Tables) -> Result<DecisionLine, String>
     Ok(line)
 }
 
-/// What the JSON reader dislikes. A line is a file of its own: its place is the column.
-fn complaint(line: &str, error: &serde_json::Error) -> String {
+/// The message of the JSON reader. Each line is a file of its own: its place is the column.
+fn reworded(line: &str, error: &serde_json::Error) -> String {
     // Many programs write these; JSON has no such words.
     let before = line.get(..error.column().saturating_sub(1)).unwrap_or("");
     let start = before.rfind([':', ',', '[', ' ', '\t']).map_or(0, |at| at + 1);

@@ -1,10 +1,12 @@
-//! MJCF: MuJoCo's model files as a [`Body`].
+//! Reads MJCF, MuJoCo's model files, as a [`ModelIr`].
 //!
 //! Defaults and classes, includes, frames, degrees, Euler sequences, orientations of five kinds and masses from geoms are
 //! resolved as MuJoCo 4.0 resolves them. What matters to quasi-static torque and is not supported is refused with its place;
-//! the rest is counted in [`Body::ignored`].
+//! the rest is counted in [`ModelIr::ignored`].
 
 mod attributes;
+mod built;
+mod chain;
 mod compiler;
 mod defaults;
 mod equality;
@@ -12,30 +14,24 @@ mod error;
 mod files;
 mod geom;
 mod inertial;
+mod item;
 mod joint;
+mod options;
 mod orientation;
 mod schema;
 mod springdamper;
 mod tree;
+mod value;
 
 pub use error::{IncludeRule, MjcfError, MjcfRule, Unsupported};
+pub use options::Options;
+pub(crate) use schema::LEAST_MASS;
 
-use crate::body::{Body, BodyRoot, first_too_large, unique_coordinates};
-use crate::xml::Limits;
+use crate::model_ir::{Ignored, ModelIr, first_too_large, unique_coordinates};
 use attributes::Attributes;
 use compiler::Settings;
 use defaults::Classes;
-use files::{Files, Item};
-use std::collections::BTreeMap;
-
-/// What the file does not say.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Options {
-    /// How the outermost body is attached to the ground; `None`: as the file says. `Free` adds `root_tx` ... `root_qz`.
-    pub root: Option<BodyRoot>,
-    /// Caps.
-    pub limits: Limits,
-}
+use item::Item;
 
 /// Reads an MJCF file. `include` gives the bytes of an included file, named relative to the main file's folder; names that
 /// lead out of it never reach `include`. `file_name` serves as the body's name if the model has none.
@@ -47,13 +43,13 @@ pub fn read(
     file_name: &str,
     include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     options: &Options,
-) -> Result<Body, MjcfError> {
-    let files = Files::load(bytes, file_name, include, &options.limits)?;
+) -> Result<ModelIr, MjcfError> {
+    let files = files::load(bytes, file_name, include, &options.limits)?;
     let root = files.root();
     if root.name() != "mujoco" {
         return Err(MjcfError::Root { place: root.place() });
     }
-    let mut body = Body { name: file_name.to_owned(), ..Body::default() };
+    let mut body = ModelIr { name: file_name.to_owned(), ..ModelIr::default() };
     if let Some(name) = root.attribute("model").filter(|n| !n.is_empty()) {
         name.clone_into(&mut body.name);
     }
@@ -96,7 +92,7 @@ pub fn read(
         let place = built.places.get(segment).cloned().unwrap_or_else(|| root.place());
         return Err(MjcfError::Invalid { place, value, needs: MjcfRule::Overflow });
     }
-    body.ignored = ignored.0.into_iter().collect();
+    body.ignored = ignored.into_list();
     Ok(body)
 }
 
@@ -118,16 +114,4 @@ fn tendons<'a>(
         ignored.add("tendon", 1);
     }
     Ok(())
-}
-
-/// What was read past, by kind.
-#[derive(Debug, Default)]
-struct Ignored(BTreeMap<String, usize>);
-
-impl Ignored {
-    fn add(&mut self, kind: &str, count: usize) {
-        if count > 0 {
-            *self.0.entry(kind.to_owned()).or_default() += count;
-        }
-    }
 }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::body::{Body, BodyError, BodyRoot, Imported};
 use crate::mjcf::{self, MjcfError};
+use crate::model_ir::{Imported, ModelIr, ModelIrError, RootAttachment};
 use crate::osim::{self, OsimError};
 use crate::urdf::{self, UrdfError};
 use crate::xml::{self, Limits, XmlError};
@@ -78,7 +78,7 @@ pub enum ModelFileError {
     Mjcf(#[from] MjcfError),
     /// The resolved body is no model.
     #[error(transparent)]
-    Body(#[from] BodyError),
+    ModelIr(#[from] ModelIrError),
 }
 
 /// Reads a model file named `name`. `root`: how the root of a URDF or MJCF model is attached; as the file says (URDF: fixed) for
@@ -89,20 +89,20 @@ pub enum ModelFileError {
 pub fn read_model(
     name: &str,
     bytes: &[u8],
-    root: Option<BodyRoot>,
+    root: Option<RootAttachment>,
     include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<(Imported, ModelFormat), ModelFileError> {
     let limits = Limits::default();
     let format = ModelFormat::of(name, bytes, &limits)?;
     let own =
         |part: Option<&std::ffi::OsStr>| part.map_or_else(String::new, |part| part.to_string_lossy().into_owned());
-    let body: Body = match format {
+    let body: ModelIr = match format {
         ModelFormat::OpenSim if root.is_some() => {
             return Err(ModelFileError::RootGiven("an OpenSim model's root is what its joint to ground says"));
         }
         ModelFormat::OpenSim => osim::read(bytes, name)?,
         ModelFormat::Urdf => {
-            let options = urdf::Options { root: root.unwrap_or(BodyRoot::Fixed), limits };
+            let options = urdf::Options { root: root.unwrap_or(RootAttachment::Fixed), limits };
             urdf::read(bytes, &own(Path::new(name).file_stem()), &options)?
         }
         ModelFormat::Mjcf | ModelFormat::Adult => {

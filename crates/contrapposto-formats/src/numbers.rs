@@ -1,4 +1,4 @@
-//! Finite numbers from text, with the place in every complaint.
+//! Reads finite numbers from text, with the place in every error.
 
 use crate::xml::{Place, shorten};
 
@@ -44,7 +44,7 @@ fn between(least: usize, most: usize) -> String {
 ///
 /// # Errors
 /// [`NumberError`] with the place that `place` makes.
-pub fn number(text: &str, place: impl Fn() -> Place) -> Result<f64, NumberError> {
+pub(crate) fn number(text: &str, place: impl Fn() -> Place) -> Result<f64, NumberError> {
     let mut values = [0.0];
     fixed(text, &mut values, place)?;
     Ok(values[0])
@@ -54,7 +54,7 @@ pub fn number(text: &str, place: impl Fn() -> Place) -> Result<f64, NumberError>
 ///
 /// # Errors
 /// [`NumberError`] with the place that `place` makes.
-pub fn fixed(text: &str, values: &mut [f64], place: impl Fn() -> Place) -> Result<(), NumberError> {
+pub(crate) fn fixed(text: &str, values: &mut [f64], place: impl Fn() -> Place) -> Result<(), NumberError> {
     let read = list(text, values.len()..=values.len(), place)?;
     values.copy_from_slice(&read);
     Ok(())
@@ -64,7 +64,7 @@ pub fn fixed(text: &str, values: &mut [f64], place: impl Fn() -> Place) -> Resul
 ///
 /// # Errors
 /// [`NumberError`] with the place that `place` makes.
-pub fn list(
+pub(crate) fn list(
     text: &str,
     count: std::ops::RangeInclusive<usize>,
     place: impl Fn() -> Place,

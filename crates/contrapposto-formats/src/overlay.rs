@@ -1,7 +1,7 @@
-//! A small TOML file laid over a model: range, passive law, strength and fatigue of the coordinates it names.
+//! Reads an overlay, a TOML file with range, passive law, strength and fatigue of some coordinates, and lays it over a model.
 //!
-//! Published models hold no passive torque of joints, and their knees stop at 0 deg. What is named replaces what the model
-//! has; everything else stays. See `docs/formats.md`.
+//! Published models hold no passive torque of joints, and their knees stop at 0 deg. A value of the overlay replaces that of
+//! the model; all others stay. See `docs/formats.md`.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,8 @@ use contrapposto::strength::Strength;
 use serde::Deserialize;
 
 use crate::input_error::{InputError, suggestion};
-use crate::scenario::{
-    CoordinateLimitForceText, DoubleExponentialText, Located, PassiveText, ReshapeText, passive_curve, read_toml,
-};
+use crate::passive_law::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, passive_curve};
+use crate::toml_file::{Located, read_toml};
 
 /// Fatigue class of a group that is given a strength and nothing else.
 const GENERAL: &str = "general";
@@ -65,11 +64,11 @@ struct StrengthText {
 pub struct Overlaid {
     /// The model.
     pub model: Model,
-    /// What was changed, in the order of the coordinates' names.
+    /// All changes, in the order of the coordinates' names.
     pub changes: Vec<OverlayChange>,
 }
 
-/// What an overlay changed of one coordinate.
+/// The changes of one coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlayChange {
     /// Index of the coordinate.
@@ -214,17 +213,7 @@ impl Table<'_> {
             }
             return Ok(());
         };
-        if let Some(sign) = passive.sign {
-            let path = [self.path[0], self.path[1], "passive", "sign"];
-            if passive.curve.is_none() {
-                let help = Some("leave it out: only a named curve has a direction of its own".to_owned());
-                return Err(self.at.key_error(&path, "`sign` goes with `curve`", help));
-            }
-            if sign.abs() != 1.0 {
-                let help = Some("give 1, or -1 where the coordinate runs against the curve".to_owned());
-                return Err(self.at.error(&path, format!("sign is {sign}"), help));
-            }
-        }
+        self.check_sign(passive)?;
         let as_scenario = PassiveText {
             curve: passive.curve.clone(),
             double_exponential: passive.double_exponential,
@@ -245,15 +234,23 @@ impl Table<'_> {
                 Some(help.to_owned()),
             ));
         }
-        said.push(match passive.curve.as_deref().and_then(|name| data::library().curve(name)) {
-            None => "passive law".to_owned(),
-            Some(row) => {
-                let against = if sign == Some(-1.0) { "negative" } else { "positive" };
-                let held = if row.coupled().is_some() { ", neighbouring joints held at zero" } else { "" };
-                format!("passive curve `{}` with {} {against}{held} ({})", row.name, row.positive, row.reference.status)
-            }
-        });
+        said.push(law_sentence(passive, sign));
         *model = model.clone().with_passive_law(index, Some(PassiveLaw::Curve(curve)));
+        Ok(())
+    }
+
+    fn check_sign(&self, passive: &OverlayPassiveText) -> Result<(), InputError> {
+        if let Some(sign) = passive.sign {
+            let path = [self.path[0], self.path[1], "passive", "sign"];
+            if passive.curve.is_none() {
+                let help = Some("leave it out: only a named curve has a direction of its own".to_owned());
+                return Err(self.at.key_error(&path, "`sign` goes with `curve`", help));
+            }
+            if sign.abs() != 1.0 {
+                let help = Some("give 1, or -1 where the coordinate runs against the curve".to_owned());
+                return Err(self.at.error(&path, format!("sign is {sign}"), help));
+            }
+        }
         Ok(())
     }
 
@@ -319,5 +316,17 @@ impl Table<'_> {
 
     fn value_error(&self, key: &str, message: impl Into<String>, help: Option<String>) -> InputError {
         self.at.error(&[self.path[0], self.path[1], key], message, help)
+    }
+}
+
+/// The passive law in words, for the list of changes.
+fn law_sentence(passive: &OverlayPassiveText, sign: Option<f64>) -> String {
+    match passive.curve.as_deref().and_then(|name| data::library().curve(name)) {
+        None => "passive law".to_owned(),
+        Some(row) => {
+            let against = if sign == Some(-1.0) { "negative" } else { "positive" };
+            let held = if row.coupled().is_some() { ", neighbouring joints held at zero" } else { "" };
+            format!("passive curve `{}` with {} {against}{held} ({})", row.name, row.positive, row.reference.status)
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! What `pose.json` says of a solved posture.
+//! Writes a solved posture as `pose.json`.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ pub struct PoseText {
     pub title: String,
     /// Name of the body.
     pub model: String,
-    /// `reached`: every level is; `closest`: nothing moves any more, and what is left is as near as the levels above allow;
+    /// `reached`: every level is; `closest`: nothing moves any more, and every level is as near as the levels above allow;
     /// `steps`: the largest number of steps was made.
     pub reason: &'static str,
     /// Steps made.
@@ -28,13 +28,13 @@ pub struct PoseText {
     pub coordinates: BTreeMap<String, f64>,
     /// Centre of mass in ground, m; `null` for a body without mass.
     pub center_of_mass_m: Option<[f64; 3]>,
-    /// What is left of every task, in order of priority; a task of two units (placement, posture) has an entry for each.
+    /// The remaining error of every task, in order of priority; a task of two units (placement, posture) has an entry for each.
     pub levels: Vec<PoseLevelText>,
     /// Files beside this one.
     pub files: Vec<String>,
 }
 
-/// What is left of a task in one unit.
+/// The remaining error of a task in one unit.
 #[derive(Clone, Debug, Serialize)]
 pub struct PoseLevelText {
     /// 1 is the most important; tasks of the same priority share it.

@@ -1,4 +1,4 @@
-//! What a run's `summary.json` says.
+//! Writes the summary of a run as `summary.json`.
 
 use std::collections::BTreeMap;
 
@@ -17,10 +17,10 @@ pub struct SummaryText {
     pub model: String,
     /// `duration`, `settled`, `interrupted` or `fell`.
     pub stopped: &'static str,
-    /// What threw the body off balance, if something did.
+    /// The event that threw the body off balance, if one did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fell: Option<FallText>,
-    /// It was interrupted: what is here goes up to `end_s` only.
+    /// The run was interrupted: all entries go up to `end_s` only.
     pub partial: bool,
     /// Time of the last sample, s.
     pub end_s: f64,
@@ -35,7 +35,7 @@ pub struct SummaryText {
     pub reliefs: u64,
     /// The order of coordinates in tables.
     pub coordinate_order: Vec<String>,
-    /// What happened to each.
+    /// The course of each.
     pub coordinates: BTreeMap<String, CoordinateText>,
     /// Files beside this one.
     pub files: Vec<String>,
@@ -74,7 +74,7 @@ pub struct StandingText {
     pub effort: f64,
     /// Centre of mass, ground, m.
     pub center_of_mass_m: [f64; 3],
-    /// What carried it, in the order of the scenario.
+    /// The supports, in the order of the scenario.
     pub supports: Vec<SupportText>,
     /// Length of the error of each task, in the order of the scenario, in its units.
     pub task_errors: Vec<f64>,
@@ -82,7 +82,7 @@ pub struct StandingText {
     pub slip: f64,
 }
 
-/// What a support carried.
+/// The load of a support.
 #[derive(Clone, Debug, Serialize)]
 pub struct SupportText {
     /// Segment.

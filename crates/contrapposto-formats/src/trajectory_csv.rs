@@ -1,4 +1,4 @@
-//! The table of a run: one row an instant, columns as in docs/scenario.md.
+//! Writes the table of a run: one row an instant, columns as in docs/scenario.md.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use contrapposto::hybrid::Case;
 use contrapposto::joint_torques::active_torque;
 use contrapposto::model::{CoordinateKind, Model};
 
-/// What stands in a row, one entry a coordinate.
+/// The numbers of a row, one entry a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct TableRow<'a> {
     /// Time, s.

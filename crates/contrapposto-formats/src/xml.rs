@@ -1,4 +1,4 @@
-//! A small XML tree for files from strangers: bounded, linear in time, and gone without recursion.
+//! Reads XML of unknown origin as a small tree: bounded, linear in time, and dropped without recursion.
 //!
 //! No namespaces, no DOCTYPE, no entities but the five of XML and character references. Elements lie in one arena, their
 //! names, values and text in one string.
@@ -10,7 +10,7 @@ pub use error::{Malformed, XmlError};
 pub use parse::parse;
 pub(crate) use parse::shorten;
 
-/// What a reader accepts at most. One struct for the model formats; each cap is tested at its value and one above.
+/// Largest sizes that a reader accepts. One struct for the model formats; each cap is tested at its value and one above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Bytes of one file.

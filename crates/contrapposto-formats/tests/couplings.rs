@@ -1,4 +1,4 @@
-//! Coordinates that follow others, and those that follow followers: torques and gradients by central differences, beside a
+//! Tests dependent coordinates, also of dependent ones: torques and gradients by central differences, beside a
 //! model whose chains were composed by hand, and beside OpenSim.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "what the tests share may fail like a test")]

@@ -1,4 +1,4 @@
-//! What changes during a run: strategies, loads, targets.
+//! Tests events during a run: strategies, loads, targets.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

@@ -1,25 +1,25 @@
 //! MJCF models as bodies: against MuJoCo's own numbers, and what is refused where.
 
-#![allow(clippy::unwrap_used, reason = "what the tests share may fail like a test")]
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "what the tests share may fail like a test")]
 
 mod common;
 
 use common::{center_of_mass, difference, frames, hammer, here, shared};
-use contrapposto_formats::body::{Body, BodyCoordinate, BodyCoordinateKind, BodyRoot, PassiveLawText};
 use contrapposto_formats::mjcf::{self, MjcfError, Options};
+use contrapposto_formats::model_ir::{CoordinateIr, CoordinateKind, ModelIr, PassiveLawIr, RootAttachment};
 use contrapposto_formats::xml::Limits;
 use serde_json::Value;
 use std::path::Path;
 
-fn read_with(text: &[u8], options: &Options) -> Result<Body, MjcfError> {
+fn read_with(text: &[u8], options: &Options) -> Result<ModelIr, MjcfError> {
     mjcf::read(text, "file.xml", &mut |name| Err(format!("no file {name}")), options)
 }
 
-fn read(text: &str) -> Result<Body, MjcfError> {
+fn read(text: &str) -> Result<ModelIr, MjcfError> {
     read_with(text.as_bytes(), &Options::default())
 }
 
-fn read_file(path: &Path, options: &Options) -> Body {
+fn read_file(path: &Path, options: &Options) -> ModelIr {
     let folder = path.parent().unwrap().to_owned();
     let mut include = |name: &str| std::fs::read(folder.join(name)).map_err(|e| e.to_string());
     mjcf::read(&std::fs::read(path).unwrap(), "file.xml", &mut include, options).unwrap_or_else(|e| panic!("{e}"))
@@ -30,16 +30,16 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 /// Models of the project with MuJoCo's numbers.
-fn ours() -> Vec<(Body, Value)> {
+fn ours() -> Vec<(ModelIr, Value)> {
     references(&here().join("tests/models"), |name| !name.starts_with("cmu_"))
 }
 
 /// Published models with MuJoCo's numbers.
-fn published() -> Vec<(Body, Value)> {
+fn published() -> Vec<(ModelIr, Value)> {
     references(&shared("models/cmu"), |name| name.starts_with("cmu_"))
 }
 
-fn references(folder: &Path, wanted: impl Fn(&str) -> bool) -> Vec<(Body, Value)> {
+fn references(folder: &Path, wanted: impl Fn(&str) -> bool) -> Vec<(ModelIr, Value)> {
     let text = std::fs::read_to_string(here().join("tests/data/mujoco_reference.json")).unwrap();
     let all: Value = serde_json::from_str(&text).unwrap();
     let mut found = vec![];
@@ -76,7 +76,7 @@ fn published_humanoids_are_mujocos() {
     compare_poses(published());
 }
 
-fn compare_masses(references: Vec<(Body, Value)>) {
+fn compare_masses(references: Vec<(ModelIr, Value)>) {
     for (body, reference) in references {
         let bodies = reference["bodies"].as_array().unwrap();
         assert_eq!(body.segments.len(), bodies.len());
@@ -96,7 +96,7 @@ fn compare_masses(references: Vec<(Body, Value)>) {
     }
 }
 
-fn compare_joints(references: Vec<(Body, Value)>) {
+fn compare_joints(references: Vec<(ModelIr, Value)>) {
     for (body, reference) in references {
         let off = |name: &str| reference[name].as_bool().unwrap();
         let mut at = 0;
@@ -118,7 +118,7 @@ fn compare_joints(references: Vec<(Body, Value)>) {
                 continue;
             }
             assert!(coordinate.name == name || name.is_empty());
-            let slide = coordinate.kind == BodyCoordinateKind::Translation;
+            let slide = coordinate.kind == CoordinateKind::Translation;
             assert_eq!(slide, kind == "slide");
             assert_eq!(coordinate.clamped, limited);
             if limited {
@@ -133,8 +133,8 @@ fn compare_joints(references: Vec<(Body, Value)>) {
             let spring = body.passive.iter().find(|p| p.coordinate == at - 1);
             let (found, rest) = match spring.map(|s| &s.law) {
                 None => (vec![0.0; 3], None),
-                Some(PassiveLawText::Spring { stiffness, rest }) => (vec![*stiffness, 0.0, 0.0], Some(*rest)),
-                Some(PassiveLawText::Polynomial { coefficients, rest }) => (coefficients.clone(), Some(*rest)),
+                Some(PassiveLawIr::Spring { stiffness, rest }) => (vec![*stiffness, 0.0, 0.0], Some(*rest)),
+                Some(PassiveLawIr::Polynomial { coefficients, rest }) => (coefficients.clone(), Some(*rest)),
                 Some(law) => panic!("{law:?}"),
             };
             let stiffness = if off("springs_disabled") { vec![0.0; 3] } else { numbers(&expected["stiffness"]) };
@@ -145,7 +145,7 @@ fn compare_joints(references: Vec<(Body, Value)>) {
     }
 }
 
-fn compare_poses(references: Vec<(Body, Value)>) {
+fn compare_poses(references: Vec<(ModelIr, Value)>) {
     for (body, reference) in references {
         let sites: Vec<_> = reference["sites"].as_array().unwrap().iter().map(|s| s.as_str().unwrap()).collect();
         let mut worst = [0.0_f64; 5];
@@ -168,7 +168,7 @@ fn compare_poses(references: Vec<(Body, Value)>) {
                 worst[3] = worst[3].max(difference(world.coords.as_slice(), &site_positions[3 * index..3 * index + 3]));
             }
             let mut springs = numbers(&pose["spring"]).into_iter();
-            let single = |c: &&contrapposto_formats::body::BodyCoordinate| c.kind != BodyCoordinateKind::Quaternion;
+            let single = |c: &&contrapposto_formats::model_ir::CoordinateIr| c.kind != CoordinateKind::Quaternion;
             let free = body.coordinates.iter().filter(|c| c.name.starts_with("root_t")).count();
             for (index, _) in body.coordinates.iter().enumerate().filter(|(_, c)| single(c)).skip(free) {
                 let torque: f64 = body
@@ -176,8 +176,8 @@ fn compare_poses(references: Vec<(Body, Value)>) {
                     .iter()
                     .filter(|p| p.coordinate == index)
                     .map(|p| match &p.law {
-                        PassiveLawText::Spring { stiffness, rest } => -stiffness * (q[index] - rest),
-                        PassiveLawText::Polynomial { coefficients, rest } => {
+                        PassiveLawIr::Spring { stiffness, rest } => -stiffness * (q[index] - rest),
+                        PassiveLawIr::Polynomial { coefficients, rest } => {
                             let x = q[index] - rest;
                             -coefficients.iter().rev().fold(0.0, |sum, k| (sum + k) * x)
                         }
@@ -346,18 +346,18 @@ fn includes_are_capped() {
 fn roots_are_freed_and_fixed() {
     let option = |root| Options { root, ..Options::default() };
     let fixed = in_body("");
-    let body = read_with(fixed.as_bytes(), &option(Some(BodyRoot::Free))).unwrap();
+    let body = read_with(fixed.as_bytes(), &option(Some(RootAttachment::Free))).unwrap();
     let names: Vec<_> = body.coordinates.iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["root_tx", "root_ty", "root_tz", "root_qw", "root_qx", "root_qy", "root_qz"]);
     let free = world(&format!("<body pos='1 2 3' euler='90 0 0'><freejoint/>{G}</body>"));
     let body = read(&free).unwrap();
     assert_eq!(body.coordinates[2].default, 3.0);
     assert!((body.coordinates[4].default - 0.5_f64.sqrt()).abs() < 1e-15);
-    let body = read_with(free.as_bytes(), &option(Some(BodyRoot::Fixed))).unwrap();
+    let body = read_with(free.as_bytes(), &option(Some(RootAttachment::Fixed))).unwrap();
     assert!(body.coordinates.is_empty());
     assert_eq!(body.segments[0].in_parent.translation.vector.z, 3.0);
     let two = world(&format!("<body>{G}</body><body name='second'>{G}</body>"));
-    let said = read_with(two.as_bytes(), &option(Some(BodyRoot::Free))).unwrap_err().to_string();
+    let said = read_with(two.as_bytes(), &option(Some(RootAttachment::Free))).unwrap_err().to_string();
     assert!(said.contains("`second`: a root can be freed if the world has exactly one body"), "{said}");
 }
 
@@ -404,7 +404,7 @@ fn mutated_files_never_panic_and_give_finite_numbers() {
     hammer("MJCF", 62, 40_000, &[text.as_bytes(), spring.as_bytes()], &parts, |text| {
         let Ok(body) = read_with(text, &Options::default()) else { return false };
         assert!(body.segments.iter().all(|s| s.mass.is_finite() && s.inertia.iter().all(|x| x.is_finite())));
-        let sound = |c: &BodyCoordinate| c.default.is_finite() && !c.range.0.is_nan() && !c.range.1.is_nan();
+        let sound = |c: &CoordinateIr| c.default.is_finite() && !c.range.0.is_nan() && !c.range.1.is_nan();
         assert!(body.coordinates.iter().all(sound));
         true
     });

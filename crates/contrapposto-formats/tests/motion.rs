@@ -10,7 +10,7 @@ use common::next;
 use contrapposto::model::{Adult, CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec, adult};
 use contrapposto_formats::InputError;
 use contrapposto_formats::motion::{
-    MOST_BYTES, MOST_COLUMNS, MOST_NAME_BYTES, Table, Units, UnwritableTable, postures, read_table, write_csv,
+    MOST_COLUMNS, MOST_NAME_BYTES, MOST_TABLE_BYTES, Table, Units, UnwritableTable, postures, read_table, write_csv,
     write_sto,
 };
 use miette::Diagnostic;
@@ -191,7 +191,7 @@ fn bounds_hold() {
     assert_eq!(read(&format!("{}\n1", "n".repeat(MOST_NAME_BYTES))).columns[0].len(), MOST_NAME_BYTES);
     assert!(refused(&format!("{}\n1", "n".repeat(MOST_NAME_BYTES + 1))).0.contains("257 bytes"));
     assert!(refused(&format!("{}\nendheader\ntime\ta\n0\t1", "n".repeat(257))).0.contains("257 bytes"));
-    assert!(read_table("x", &vec![b'\n'; MOST_BYTES + 1]).unwrap_err().to_string().contains("67108865 bytes"));
+    assert!(read_table("x", &vec![b'\n'; MOST_TABLE_BYTES + 1]).unwrap_err().to_string().contains("67108865 bytes"));
     let numbers = format!("{}\n{}", labels(10_000), format!("{}\n", row(10_000)).repeat(1000));
     assert_eq!(read(&numbers).rows.len(), 1000);
     assert!(refused(&format!("{numbers}{}\n", row(10_000))).0.contains("more than 10000000 numbers"));

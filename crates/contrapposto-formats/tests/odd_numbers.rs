@@ -1,6 +1,6 @@
-//! NaN, infinities, the ends of the doubles, negative zero, a subnormal and nonsense in every number of every kind of file, one
-//! after the other: what is not finite is refused where it stands, or has no part in what is read; and of what is accepted all
-//! that can be computed is finite. Scenarios of runs: `scenario.rs`; decisions a line: `contrapposto-cli/tests/minimize.rs`.
+//! Puts NaN, infinities, the ends of the doubles, negative zero, a subnormal and nonsense in every number of every kind of file,
+//! one after the other: a number that is not finite is refused where it stands, or has no part in the result; and all numbers
+//! computed from an accepted file are finite. Scenarios of runs: `scenario.rs`; decisions a line: `contrapposto-cli/tests/minimize.rs`.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

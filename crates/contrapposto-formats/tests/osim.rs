@@ -1,12 +1,12 @@
 //! The `.osim` reader: bodies are where OpenSim 4.6 puts them, functions and forces have its values, and what matters and is
 //! not supported is refused with its place. References: `scripts/opensim_reference.py`; published models in `../shared`.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::print_stdout, clippy::unwrap_used)] // helpers of tests
 
 #[path = "common/shared.rs"]
 mod files;
 
-use contrapposto_formats::body::{Body, BodyCoordinateKind, BodyMotion, Drive, Function, PassiveLawText, Spline};
+use contrapposto_formats::model_ir::{CoordinateKind, Drive, Function, ModelIr, MotionIr, PassiveLawIr, Spline};
 use contrapposto_formats::osim;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde_json::Value;
@@ -27,21 +27,21 @@ fn strings(value: &Value) -> Vec<&str> {
 }
 
 /// Poses of all segments in ground; `value` gives a coordinate's value by name.
-fn poses(body: &Body, value: impl Fn(&str) -> f64) -> Vec<Isometry3<f64>> {
+fn poses(body: &ModelIr, value: impl Fn(&str) -> f64) -> Vec<Isometry3<f64>> {
     let drive = |d: &Drive| match d {
         Drive::Coordinate(i) => value(&body.coordinates[*i].name),
         Drive::Function(f, i) => f.value(value(&body.coordinates[*i].name)),
-        Drive::Constant(v) => *v,
+        Drive::Fixed(v) => *v,
     };
     let mut poses: Vec<Isometry3<f64>> = Vec::new();
     for segment in &body.segments {
         let parent = segment.parent.map_or_else(Isometry3::identity, |p| poses[p]);
         let joint = segment.motions.iter().fold(segment.in_parent, |pose, motion| match motion {
-            BodyMotion::Hinge { axis, drive: d } => {
+            MotionIr::Hinge { axis, drive: d } => {
                 pose * UnitQuaternion::from_axis_angle(&Unit::new_normalize(*axis), drive(d))
             }
-            BodyMotion::Slide { axis, drive: d } => pose * Translation3::from(axis * drive(d)),
-            BodyMotion::Ball { .. } => unreachable!("no quaternions in OpenSim's coordinates"),
+            MotionIr::Slide { axis, drive: d } => pose * Translation3::from(axis * drive(d)),
+            MotionIr::Ball { .. } => unreachable!("no quaternions in OpenSim's coordinates"),
         });
         poses.push(parent * joint * segment.in_segment.inverse());
     }
@@ -49,7 +49,7 @@ fn poses(body: &Body, value: impl Fn(&str) -> f64) -> Vec<Isometry3<f64>> {
 }
 
 /// Largest difference of pose over all segments that OpenSim lists.
-fn compare_poses(body: &Body, poses: &[Isometry3<f64>], bodies: &Value, most: f64) -> f64 {
+fn compare_poses(body: &ModelIr, poses: &[Isometry3<f64>], bodies: &Value, most: f64) -> f64 {
     let mut worst: f64 = 0.0;
     for (segment, pose) in body.segments.iter().zip(poses) {
         let theirs = &bodies[&segment.name];
@@ -67,9 +67,9 @@ fn compare_poses(body: &Body, poses: &[Isometry3<f64>], bodies: &Value, most: f6
     worst
 }
 
-fn torque(law: &PassiveLawText, q: f64) -> f64 {
+fn torque(law: &PassiveLawIr, q: f64) -> f64 {
     match law {
-        PassiveLawText::CoordinateLimitForce(law) => {
+        PassiveLawIr::CoordinateLimitForce(law) => {
             let step = |x: f64| {
                 let x = x.clamp(0.0, 1.0);
                 x * x * x * (10.0 + x * (-15.0 + 6.0 * x))
@@ -78,13 +78,13 @@ fn torque(law: &PassiveLawText, q: f64) -> f64 {
             law.lower_stiffness * step(below / law.transition) * below
                 - law.upper_stiffness * step(above / law.transition) * above
         }
-        PassiveLawText::Spring { stiffness, rest } => -stiffness * (q - rest),
-        PassiveLawText::Expression(expression) => expression.value(q),
+        PassiveLawIr::Spring { stiffness, rest } => -stiffness * (q - rest),
+        PassiveLawIr::Expression(expression) => expression.value(q),
         other => panic!("{other:?}"),
     }
 }
 
-fn fixture(file: &str) -> Body {
+fn fixture(file: &str) -> ModelIr {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(file);
     osim::read(&std::fs::read(path).unwrap(), file).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -129,8 +129,8 @@ fn every_joint_kind_is_where_opensim_puts_it() {
             assert_eq!((coordinate.range.0, coordinate.range.1), (range[0], range[1]), "{}", coordinate.name);
             assert_eq!(coordinate.default, number(&model["default"][&coordinate.name]), "{}", coordinate.name);
             match number(&model["motion_type"][&coordinate.name]) as i64 {
-                1 => assert_eq!(coordinate.kind, BodyCoordinateKind::Rotation, "{}", coordinate.name),
-                2 => assert_eq!(coordinate.kind, BodyCoordinateKind::Translation, "{}", coordinate.name),
+                1 => assert_eq!(coordinate.kind, CoordinateKind::Rotation, "{}", coordinate.name),
+                2 => assert_eq!(coordinate.kind, CoordinateKind::Translation, "{}", coordinate.name),
                 _ => {}
             }
         }

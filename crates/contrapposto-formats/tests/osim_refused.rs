@@ -1,11 +1,11 @@
-//! What the `.osim` reader refuses, and that any bytes end in a body or an error, in time linear in their number.
+//! Tests the refusals of the `.osim` reader, and that any bytes end in a body or an error, in time linear in their number.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::print_stdout, clippy::unwrap_used)] // helpers of tests
 
 mod common;
 
 use common::hammer;
-use contrapposto_formats::body::{BodyMotion, Drive, PassiveLawText};
+use contrapposto_formats::model_ir::{Drive, MotionIr, PassiveLawIr};
 use contrapposto_formats::osim;
 use std::path::Path;
 
@@ -209,7 +209,7 @@ fn interpolating_splines_are_natural() {
     let text = gcv("<half_order>2</half_order><error_variance>0</error_variance><x> -2 -1 0 1 2</x>\
                     <weights> 1 3 1 1 1</weights><y> 0 1 0.2 0.4 -3</y><coefficients> 0 0 0 0 0</coefficients>");
     let body = osim::read(text.as_bytes(), "f").unwrap();
-    let BodyMotion::Hinge { drive: Drive::Function(function, 0), .. } = &body.segments[0].motions[0] else {
+    let MotionIr::Hinge { drive: Drive::Function(function, 0), .. } = &body.segments[0].motions[0] else {
         panic!("{:?}", body.segments[0].motions)
     };
     // OpenSim 4.6 at these places.
@@ -243,7 +243,7 @@ fn exponential_limits_are_the_double_exponential() {
                 <upper_limit>0.3</upper_limit><lower_shape_parameters>50 75</lower_shape_parameters>\
                 <upper_shape_parameters>20 25</upper_shape_parameters></ExponentialCoordinateLimitForce></objects></ForceSet>";
     let body = osim::read(document(&joint("PinJoint", PIN), text).as_bytes(), "f").unwrap();
-    let PassiveLawText::DoubleExponential(law) = &body.passive[0].law else { panic!() };
+    let PassiveLawIr::DoubleExponential(law) = &body.passive[0].law else { panic!() };
     let ours = |q: f64| {
         law.lower.torque * (-law.lower.rate * (q - law.lower.angle)).exp()
             - law.upper.torque * (law.upper.rate * (q - law.upper.angle)).exp()

@@ -1,5 +1,5 @@
-//! The overlay reader is total: any bytes give a model with finite torques, or a complaint that names the file. What an
-//! overlay means is tested with the program (`contrapposto-cli/tests/torques.rs`).
+//! The overlay reader is total: any bytes give a model with finite torques, or an error that names the file. The meaning of
+//! an overlay is tested with the program (`contrapposto-cli/tests/torques.rs`).
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,5 +1,5 @@
 //! The reader of pose scenarios: every kind of task means what docs/scenario.md says, every mistake is refused where it
-//! stands, and any bytes give a value or a complaint.
+//! stands, and any bytes give a value or an error.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -13,7 +13,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::tasks::{CenterOfMassGoal, Task};
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{InputError, PoseScenario, read_pose, read_scenario, scenario_model, scenario_schema};
 
 const HEAD: &str = "format = 1\n";
@@ -489,14 +489,14 @@ fn the_model_file_is_told() {
     assert_eq!(of("[[task]]\nkind = \"posture\"\n"), None);
     let file = of("[model]\nfile = \"a/b.urdf\"\noverlay = \"c.toml\"\nroot = \"free\"\n").unwrap();
     assert_eq!((file.file.as_str(), file.overlay.as_deref()), ("a/b.urdf", Some("c.toml")));
-    assert_eq!(file.root, Some(BodyRoot::Free));
+    assert_eq!(file.root, Some(RootAttachment::Free));
 }
 
 /// A free root and a ball: quaternions by their bare names, together or not at all.
 #[test]
 fn quaternions_by_their_names() {
     let urdf = r#"<robot name="two"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"#;
-    let options = contrapposto_formats::urdf::Options { root: BodyRoot::Free, ..Default::default() };
+    let options = contrapposto_formats::urdf::Options { root: RootAttachment::Free, ..Default::default() };
     let model = contrapposto_formats::urdf::read(urdf.as_bytes(), "two", &options).unwrap().model().unwrap().model;
     let read = |lines: &str| {
         let text = format!("{HEAD}[model]\nfile = \"two.urdf\"\n{lines}[[task]]\nkind = \"posture\"\n");

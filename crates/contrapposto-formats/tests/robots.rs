@@ -15,7 +15,7 @@ use contrapposto::kinematics::{CenterOfMass, Kinematics};
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, Gradient};
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{mjcf, urdf};
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -127,7 +127,7 @@ fn check(model: &Path, reference: &Value) -> Result<String, String> {
     let mut said = String::new();
     for rooted in reference["roots"].as_array().unwrap() {
         let body = if model.extension().is_some_and(|ending| ending == "urdf") {
-            let root = if rooted["root"] == "free" { BodyRoot::Free } else { BodyRoot::Fixed };
+            let root = if rooted["root"] == "free" { RootAttachment::Free } else { RootAttachment::Fixed };
             urdf::read(&bytes, "robot", &urdf::Options { root, ..Default::default() }).map_err(|e| e.to_string())?
         } else {
             let folder = model.parent().unwrap();

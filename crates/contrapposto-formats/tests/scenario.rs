@@ -1,5 +1,5 @@
-//! The scenario reader is total: any bytes give an experiment or a complaint, never a panic; and what it accepts runs without
-//! a number that is not finite.
+//! The scenario reader is total: any bytes give an experiment or an error, never a panic; and an accepted experiment runs
+//! without a number that is not finite.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

@@ -12,7 +12,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
-use contrapposto_formats::body::{Body, BodyMotion, Drive};
+use contrapposto_formats::model_ir::{Drive, ModelIr, MotionIr};
 use contrapposto_formats::{mjcf, osim, write};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -27,7 +27,7 @@ fn random() -> Pcg64 {
 }
 
 /// The adult as OpenSim has it, a body whose knees and spine follow functions and each other, and odd joints of MJCF.
-fn bodies() -> Vec<(&'static str, Body)> {
+fn bodies() -> Vec<(&'static str, ModelIr)> {
     let file = |name: &str| std::fs::read(here().join("tests/models").join(name)).unwrap();
     let written = write::osim(&adult(&Adult::default()).unwrap()).unwrap().text;
     let mut include = |part: &str| Ok(file(part));
@@ -42,7 +42,7 @@ fn bodies() -> Vec<(&'static str, Body)> {
 }
 
 /// Values in the order of the file, where a model has its own.
-fn of_the_file(body: &Body, model: &Model, values: &[f64]) -> Vec<f64> {
+fn of_the_file(body: &ModelIr, model: &Model, values: &[f64]) -> Vec<f64> {
     let mut q: Vec<f64> = body.coordinates.iter().map(|c| values[model.coordinate(&c.name).unwrap()]).collect();
     lead(body, &mut q);
     q
@@ -58,7 +58,7 @@ fn posture(model: &Model, rng: &mut Pcg64) -> Posture {
 }
 
 /// Followers where their leaders ask for.
-fn lead(body: &Body, values: &mut [f64]) {
+fn lead(body: &ModelIr, values: &mut [f64]) {
     // As often as a chain of followers can be long.
     for _ in &body.couplings {
         for coupling in &body.couplings {
@@ -67,7 +67,7 @@ fn lead(body: &Body, values: &mut [f64]) {
     }
 }
 
-fn loads(body: &Body, rng: &mut Pcg64) -> Vec<Load> {
+fn loads(body: &ModelIr, rng: &mut Pcg64) -> Vec<Load> {
     let vector = |rng: &mut Pcg64, size: f64| V::from_fn(|_, _| rng.random_range(-size..size));
     (0..4)
         .map(|k| {
@@ -83,7 +83,7 @@ fn loads(body: &Body, rng: &mut Pcg64) -> Vec<Load> {
 }
 
 /// What pulls on each segment: point, force and couple in ground.
-fn pulls(body: &Body, frames: &[Isometry3<f64>], loads: &[Load]) -> Vec<(usize, V, V, V)> {
+fn pulls(body: &ModelIr, frames: &[Isometry3<f64>], loads: &[Load]) -> Vec<(usize, V, V, V)> {
     let own = body
         .segments
         .iter()
@@ -111,7 +111,7 @@ struct Screw {
 }
 
 /// Rates of every segment's joint, in ground, with the segment's chain of parents.
-fn screws(body: &Body, model: &Model, frames: &[Isometry3<f64>], q: &[f64]) -> Vec<Vec<Screw>> {
+fn screws(body: &ModelIr, model: &Model, frames: &[Isometry3<f64>], q: &[f64]) -> Vec<Vec<Screw>> {
     let place = |c: usize| model.coordinate(&body.coordinates[c].name).unwrap();
     let rate_of = |c: usize| model.coordinates()[place(c)].rate.unwrap();
     // A ball's three rates stand where its quaternion does.
@@ -119,19 +119,19 @@ fn screws(body: &Body, model: &Model, frames: &[Isometry3<f64>], q: &[f64]) -> V
         model.rates().iter().position(|rate| rate.coordinate.is_some_and(|own| own > c)).unwrap_or(model.rates().len())
             - 3
     };
-    let joint = |segment: &contrapposto_formats::body::BodySegment| {
+    let joint = |segment: &contrapposto_formats::model_ir::SegmentIr| {
         let mut frame = segment.parent.map_or(Isometry3::identity(), |p| frames[p]) * segment.in_parent;
         let mut all = vec![];
         for motion in &segment.motions {
             let point = frame.translation.vector;
             match motion {
-                BodyMotion::Hinge { axis, drive } | BodyMotion::Slide { axis, drive } => {
+                MotionIr::Hinge { axis, drive } | MotionIr::Slide { axis, drive } => {
                     let (value, moved) = match drive {
                         Drive::Coordinate(c) => (q[*c], Some((*c, 1.0))),
                         Drive::Function(f, c) => (f.value(q[*c]), Some((*c, f.slope(q[*c])))),
-                        Drive::Constant(value) => (*value, None),
+                        Drive::Fixed(value) => (*value, None),
                     };
-                    let turns = matches!(motion, BodyMotion::Hinge { .. });
+                    let turns = matches!(motion, MotionIr::Hinge { .. });
                     let unit = nalgebra::Unit::new_normalize(*axis);
                     // A slide goes along the axis as long as it is given.
                     let along = frame.rotation * if turns { unit.into_inner() } else { *axis };
@@ -142,7 +142,7 @@ fn screws(body: &Body, model: &Model, frames: &[Isometry3<f64>], q: &[f64]) -> V
                         Isometry3::from(Translation3::from(axis * value))
                     };
                 }
-                BodyMotion::Ball { first } => {
+                MotionIr::Ball { first } => {
                     let turn = nalgebra::Quaternion::new(q[*first], q[first + 1], q[first + 2], q[first + 3]);
                     frame *= UnitQuaternion::new_normalize(turn);
                     let axes = [V::x(), V::y(), V::z()].map(|axis| frame.rotation * axis);
@@ -163,7 +163,7 @@ fn screws(body: &Body, model: &Model, frames: &[Isometry3<f64>], q: &[f64]) -> V
 }
 
 /// Sum over forces of Jacobian columns, what followers give folded into their leaders.
-fn virtual_work(body: &Body, model: &Model, q: &[f64], loads: &[Load]) -> Vec<f64> {
+fn virtual_work(body: &ModelIr, model: &Model, q: &[f64], loads: &[Load]) -> Vec<f64> {
     let frames = frames(body, q);
     let screws = screws(body, model, &frames, q);
     let mut torques = vec![0.0; model.rates().len()];

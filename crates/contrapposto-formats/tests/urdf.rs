@@ -1,26 +1,26 @@
 //! URDF models as bodies: a hand-made one by hand, published ones against Pinocchio's order and their MJCF twins.
 
-#![allow(clippy::unwrap_used, reason = "what the tests share may fail like a test")]
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "what the tests share may fail like a test")]
 
 mod common;
 
 use common::{center_of_mass, difference, frames, hammer, here, shared};
-use contrapposto_formats::body::{Body, BodyCoordinateKind, BodyMotion, BodyRoot, Function};
+use contrapposto_formats::model_ir::{CoordinateKind, Function, ModelIr, MotionIr, RootAttachment};
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{mjcf, urdf};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-fn read(text: &[u8], root: BodyRoot) -> Result<Body, urdf::UrdfError> {
+fn read(text: &[u8], root: RootAttachment) -> Result<ModelIr, urdf::UrdfError> {
     urdf::read(text, "file.urdf", &urdf::Options { root, ..Default::default() })
 }
 
-fn file(path: &std::path::Path, root: BodyRoot) -> Body {
+fn file(path: &std::path::Path, root: RootAttachment) -> ModelIr {
     read(&std::fs::read(path).unwrap(), root).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
 #[test]
 fn every_joint_type_is_read() {
-    let body = file(&here().join("tests/models/arm.urdf"), BodyRoot::Fixed);
+    let body = file(&here().join("tests/models/arm.urdf"), RootAttachment::Fixed);
     assert_eq!(body.name, "arm");
     assert_eq!(body.gravity, Vector3::new(0.0, 0.0, -9.81));
     // Depth first, children by the name of their joint.
@@ -33,7 +33,7 @@ fn every_joint_type_is_read() {
     let shoulder = &body.coordinates[10];
     assert_eq!((shoulder.range, shoulder.clamped), ((-1.0, 2.0), true));
     assert_eq!(body.coordinates[11].range, (f64::NEG_INFINITY, f64::INFINITY));
-    assert_eq!(body.coordinates[12].kind, BodyCoordinateKind::Translation);
+    assert_eq!(body.coordinates[12].kind, CoordinateKind::Translation);
     // Mimics of mimics end at the joint that moves by itself: c = 3 (-2 a + 0.01) + 0.5.
     let couplings: Vec<_> = body.couplings.iter().map(|c| (c.dependent, c.independent)).collect();
     assert_eq!(couplings, [(13, 12), (14, 12)]);
@@ -47,7 +47,7 @@ fn every_joint_type_is_read() {
     let own = Matrix3::new(0.1, 0.01, 0.02, 0.01, 0.2, -0.03, 0.02, -0.03, 0.15);
     assert!((upper.inertia - r * own * r.inverse()).amax() < 1e-16);
     assert!(
-        matches!(&upper.motions[..], [BodyMotion::Hinge { axis, .. }] if (axis - Vector3::new(0.0, 0.6, 0.8)).amax() < 1e-16)
+        matches!(&upper.motions[..], [MotionIr::Hinge { axis, .. }] if (axis - Vector3::new(0.0, 0.6, 0.8)).amax() < 1e-16)
     );
     let ignored: Vec<_> = body.ignored.iter().map(|(k, n)| (k.as_str(), *n)).collect();
     assert_eq!(
@@ -62,13 +62,13 @@ fn every_joint_type_is_read() {
             ("visual", 1)
         ]
     );
-    let freed = file(&here().join("tests/models/arm.urdf"), BodyRoot::Free);
+    let freed = file(&here().join("tests/models/arm.urdf"), RootAttachment::Free);
     assert_eq!(freed.coordinates[0].name, "root_tx");
     assert_eq!(freed.coordinates[6].name, "root_qz");
     assert_eq!(freed.coordinates.len(), body.coordinates.len() + 7);
     assert!(matches!(
         freed.segments[0].motions[..],
-        [BodyMotion::Slide { .. }, BodyMotion::Slide { .. }, BodyMotion::Slide { .. }, BodyMotion::Ball { first: 3 }]
+        [MotionIr::Slide { .. }, MotionIr::Slide { .. }, MotionIr::Slide { .. }, MotionIr::Ball { first: 3 }]
     ));
 }
 
@@ -77,7 +77,7 @@ fn every_joint_type_is_read() {
 fn order_is_pinocchios() {
     let model = shared("models/human-gazebo/humanSubject01_48dof.urdf");
     let vectors = shared("vectors/pinocchio_human48_fixed_first5.json");
-    let body = file(&model, BodyRoot::Fixed);
+    let body = file(&model, RootAttachment::Fixed);
     let vectors: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(vectors).unwrap()).unwrap();
     let expected: Vec<&str> =
         vectors["joint_names"].as_array().unwrap().iter().skip(1).map(|n| n.as_str().unwrap()).collect();
@@ -92,8 +92,13 @@ fn order_is_pinocchios() {
 #[test]
 #[ignore = "needs ../shared: published human models in both formats"]
 fn urdf_and_mjcf_twins_agree() {
-    for (size, root) in [(48, BodyRoot::Fixed), (48, BodyRoot::Free), (66, BodyRoot::Fixed), (66, BodyRoot::Free)] {
-        let ending = if root == BodyRoot::Free { "free" } else { "fixed" };
+    for (size, root) in [
+        (48, RootAttachment::Fixed),
+        (48, RootAttachment::Free),
+        (66, RootAttachment::Fixed),
+        (66, RootAttachment::Free),
+    ] {
+        let ending = if root == RootAttachment::Free { "free" } else { "fixed" };
         let urdf_path = shared(&format!("models/human-gazebo/humanSubject01_{size}dof.urdf"));
         let mjcf_path = shared(&format!("models/human-gazebo/human{size}_{ending}.mjcf.xml"));
         let first = file(&urdf_path, root);
@@ -104,7 +109,7 @@ fn urdf_and_mjcf_twins_agree() {
         for _ in 0..20 {
             let mut q: Vec<f64> =
                 first.coordinates.iter().map(|_| common::next(&mut state) as f64 / (1u64 << 31) as f64 - 0.5).collect();
-            if root == BodyRoot::Free {
+            if root == RootAttachment::Free {
                 let norm = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
                 q[3..7].iter_mut().for_each(|x| *x /= norm);
             }
@@ -127,7 +132,7 @@ fn urdf_and_mjcf_twins_agree() {
 #[test]
 #[ignore = "needs ../shared: a published human model"]
 fn other_published_models_are_read() {
-    let body = file(&shared("models/gepetto/human.urdf"), BodyRoot::Free);
+    let body = file(&shared("models/gepetto/human.urdf"), RootAttachment::Free);
     assert_eq!(body.coordinates.len(), 7 + 36);
     assert_eq!(body.segments.len(), 37);
 }
@@ -135,7 +140,7 @@ fn other_published_models_are_read() {
 /// What Pinocchio reads and published robots hold: mimics that mean nothing, and moments that rounding left below zero.
 #[test]
 fn small_mistakes_are_read_past_and_counted() {
-    let body = file(&here().join("tests/models/humanoid.urdf"), BodyRoot::Fixed);
+    let body = file(&here().join("tests/models/humanoid.urdf"), RootAttachment::Fixed);
     let count = |kind: &str| body.ignored.iter().find(|(k, _)| k == kind).map(|(_, n)| *n);
     assert_eq!(count("mimic of a fixed joint"), Some(1));
     assert_eq!(count("mimic of a joint that is not there"), Some(1));
@@ -218,7 +223,7 @@ fn refusals_say_where() {
         ),
         (robot("<link name='a'><inertial/></link>"), "<inertial> at line 2, column 16: <mass> is missing inside"),
     ] {
-        assert_eq!(read(text.as_bytes(), BodyRoot::Fixed).expect_err(&text).to_string(), expected, "{text}");
+        assert_eq!(read(text.as_bytes(), RootAttachment::Fixed).expect_err(&text).to_string(), expected, "{text}");
     }
 }
 
@@ -237,12 +242,12 @@ fn coordinates_are_capped() {
         format!("<robot name='r'>{links}{joints}</robot>")
     };
     let cap = Limits::default().coordinates;
-    assert_eq!(read(chain(cap).as_bytes(), BodyRoot::Fixed).unwrap().coordinates.len(), cap);
-    let error = read(chain(cap + 1).as_bytes(), BodyRoot::Fixed).unwrap_err().to_string();
+    assert_eq!(read(chain(cap).as_bytes(), RootAttachment::Fixed).unwrap().coordinates.len(), cap);
+    let error = read(chain(cap + 1).as_bytes(), RootAttachment::Fixed).unwrap_err().to_string();
     assert!(error.ends_with("the model has more than 512 coordinates"), "{error}");
     // A chain as long as the elements allow needs no deep stack.
     let long = chain(39_999).replace("continuous", "fixed");
-    let work = move || read(long.as_bytes(), BodyRoot::Fixed).unwrap().segments.len();
+    let work = move || read(long.as_bytes(), RootAttachment::Fixed).unwrap().segments.len();
     let small = std::thread::Builder::new().stack_size(256 << 10).spawn(work).unwrap();
     assert_eq!(small.join().unwrap(), 40_000);
 }
@@ -268,7 +273,7 @@ fn mutated_files_never_panic_and_give_finite_numbers() {
         "/>",
     ];
     hammer("URDF", 48, 100_000, &bases.each_ref().map(Vec::as_slice), &parts, |text| {
-        let Ok(body) = read(text, BodyRoot::Free) else { return false };
+        let Ok(body) = read(text, RootAttachment::Free) else { return false };
         assert!(body.segments.iter().all(|s| s.mass.is_finite() && s.inertia.iter().all(|x| x.is_finite())));
         true
     });

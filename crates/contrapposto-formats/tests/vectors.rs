@@ -14,7 +14,7 @@ use contrapposto::kinematics::{CenterOfMass, Kinematics};
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{mjcf, osim, urdf};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
@@ -115,12 +115,12 @@ fn gradient_to_local(rotation: &Matrix3<f64>, torque: &[f64], ours: &[Vec<f64>])
     result
 }
 
-fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
+fn pinocchio(vectors: &str, file: &str, root: RootAttachment) {
     let (vectors, file_bytes) = (bytes(vectors), bytes(file));
     let vectors: Value = serde_json::from_slice(&vectors).unwrap();
     let options = urdf::Options { root, ..urdf::Options::default() };
     let imported = urdf::read(&file_bytes, file, &options).unwrap().model().unwrap();
-    let free = root == BodyRoot::Free;
+    let free = root == RootAttachment::Free;
     let names: Vec<&str> = vectors["joint_names"]
         .as_array()
         .unwrap()
@@ -226,14 +226,14 @@ fn pinocchio(vectors: &str, file: &str, root: BodyRoot) {
 
 #[test]
 fn written_models_with_a_fixed_root_are_pinocchios() {
-    pinocchio("right_arm_pinocchio_fixed.json", "right_arm.urdf", BodyRoot::Fixed);
-    pinocchio("hinges_and_slides_pinocchio_fixed.json", "hinges_and_slides.urdf", BodyRoot::Fixed);
+    pinocchio("right_arm_pinocchio_fixed.json", "right_arm.urdf", RootAttachment::Fixed);
+    pinocchio("hinges_and_slides_pinocchio_fixed.json", "hinges_and_slides.urdf", RootAttachment::Fixed);
 }
 
 #[test]
 fn written_models_with_a_free_root_are_pinocchios() {
-    pinocchio("right_arm_pinocchio_free.json", "right_arm.urdf", BodyRoot::Free);
-    pinocchio("hinges_and_slides_pinocchio_free.json", "hinges_and_slides.urdf", BodyRoot::Free);
+    pinocchio("right_arm_pinocchio_free.json", "right_arm.urdf", RootAttachment::Free);
+    pinocchio("hinges_and_slides_pinocchio_free.json", "hinges_and_slides.urdf", RootAttachment::Free);
 }
 
 #[test]
@@ -254,7 +254,7 @@ fn pinocchio_human48_fixed() {
     pinocchio(
         "vectors/pinocchio_human48_fixed_first5.json",
         "models/human-gazebo/humanSubject01_48dof.urdf",
-        BodyRoot::Fixed,
+        RootAttachment::Fixed,
     );
 }
 
@@ -264,7 +264,7 @@ fn pinocchio_human48_free() {
     pinocchio(
         "vectors/pinocchio_human48_free_first5.json",
         "models/human-gazebo/humanSubject01_48dof.urdf",
-        BodyRoot::Free,
+        RootAttachment::Free,
     );
 }
 
@@ -274,7 +274,7 @@ fn pinocchio_human66_free() {
     pinocchio(
         "vectors/pinocchio_human66_free_first5.json",
         "models/human-gazebo/humanSubject01_66dof.urdf",
-        BodyRoot::Free,
+        RootAttachment::Free,
     );
 }
 

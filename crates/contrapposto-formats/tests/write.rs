@@ -1,9 +1,9 @@
-//! The writers: what they write our readers read as the same model, and other programs give the same torques.
+//! Tests the writers: our readers read the written files as the same model, and other programs give the same torques.
 //!
 //! `write/laws.rs`: passive laws. `write/imported.rs`: model files survive their own format. `write/peers.rs`: what other programs say.
 //! `write/motion.rs`: a body in motion, read back by the readers of `write/players.rs`.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and print like tests")]
 
 mod common;
 #[path = "write/imported.rs"]

@@ -1,4 +1,4 @@
-//! The XML tree: what it accepts, what it refuses and where, and that no bytes end the process.
+//! Tests the XML tree: accepted texts, the place of every refusal, and that no bytes end the process.
 
 mod common;
 

@@ -8,7 +8,8 @@ use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
 use contrapposto::joint_torques::{JointTorques, Quantities};
-use contrapposto::math::expression::Expression;
+use contrapposto::math::expression::Operation::{self, Constant, Coordinate};
+use contrapposto::math::expression::{Binary, Expression, Unary};
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto::posture_solver::Options;
@@ -21,13 +22,29 @@ use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{Effort, Task};
 use nalgebra::Vector3;
 
-const LAWS: [&str; 8] = ["1/q", "q^0.5", "(q - 0.05)^-1", "1e308*q", "1e200*q", "exp(1e6*q)", "1e60", "-log(q)"];
+/// Laws and the operations that they consist of.
+fn laws() -> [(&'static str, Vec<Operation>); 8] {
+    let unary = |function, a| Operation::Unary(function, a);
+    let binary = |function, a, b| Operation::Binary(function, a, b);
+    let times_q = |factor| vec![Constant(factor), Coordinate, binary(Binary::Multiply, 0, 1)];
+    let shifted = [Coordinate, Constant(0.05), binary(Binary::Subtract, 0, 1), Constant(-1.0)];
+    [
+        ("1/q", vec![Constant(1.0), Coordinate, binary(Binary::Divide, 0, 1)]),
+        ("q^0.5", vec![Coordinate, Constant(0.5), binary(Binary::Power, 0, 1)]),
+        ("(q - 0.05)^-1", [shifted.as_slice(), &[binary(Binary::Power, 2, 3)]].concat()),
+        ("1e308*q", times_q(1e308)),
+        ("1e200*q", times_q(1e200)),
+        ("exp(1e6*q)", [times_q(1e6), vec![unary(Unary::Exp, 2)]].concat()),
+        ("1e60", vec![Constant(1e60)]),
+        ("-log(q)", vec![Coordinate, unary(Unary::Log, 0), unary(Unary::Negate, 1)]),
+    ]
+}
 
 /// With a law of its own at the joint that bends the trunk sideways, at its default 0.
-fn model(law: &str) -> Model {
+fn model(law: &str, operations: Vec<Operation>) -> Model {
     let model = adult(&Adult::default()).unwrap();
     let bending = model.coordinate("lumbar_bending").unwrap();
-    let law = PassiveLaw::Sum(vec![Term::Expression(Expression::parse(law).unwrap())]);
+    let law = PassiveLaw::Sum(vec![Term::Expression(Expression::new(law, operations).unwrap())]);
     model.with_passive_law(bending, Some(law))
 }
 
@@ -74,10 +91,10 @@ fn names_it(complaint: &str) -> bool {
 
 #[test]
 fn a_run_is_finite_or_refused_by_name() {
-    for law in LAWS {
+    for (law, operations) in laws() {
         for on_its_feet in [true, false] {
             println!("{law}, on its feet: {on_its_feet}");
-            let scenario = scenario(model(law), on_its_feet);
+            let scenario = scenario(model(law, operations.clone()), on_its_feet);
             let mut samples = 0;
             let ended = run(&scenario, |sample| {
                 samples += 1;
@@ -94,9 +111,9 @@ fn a_run_is_finite_or_refused_by_name() {
 
 #[test]
 fn a_search_is_finite_or_refused_by_name() {
-    for law in LAWS {
+    for (law, operations) in laws() {
         println!("{law}");
-        let model = model(law);
+        let model = model(law, operations);
         let (start, supports, goals) = (model.default_posture(), feet(&model), [effort(&model)]);
         let search =
             Search { model: &model, start: &start, supports: &supports, goals: &goals, loads: &[], locked: &[] };
@@ -134,7 +151,8 @@ fn contact_forces_of_no_torques_hold_nothing() {
 
 /// On its feet, with a task that bends the trunk from 0.05 rad, where the law `q^0.5` is a number, to -0.2 rad, where it is none.
 fn bending_beyond_the_law() -> Scenario {
-    let mut scenario = scenario(model("q^0.5"), true);
+    let [_, (law, operations), ..] = laws();
+    let mut scenario = scenario(model(law, operations), true);
     let bending = scenario.model.coordinate("lumbar_bending").unwrap();
     scenario.start.values_mut()[bending] = 0.05;
     let rate = scenario.model.coordinates()[bending].rate.unwrap();

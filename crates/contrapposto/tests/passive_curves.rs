@@ -7,7 +7,8 @@ mod support;
 
 use contrapposto::math::MonotoneCubic;
 use contrapposto::passive::{
-    CoordinateLimitForce, DoubleExponential, End, Exponentials, Form, PassiveCurve, PassiveError, Reshape, Tabulated,
+    CoordinateLimitForce, DoubleExponential, End, Exponentials, Form, PassiveCurve, PassiveError, PassiveParameter,
+    Reshape, Tabulated,
 };
 use rand::RngExt;
 use support::{Kind, chance, random};
@@ -416,7 +417,7 @@ fn a_rising_curve_is_refused_with_the_angle() {
     let found = make(end(-1.0, 5.0, 0.0), end(1.0, 5.0, 2.0), 0.0).unwrap_err();
     assert!(matches!(found, PassiveError::Rises { angle: 0.0, .. }), "{found}");
     let found = make(end(-1.0, 5.0, 0.0), end(1.0, 5.0, 2.0), 100.0).unwrap_err();
-    assert!(matches!(found, PassiveError::Parameter { name: "torque (N m)", .. }), "{found}");
+    assert!(matches!(found, PassiveError::Parameter { parameter: PassiveParameter::Torque, .. }), "{found}");
     // A table: the row where it begins to rise.
     let found = Tabulated::new(&[(0.0, 3.0), (1.0, 2.0), (2.0, 2.5)]).unwrap_err();
     assert_eq!(found, PassiveError::Rises { angle: 1.0, slope: 0.5 });
@@ -622,5 +623,8 @@ fn riener_and_edrich_meet_the_published_values() {
     }
     let [mut stray, ..] = laws;
     stray.joint = 3;
-    assert!(matches!(stray.held([0.0; 3], false), Err(PassiveError::Parameter { name: "joint", .. })));
+    assert!(matches!(
+        stray.held([0.0; 3], false),
+        Err(PassiveError::Parameter { parameter: PassiveParameter::Joint, .. })
+    ));
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 
 /// MODEL, and the options that complete it.
 #[derive(Debug, clap::Args)]
@@ -31,10 +31,10 @@ pub(crate) enum RootChoice {
 }
 
 impl RootChoice {
-    pub(crate) fn body(self) -> BodyRoot {
+    pub(crate) fn body(self) -> RootAttachment {
         match self {
-            Self::Fixed => BodyRoot::Fixed,
-            Self::Free => BodyRoot::Free,
+            Self::Fixed => RootAttachment::Fixed,
+            Self::Free => RootAttachment::Free,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The binary part of a glTF file: views of one buffer, and accessors that say what is in them.
+//! Writes the binary part of a glTF file: views of one buffer, and accessors that name their contents.
 
 use serde_json::{Value, json};
 

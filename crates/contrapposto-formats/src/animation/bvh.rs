@@ -1,4 +1,4 @@
-//! A motion as BVH: a skeleton of joints, and three angles of each for every posture.
+//! Writes a motion as BVH: a skeleton of joints, and three angles of each for every posture.
 
 use std::fmt::Write;
 
@@ -23,7 +23,7 @@ const STUB: f64 = 0.05;
 /// Deeper joints are not indented any further.
 const DEEPEST: usize = 40;
 
-/// What a joint of the file does.
+/// The motion of a joint of the file.
 #[derive(Clone, Copy, PartialEq)]
 enum Does {
     /// The root: place and turn.
@@ -127,7 +127,7 @@ fn offset(model: &Model, rest: &[Placement], segment: usize) -> Vector3<f64> {
     rest[segment].translation.vector - from
 }
 
-/// All joints of the file, each before what hangs on it.
+/// All joints of the file, parents before children.
 fn joints(model: &Model) -> Vec<Joint> {
     let segments = model.segments();
     let mut children: Vec<Vec<usize>> = vec![vec![]; segments.len()];
@@ -197,7 +197,7 @@ fn reach(model: &Model, rest: &[Placement], s: usize) -> Vector3<f64> {
     if reach.norm() > NEAR { reach } else { on() }
 }
 
-/// Six decimals, without what says nothing.
+/// Six decimals, without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.6}");
     let short = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,4 +1,4 @@
-//! Three angles of a rotation, so chosen that they run on without jumps.
+//! Computes three angles of a rotation that continue the angles before without jumps.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,4 +1,4 @@
-//! A motion as binary glTF 2.0: rigid segments in a tree of nodes, and one animation.
+//! Writes a motion as binary glTF 2.0: rigid segments in a tree of nodes, and one animation.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ struct Course {
 ///
 /// The first node has the body's name and turns ground axes to those of glTF (y up, z ahead, x left; m, s). Below it every segment is
 /// a node of its name at the centre of its joint, with the segment's axes, and carries its `solids` (one list a segment, in its
-/// frame) as closed meshes of one grey material; none is fine. What moves against its parent has keys with linear
+/// frame) as closed meshes of one grey material; none is fine. A segment that moves against its parent has keys with linear
 /// interpolation, one a posture; keys between equal neighbours are left out, and so is the animation where nothing moves at all. The
 /// nodes stand as in the first posture.
 ///

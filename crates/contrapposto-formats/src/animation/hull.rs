@@ -1,4 +1,4 @@
-//! The surface of a solid: the convex hull of balls as a closed mesh with normals.
+//! Computes the surface of a solid: the convex hull of balls as a closed mesh with normals.
 
 /// The convex hull of balls: position in the segment's frame and radius, m.
 pub type Solid = Vec<[f64; 4]>;

@@ -1,4 +1,4 @@
-//! A body in motion for programs that draw: glTF for viewers and modellers ([`glb`]), BVH for animation programs ([`bvh`]).
+//! Writes a body in motion for programs that draw: glTF for viewers and modellers ([`glb`]), BVH for animation programs ([`bvh`]).
 //!
 //! Both stand upright with y up, look along z and have their left at x, as those programs expect. In both a segment is a node
 //! at the centre of its joint: the origin of the joint's moved frame, the point about which the segment turns.
@@ -57,7 +57,7 @@ pub enum AnimationError {
         index: usize,
         /// Its time, s.
         time: f64,
-        /// What is wrong with it.
+        /// The reason.
         problem: &'static str,
     },
     /// The directions are no axes.

@@ -1,6 +1,6 @@
-//! The course of a few numbers over time. Keys are left out where nothing changes.
+//! Holds the course of a few numbers over time, without keys where nothing changes.
 
-/// Coarser than rounding of the kinematics, finer than `f32` in a body's size: what does not move then has one value only.
+/// Coarser than rounding of the kinematics, finer than `f32` in a body's size: a number that stands still then has one value only.
 const GRAIN: f64 = 1e-9;
 
 /// Values of one node.

@@ -1,9 +1,9 @@
-//! `<compiler>` and `<option>`: how the rest is to be understood, and gravity.
+//! Reads `<compiler>` and `<option>`: units and conventions of the file, and gravity.
 
-use super::attributes::{Value, check};
 use super::error::{MjcfError, MjcfRule, Unsupported};
-use super::files::Item;
+use super::item::Item;
 use super::schema;
+use super::value::{Value, check};
 use nalgebra::Vector3;
 
 /// Where a body's mass comes from.
@@ -14,7 +14,7 @@ pub(super) enum MassFrom {
     InertialOrGeoms,
 }
 
-/// What `<compiler>` and `<option>` say, all of them together.
+/// Settings of all `<compiler>` and `<option>` elements together.
 pub(super) struct Settings {
     degrees: bool,
     pub(super) automatic_limits: bool,
@@ -25,7 +25,7 @@ pub(super) struct Settings {
     pub(super) least_mass: f64,
     pub(super) least_inertia: f64,
     pub(super) balance: bool,
-    /// What all masses are scaled to, if positive.
+    /// Total mass to which all masses are scaled, if positive.
     pub(super) total_mass: f64,
     pub(super) gravity: Vector3<f64>,
     pub(super) springs: bool,

@@ -1,10 +1,10 @@
-//! Default classes.
+//! Reads default classes.
 
-use super::attributes::{ORIENTATION, Value, check, own_orientation};
 use super::error::{MjcfError, MjcfRule};
-use super::files::Item;
+use super::item::Item;
 use super::schema::{self, ORIENTATIONS, Tag};
-use crate::body::near;
+use super::value::{ORIENTATION, Value, check, own_orientation};
+use crate::model_ir::near;
 use crate::xml::{Limits, shorten};
 use std::collections::BTreeMap;
 

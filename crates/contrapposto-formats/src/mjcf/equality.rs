@@ -1,21 +1,21 @@
-//! Equality constraints between joints, as couplings.
+//! Reads equality constraints between joints as couplings.
 
-use super::Ignored;
-use super::attributes::{Attributes, Value};
+use super::attributes::Attributes;
+use super::built::Built;
 use super::compiler::Settings;
 use super::defaults::Classes;
 use super::error::{MjcfError, MjcfRule, Unsupported};
-use super::files::Item;
+use super::item::Item;
 use super::schema::Tag;
-use super::tree::Built;
-use crate::body::{Body, Coupling, compose_couplings, near, polynomial};
+use super::value::Value;
+use crate::model_ir::{Coupling, Ignored, ModelIr, compose_couplings, near, polynomial};
 use crate::xml::{Place, shorten};
 
-const KINDS: &[&str] = &["connect", "weld", "joint", "tendon", "flex", "flexvert", "flexstrain"];
+const EQUALITY_KINDS: &[&str] = &["connect", "weld", "joint", "tendon", "flex", "flexvert", "flexstrain"];
 
 pub(super) fn read<'a>(
     section: Item<'a>,
-    body: &mut Body,
+    body: &mut ModelIr,
     settings: &Settings,
     classes: &Classes<'a>,
     built: &Built<'a>,
@@ -23,8 +23,8 @@ pub(super) fn read<'a>(
     ignored: &mut Ignored,
 ) -> Result<(), MjcfError> {
     for item in section.children() {
-        if !KINDS.contains(&item.name()) {
-            return Err(MjcfError::unknown_element(item, KINDS));
+        if !EQUALITY_KINDS.contains(&item.name()) {
+            return Err(MjcfError::unknown_element(item, EQUALITY_KINDS));
         }
         let attributes = Attributes::new(item, Tag::Equality, classes, classes.main())?;
         let active = attributes.get("active").map_or(Ok(true), |v| v.flag())?;
@@ -41,7 +41,7 @@ pub(super) fn read<'a>(
 
 fn couple<'a>(
     item: Item<'a>,
-    body: &mut Body,
+    body: &mut ModelIr,
     built: &Built<'a>,
     couplings: &mut Vec<(Coupling, Place)>,
 ) -> Result<(), MjcfError> {
@@ -86,7 +86,7 @@ fn couple<'a>(
 }
 
 /// Composes couplings of couplings.
-pub(super) fn close(body: &mut Body, mut couplings: Vec<(Coupling, Place)>) -> Result<(), MjcfError> {
+pub(super) fn close(body: &mut ModelIr, mut couplings: Vec<(Coupling, Place)>) -> Result<(), MjcfError> {
     couplings.sort_by_key(|(coupling, _)| coupling.dependent);
     let (mut couplings, places): (Vec<_>, Vec<_>) = couplings.into_iter().unzip();
     compose_couplings(&mut couplings, body.coordinates.len()).map_err(|index| MjcfError::Invalid {

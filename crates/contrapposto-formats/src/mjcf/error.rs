@@ -1,7 +1,7 @@
-//! What can be wrong with an MJCF file.
+//! Errors of MJCF files.
 
-use super::files::Item;
-use crate::body::near;
+use super::item::Item;
+use crate::model_ir::near;
 use crate::numbers::NumberError;
 use crate::xml::{Place, XmlError, shorten};
 
@@ -14,7 +14,7 @@ pub enum MjcfError {
     Xml {
         /// Included file; empty for the main file.
         file: String,
-        /// What.
+        /// The kind.
         error: XmlError,
     },
     /// A number is none.
@@ -95,7 +95,7 @@ pub enum MjcfError {
         place: Place,
         /// As written, or the element's name.
         value: String,
-        /// What, and what would be accepted.
+        /// The demand, and the accepted alternative.
         what: Unsupported,
     },
     /// A rule of the format is broken.
@@ -105,7 +105,7 @@ pub enum MjcfError {
         place: Place,
         /// As written, or the name of the part.
         value: String,
-        /// What would be right.
+        /// The accepted alternative.
         needs: MjcfRule,
     },
     /// Bodies, frames, defaults inside each other beyond the cap, includes counted.
@@ -187,7 +187,7 @@ pub enum IncludeRule {
     },
 }
 
-/// What matters at rest and is not represented.
+/// Parts of a file that matter at rest and are not represented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unsupported {
@@ -254,7 +254,7 @@ impl Unsupported {
     }
 }
 
-/// What a part of an MJCF file must fulfil; the rules are MuJoCo's.
+/// Demands on parts of an MJCF file; the rules are MuJoCo's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MjcfRule {

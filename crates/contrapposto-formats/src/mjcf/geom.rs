@@ -1,10 +1,11 @@
-//! Mass, centre of mass and inertia of geoms, and of bodies made of them.
+//! Computes mass, centre of mass and inertia of geoms, and of bodies made of them.
 
-use super::attributes::{Attributes, Value};
+use super::attributes::Attributes;
 use super::compiler::Settings;
 use super::error::{MjcfError, MjcfRule, Unsupported};
 use super::orientation::{rotation, to_z};
-use crate::body::{turned, unit};
+use super::value::Value;
+use crate::model_ir::{turned, unit};
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 use std::f64::consts::PI;
 
@@ -78,6 +79,21 @@ pub(super) fn solid(
     {
         return Err(Unsupported::ShellInertia.at_attribute(geom.item, "shellinertia"));
     }
+    let (placed, size) = frame_and_size(geom, shape, settings)?;
+    let (volume, moments) = shape_moments(shape, size);
+    let mass = mass.unwrap_or(density * volume);
+    let frame = outer * placed;
+    let turn = frame.rotation.to_rotation_matrix();
+    let inertia = turned(&Matrix3::from_diagonal(&(moments * mass)), turn.matrix());
+    Ok(Some(Solid { mass, center: frame.translation.vector, inertia }))
+}
+
+/// Frame of a geom, and the sizes that its shape needs.
+fn frame_and_size(
+    geom: &Attributes<'_, '_>,
+    shape: &str,
+    settings: &Settings,
+) -> Result<(Isometry3<f64>, [f64; 3]), MjcfError> {
     let mut size = geom.merged("size")?;
     let placed = match geom.get("fromto") {
         Some(fromto) => {
@@ -101,12 +117,7 @@ pub(super) fn solid(
     if size[..needed].iter().any(|&s| s <= 0.0) {
         return Err(MjcfError::invalid(geom.item, "size", MjcfRule::Size));
     }
-    let (volume, moments) = shape_moments(shape, size);
-    let mass = mass.unwrap_or(density * volume);
-    let frame = outer * placed;
-    let turn = frame.rotation.to_rotation_matrix();
-    let inertia = turned(&Matrix3::from_diagonal(&(moments * mass)), turn.matrix());
-    Ok(Some(Solid { mass, center: frame.translation.vector, inertia }))
+    Ok((placed, size))
 }
 
 /// Frame and half length of `fromto`; z along it.

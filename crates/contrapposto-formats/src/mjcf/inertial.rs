@@ -1,13 +1,14 @@
-//! Mass and inertia of a body, from its `<inertial>` or its geoms.
+//! Reads mass and inertia of a body from its `<inertial>` or its geoms.
 
-use super::attributes::{Attributes, Value, check, own_orientation};
+use super::attributes::Attributes;
 use super::compiler::{MassFrom, Settings};
 use super::error::{MjcfError, MjcfRule};
-use super::files::Item;
 use super::geom::{Solid, solid};
+use super::item::Item;
 use super::orientation::pose;
 use super::schema;
-use crate::body::turned;
+use super::value::{Value, check, own_orientation};
+use crate::model_ir::turned;
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 /// A body's mass in its own frame, bounds and balance applied; total mass is not scaled yet.

@@ -1,11 +1,12 @@
-//! Joints of one body: coordinates, motions and springs.
+//! Reads the joints of one body: coordinates, motions and springs.
 
-use super::attributes::{Attributes, Value, check};
+use super::attributes::Attributes;
 use super::compiler::Settings;
 use super::error::{MjcfError, MjcfRule, Unsupported};
-use super::files::Item;
+use super::item::Item;
 use super::schema;
-use crate::body::{Body, BodyCoordinate, BodyCoordinateKind, BodyMotion, BodyPassive, Drive, PassiveLawText, unit};
+use super::value::{Value, check};
+use crate::model_ir::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, PassiveIr, PassiveLawIr, unit};
 use nalgebra::{Isometry3, Unit, Vector3};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +35,7 @@ pub(super) struct Joint<'a> {
     rest: f64,
 }
 
-const KINDS: &[&str] = &["free", "ball", "slide", "hinge"];
+const JOINT_KINDS: &[&str] = &["free", "ball", "slide", "hinge"];
 
 impl<'a> Joint<'a> {
     /// `<freejoint>`, which takes no defaults.
@@ -68,7 +69,7 @@ impl<'a> Joint<'a> {
         frame: &Isometry3<f64>,
         settings: &Settings,
     ) -> Result<Self, MjcfError> {
-        let kind = match joint.get("type").map_or(Ok(3), |v| v.keyword(KINDS))? {
+        let kind = match joint.get("type").map_or(Ok(3), |v| v.keyword(JOINT_KINDS))? {
             0 => Kind::Free,
             1 => Kind::Ball,
             2 => Kind::Slide,
@@ -139,11 +140,11 @@ impl<'a> Joint<'a> {
     }
 
     /// Adds the coordinates and springs of a joint that is not free; its motions follow those of `motions`.
-    pub(super) fn add(&self, name: &str, body: &mut Body, settings: &Settings, motions: &mut Vec<BodyMotion>) {
+    pub(super) fn add(&self, name: &str, body: &mut ModelIr, settings: &Settings, motions: &mut Vec<MotionIr>) {
         let first = body.coordinates.len();
         let limited = self.range.filter(|_| settings.limits);
         let mut push = |name: String, kind, range: Option<(f64, f64)>, default| {
-            body.coordinates.push(BodyCoordinate {
+            body.coordinates.push(CoordinateIr {
                 name,
                 kind,
                 range: range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)),
@@ -155,33 +156,33 @@ impl<'a> Joint<'a> {
         if self.kind == Kind::Ball {
             // The angle of rotation is at most `high` where w is at least the cosine of its half.
             let w = limited.map(|(_, high)| (if high >= std::f64::consts::PI { 0.0 } else { (high / 2.0).cos() }, 1.0));
-            push(format!("{name}_qw"), BodyCoordinateKind::Quaternion, w, 1.0);
+            push(format!("{name}_qw"), CoordinateKind::Quaternion, w, 1.0);
             for letter in ["x", "y", "z"] {
-                push(format!("{name}_q{letter}"), BodyCoordinateKind::Quaternion, None, 0.0);
+                push(format!("{name}_q{letter}"), CoordinateKind::Quaternion, None, 0.0);
             }
-            motions.push(BodyMotion::Ball { first });
+            motions.push(MotionIr::Ball { first });
             return;
         }
         let axis = self.axis.into_inner();
         let motion = |drive| match self.kind {
-            Kind::Slide => BodyMotion::Slide { axis, drive },
-            _ => BodyMotion::Hinge { axis, drive },
+            Kind::Slide => MotionIr::Slide { axis, drive },
+            _ => MotionIr::Hinge { axis, drive },
         };
         if self.reference != 0.0 {
-            motions.push(motion(Drive::Constant(-self.reference)));
+            motions.push(motion(Drive::Fixed(-self.reference)));
         }
         motions.push(motion(Drive::Coordinate(first)));
         let kind = match self.kind {
-            Kind::Slide => BodyCoordinateKind::Translation,
-            _ => BodyCoordinateKind::Rotation,
+            Kind::Slide => CoordinateKind::Translation,
+            _ => CoordinateKind::Rotation,
         };
         push(name.to_owned(), kind, limited, self.reference);
         let law = match self.stiffness {
             [0.0, 0.0, 0.0] if self.springdamper.is_none() => return,
-            [stiffness, 0.0, 0.0] => PassiveLawText::Spring { stiffness, rest: self.rest },
-            coefficients => PassiveLawText::Polynomial { coefficients: coefficients.to_vec(), rest: self.rest },
+            [stiffness, 0.0, 0.0] => PassiveLawIr::Spring { stiffness, rest: self.rest },
+            coefficients => PassiveLawIr::Polynomial { coefficients: coefficients.to_vec(), rest: self.rest },
         };
-        body.passive.push(BodyPassive { name: name.to_owned(), coordinate: first, law });
+        body.passive.push(PassiveIr { name: name.to_owned(), coordinate: first, law });
     }
 }
 

@@ -1,10 +1,10 @@
-//! Positions and the five ways to give an orientation.
+//! Reads positions, and orientations in the five ways to give them.
 
-use super::attributes::{Value, own_orientation};
 use super::compiler::Settings;
 use super::error::{MjcfError, MjcfRule};
-use super::files::Item;
-use crate::body::unit;
+use super::item::Item;
+use super::value::{Value, own_orientation};
+use crate::model_ir::unit;
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// `pos` and orientation of a body, frame or inertial, which have no class.

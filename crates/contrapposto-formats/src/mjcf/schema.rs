@@ -1,4 +1,7 @@
-//! Which attributes and elements MuJoCo 4.0 knows where they matter here; a slip of the pen must not pass as a default.
+//! Lists the attributes and elements that MuJoCo 4.0 knows, so that a misspelt name is not taken for a default.
+
+/// MuJoCo takes a smaller mass (kg) or moment of inertia (kg m^2) for none.
+pub(crate) const LEAST_MASS: f64 = 1e-15;
 
 /// Kinds of elements that take defaults and are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,38 +1,14 @@
-//! Stiffness from a time constant and a damping ratio, as MuJoCo finds it: from the inertia that the joint's coordinate feels
+//! Computes stiffness from a time constant and a damping ratio as MuJoCo does: from the inertia that the joint's coordinate feels
 //! at the file's configuration when all others are free.
 
+use super::built::{Built, Motion};
 use super::error::{MjcfError, MjcfRule, Unsupported};
-use super::files::Item;
 use super::geom::point_inertia;
-use super::tree::Built;
-use crate::body::{Body, PassiveLawText};
+use super::item::Item;
+
+use crate::model_ir::{ModelIr, PassiveLawIr};
 use crate::xml::Place;
 use nalgebra::{DMatrix, Matrix3, Vector3};
-
-/// One degree of freedom in the world at the file's configuration.
-pub(super) struct Freedom {
-    pub(super) segment: usize,
-    pub(super) motion: Motion,
-    pub(super) armature: f64,
-}
-
-/// How it moves.
-pub(super) enum Motion {
-    /// About an axis through a point.
-    Turn(Vector3<f64>, Vector3<f64>),
-    /// Along an axis.
-    Slide(Vector3<f64>),
-}
-
-/// A spring that waits for its stiffness.
-pub(super) struct Pending {
-    pub(super) freedom: usize,
-    /// Index in [`Body::passive`].
-    pub(super) spring: usize,
-    /// Time constant, s, and damping ratio.
-    pub(super) wanted: [f64; 2],
-    pub(super) place: Place,
-}
 
 /// Mass, first moment and inertia about the world's origin.
 #[derive(Clone, Copy, Default)]
@@ -42,7 +18,7 @@ struct Composite {
     inertia: Matrix3<f64>,
 }
 
-pub(super) fn apply(body: &mut Body, built: &Built<'_>, root: Item<'_>) -> Result<(), MjcfError> {
+pub(super) fn apply(body: &mut ModelIr, built: &Built<'_>, root: Item<'_>) -> Result<(), MjcfError> {
     let Some(first) = built.pending.first() else { return Ok(()) };
     armature_elsewhere(root)?;
     let invalid = |place: &Place| MjcfError::Invalid {
@@ -59,8 +35,8 @@ pub(super) fn apply(body: &mut Body, built: &Built<'_>, root: Item<'_>) -> Resul
             return Err(invalid(&pending.place));
         }
         match body.passive.get_mut(pending.spring).map(|p| &mut p.law) {
-            Some(PassiveLawText::Spring { stiffness, .. }) => *stiffness = found,
-            Some(PassiveLawText::Polynomial { coefficients, .. }) => coefficients[0] = found,
+            Some(PassiveLawIr::Spring { stiffness, .. }) => *stiffness = found,
+            Some(PassiveLawIr::Polynomial { coefficients, .. }) => coefficients[0] = found,
             _ => {}
         }
     }
@@ -84,7 +60,7 @@ fn armature_elsewhere(root: Item<'_>) -> Result<(), MjcfError> {
 }
 
 /// The joint-space inertia at the file's configuration, from each subtree's inertia as one body.
-fn mass_matrix(body: &Body, built: &Built<'_>) -> DMatrix<f64> {
+fn mass_matrix(body: &ModelIr, built: &Built<'_>) -> DMatrix<f64> {
     let count = body.segments.len();
     let mut composites = vec![Composite::default(); count];
     for index in (0..count).rev() {
@@ -135,7 +111,7 @@ fn mass_matrix(body: &Body, built: &Built<'_>) -> DMatrix<f64> {
 }
 
 /// Whether `segment` is `ancestor` or lies beyond it.
-fn above(body: &Body, ancestor: usize, segment: usize) -> bool {
+fn above(body: &ModelIr, ancestor: usize, segment: usize) -> bool {
     let chain = std::iter::successors(Some(segment), |&s| body.segments[s].parent);
     chain.take_while(|&s| s >= ancestor).any(|s| s == ancestor)
 }

@@ -1,49 +1,26 @@
-//! Bodies and frames: the walk through `<worldbody>`.
+//! Reads bodies and frames in one walk through `<worldbody>`.
 
-use super::attributes::{Attributes, Value, check};
+use super::attributes::Attributes;
+use super::built::{Built, Freedom, Motion, Pending};
+use super::chain::Chain;
 use super::compiler::{MassFrom, Settings};
 use super::defaults::Classes;
 use super::error::{MjcfError, MjcfRule, Unsupported};
-use super::files::Item;
 use super::geom::middle;
+use super::inertial;
+use super::item::Item;
 use super::joint::{Joint, Kind};
+use super::options::Options;
 use super::orientation::pose;
-use super::schema::{self, Tag};
-use super::springdamper::{Freedom, Motion, Pending};
-use super::{Ignored, Options, inertial};
-use crate::body::{Body, BodyMotion, BodyRoot, BodySegment, Drive};
-use crate::xml::{Place, shorten};
+use super::schema::{self, LEAST_MASS, Tag};
+use super::value::{Value, check};
+use crate::model_ir::{Ignored, ModelIr, RootAttachment, SegmentIr};
+use crate::xml::shorten;
 use nalgebra::{Isometry3, Translation3, Vector3};
-use std::collections::{BTreeMap, BTreeSet};
-
-/// What later steps need to know about the bodies.
-#[derive(Default)]
-pub(super) struct Built<'a> {
-    /// Where each segment stands in the file.
-    pub(super) places: Vec<Place>,
-    /// Hinges and slides by name: coordinate and reference value.
-    pub(super) joints: BTreeMap<&'a str, (usize, f64)>,
-    /// All degrees of freedom at the file's configuration.
-    pub(super) freedoms: Vec<Freedom>,
-    /// Springs whose stiffness is still to be found.
-    pub(super) pending: Vec<Pending>,
-    /// Segments' frames in the world at the file's configuration.
-    pub(super) poses: Vec<Isometry3<f64>>,
-    /// Whether each segment moves against the ground.
-    moves: Vec<bool>,
-    /// Names that the file gives to bodies and joints, so that made-up ones differ.
-    given: BTreeSet<&'a str>,
-    top: Vec<Item<'a>>,
-    /// An unnamed free joint has taken the name "root".
-    root_named: bool,
-    body_names: BTreeSet<&'a str>,
-    joint_names: BTreeSet<&'a str>,
-    site_names: BTreeSet<&'a str>,
-}
 
 /// The walk's state.
 pub(super) struct Walk<'a, 'w> {
-    body: &'w mut Body,
+    body: &'w mut ModelIr,
     settings: &'w Settings,
     classes: &'w Classes<'a>,
     options: &'w Options,
@@ -73,7 +50,7 @@ struct Contents<'a, 'c> {
 
 impl<'a, 'w> Walk<'a, 'w> {
     pub(super) fn new(
-        body: &'w mut Body,
+        body: &'w mut ModelIr,
         settings: &'w Settings,
         classes: &'w Classes<'a>,
         options: &'w Options,
@@ -114,7 +91,7 @@ impl<'a, 'w> Walk<'a, 'w> {
         Ok(())
     }
 
-    /// Elements of a body or frame; frames are gone through in place.
+    /// Elements of a body or frame; the elements of a frame are read in place.
     fn collect(&mut self, item: Item<'a>, context: Context, into: &mut Contents<'a, 'w>) -> Result<(), MjcfError> {
         let cap = self.options.limits.depth;
         if context.depth > cap {
@@ -187,20 +164,10 @@ impl<'a, 'w> Walk<'a, 'w> {
 
     /// A body and those inside it.
     fn segment(&mut self, item: Item<'a>, context: Context) -> Result<(), MjcfError> {
-        check(item, schema::BODY)?;
         let settings = self.settings;
         let index = self.body.segments.len();
-        let name = match item.attribute("name").filter(|n| !n.is_empty()) {
-            Some(name) if name == "world" || !self.built.body_names.insert(name) => return Err(duplicate(item, name)),
-            Some(name) => name.to_owned(),
-            None => self.made_up(format!("body_{}", index + 1)),
-        };
-        if let Some(value) = Value::of(item, "gravcomp")
-            && value.number()? != 0.0
-        {
-            return Err(Unsupported::GravityCompensation.at_attribute(item, "gravcomp"));
-        }
-        let mut pose = context.frame * pose(item, settings)?;
+        let name = self.body_name(item, index)?;
+        let pose = context.frame * pose(item, settings)?;
         let inner = Context {
             parent: Some(index),
             frame: Isometry3::identity(),
@@ -211,10 +178,10 @@ impl<'a, 'w> Walk<'a, 'w> {
         self.collect(item, inner, &mut contents)?;
         let mut joints = std::mem::take(&mut contents.joints);
         self.rules(item, context, &joints)?;
-        if self.options.root == Some(BodyRoot::Fixed) {
+        if self.options.root == Some(RootAttachment::Fixed) {
             joints.retain(|j| j.kind != Kind::Free);
         }
-        let freed = self.options.root == Some(BodyRoot::Free) && context.parent.is_none() && joints.is_empty();
+        let freed = self.options.root == Some(RootAttachment::Free) && context.parent.is_none() && joints.is_empty();
         let moves = !joints.is_empty() || freed;
         let carried = context.parent.is_some_and(|p| self.built.moves[p]);
         let solid = inertial::mass(item, contents.inertial, &contents.geoms, settings, moves || carried)?;
@@ -225,7 +192,7 @@ impl<'a, 'w> Walk<'a, 'w> {
         self.built.poses.push(world);
         self.built.places.push(item.place());
         self.built.moves.push(moves || carried);
-        let mut segment = BodySegment {
+        let mut segment = SegmentIr {
             joint: format!("{name}_fixed"),
             name,
             parent: context.parent,
@@ -242,50 +209,16 @@ impl<'a, 'w> Walk<'a, 'w> {
             segment.in_parent = Isometry3::identity();
             self.push_freedoms(index, &Joint::new(item, Kind::Free));
         }
-        let mut at = Vector3::zeros();
-        let mut turned = false;
+        let mut chain = Chain { pose, at: Vector3::zeros(), turned: false };
         for (number, joint) in joints.iter().enumerate() {
-            let joint_name = self.joint_name(joint, &segment.name, number)?;
-            // A ball's coordinates are named after its joint.
-            if number == 0 || joint.kind == Kind::Ball {
-                segment.joint.clone_from(&joint_name);
-            }
-            if joint.kind == Kind::Free {
-                segment.motions = self.body.free_joint(&joint_name, &pose);
-                segment.in_parent = Isometry3::identity();
-            } else {
-                if joint.kind != Kind::Slide {
-                    let shift = joint.anchor - at;
-                    if !turned {
-                        pose *= Translation3::from(shift);
-                        segment.in_parent = pose;
-                    } else if shift != Vector3::zeros() {
-                        let length = shift.norm();
-                        let drive = Drive::Constant(length);
-                        segment.motions.push(BodyMotion::Slide { axis: shift / length, drive });
-                    }
-                    (at, turned) = (joint.anchor, true);
-                }
-                let (coordinate, springs) = (self.body.coordinates.len(), self.body.passive.len());
-                joint.add(&joint_name, self.body, settings, &mut segment.motions);
-                if joint.kind != Kind::Ball
-                    && let Some(name) = joint.item.attribute("name").filter(|n| !n.is_empty())
-                {
-                    self.built.joints.insert(name, (coordinate, joint.reference));
-                }
-                if let Some(wanted) = joint.springdamper {
-                    let place = joint.item.place();
-                    let freedom = self.built.freedoms.len();
-                    self.built.pending.push(Pending { freedom, spring: springs, wanted, place });
-                }
-            }
+            self.joint(joint, number, &mut segment, &mut chain)?;
             self.push_freedoms(index, joint);
             if self.body.coordinates.len() > self.options.limits.coordinates {
                 let cap = self.options.limits.coordinates;
                 return Err(MjcfError::TooManyCoordinates { place: joint.item.place(), cap });
             }
         }
-        segment.in_segment = Isometry3::from(Translation3::from(at));
+        segment.in_segment = Isometry3::from(Translation3::from(chain.at));
         self.body.segments.push(segment);
         self.body.stations.extend(contents.stations.into_iter().map(|(name, at)| (name, index, at)));
         for (child, context) in contents.bodies {
@@ -294,7 +227,59 @@ impl<'a, 'w> Walk<'a, 'w> {
         Ok(())
     }
 
-    /// What MuJoCo demands of a body's joints, and the caller of its root.
+    /// Checks a body's own attributes, and gives its name.
+    fn body_name(&mut self, item: Item<'a>, index: usize) -> Result<String, MjcfError> {
+        check(item, schema::BODY)?;
+        let name = match item.attribute("name").filter(|n| !n.is_empty()) {
+            Some(name) if name == "world" || !self.built.body_names.insert(name) => return Err(duplicate(item, name)),
+            Some(name) => name.to_owned(),
+            None => self.made_up(format!("body_{}", index + 1)),
+        };
+        if let Some(value) = Value::of(item, "gravcomp")
+            && value.number()? != 0.0
+        {
+            return Err(Unsupported::GravityCompensation.at_attribute(item, "gravcomp"));
+        }
+        Ok(name)
+    }
+
+    /// Adds joint number `number` of a body to its segment.
+    fn joint(
+        &mut self,
+        joint: &Joint<'a>,
+        number: usize,
+        segment: &mut SegmentIr,
+        chain: &mut Chain,
+    ) -> Result<(), MjcfError> {
+        let joint_name = self.joint_name(joint, &segment.name, number)?;
+        // A ball's coordinates are named after its joint.
+        if number == 0 || joint.kind == Kind::Ball {
+            segment.joint.clone_from(&joint_name);
+        }
+        if joint.kind == Kind::Free {
+            segment.motions = self.body.free_joint(&joint_name, &chain.pose);
+            segment.in_parent = Isometry3::identity();
+            return Ok(());
+        }
+        if joint.kind != Kind::Slide {
+            chain.go_to(joint.anchor, segment);
+        }
+        let (coordinate, springs) = (self.body.coordinates.len(), self.body.passive.len());
+        joint.add(&joint_name, self.body, self.settings, &mut segment.motions);
+        if joint.kind != Kind::Ball
+            && let Some(name) = joint.item.attribute("name").filter(|n| !n.is_empty())
+        {
+            self.built.joints.insert(name, (coordinate, joint.reference));
+        }
+        if let Some(wanted) = joint.springdamper {
+            let place = joint.item.place();
+            let freedom = self.built.freedoms.len();
+            self.built.pending.push(Pending { freedom, spring: springs, wanted, place });
+        }
+        Ok(())
+    }
+
+    /// Checks MuJoCo's demands on a body's joints, and the caller's on its root.
     fn rules(&self, item: Item<'a>, context: Context, joints: &[Joint<'a>]) -> Result<(), MjcfError> {
         let top = context.parent.is_none();
         if let Some(mocap) = Value::of(item, "mocap")
@@ -313,7 +298,10 @@ impl<'a, 'w> Walk<'a, 'w> {
         if joints.iter().map(Joint::freedoms).sum::<usize>() > 6 {
             return Err(invalid(item, MjcfRule::Freedoms));
         }
-        if self.options.root == Some(BodyRoot::Free) && top && joints.first().is_some_and(|j| j.kind != Kind::Free) {
+        if self.options.root == Some(RootAttachment::Free)
+            && top
+            && joints.first().is_some_and(|j| j.kind != Kind::Free)
+        {
             return Err(invalid(item, MjcfRule::Root));
         }
         Ok(())
@@ -352,17 +340,17 @@ impl<'a, 'w> Walk<'a, 'w> {
         self.built.freedoms.extend(motions.into_iter().map(|motion| Freedom { segment, motion, armature }));
     }
 
-    /// Scales the masses and checks what needs all bodies.
+    /// Scales the masses, and makes the checks that need all bodies.
     pub(super) fn finish(self, root: Item<'a>) -> Result<Built<'a>, MjcfError> {
         let Self { body, settings, options, built, .. } = self;
-        if options.root == Some(BodyRoot::Free) && built.top.len() != 1 {
+        if options.root == Some(RootAttachment::Free) && built.top.len() != 1 {
             let at = built.top.get(1).unwrap_or(&root);
             let value = shorten(at.attribute("name").unwrap_or_default());
             return Err(MjcfError::Invalid { place: at.place(), value, needs: MjcfRule::Root });
         }
         let total: f64 = body.segments.iter().map(|s| s.mass).sum();
         if settings.total_mass > 0.0 {
-            let scale = settings.total_mass / total.max(LEAST);
+            let scale = settings.total_mass / total.max(LEAST_MASS);
             for segment in &mut body.segments {
                 segment.mass *= scale;
                 segment.inertia *= scale;
@@ -370,7 +358,7 @@ impl<'a, 'w> Walk<'a, 'w> {
         }
         // A moving body may get its mass from bodies fixed to it.
         let mut heavy: Vec<bool> =
-            body.segments.iter().map(|s| s.mass >= LEAST && s.inertia.trace() >= LEAST).collect();
+            body.segments.iter().map(|s| s.mass >= LEAST_MASS && s.inertia.trace() >= LEAST_MASS).collect();
         for (index, segment) in body.segments.iter().enumerate().rev() {
             if segment.motions.is_empty() {
                 if let Some(parent) = segment.parent {
@@ -384,9 +372,6 @@ impl<'a, 'w> Walk<'a, 'w> {
         Ok(built)
     }
 }
-
-/// What MuJoCo takes for no mass.
-const LEAST: f64 = 1e-15;
 
 fn duplicate(item: Item<'_>, name: &str) -> MjcfError {
     MjcfError::DuplicateName { place: item.attribute_place("name"), value: shorten(name) }

@@ -1,10 +1,10 @@
-//! What does the header of an OpenSim table say?
+//! Reads the header of an OpenSim table.
 
 use super::MOST_NAME_BYTES;
 use super::layout::{Layout, trimmed};
 use crate::input_error::InputError;
 
-/// What the header says, as far as it matters here.
+/// The entries of the header that matter here.
 #[derive(Debug, Default)]
 pub(super) struct Header<'a> {
     pub(super) name: &'a str,

@@ -1,11 +1,11 @@
-//! Where in a table of text does what stand? Reading and complaining share this, so a table need not remember places.
+//! Finds rows and cells of a table of text. Reading and errors share this, so a table need not remember places.
 
 use std::ops::Range;
 
 use crate::input_error::{InputError, Source};
 
-/// Longest stretch of text (the line of a complaint and its neighbours) that is shown with a caret, bytes. Wide tables have
-/// lines of kilobytes, in which nobody finds a caret: their complaints give line and column in words.
+/// Longest stretch of text (the line of an error and its neighbours) that is shown with a caret, bytes. Wide tables have
+/// lines of kilobytes, in which a caret is hard to find: their errors give line and column in words.
 const WIDEST_SHOWN: usize = 1200;
 
 /// A table's text, divided into header and body.
@@ -71,7 +71,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// A complaint about a part of the text, or about the whole file.
+    /// An error in a part of the text, or in the whole file.
     pub(super) fn error(
         &self,
         part: Option<&str>,
@@ -104,7 +104,7 @@ impl<'a> Layout<'a> {
         self.text.get(span.clone()).is_some().then_some(span)
     }
 
-    /// Length of the lines of `span` with one more above and below, as a complaint shows them.
+    /// Length of the lines of `span` with one more above and below, as an error shows them.
     fn shown(&self, span: &Range<usize>) -> usize {
         let (before, after) = (&self.text[..span.start], &self.text[span.end..]);
         let above = before.rsplitn(3, '\n').take(2).map(str::len).sum::<usize>();

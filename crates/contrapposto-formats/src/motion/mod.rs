@@ -1,4 +1,4 @@
-//! Tables of motion: OpenSim's `.mot` and `.sto` and comma separated text, read and written.
+//! Reads and writes tables of motion: OpenSim's `.mot` and `.sto` and comma separated text.
 //!
 //! [`read_table`] makes a [`Table`] of bytes, [`postures`] makes postures of a model of it, [`write_sto`] and [`write_csv`]
 //! write. A table keeps the numbers as the file holds them; degrees become radians in [`postures`] and back in the writers,
@@ -16,7 +16,7 @@ pub(crate) use write::plain;
 pub use write::{UnwritableTable, write_csv, write_sto};
 
 /// Largest table file, bytes.
-pub const MOST_BYTES: usize = 64 << 20;
+pub const MOST_TABLE_BYTES: usize = 64 << 20;
 /// Most columns of a table, time counted.
 pub const MOST_COLUMNS: usize = 10_000;
 /// Most numbers of a table, times counted; also most coordinates times rows of the postures that are made of one.
@@ -29,7 +29,7 @@ pub const MOST_NAME_BYTES: usize = 256;
 pub struct Table {
     /// The name that OpenSim's tables begin with; empty where there is none.
     pub name: String,
-    /// What the file says of its angles: `inDegrees`, or the words that older files use. SIMM's own motions, which say
+    /// The unit of angles that the file names: `inDegrees`, or the words that older files use. SIMM's own motions, which say
     /// nothing, hold degrees. `None` where nothing is said, as in CSV.
     pub in_degrees: Option<bool>,
     /// Labels, without time.

@@ -1,4 +1,4 @@
-//! From columns to the coordinates of a model.
+//! Turns the columns of a table into postures of a model.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -14,7 +14,7 @@ use crate::input_error::{InputError, nearest, suggestion};
 /// Farthest a quaternion may be from unit length.
 const QUATERNION_TOLERANCE: f64 = 1e-3;
 
-/// In which unit are angles whose column does not say it?
+/// The unit of angles whose column does not name one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Units {
     /// As the file says; radians beyond a full turn are refused, and so is a file that says nothing.
@@ -26,7 +26,7 @@ pub enum Units {
     Radians,
 }
 
-/// What a table holds of a model.
+/// The postures of a model that a table holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Postures {
     /// Time (s) and posture of every row.
@@ -37,7 +37,7 @@ pub struct Postures {
     pub unknown: Vec<String>,
 }
 
-/// Postures of `model`, one a row. `name` and `bytes` are what the table was read from, for complaints; empty ones will do.
+/// Postures of `model`, one a row. `name` and `bytes` are the file of the table, for errors; empty ones will do.
 ///
 /// A column is a coordinate if its label is
 /// - the coordinate's name, in the file's unit;
@@ -165,7 +165,7 @@ impl<'a> Job<'a> {
         if columns.is_empty() { Err(self.nothing_known()) } else { Ok((columns, unknown)) }
     }
 
-    /// Coordinates by name; names that cannot stand in a table, by what the writers put there instead.
+    /// Coordinates by name; names that cannot stand in a table by the name that the writers put there instead.
     fn names(&self) -> HashMap<String, usize> {
         let coordinates = || self.model.coordinates().iter().enumerate();
         let mut names: HashMap<String, usize> = coordinates().map(|(i, c)| (c.name.clone(), i)).collect();

@@ -1,9 +1,9 @@
-//! From bytes to a [`Table`], or to a complaint with line and column.
+//! Reads bytes as a [`Table`], or gives an error with line and column.
 
 use std::collections::HashSet;
 
 use super::layout::Layout;
-use super::{MOST_BYTES, MOST_COLUMNS, MOST_NAME_BYTES, MOST_NUMBERS, Table, header};
+use super::{MOST_COLUMNS, MOST_NAME_BYTES, MOST_NUMBERS, MOST_TABLE_BYTES, Table, header};
 use crate::input_error::{InputError, utf8};
 use crate::xml::shorten;
 
@@ -17,19 +17,19 @@ use crate::xml::shorten;
 /// `NAME.goal_deg` or `.goal_m` of our own runs are left out: their cells may be empty.
 ///
 /// Every number must be finite, every row complete, every label unique, and times must not fall; `nRows` and `nColumns`,
-/// where they stand, must be true. Empty lines and blanks at line ends do not matter. At most [`MOST_BYTES`],
+/// where they stand, must be true. Empty lines and blanks at line ends do not matter. At most [`MOST_TABLE_BYTES`],
 /// [`MOST_COLUMNS`], [`MOST_NUMBERS`] and [`MOST_NAME_BYTES`].
 ///
 /// # Errors
 /// [`InputError`] says what is wrong, where, and what would be right.
 pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
-    if bytes.len() > MOST_BYTES {
+    if bytes.len() > MOST_TABLE_BYTES {
         let message = format!("the file has {} bytes", bytes.len());
         return Err(Layout::new(name, "").error(
             None,
             message,
             "",
-            format!("at most {} MiB are read", MOST_BYTES >> 20),
+            format!("at most {} MiB are read", MOST_TABLE_BYTES >> 20),
         ));
     }
     let layout = Layout::new(name, utf8(name, bytes)?);
@@ -81,7 +81,7 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
     Ok(Table { name, in_degrees, columns: names.collect(), times, rows })
 }
 
-/// What a column is for.
+/// The role of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
     Time,

@@ -1,4 +1,4 @@
-//! From motion to text, as OpenSim and spreadsheets read it.
+//! Writes motion as text that OpenSim and spreadsheets read.
 
 use std::collections::HashSet;
 use std::fmt::Write;

@@ -1,10 +1,10 @@
-//! Properties of an object: child elements, or what a `<defaults>` section says of its type.
+//! Reads properties of an object: child elements, or those of its type in a `<defaults>` section.
 
 use std::collections::HashMap;
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-use super::OsimProblem;
+use super::error::OsimProblem;
 use crate::numbers;
 use crate::xml::{Limits, Node};
 
@@ -53,7 +53,7 @@ impl<'a> Reader<'a> {
         Ok(name.to_owned())
     }
 
-    /// A name that must not be empty or contain what paths are made of.
+    /// A name, which must not be empty or contain the separators of paths.
     pub(super) fn unique_name(&self, object: Node<'_>) -> Result<String> {
         let name = self.name(object)?;
         if name.is_empty() {
@@ -158,4 +158,9 @@ impl<'a> Reader<'a> {
         let [xx, yy, zz, xy, xz, yz] = values;
         Ok(Some(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)))
     }
+}
+
+/// Children of a set: those of its `<objects>`.
+pub(super) fn objects<'a>(set: Option<Node<'a>>) -> impl Iterator<Item = Node<'a>> + use<'a> {
+    set.and_then(|s| s.child("objects")).into_iter().flat_map(Node::children)
 }

@@ -1,17 +1,17 @@
-//! The coordinates of a model, by name and by path.
+//! Finds the coordinates of a model by name and by path.
 
 use std::collections::HashMap;
 
 use super::attributes::Reader;
 use super::error::OsimProblem;
 use super::functions;
-use crate::body::{BodyCoordinate, BodyCoordinateKind, Function, near};
+use crate::model_ir::{CoordinateIr, CoordinateKind, Function, near};
 use crate::xml::{Node, Place, shorten};
 
 /// OpenSim's range of a coordinate that gives none, rad or m.
 const DEFAULT_RANGE: (f64, f64) = (-10.0, 10.0);
 
-/// What the forces must know of a coordinate besides.
+/// Properties of a coordinate that its forces need.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Manner {
     /// OpenSim calls it rotational: limit forces are in degrees.
@@ -23,14 +23,14 @@ pub(super) struct Manner {
 /// All coordinates so far.
 #[derive(Default)]
 pub(super) struct Coordinates {
-    list: Vec<BodyCoordinate>,
+    list: Vec<CoordinateIr>,
     manners: Vec<Manner>,
     by_name: HashMap<String, usize>,
     by_path: HashMap<String, usize>,
 }
 
 impl Coordinates {
-    pub(super) fn into_list(self) -> Vec<BodyCoordinate> {
+    pub(super) fn into_list(self) -> Vec<CoordinateIr> {
         self.list
     }
 
@@ -44,7 +44,7 @@ impl Coordinates {
         reader: &Reader<'_>,
         place: Place,
         joint: &str,
-        mut coordinate: BodyCoordinate,
+        mut coordinate: CoordinateIr,
         manner: Manner,
     ) -> Result<usize, OsimProblem> {
         let index = self.list.len();
@@ -77,12 +77,8 @@ impl Coordinates {
 }
 
 /// A coordinate's properties.
-pub(super) fn read<'a>(
-    reader: &Reader<'a>,
-    node: Node<'a>,
-    kind: BodyCoordinateKind,
-) -> Result<BodyCoordinate, OsimProblem> {
-    let mut coordinate = BodyCoordinate {
+pub(super) fn read<'a>(reader: &Reader<'a>, node: Node<'a>, kind: CoordinateKind) -> Result<CoordinateIr, OsimProblem> {
+    let mut coordinate = CoordinateIr {
         name: reader.unique_name(node)?,
         kind,
         range: range(reader, node)?,
@@ -105,8 +101,8 @@ pub(super) fn read<'a>(
 }
 
 /// A coordinate the file leaves out: OpenSim's defaults.
-pub(super) fn unwritten(name: String, kind: BodyCoordinateKind) -> BodyCoordinate {
-    BodyCoordinate { name, kind, range: DEFAULT_RANGE, default: 0.0, locked: false, clamped: false }
+pub(super) fn unwritten(name: String, kind: CoordinateKind) -> CoordinateIr {
+    CoordinateIr { name, kind, range: DEFAULT_RANGE, default: 0.0, locked: false, clamped: false }
 }
 
 /// Two numbers in order; infinite ones are accepted.

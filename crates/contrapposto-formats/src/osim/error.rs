@@ -1,7 +1,7 @@
-//! What may be wrong with an `.osim` file.
+//! Errors of `.osim` files.
 
-use crate::body::SplineError;
-use crate::expression::ExpressionError;
+use super::expression::ExpressionError;
+use crate::model_ir::SplineError;
 use crate::numbers::NumberError;
 use crate::xml::{Place, XmlError, shorten};
 
@@ -11,7 +11,7 @@ use crate::xml::{Place, XmlError, shorten};
 pub struct OsimError {
     /// Name of the file.
     pub file: String,
-    /// What is wrong, and where.
+    /// The reason and the place.
     pub problem: Box<OsimProblem>,
 }
 
@@ -30,7 +30,7 @@ pub enum OsimProblem {
     Missing {
         /// Where.
         place: Place,
-        /// What.
+        /// The kind.
         what: String,
     },
     /// It matters to torque, and is not supported.
@@ -38,9 +38,9 @@ pub enum OsimProblem {
     Unsupported {
         /// Where.
         place: Place,
-        /// What.
+        /// The kind.
         what: String,
-        /// What would be accepted.
+        /// The accepted alternatives.
         accepted: &'static str,
     },
     /// A value that has no meaning.
@@ -50,7 +50,7 @@ pub enum OsimProblem {
         place: Place,
         /// As written, shortened.
         value: String,
-        /// What would be accepted.
+        /// The accepted alternatives.
         problem: String,
     },
     /// A name of something that is not there.
@@ -80,7 +80,7 @@ pub enum OsimProblem {
     Spline {
         /// Where.
         place: Place,
-        /// What is wrong.
+        /// The reason.
         problem: SplineError,
     },
     /// A formula; its columns count inside the formula.
@@ -88,7 +88,7 @@ pub enum OsimProblem {
     Expression {
         /// Where.
         place: Place,
-        /// What is wrong.
+        /// The reason.
         problem: ExpressionError,
     },
     /// Too many of something.

@@ -1,13 +1,11 @@
-//! Which of a model's forces and constraints matter at rest?
+//! Reads the forces and constraints of a model that matter at rest.
 
-use super::Ignored;
 use super::attributes::Reader;
 use super::coordinates::Coordinates;
 use super::error::OsimProblem;
 use super::functions;
 use super::sets::Scene;
-use crate::body::{Body, BodyPassive, Coupling, PassiveLawText};
-use crate::expression::Expression;
+use crate::model_ir::{Coupling, Ignored, ModelIr, PassiveIr, PassiveLawIr};
 use crate::xml::Node;
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End};
 
@@ -22,7 +20,7 @@ pub(super) fn read<'a>(
     reader: &Reader<'a>,
     scene: &Scene<'a>,
     coordinates: &Coordinates,
-    body: &mut Body,
+    body: &mut ModelIr,
     ignored: &mut Ignored,
 ) -> Result<(), OsimProblem> {
     for &node in &scene.constraints {
@@ -74,7 +72,7 @@ fn coupling<'a>(reader: &Reader<'a>, node: Node<'a>, coordinates: &Coordinates) 
 }
 
 /// Each coordinate follows at most one other, and no circle.
-fn check_couplings(scene: &Scene<'_>, body: &Body) -> Result<(), OsimProblem> {
+fn check_couplings(scene: &Scene<'_>, body: &ModelIr) -> Result<(), OsimProblem> {
     let mut leader_of = std::collections::HashMap::new();
     let enforced = scene.constraints.iter().filter(|n| n.name() == "CoordinateCouplerConstraint");
     let place = enforced.clone().next().map(|n| n.place()).unwrap_or_default();
@@ -100,7 +98,7 @@ fn check_couplings(scene: &Scene<'_>, body: &Body) -> Result<(), OsimProblem> {
     Ok(())
 }
 
-fn passive<'a>(reader: &Reader<'a>, node: Node<'a>, coordinates: &Coordinates) -> Result<BodyPassive, OsimProblem> {
+fn passive<'a>(reader: &Reader<'a>, node: Node<'a>, coordinates: &Coordinates) -> Result<PassiveIr, OsimProblem> {
     let read_law = match node.name() {
         "CoordinateLimitForce" => limit_force,
         "ExponentialCoordinateLimitForce" => exponential,
@@ -116,11 +114,11 @@ fn passive<'a>(reader: &Reader<'a>, node: Node<'a>, coordinates: &Coordinates) -
         let accepted = "coordinates of other joints (OpenSim applies it about an axis of the parent, which is not that of the angle)";
         return Err(OsimProblem::unsupported(node.place(), "a force on a rotation of a ball or free joint", accepted));
     }
-    Ok(BodyPassive { name: reader.name(node)?, coordinate, law: read_law(reader, node, manner.degrees)? })
+    Ok(PassiveIr { name: reader.name(node)?, coordinate, law: read_law(reader, node, manner.degrees)? })
 }
 
-/// Degrees for what OpenSim calls rotational, rad or m for the rest.
-fn limit_force<'a>(reader: &Reader<'a>, node: Node<'a>, degrees: bool) -> Result<PassiveLawText, OsimProblem> {
+/// Degrees for a coordinate that OpenSim calls rotational, rad or m for the others.
+fn limit_force<'a>(reader: &Reader<'a>, node: Node<'a>, degrees: bool) -> Result<PassiveLawIr, OsimProblem> {
     let unit = if degrees { 1f64.to_radians() } else { 1.0 };
     let law = CoordinateLimitForce {
         upper_stiffness: reader.number(node, "upper_stiffness", Some(1.0))? / unit,
@@ -130,11 +128,11 @@ fn limit_force<'a>(reader: &Reader<'a>, node: Node<'a>, degrees: bool) -> Result
         transition: reader.number(node, "transition", Some(0.1))? * unit,
     };
     law.form().map_err(|error| OsimProblem::invalid(node.place(), node.name(), error.to_string()))?;
-    Ok(PassiveLawText::CoordinateLimitForce(law))
+    Ok(PassiveLawIr::CoordinateLimitForce(law))
 }
 
 /// `lower[0] exp(-lower[1] (q - lower_limit)) - upper[0] exp(upper[1] (q - upper_limit))`, in rad or m.
-fn exponential<'a>(reader: &Reader<'a>, node: Node<'a>, _: bool) -> Result<PassiveLawText, OsimProblem> {
+fn exponential<'a>(reader: &Reader<'a>, node: Node<'a>, _: bool) -> Result<PassiveLawIr, OsimProblem> {
     let end = |shape, limit| {
         let [torque, rate] = reader.fixed(node, shape, Some([0.0, 0.0]))?;
         let angle = reader.number(node, limit, Some(0.0))?;
@@ -144,21 +142,21 @@ fn exponential<'a>(reader: &Reader<'a>, node: Node<'a>, _: bool) -> Result<Passi
     let (lower, upper) = (end("lower_shape_parameters", "lower_limit")?, end("upper_shape_parameters", "upper_limit")?);
     let law = DoubleExponential { lower, upper, stiffness: 0.0, neutral: 0.0 };
     law.form().map_err(|error| OsimProblem::invalid(node.place(), node.name(), error.to_string()))?;
-    Ok(PassiveLawText::DoubleExponential(law))
+    Ok(PassiveLawIr::DoubleExponential(law))
 }
 
 /// `-stiffness (q - rest_length)`; viscosity plays no part at rest.
-fn spring<'a>(reader: &Reader<'a>, node: Node<'a>, _: bool) -> Result<PassiveLawText, OsimProblem> {
+fn spring<'a>(reader: &Reader<'a>, node: Node<'a>, _: bool) -> Result<PassiveLawIr, OsimProblem> {
     let stiffness = reader.number(node, "stiffness", Some(0.0))?;
     let rest = reader.number(node, "rest_length", Some(0.0))?;
-    Ok(PassiveLawText::Spring { stiffness, rest })
+    Ok(PassiveLawIr::Spring { stiffness, rest })
 }
 
-fn expression<'a>(reader: &Reader<'a>, node: Node<'a>, _: bool) -> Result<PassiveLawText, OsimProblem> {
+fn expression<'a>(reader: &Reader<'a>, node: Node<'a>, _: bool) -> Result<PassiveLawIr, OsimProblem> {
     let Some(property) = reader.property(node, "expression") else {
         return Err(OsimProblem::Missing { place: node.place(), what: "<expression>".to_owned() });
     };
-    let parsed = Expression::parse(&property.text());
-    let expression = parsed.map_err(|problem| OsimProblem::Expression { place: property.place(), problem })?;
-    Ok(PassiveLawText::Expression(expression))
+    let parsed = super::expression::parse(&property.text());
+    let formula = parsed.map_err(|problem| OsimProblem::Expression { place: property.place(), problem })?;
+    Ok(PassiveLawIr::Expression(formula))
 }

@@ -1,4 +1,4 @@
-//! Frames by their path: ground, bodies, and frames offset from others.
+//! Finds frames by their path: ground, bodies, and frames offset from others.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use nalgebra::Isometry3;
 
 use super::attributes::Reader;
 use super::error::OsimProblem;
-use crate::body::near;
+use crate::model_ir::near;
 use crate::xml::Node;
 
 /// Frames inside each other that are followed.

@@ -1,11 +1,11 @@
-//! Functions of one coordinate.
+//! Reads functions of one coordinate.
 
 use super::attributes::Reader;
 use super::error::OsimProblem;
-use crate::body::{Function, Spline, SplineError};
+use crate::model_ir::{Function, Spline, SplineError};
 use crate::xml::Node;
 
-const ACCEPTED: &str = "Constant, LinearFunction, PolynomialFunction, SimmSpline (natCubicSpline, NaturalCubicSpline), \
+const ACCEPTED_FUNCTIONS: &str = "Constant, LinearFunction, PolynomialFunction, SimmSpline (natCubicSpline, NaturalCubicSpline), \
                         GCVSpline (half_order 2, error_variance 0), PiecewiseLinearFunction, Sine, MultiplierFunction";
 
 /// Whether an element's name is that of a function, supported or not.
@@ -49,7 +49,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<Function, 
                 let found = reader.number(node, property, Some(default))?;
                 if found != accepted {
                     let what = format!("GCVSpline with {property} {found}");
-                    return Err(OsimProblem::unsupported(node.place(), &what, ACCEPTED));
+                    return Err(OsimProblem::unsupported(node.place(), &what, ACCEPTED_FUNCTIONS));
                 }
             }
             points(reader, node, Spline::natural).map(Function::NaturalSpline)
@@ -69,7 +69,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<Function, 
             };
             Ok(read(reader, inner)?.scaled(reader.number(node, "scale", Some(1.0))?))
         }
-        other => Err(OsimProblem::unsupported(node.place(), &format!("function {other}"), ACCEPTED)),
+        other => Err(OsimProblem::unsupported(node.place(), &format!("function {other}"), ACCEPTED_FUNCTIONS)),
     }
 }
 

@@ -1,4 +1,4 @@
-//! How do joints move? Every kind as a chain of slides, then hinges, from the parent's frame to the child's.
+//! Reads joints of every kind as a chain of slides, then hinges, from the parent's frame to the child's.
 //!
 //! Checked against OpenSim 4.6: translations run along the axes of the parent's frame, rotations follow body-fixed, and the axes
 //! of custom joints are taken at unit length.
@@ -7,20 +7,20 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::attributes::Reader;
+use super::attributes::{Reader, objects};
 use super::coordinates::{self, Coordinates, Manner};
 use super::error::OsimProblem;
+use super::functions;
 use super::sets::SceneJoint;
-use super::{Ignored, functions, objects};
-use crate::body::{BodyCoordinateKind, BodyMotion, Drive, Function, near, unit};
+use crate::model_ir::{CoordinateKind, Drive, Function, Ignored, MotionIr, near, unit};
 use crate::xml::{Node, shorten};
 
-const ACCEPTED: &str =
+const ACCEPTED_JOINTS: &str =
     "WeldJoint, PinJoint, SliderJoint, UniversalJoint, GimbalJoint, BallJoint, FreeJoint, PlanarJoint, CustomJoint";
 
-use BodyCoordinateKind::{Rotation, Translation};
+use CoordinateKind::{Rotation, Translation};
 
-type Mobility = (BodyCoordinateKind, fn() -> Vector3<f64>);
+type Mobility = (CoordinateKind, fn() -> Vector3<f64>);
 
 const X: fn() -> Vector3<f64> = Vector3::x;
 const Y: fn() -> Vector3<f64> = Vector3::y;
@@ -30,7 +30,7 @@ const Z: fn() -> Vector3<f64> = Vector3::z;
 const FREE: [Mobility; 6] =
     [(Rotation, X), (Rotation, Y), (Rotation, Z), (Translation, X), (Translation, Y), (Translation, Z)];
 
-/// What the coordinates of a joint other than a custom one mean, in their order.
+/// The motions of a joint that is no custom joint, in the order of its coordinates.
 fn mobilities(kind: &str) -> Option<&'static [Mobility]> {
     Some(match kind {
         "WeldJoint" => &[],
@@ -44,10 +44,10 @@ fn mobilities(kind: &str) -> Option<&'static [Mobility]> {
     })
 }
 
-fn motion(kind: BodyCoordinateKind, axis: Vector3<f64>, drive: Drive) -> BodyMotion {
+fn motion(kind: CoordinateKind, axis: Vector3<f64>, drive: Drive) -> MotionIr {
     match kind {
-        Translation => BodyMotion::Slide { axis, drive },
-        _ => BodyMotion::Hinge { axis, drive },
+        Translation => MotionIr::Slide { axis, drive },
+        _ => MotionIr::Hinge { axis, drive },
     }
 }
 
@@ -57,14 +57,14 @@ pub(super) fn motions<'a>(
     joint: &SceneJoint<'a>,
     all: &mut Coordinates,
     ignored: &mut Ignored,
-) -> Result<Vec<BodyMotion>, OsimProblem> {
+) -> Result<Vec<MotionIr>, OsimProblem> {
     let node = joint.node;
     let declared = declared(node);
     if node.name() == "CustomJoint" {
         return custom(reader, joint, &declared, all, ignored);
     }
     let Some(mobilities) = mobilities(node.name()) else {
-        return Err(OsimProblem::unsupported(node.place(), &format!("joint {}", node.name()), ACCEPTED));
+        return Err(OsimProblem::unsupported(node.place(), &format!("joint {}", node.name()), ACCEPTED_JOINTS));
     };
     if declared.len() > mobilities.len() || (declared.len() < mobilities.len() && !joint.old) {
         let problem = format!("a {} has {} coordinate(s)", node.name(), mobilities.len());
@@ -84,7 +84,7 @@ pub(super) fn motions<'a>(
     Ok(slides_first(&driven))
 }
 
-fn slides_first(driven: &[(Mobility, usize)]) -> Vec<BodyMotion> {
+fn slides_first(driven: &[(Mobility, usize)]) -> Vec<MotionIr> {
     let of = |wanted| driven.iter().filter(move |d| d.0.0 == wanted);
     of(Translation)
         .chain(of(Rotation))
@@ -98,7 +98,7 @@ pub(super) fn free<'a>(
     body: &str,
     node: Node<'a>,
     all: &mut Coordinates,
-) -> Result<(String, Vec<BodyMotion>), OsimProblem> {
+) -> Result<(String, Vec<MotionIr>), OsimProblem> {
     let joint = format!("free_{body}");
     let mut driven = Vec::new();
     for (i, &(kind, axis)) in FREE.iter().enumerate() {
@@ -115,7 +115,7 @@ fn declared(joint: Node<'_>) -> Vec<Node<'_>> {
 }
 
 /// The six axes of a custom joint in the order in which they act.
-const AXES: [(&str, BodyCoordinateKind); 6] = [
+const AXES: [(&str, CoordinateKind); 6] = [
     ("translation1", Translation),
     ("translation2", Translation),
     ("translation3", Translation),
@@ -126,7 +126,7 @@ const AXES: [(&str, BodyCoordinateKind); 6] = [
 
 /// One motion before its coordinate has a number.
 struct Part {
-    kind: BodyCoordinateKind,
+    kind: CoordinateKind,
     axis: Vector3<f64>,
     function: Function,
     /// Which of the joint's coordinates drives it.
@@ -135,13 +135,27 @@ struct Part {
     gives_kind: bool,
 }
 
+/// The elements of the six axes, in the order of [`AXES`].
+fn transform_axes<'a>(transform: Node<'a>) -> Result<[Option<Node<'a>>; 6], OsimProblem> {
+    let mut axes: [Option<Node<'a>>; 6] = [None; 6];
+    for axis in transform.children().filter(|n| n.name() == "TransformAxis") {
+        let name = axis.attribute("name").unwrap_or_default().trim();
+        let Some(slot) = AXES.iter().position(|(known, _)| *known == name) else {
+            let problem = "rotation1 to rotation3 and translation1 to translation3 are accepted";
+            return Err(OsimProblem::invalid(axis.attribute_place("name"), name, problem));
+        };
+        axes[slot].get_or_insert(axis);
+    }
+    Ok(axes)
+}
+
 fn custom<'a>(
     reader: &Reader<'a>,
     joint: &SceneJoint<'a>,
     declared: &[Node<'a>],
     all: &mut Coordinates,
     ignored: &mut Ignored,
-) -> Result<Vec<BodyMotion>, OsimProblem> {
+) -> Result<Vec<MotionIr>, OsimProblem> {
     let node = joint.node;
     let Some(transform) = reader.property(node, "SpatialTransform") else {
         return Err(OsimProblem::Missing { place: node.place(), what: "<SpatialTransform>".to_owned() });
@@ -153,15 +167,7 @@ fn custom<'a>(
             return Err(OsimProblem::Twice { place: coordinate.place(), what: "coordinate", name });
         }
     }
-    let mut axes: [Option<Node<'a>>; 6] = [None; 6];
-    for axis in transform.children().filter(|n| n.name() == "TransformAxis") {
-        let name = axis.attribute("name").unwrap_or_default().trim();
-        let Some(slot) = AXES.iter().position(|(known, _)| *known == name) else {
-            let problem = "rotation1 to rotation3 and translation1 to translation3 are accepted";
-            return Err(OsimProblem::invalid(axis.attribute_place("name"), name, problem));
-        };
-        axes[slot].get_or_insert(axis);
-    }
+    let axes = transform_axes(transform)?;
     let mut parts: Vec<Part> = Vec::new();
     // OpenSim's kind of a coordinate: that of the last axis, rotations first, that gives one.
     let mut plain = vec![None; declared.len()];
@@ -189,27 +195,49 @@ fn custom<'a>(
         numbers.push(Some(all.add(reader, coordinate.place(), &joint.name, read, manner)?));
     }
     let drive = |function: Function, coordinate: Option<usize>| match (coordinate.and_then(|i| numbers[i]), function) {
-        (_, Function::Constant(value)) => Drive::Constant(value),
+        (_, Function::Constant(value)) => Drive::Fixed(value),
         (Some(index), function) if function.is_identity() => Drive::Coordinate(index),
         (Some(index), function) => Drive::Function(function, index),
-        (None, function) => Drive::Constant(function.value(0.0)),
+        (None, function) => Drive::Fixed(function.value(0.0)),
     };
     let motions = parts.into_iter().map(|part| motion(part.kind, part.axis, drive(part.function, part.coordinate)));
     Ok(motions.filter(|m| !is_still(m)).collect())
 }
 
 /// Whether it never moves.
-fn is_still(motion: &BodyMotion) -> bool {
-    matches!(motion, BodyMotion::Hinge { drive: Drive::Constant(v), .. } | BodyMotion::Slide { drive: Drive::Constant(v), .. } if *v == 0.0)
+fn is_still(motion: &MotionIr) -> bool {
+    matches!(motion, MotionIr::Hinge { drive: Drive::Fixed(v), .. } | MotionIr::Slide { drive: Drive::Fixed(v), .. } if *v == 0.0)
 }
 
-/// What one axis does. A linear function of several coordinates is a chain of motions along the same axis.
+/// The motion of one axis. A linear function of several coordinates is a chain of motions along the same axis.
 fn axis_parts<'a>(
     reader: &Reader<'a>,
     node: Node<'a>,
-    kind: BodyCoordinateKind,
+    kind: CoordinateKind,
     by_name: &HashMap<String, usize>,
 ) -> Result<Vec<Part>, OsimProblem> {
+    let names = axis_coordinates(reader, node, by_name)?;
+    let Some(function) = reader.object(node, "function", functions::is_function) else { return Ok(Vec::new()) };
+    let (parts, gives_kind) = axis_functions(reader, node, function, &names)?;
+    if parts.iter().all(|(function, _)| *function == Function::Constant(0.0)) {
+        return Ok(Vec::new());
+    }
+    let axis = reader.vector(node, "axis", None)?;
+    let Some(axis) = unit(axis) else {
+        let text = reader.text(node, "axis").unwrap_or_default();
+        return Err(OsimProblem::invalid(node.place(), &text, "an axis must have a length"));
+    };
+    let axis = axis.into_inner();
+    let part = |(function, coordinate)| Part { kind, axis, function, coordinate, gives_kind };
+    Ok(parts.into_iter().map(part).collect())
+}
+
+/// Places of the coordinates that drive an axis among those of its joint.
+fn axis_coordinates<'a>(
+    reader: &Reader<'a>,
+    node: Node<'a>,
+    by_name: &HashMap<String, usize>,
+) -> Result<Vec<usize>, OsimProblem> {
     let list = reader.property(node, "coordinates");
     let text = list.map(Node::text).unwrap_or_default();
     let mut names = Vec::new();
@@ -222,9 +250,22 @@ fn axis_parts<'a>(
         })?;
         names.push(index);
     }
-    let Some(function) = reader.object(node, "function", functions::is_function) else { return Ok(Vec::new()) };
+    Ok(names)
+}
+
+/// A function, and the place of the coordinate that drives it.
+type Driven = (Function, Option<usize>);
+
+/// The functions that an axis adds up, each with the coordinate that drives it; and whether the axis gives this coordinate its
+/// kind.
+fn axis_functions<'a>(
+    reader: &Reader<'a>,
+    node: Node<'a>,
+    function: Node<'a>,
+    names: &[usize],
+) -> Result<(Vec<Driven>, bool), OsimProblem> {
     let mut gives_kind = false;
-    let parts = match (names.as_slice(), function.name()) {
+    let parts = match (names, function.name()) {
         (_, "Constant") => vec![(functions::read(reader, function)?, None)],
         (&[index], kind) => {
             let read = functions::read(reader, function)?;
@@ -254,15 +295,5 @@ fn axis_parts<'a>(
             return Err(OsimProblem::unsupported(function.place(), &what, accepted));
         }
     };
-    if parts.iter().all(|(function, _)| *function == Function::Constant(0.0)) {
-        return Ok(Vec::new());
-    }
-    let axis = reader.vector(node, "axis", None)?;
-    let Some(axis) = unit(axis) else {
-        let text = reader.text(node, "axis").unwrap_or_default();
-        return Err(OsimProblem::invalid(node.place(), &text, "an axis must have a length"));
-    };
-    let axis = axis.into_inner();
-    let part = |(function, coordinate)| Part { kind, axis, function, coordinate, gives_kind };
-    Ok(parts.into_iter().map(part).collect())
+    Ok((parts, gives_kind))
 }

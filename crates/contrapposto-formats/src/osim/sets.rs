@@ -1,15 +1,17 @@
-//! What a model consists of, found and named, before it is joined together.
+//! Finds bodies, joints and frames of a model by name, before they are joined together.
 
 use std::collections::{HashMap, HashSet};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::attributes::Reader;
+use super::attributes::{Reader, objects};
 use super::error::OsimProblem;
 use super::frames::{Attachment, Frames};
-use super::{Ignored, SETS_FROM, objects};
-use crate::body::{Body, near};
+use crate::model_ir::{Ignored, ModelIr, near};
 use crate::xml::Node;
+
+/// From this version on a body does not contain its joint.
+const SETS_FROM: u32 = 30500;
 
 /// A body with its mass.
 pub(super) struct SceneBody<'a> {
@@ -20,7 +22,7 @@ pub(super) struct SceneBody<'a> {
     pub(super) inertia: Matrix3<f64>,
 }
 
-/// A joint and what it joins.
+/// A joint and the frames that it joins.
 pub(super) struct SceneJoint<'a> {
     pub(super) name: String,
     pub(super) node: Node<'a>,
@@ -41,7 +43,7 @@ pub(super) struct Scene<'a> {
     by_name: HashMap<String, usize>,
 }
 
-/// Sets whose things do not matter: element, and what its things are called.
+/// Sets whose members do not matter: element, and the name of its members in messages.
 const IGNORED_SETS: [(&str, &str); 4] = [
     ("ControllerSet", "controllers"),
     ("ContactGeometrySet", "contact geometries"),
@@ -97,13 +99,7 @@ impl<'a> Scene<'a> {
                 ignored.add("unknown sections", 1);
             }
         }
-        let set = |name| match model.child(name) {
-            Some(set) if set.attribute("file").is_some() => {
-                let accepted = "the set inside this file (open it in OpenSim and save it)";
-                Err(OsimProblem::unsupported(set.attribute_place("file"), "a set in a file of its own", accepted))
-            }
-            set => Ok(objects(set)),
-        };
+        let set = |name| members(model, name);
         let sections = [model.child("Ground")].into_iter().flatten().chain(set("BodySet")?);
         for node in sections {
             count_geometry(node, ignored);
@@ -112,8 +108,6 @@ impl<'a> Scene<'a> {
             scene.add_body(reader, node, version, ignored)?;
         }
         scene.frames.add_base("/ground".to_owned(), None);
-        let inside =
-            |node: Option<Node<'a>>| node.and_then(|n| n.child("components")).into_iter().flat_map(Node::children);
         scene.frames.add_offsets(reader, "/ground", inside(model.child("Ground")))?;
         for (index, body) in scene.bodies.iter().enumerate() {
             let path = format!("/bodyset/{}", body.name);
@@ -127,24 +121,37 @@ impl<'a> Scene<'a> {
         for (nodes, path) in
             [(Vec::from_iter(inside(Some(model))), ""), (Vec::from_iter(set("ComponentSet")?), "/componentset")]
         {
-            scene.frames.add_offsets(reader, path, nodes.iter().copied())?;
-            for node in nodes {
-                match Component::of(node.name()) {
-                    Component::Frame => {}
-                    Component::Joint => joints.push((node, path)),
-                    Component::Force => scene.forces.push(node),
-                    Component::Constraint => scene.constraints.push(node),
-                    Component::Marker => scene.markers.push(node),
-                    Component::Harmless(kind) => ignored.add(kind, 1),
-                    Component::Unknown => {
-                        return Err(OsimProblem::unsupported(node.place(), node.name(), COMPONENTS));
-                    }
-                }
-            }
+            scene.add_components(reader, nodes, path, &mut joints, ignored)?;
         }
         scene.add_joints(reader, joints)?;
         scene.add_old_joints(reader, version)?;
         Ok(scene)
+    }
+
+    /// Sorts components by their kind; joints go to `joints`, with the path that they stand under.
+    fn add_components<'p>(
+        &mut self,
+        reader: &Reader<'a>,
+        nodes: Vec<Node<'a>>,
+        path: &'p str,
+        joints: &mut Vec<(Node<'a>, &'p str)>,
+        ignored: &mut Ignored,
+    ) -> Result<(), OsimProblem> {
+        self.frames.add_offsets(reader, path, nodes.iter().copied())?;
+        for node in nodes {
+            match Component::of(node.name()) {
+                Component::Frame => {}
+                Component::Joint => joints.push((node, path)),
+                Component::Force => self.forces.push(node),
+                Component::Constraint => self.constraints.push(node),
+                Component::Marker => self.markers.push(node),
+                Component::Harmless(kind) => ignored.add(kind, 1),
+                Component::Unknown => {
+                    return Err(OsimProblem::unsupported(node.place(), node.name(), COMPONENTS));
+                }
+            }
+        }
+        Ok(())
     }
 
     fn add_body(
@@ -231,6 +238,22 @@ impl<'a> Scene<'a> {
     }
 }
 
+/// Members of a set of the model.
+fn members<'a>(model: Node<'a>, name: &str) -> Result<impl Iterator<Item = Node<'a>> + use<'a>, OsimProblem> {
+    match model.child(name) {
+        Some(set) if set.attribute("file").is_some() => {
+            let accepted = "the set inside this file (open it in OpenSim and save it)";
+            Err(OsimProblem::unsupported(set.attribute_place("file"), "a set in a file of its own", accepted))
+        }
+        set => Ok(objects(set)),
+    }
+}
+
+/// Components inside an element.
+fn inside<'a>(node: Option<Node<'a>>) -> impl Iterator<Item = Node<'a>> + use<'a> {
+    node.and_then(|n| n.child("components")).into_iter().flat_map(Node::children)
+}
+
 enum Component {
     Frame,
     Joint,
@@ -261,7 +284,7 @@ impl Component {
     }
 }
 
-/// Counts what is drawn or wrapped around on a body.
+/// Counts the geometry and wrapping objects of a body.
 fn count_geometry(body: Node<'_>, ignored: &mut Ignored) {
     let attached = body.child("attached_geometry").into_iter().flat_map(Node::children).count();
     let old = body.child("VisibleObject").and_then(|v| v.child("GeometrySet"));
@@ -273,7 +296,7 @@ fn count_geometry(body: Node<'_>, ignored: &mut Ignored) {
 pub(super) fn stations<'a>(
     reader: &Reader<'a>,
     scene: &Scene<'a>,
-    body: &mut Body,
+    body: &mut ModelIr,
     ignored: &mut Ignored,
 ) -> Result<(), OsimProblem> {
     let segments: HashMap<&str, usize> = body.segments.iter().zip(0..).map(|(s, i)| (s.name.as_str(), i)).collect();

@@ -1,21 +1,20 @@
-//! From joints to a tree that begins at ground.
+//! Orders joints to a tree that begins at ground.
 //!
 //! A joint that is written from the outer body to the inner one is turned round: its motions in reverse order about reversed axes.
 
-use super::Ignored;
 use super::attributes::Reader;
 use super::coordinates::Coordinates;
 use super::error::OsimProblem;
 use super::joint;
-use super::sets::Scene;
-use crate::body::{Body, BodyMotion, BodySegment};
+use super::sets::{Scene, SceneBody};
+use crate::model_ir::{Ignored, ModelIr, MotionIr, SegmentIr};
 use nalgebra::Isometry3;
 
 /// Builds the segments and the list of coordinates.
 pub(super) fn assemble<'a>(
     reader: &Reader<'a>,
     scene: &Scene<'a>,
-    body: &mut Body,
+    body: &mut ModelIr,
     ignored: &mut Ignored,
 ) -> Result<Coordinates, OsimProblem> {
     let mut coordinates = Coordinates::default();
@@ -23,16 +22,8 @@ pub(super) fn assemble<'a>(
     for joint in &scene.joints {
         motions.push(joint::motions(reader, joint, &mut coordinates, ignored)?);
     }
-    // Joints at each body; ground is the last.
     let ground = scene.bodies.len();
-    let index = |body: Option<usize>| body.unwrap_or(ground);
-    let mut joints_at = vec![Vec::new(); ground + 1];
-    let mut is_child = vec![false; ground + 1];
-    for (number, joint) in scene.joints.iter().enumerate() {
-        joints_at[index(joint.parent.body)].push(number);
-        joints_at[index(joint.child.body)].push(number);
-        is_child[index(joint.child.body)] = true;
-    }
+    let (joints_at, is_child) = joints_of_bodies(scene);
     let mut segment_of: Vec<Option<usize>> = vec![None; ground];
     let mut used = vec![false; scene.joints.len()];
     let mut waiting: Vec<usize> = Vec::new();
@@ -62,17 +53,9 @@ pub(super) fn assemble<'a>(
             let (outer, frame) = outer;
             let source = &scene.bodies[outer];
             segment_of[outer] = Some(body.segments.len());
-            body.segments.push(BodySegment {
-                name: source.name.clone(),
-                parent: inner.body.and_then(|b| segment_of[b]),
-                mass: source.mass,
-                center_of_mass: source.center_of_mass,
-                inertia: source.inertia,
-                joint: joint.name.clone(),
-                in_parent: inner.pose,
-                in_segment: frame.pose,
-                motions: chain,
-            });
+            let parent = inner.body.and_then(|b| segment_of[b]);
+            let segment = segment(source, joint.name.clone(), chain);
+            body.segments.push(SegmentIr { parent, in_parent: inner.pose, in_segment: frame.pose, ..segment });
             waiting.extend(joints_at[outer].iter().rev().filter(|&&number| !used[number]));
         }
         // A body that nothing joins to ground: OpenSim gives the innermost one a free joint.
@@ -82,17 +65,7 @@ pub(super) fn assemble<'a>(
         let Some(base) = scene.bodies.get(next_base) else { break };
         let (name, chain) = joint::free(reader, &base.name, base.node, &mut coordinates)?;
         segment_of[next_base] = Some(body.segments.len());
-        body.segments.push(BodySegment {
-            name: base.name.clone(),
-            parent: None,
-            mass: base.mass,
-            center_of_mass: base.center_of_mass,
-            inertia: base.inertia,
-            joint: name,
-            in_parent: Isometry3::identity(),
-            in_segment: Isometry3::identity(),
-            motions: chain,
-        });
+        body.segments.push(segment(base, name, chain));
         at = next_base;
     }
     if let Some(lost) = segment_of.iter().position(Option::is_none) {
@@ -103,12 +76,41 @@ pub(super) fn assemble<'a>(
     Ok(coordinates)
 }
 
-fn turn_round(motions: &mut [BodyMotion]) {
+/// Numbers of the joints at each body, and whether a body is the child of one; ground is the last.
+fn joints_of_bodies(scene: &Scene<'_>) -> (Vec<Vec<usize>>, Vec<bool>) {
+    let ground = scene.bodies.len();
+    let index = |body: Option<usize>| body.unwrap_or(ground);
+    let mut joints_at = vec![Vec::new(); ground + 1];
+    let mut is_child = vec![false; ground + 1];
+    for (number, joint) in scene.joints.iter().enumerate() {
+        joints_at[index(joint.parent.body)].push(number);
+        joints_at[index(joint.child.body)].push(number);
+        is_child[index(joint.child.body)] = true;
+    }
+    (joints_at, is_child)
+}
+
+/// The segment of a body whose joint lies at ground's origin and its own.
+fn segment(body: &SceneBody<'_>, joint: String, motions: Vec<MotionIr>) -> SegmentIr {
+    SegmentIr {
+        name: body.name.clone(),
+        parent: None,
+        mass: body.mass,
+        center_of_mass: body.center_of_mass,
+        inertia: body.inertia,
+        joint,
+        in_parent: Isometry3::identity(),
+        in_segment: Isometry3::identity(),
+        motions,
+    }
+}
+
+fn turn_round(motions: &mut [MotionIr]) {
     motions.reverse();
     for motion in motions {
         match motion {
-            BodyMotion::Hinge { axis, .. } | BodyMotion::Slide { axis, .. } => *axis = -*axis,
-            BodyMotion::Ball { .. } => {}
+            MotionIr::Hinge { axis, .. } | MotionIr::Slide { axis, .. } => *axis = -*axis,
+            MotionIr::Ball { .. } => {}
         }
     }
 }

@@ -1,21 +1,17 @@
-//! A scenario read for `contrapposto relax`: body, start, loads, supports and tasks, all checked.
+//! Reads a scenario for `contrapposto relax`: body, start, loads, supports and tasks.
 
-use contrapposto::contact::Support;
-use contrapposto::kinematics::Kinematics;
+use contrapposto::contact::{Support, root_rates};
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
-use contrapposto::tasks::PriorityLevel;
-use contrapposto::tasks::{Effort, Task};
+use contrapposto::tasks::{Effort, PriorityLevel, Task};
 
-use super::convert::{body, check_head, free, load, shown};
-use super::pose::{locked, ranked, set};
-use super::task::Stage;
+use super::setup::{Setup, present};
 use super::text::ScenarioText;
-use super::{Located, read_toml, support};
 use crate::input_error::InputError;
+use crate::toml_file::{Located, read_toml};
 
-/// A body that looks for postures of little effort.
+/// A body whose postures of least effort are sought.
 #[derive(Clone, Debug)]
 pub struct RelaxScenario {
     /// Its name.
@@ -40,7 +36,8 @@ pub struct RelaxScenario {
     pub unused: Vec<&'static str>,
 }
 
-/// Reads a scenario for `relax`. `name` is the file's name for messages; `model` is what [`super::scenario_model`] asked for.
+/// Reads a scenario for `relax`. `name` is the file's name for messages; `model` is the model of the file that
+/// [`super::scenario_model`] names.
 ///
 /// # Errors
 /// [`InputError`] says what is wrong, where, and what would be right.
@@ -48,80 +45,55 @@ pub fn read_relax(name: &str, bytes: &[u8], model: Option<Model>) -> Result<Rela
     read_toml(name, bytes, |at, text| relax(at, text, model))
 }
 
-fn relax(at: &Located, text: &ScenarioText, model: Option<Model>) -> Result<RelaxScenario, InputError> {
-    check_head(at, text)?;
-    let model = body(at, text, model)?;
-    let mut start = model.default_posture();
-    set(at, &model, &["posture"], &text.posture, &mut start)?;
-    start.displace(&model, &vec![0.0; model.rates().len()]);
-    for (coordinate, &value) in model.coordinates().iter().zip(start.values()) {
-        let (low, high) = coordinate.range;
-        if value < low || value > high {
-            let message = format!(
-                "`{}` starts at {}, outside its range {}..{} (rad or m)",
-                coordinate.name,
-                shown(value),
-                shown(low),
-                shown(high)
-            );
-            return Err(at.error(&["posture"], message, None));
-        }
-    }
-    let mut kinematics = Kinematics::new(&model);
-    kinematics.update(&model, &start).map_err(|error| at.error(&["posture"], error.to_string(), None))?;
-    let supports = support::supports(at, &model, &text.support, &kinematics)?;
-    let standing = supports.iter().map(|support| support.segment).collect();
-    let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: standing };
+fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<RelaxScenario, InputError> {
+    let setup = Setup::read(at, text, file)?;
+    setup.check_ranges(at)?;
+    let locked = setup.locked(at, text)?;
+    let Setup { model, start, loads, supports, levels, .. } = setup;
+    let supports = supports?;
     let (mut goals, mut labels) = (vec![], vec![]);
-    for ranked in ranked(&stage, &text.task)? {
-        goals.push(ranked.goal);
-        labels.push(ranked.labels);
+    for level in levels {
+        goals.push(level.tasks);
+        labels.push(level.labels);
     }
     let asks = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
     let effort_added = !goals.iter().any(asks);
     if effort_added {
-        let effort = Effort::whole(&model);
-        if effort.coordinates.is_empty() {
-            let help =
-                Some("give the body strengths with an overlay; `contrapposto inspect` shows what is known".to_owned());
-            return Err(at.error(
-                &["model"],
-                "of no coordinate of this body the strength is known, so nothing is effort",
-                help,
-            ));
-        }
-        let effort = Task::Effort(effort);
+        let effort = effort_of_all(at, &model)?;
         labels.push(vec![effort.label(&model)]);
         goals.push(effort.into());
     }
-    if supports.is_empty() && !contrapposto::contact::root_rates(&model).is_empty() {
+    if supports.is_empty() && root_rates(&model).iter().any(|rate| !locked.contains(rate)) {
         let help = Some("add a [[support]], or lock the root's coordinates".to_owned());
-        let free = free(at, &model, text, |_| true)?;
-        let held = locked(at, &model, text, &free)?;
-        if contrapposto::contact::root_rates(&model).iter().any(|rate| !held.contains(rate)) {
-            return Err(at.error(&[], "nothing carries the body: it has a free root and no support", help));
-        }
+        return Err(at.error(&[], "nothing carries the body: it has a free root and no support", help));
     }
-    let free = free(at, &model, text, |_| true)?;
-    let tables = [
-        ("strategy", text.strategy.is_some()),
-        ("solver", text.solver.is_some()),
-        ("relief", at.has("relief")),
-        // The law says how long a posture can be held.
-        ("fatigue", at.has_beside("fatigue", &["law", "curve"])),
-        ("event", at.has("event")),
-        ("run", text.run.is_some()),
-    ];
+    let mut unused = present(at, &["strategy", "solver", "relief"]);
+    // The fatigue law says how long a posture can be held; the other keys of its table have no part.
+    if at.holds_beside("fatigue", &["law", "curve"]) {
+        unused.push("fatigue");
+    }
+    unused.extend(present(at, &["event", "run"]));
     Ok(RelaxScenario {
         title: text.title.clone(),
-        locked: locked(at, &model, text, &free)?,
-        loads: text.load.iter().enumerate().map(|(i, text)| load(at, &model, i, text)).collect::<Result<_, _>>()?,
+        locked,
+        loads,
         supports,
         goals,
         labels,
         effort_added,
-        unused: tables.into_iter().filter_map(|(name, given)| given.then_some(name)).collect(),
+        unused,
         start,
         model,
     })
+}
+
+/// The effort of all muscles with known strength.
+fn effort_of_all(at: &Located, model: &Model) -> Result<Task, InputError> {
+    let effort = Effort::whole(model);
+    if effort.coordinates.is_empty() {
+        let help = "give the body strengths with an overlay; `contrapposto inspect` shows what is known".to_owned();
+        let message = "of no coordinate of this body the strength is known, so nothing is effort";
+        return Err(at.error(&["model"], message, Some(help)));
+    }
+    Ok(Task::Effort(effort))
 }

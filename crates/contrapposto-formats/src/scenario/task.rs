@@ -1,85 +1,68 @@
-//! What a task of a scenario means: names become indices, degrees radians, words the numbers they stand for.
+//! Reads tasks: names become indices, degrees radians, and words the numbers they stand for.
 
-use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{LARGEST, Model};
+use contrapposto::model::{LARGEST, Placement as Pose};
 use contrapposto::tasks::{
-    CenterOfMass, CenterOfMassGoal, Distance, Effort, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task,
-    TaskError, half_planes,
+    CenterOfMass, CenterOfMassGoal, Distance, Effort, LookAt, Orientation, Placement, Point, Posture, Task, TaskError,
 };
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 
-use super::Located;
-use super::convert::{coordinate, shown};
-use super::pose::{UNIT, rates, set};
-use super::task_text::{PointText, TaskKindText, TaskText};
-use crate::input_error::{InputError, suggestion};
-
-/// A support polygon narrower than this, m, is none.
-const NARROW: f64 = 0.01;
-
-/// What tasks refer to: the body as it starts.
-pub(super) struct Stage<'a> {
-    pub(super) at: &'a Located<'a>,
-    pub(super) model: &'a Model,
-    pub(super) start: &'a contrapposto::posture::Posture,
-    pub(super) kinematics: &'a Kinematics,
-    /// Segments that carry weight.
-    pub(super) supports: Vec<usize>,
-}
+use super::error_keys::task_path;
+use super::names;
+use super::polygon::polygon;
+use super::posture::{UNIT, rates, set};
+use super::stage::Stage;
+use super::task_text::{COMMON_KEYS, PointText, TaskKindText, TaskText};
+use crate::input_error::InputError;
+use crate::toml_file::shown;
 
 /// The task number `i` of the file, counted from 0.
 pub(super) fn task(stage: &Stage<'_>, i: usize, text: &TaskText) -> Result<Task, InputError> {
-    let one = One { stage, text, number: i.to_string() };
-    let takes = text.kind.keys();
-    if let Some(key) = text.given().find(|key| !takes.contains(key)) {
-        let message = format!("`{key}` does not go with a {} task", text.kind.word());
-        return Err(one.key_error(key, message, Some(format!("it takes: {}", takes.join(", ")))));
-    }
+    let reader = Reader { stage, text, number: i.to_string() };
+    reader.check_keys()?;
     let task = match text.kind {
-        TaskKindText::Point => one.point()?,
-        TaskKindText::Orientation => one.orientation()?,
-        TaskKindText::Placement => one.placement()?,
-        TaskKindText::LookAt => one.look_at()?,
-        TaskKindText::Distance => one.distance()?,
-        TaskKindText::CenterOfMass => one.center_of_mass()?,
-        TaskKindText::Posture => one.posture()?,
-        TaskKindText::Effort => one.effort()?,
+        TaskKindText::Point => reader.point()?,
+        TaskKindText::Orientation => reader.orientation()?,
+        TaskKindText::Placement => reader.placement()?,
+        TaskKindText::LookAt => reader.look_at()?,
+        TaskKindText::Distance => reader.distance()?,
+        TaskKindText::CenterOfMass => reader.center_of_mass()?,
+        TaskKindText::Posture => reader.posture()?,
+        TaskKindText::Effort => reader.effort()?,
     };
-    task.check(stage.model).map_err(|error| one.error(place(&error), error.to_string(), None))?;
+    task.check(stage.model).map_err(|error| reader.refuse(&error))?;
     Ok(task)
 }
 
-/// The key of the number that the science refuses.
-fn place(error: &TaskError) -> &'static str {
-    let what = match error {
-        TaskError::Number { what, .. } | TaskError::Empty { what, .. } => *what,
-        TaskError::Unable { .. } => "coordinates",
-        _ => "",
-    };
-    let keys = [
-        ("point (m)", "at_m"),
-        ("target (m)", "target_m"),
-        ("eye (m)", "eye_m"),
-        ("lower limit (m)", "range_m"),
-        ("upper limit (m)", "range_m"),
-        ("margin (m)", "margin_m"),
-        ("offset of an edge (m)", "polygon_m"),
-        ("weight", "weights"),
-        ("coordinate (all weights are 0)", "weights"),
-        ("coordinates", "coordinates"),
-        ("coordinate", "coordinates"),
-    ];
-    keys.iter().find(|(word, _)| *word == what).map_or("kind", |(_, key)| key)
-}
-
-/// One task of the file.
-struct One<'a> {
+/// Reads one task of the file.
+struct Reader<'a> {
     stage: &'a Stage<'a>,
     text: &'a TaskText,
     number: String,
 }
 
-impl One<'_> {
+impl Reader<'_> {
+    /// Refuses a key that tasks of other kinds take.
+    fn check_keys(&self) -> Result<(), InputError> {
+        let (word, takes) = self.text.kind.word_and_keys();
+        let given = self.stage.at.keys(&["task", &self.number]);
+        match given.into_iter().find(|key| !COMMON_KEYS.contains(key) && !takes.contains(key)) {
+            None => Ok(()),
+            Some(key) => {
+                let help = format!("it takes: {}", takes.join(", "));
+                Err(self.key_error(key, format!("`{key}` does not go with a {word} task"), Some(help)))
+            }
+        }
+    }
+
+    /// The error of the science crate at the key that it concerns, or at the kind where the file does not have this key.
+    fn refuse(&self, error: &TaskError) -> InputError {
+        let path = [&["task", self.number.as_str()], task_path(error)].concat();
+        if self.stage.at.holds(&path) {
+            return self.stage.at.error(&path, error.to_string(), None);
+        }
+        self.error("kind", error.to_string(), None)
+    }
+
     fn point(&self) -> Result<Task, InputError> {
         let segment = self.segment(None)?;
         let point = self.at();
@@ -96,7 +79,7 @@ impl One<'_> {
         let segment = self.segment(None)?;
         let point = self.at();
         let place = self.place(|| self.stage.kinematics.station(self.stage.model, segment, point))?;
-        let target = contrapposto::model::Placement::from_parts(place.into(), self.rotation(segment)?);
+        let target = Pose::from_parts(place.into(), self.rotation(segment)?);
         Ok(Task::Placement(Placement { segment, point, target }))
     }
 
@@ -120,7 +103,7 @@ impl One<'_> {
                 let help = Some(format!("{key} = {{ segment = \"hand_r\", at_m = [0, 0, 0] }}"));
                 return Err(self.error("kind", format!("a distance task needs `{key}`"), help));
             };
-            let segment = self.known_segment(&["task", &self.number, key, "segment"], &end.segment)?;
+            let segment = self.named(&["task", &self.number, key, "segment"], &end.segment)?;
             Ok((segment, end.at_m.map_or_else(Vector3::zeros, Vector3::from)))
         };
         let (a, b) = (end("a", &self.text.a)?, end("b", &self.text.b)?);
@@ -145,12 +128,10 @@ impl One<'_> {
     fn center_of_mass(&self) -> Result<Task, InputError> {
         let text = self.text;
         let placed = text.target_m.is_some() || text.target.is_some();
-        let (other, spoilt) = if placed {
-            ("a target", [("polygon_m", text.polygon_m.is_some()), ("margin_m", text.margin_m.is_some())])
-        } else {
-            ("a polygon", [("axes", text.axes.is_some()), ("axes", false)])
-        };
-        if let Some((key, _)) = spoilt.into_iter().find(|(_, given)| *given) {
+        let (other, foreign): (_, &[&str]) =
+            if placed { ("a target", &["polygon_m", "margin_m"]) } else { ("a polygon", &["axes"]) };
+        let held = |key: &&&str| self.stage.at.holds(&["task", &self.number, key]);
+        if let Some(key) = foreign.iter().find(held) {
             let message = format!("`{key}` does not go with {other}");
             let help =
                 "the centre of mass is asked to a place (target_m, axes) or over a polygon (polygon_m, margin_m)";
@@ -161,66 +142,12 @@ impl One<'_> {
             let target = self.place(|| kinematics.center_of_mass(model).unwrap_or_else(Vector3::zeros))?;
             CenterOfMassGoal::At { target, axes: self.axes()? }
         } else {
-            CenterOfMassGoal::Inside { polygon: self.polygon()?, margin: text.margin_m.unwrap_or(0.0) }
+            CenterOfMassGoal::Inside {
+                polygon: polygon(self.stage, &self.number, text)?,
+                margin: text.margin_m.unwrap_or(0.0),
+            }
         };
         Ok(Task::CenterOfMass(CenterOfMass { goal }))
-    }
-
-    /// Corners as the file gives them, or the joints of the supports.
-    fn polygon(&self) -> Result<Vec<HalfPlane>, InputError> {
-        let model = self.stage.model;
-        let gravity = model.gravity();
-        let up = gravity.iamax();
-        if gravity.norm() == 0.0 {
-            let help = Some("give `target_m`".to_owned());
-            return Err(self.error("kind", "without gravity nothing stands over a polygon", help));
-        }
-        let horizontal: Vec<usize> = (0..3).filter(|axis| *axis != up).collect();
-        let letters: String = horizontal.iter().map(|&axis| ["x", "y", "z"][axis]).collect::<Vec<_>>().join(", ");
-        let asked = format!("give polygon_m = [[{letters}], ...] with three corners or more, or `target_m`");
-        let (key, points) = match &self.text.polygon_m {
-            Some(corners) => {
-                let mut points = vec![];
-                for (i, corner) in corners.iter().enumerate() {
-                    let mut point = Vector3::zeros();
-                    for (axis, value) in horizontal.iter().zip(corner) {
-                        if value.abs() > LARGEST {
-                            let path = ["task", &self.number, "polygon_m", &i.to_string()];
-                            let message = format!("a corner is at {} m; 1e9 at most", shown(*value));
-                            return Err(self.stage.at.error(&path, message, None));
-                        }
-                        point[*axis] = *value;
-                    }
-                    points.push(point);
-                }
-                ("polygon_m", points)
-            }
-            None if self.stage.supports.is_empty() => {
-                let help = Some(format!("add a [[support]], {asked}"));
-                return Err(self.error("kind", "no support is there to stand over", help));
-            }
-            None => ("kind", self.joints_of_supports()),
-        };
-        let polygon = half_planes(&points, gravity);
-        let width = |edge: &HalfPlane| points.iter().map(|p| -edge.excess(p)).fold(0.0, f64::max);
-        if polygon.len() < 3 || polygon.iter().any(|edge| width(edge) < NARROW) {
-            let message = match key {
-                "kind" => "the joints of the supports lie on a line, over which nobody stands",
-                _ => "the polygon is narrower than a centimetre",
-            };
-            return Err(self.error(key, message, Some(asked)));
-        }
-        Ok(polygon)
-    }
-
-    /// Where each support begins, and where the segments that it carries do, at the start.
-    fn joints_of_supports(&self) -> Vec<Vector3<f64>> {
-        let model = self.stage.model;
-        let carries =
-            |support: usize, segment: usize| segment == support || model.segments()[segment].parent == Some(support);
-        let ends = |&support: &usize| (0..model.segments().len()).filter(move |&segment| carries(support, segment));
-        let supports = self.stage.supports.iter();
-        supports.flat_map(ends).map(|s| self.stage.kinematics.placement(model, s).translation.vector).collect()
     }
 
     fn posture(&self) -> Result<Task, InputError> {
@@ -235,7 +162,7 @@ impl One<'_> {
         }
         for (name, &weight) in self.text.weights.iter().flatten() {
             let path = ["task", &self.number, "weights", name];
-            let index = coordinate(at, model, &path, name)?;
+            let index = names::coordinate(at, model, &path, name)?;
             if !(0.0..=1e6).contains(&weight) {
                 let message = format!("the weight is {}; it must lie in 0..1e6", shown(weight));
                 return Err(at.error(&path, message, None));
@@ -271,7 +198,7 @@ impl One<'_> {
         let mut found = vec![];
         for (i, name) in names.iter().enumerate() {
             let path = ["task", &self.number, "coordinates", &i.to_string()];
-            let index = coordinate(self.stage.at, self.stage.model, &path, name)?;
+            let index = names::coordinate(self.stage.at, self.stage.model, &path, name)?;
             if found.contains(&index) {
                 return Err(self.stage.at.error(&path, format!("`{name}` stands twice"), None));
             }
@@ -291,13 +218,14 @@ impl One<'_> {
             }
             (None, Some(_)) => Ok(at_start()),
             (None, None) => {
-                let message = format!("a {} task needs `target_m`, or `target = \"start\"`", self.text.kind.word());
+                let message =
+                    format!("a {} task needs `target_m`, or `target = \"start\"`", self.text.kind.word_and_keys().0);
                 Err(self.error("kind", message, None))
             }
         }
     }
 
-    /// Does the file say how the segment is to be turned?
+    /// Whether the file gives a rotation.
     fn turned(&self) -> bool {
         self.text.target_quaternion.is_some() || self.text.target_deg.is_some()
     }
@@ -327,7 +255,7 @@ impl One<'_> {
                 Ok(self.stage.kinematics.placement(self.stage.model, segment).rotation)
             }
             (None, None) => {
-                let kind = text.kind.word();
+                let kind = self.text.kind.word_and_keys().0;
                 let message = format!("a {kind} task needs `target_quaternion`, `target_deg`, or `target = \"start\"`");
                 Err(self.error("kind", message, None))
             }
@@ -373,9 +301,9 @@ impl One<'_> {
     }
 
     fn segment(&self, otherwise: Option<&str>) -> Result<usize, InputError> {
-        let kind = self.text.kind.word();
+        let kind = self.text.kind.word_and_keys().0;
         match (&self.text.segment, otherwise) {
-            (Some(name), _) => self.known_segment(&["task", &self.number, "segment"], name),
+            (Some(name), _) => self.named(&["task", &self.number, "segment"], name),
             (None, Some(name)) => self.stage.model.segment(name).ok_or_else(|| {
                 let message = format!("the body has no segment `{name}`; a {kind} task needs `segment`");
                 self.error("kind", message, None)
@@ -384,12 +312,8 @@ impl One<'_> {
         }
     }
 
-    fn known_segment(&self, path: &[&str], name: &str) -> Result<usize, InputError> {
-        let model = self.stage.model;
-        model.segment(name).ok_or_else(|| {
-            let help = suggestion(name, model.segments().iter().map(|s| s.name.as_str()));
-            self.stage.at.error(path, format!("the body has no segment `{name}`"), help)
-        })
+    fn named(&self, path: &[&str], name: &str) -> Result<usize, InputError> {
+        names::segment(self.stage.at, self.stage.model, path, name)
     }
 
     fn error(&self, key: &str, message: impl Into<String>, help: Option<String>) -> InputError {

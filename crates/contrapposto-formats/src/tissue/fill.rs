@@ -37,8 +37,7 @@ pub(super) fn fill(
     let signs = Signs::new(&model, format, &twin);
     let mut changed = model.clone();
     let mut unknown = vec![];
-    for index in 0..model.coordinates().len() {
-        let coordinate = &model.coordinates()[index];
+    for (index, (coordinate, origins)) in model.coordinates().iter().zip(origins).enumerate() {
         if coordinate.kind != CoordinateKind::Rotation || model.is_dependent(index) {
             continue;
         }
@@ -50,8 +49,8 @@ pub(super) fn fill(
         };
         let filling = Filling { signs: &signs, index, own, found, coordinate };
         changed = match coordinate.passive {
-            Some(_) => filling.strength(changed, &mut origins[index], notes),
-            None => filling.tissue(changed, &mut origins[index], notes),
+            Some(_) => filling.strength(changed, origins, notes),
+            None => filling.tissue(changed, origins, notes),
         };
     }
     if !unknown.is_empty() {

@@ -10,9 +10,9 @@ pub use origin::{Origin, Origins};
 
 use contrapposto::model::{Adult, AdultError, Model, adult};
 
-use crate::body::BodyRoot;
 use crate::input_error::InputError;
 use crate::model_file::{ModelFileError, ModelFormat, read_model};
+use crate::model_ir::RootAttachment;
 use crate::overlay::overlay;
 
 /// A model, and the origin of its numbers.
@@ -54,7 +54,7 @@ impl SourcedModel {
     pub fn read(
         name: &str,
         bytes: &[u8],
-        root: Option<BodyRoot>,
+        root: Option<RootAttachment>,
         include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, ModelFileError> {
         let (imported, format) = read_model(name, bytes, root, include)?;

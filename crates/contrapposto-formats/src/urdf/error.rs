@@ -1,4 +1,4 @@
-//! What can be wrong with a URDF file.
+//! Errors of URDF files.
 
 use crate::numbers::NumberError;
 use crate::xml::{Place, XmlError};
@@ -30,7 +30,7 @@ pub enum UrdfError {
     MissingElement {
         /// Of the element.
         place: Place,
-        /// What is missing.
+        /// The missing part.
         element: &'static str,
     },
     /// A joint's type is unknown.
@@ -66,7 +66,7 @@ pub enum UrdfError {
         place: Place,
         /// As written, or the name of the part.
         value: String,
-        /// What would be right.
+        /// The accepted alternative.
         needs: UrdfRule,
     },
     /// More coordinates than the cap.
@@ -79,7 +79,7 @@ pub enum UrdfError {
     },
 }
 
-/// What a part of a URDF file must fulfil.
+/// Demands on parts of a URDF file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UrdfRule {

@@ -1,7 +1,8 @@
-//! One `<joint>`.
+//! Reads one `<joint>`.
 
-use super::{Ignored, UrdfError, UrdfRule, name_place, number, origin, required, required_child, vector};
-use crate::body::{Body, BodyCoordinate, BodyCoordinateKind, BodyMotion, Drive};
+use super::attributes::{name_place, number, origin, required, required_child, vector};
+use super::error::{UrdfError, UrdfRule};
+use crate::model_ir::{CoordinateIr, CoordinateKind, Drive, Ignored, ModelIr, MotionIr};
 use crate::xml::Node;
 use nalgebra::{Isometry3, Unit, UnitQuaternion, Vector3};
 
@@ -57,7 +58,7 @@ impl<'a> Joint<'a> {
         let (parent, child) = (end("parent")?, end("child")?);
         for part in node.children() {
             if !matches!(part.name(), "parent" | "child" | "origin" | "axis" | "limit" | "mimic") {
-                ignored.add(part.name());
+                ignored.add(part.name(), 1);
             }
         }
         let mut axis = Vector3::x_axis();
@@ -65,7 +66,7 @@ impl<'a> Joint<'a> {
             && !matches!(kind, Kind::Fixed | Kind::Floating)
         {
             let given = vector(part, "xyz")?.unwrap_or(Vector3::x());
-            axis = crate::body::unit(given).ok_or_else(|| UrdfError::Invalid {
+            axis = crate::model_ir::unit(given).ok_or_else(|| UrdfError::Invalid {
                 place: part.attribute_place("xyz"),
                 value: part.attribute("xyz").unwrap_or_default().trim().to_owned(),
                 needs: UrdfRule::AxisLength,
@@ -82,7 +83,7 @@ impl<'a> Joint<'a> {
             }),
             // Of a joint that was made fixed: it moves nothing.
             Some(_) if kind == Kind::Fixed => {
-                ignored.add("mimic of a fixed joint");
+                ignored.add("mimic of a fixed joint", 1);
                 None
             }
             Some(part) => {
@@ -99,35 +100,35 @@ impl<'a> Joint<'a> {
     }
 
     /// Adds the joint's coordinates and gives its motions.
-    pub(super) fn motions(&self, body: &mut Body, cap: usize) -> Result<Vec<BodyMotion>, UrdfError> {
+    pub(super) fn motions(&self, body: &mut ModelIr, cap: usize) -> Result<Vec<MotionIr>, UrdfError> {
         let first = body.coordinates.len();
         let mut add = |name: String, kind, range: (f64, f64)| {
             let clamped = range != UNLIMITED;
-            body.coordinates.push(BodyCoordinate { name, kind, range, default: 0.0, locked: false, clamped });
+            body.coordinates.push(CoordinateIr { name, kind, range, default: 0.0, locked: false, clamped });
         };
         let own = |i| Drive::Coordinate(first + i);
         let axis = self.axis.into_inner();
         let motions = match self.kind {
             Kind::Fixed => vec![],
             Kind::Hinge => {
-                add(self.name.to_owned(), BodyCoordinateKind::Rotation, self.range);
-                vec![BodyMotion::Hinge { axis, drive: own(0) }]
+                add(self.name.to_owned(), CoordinateKind::Rotation, self.range);
+                vec![MotionIr::Hinge { axis, drive: own(0) }]
             }
             Kind::Slide => {
-                add(self.name.to_owned(), BodyCoordinateKind::Translation, self.range);
-                vec![BodyMotion::Slide { axis, drive: own(0) }]
+                add(self.name.to_owned(), CoordinateKind::Translation, self.range);
+                vec![MotionIr::Slide { axis, drive: own(0) }]
             }
             Kind::Planar => {
                 // In the plane across the axis: for z, along x and y. Other axes by the shortest turn from z.
                 let turn = UnitQuaternion::rotation_between_axis(&Vector3::z_axis(), &self.axis)
                     .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-                add(format!("{}_tx", self.name), BodyCoordinateKind::Translation, UNLIMITED);
-                add(format!("{}_ty", self.name), BodyCoordinateKind::Translation, UNLIMITED);
-                add(format!("{}_rz", self.name), BodyCoordinateKind::Rotation, UNLIMITED);
+                add(format!("{}_tx", self.name), CoordinateKind::Translation, UNLIMITED);
+                add(format!("{}_ty", self.name), CoordinateKind::Translation, UNLIMITED);
+                add(format!("{}_rz", self.name), CoordinateKind::Rotation, UNLIMITED);
                 vec![
-                    BodyMotion::Slide { axis: turn * Vector3::x(), drive: own(0) },
-                    BodyMotion::Slide { axis: turn * Vector3::y(), drive: own(1) },
-                    BodyMotion::Hinge { axis, drive: own(2) },
+                    MotionIr::Slide { axis: turn * Vector3::x(), drive: own(0) },
+                    MotionIr::Slide { axis: turn * Vector3::y(), drive: own(1) },
+                    MotionIr::Hinge { axis, drive: own(2) },
                 ]
             }
             Kind::Floating => body.free_joint(self.name, &Isometry3::identity()),

@@ -1,8 +1,13 @@
-//! Links and joints into a tree, depth first, without recursion.
+//! Orders links and joints to a tree, depth first, without recursion.
 
+use super::attributes::{name_place, required};
+use super::error::{UrdfError, UrdfRule};
 use super::joint::Joint;
-use super::{Ignored, Options, UrdfError, UrdfRule, name_place, required, segment};
-use crate::body::{Body, BodyRoot, Coupling, Function, compose_couplings, near, unique_coordinates};
+use super::link::segment;
+use super::options::Options;
+use crate::model_ir::{
+    Coupling, Function, Ignored, ModelIr, RootAttachment, compose_couplings, near, unique_coordinates,
+};
 use crate::xml::{Node, shorten};
 use nalgebra::Isometry3;
 use std::collections::BTreeMap;
@@ -10,7 +15,7 @@ use std::collections::BTreeMap;
 type Names<'a> = BTreeMap<&'a str, usize>;
 
 pub(super) fn build(
-    body: &mut Body,
+    body: &mut ModelIr,
     robot: Node<'_>,
     links: &[Node<'_>],
     joints: &[Joint<'_>],
@@ -41,23 +46,7 @@ pub(super) fn build(
             return Err(UrdfError::Invalid { place, value: joint.child.1.to_owned(), needs: UrdfRule::OneParent });
         }
     }
-    let invalid = |link: Node<'_>, needs| UrdfError::Invalid {
-        place: name_place(link),
-        value: link.attribute("name").unwrap_or_default().to_owned(),
-        needs,
-    };
-    let mut roots = (0..links.len()).filter(|&i| !is_child[i]);
-    let root = match (roots.next(), links.first()) {
-        (Some(root), _) => root,
-        (None, Some(&link)) => return Err(invalid(link, UrdfRule::NoCycle)),
-        (None, None) => {
-            let value = body.name.clone();
-            return Err(UrdfError::Invalid { place: robot.place(), value, needs: UrdfRule::SomeLink });
-        }
-    };
-    if let Some(second) = roots.next() {
-        return Err(invalid(links[second], UrdfRule::OneRoot));
-    }
+    let root = root_link(robot, links, &is_child, &body.name)?;
     let mut coordinate_of = vec![None; joints.len()];
     let mut seen = vec![false; links.len()];
     let mut waiting = vec![(root, None::<(usize, usize)>)]; // link, (joint, parent segment)
@@ -72,7 +61,7 @@ pub(super) fn build(
             segment.in_parent = joints[joint].origin;
             segment.motions = joints[joint].motions(body, options.limits.coordinates)?;
             coordinate_of[joint] = joints[joint].is_single().then_some(first);
-        } else if options.root == BodyRoot::Free {
+        } else if options.root == RootAttachment::Free {
             segment.motions = body.free_joint("root", &Isometry3::identity());
         }
         body.segments.push(segment);
@@ -88,6 +77,27 @@ pub(super) fn build(
     couple(body, joints, &by_name, &coordinate_of, ignored)
 }
 
+/// The one link that is no child.
+fn root_link(robot: Node<'_>, links: &[Node<'_>], is_child: &[bool], model: &str) -> Result<usize, UrdfError> {
+    let mut roots = (0..links.len()).filter(|&i| !is_child[i]);
+    let root = match (roots.next(), links.first()) {
+        (Some(root), _) => root,
+        (None, Some(&link)) => return Err(invalid(link, UrdfRule::NoCycle)),
+        (None, None) => {
+            let value = model.to_owned();
+            return Err(UrdfError::Invalid { place: robot.place(), value, needs: UrdfRule::SomeLink });
+        }
+    };
+    match roots.next() {
+        Some(second) => Err(invalid(links[second], UrdfRule::OneRoot)),
+        None => Ok(root),
+    }
+}
+
+fn invalid(link: Node<'_>, needs: UrdfRule) -> UrdfError {
+    UrdfError::Invalid { place: name_place(link), value: link.attribute("name").unwrap_or_default().to_owned(), needs }
+}
+
 fn link_index(names: &Names<'_>, (node, name): (Node<'_>, &str)) -> Result<usize, UrdfError> {
     names.get(name).copied().ok_or_else(|| UrdfError::UnknownName {
         place: node.attribute_place("link"),
@@ -98,7 +108,7 @@ fn link_index(names: &Names<'_>, (node, name): (Node<'_>, &str)) -> Result<usize
 
 /// Mimicking joints, chains of them composed to the joint that moves by itself.
 fn couple(
-    body: &mut Body,
+    body: &mut ModelIr,
     joints: &[Joint<'_>],
     by_name: &Names<'_>,
     coordinate_of: &[Option<usize>],
@@ -110,7 +120,7 @@ fn couple(
         let place = || mimic.node.attribute_place("joint");
         // As in Pinocchio, the joint then moves by itself.
         let Some(&leader) = by_name.get(mimic.joint) else {
-            ignored.add("mimic of a joint that is not there");
+            ignored.add("mimic of a joint that is not there", 1);
             continue;
         };
         let independent = coordinate_of[leader].ok_or_else(|| UrdfError::Invalid {

@@ -1,4 +1,4 @@
-//! Numbers that read back as the very same bits.
+//! Writes numbers that read back as the same bits.
 //!
 //! Readers compute: degrees become radians, angles a quaternion, a vector one of unit length. Each search here tries the
 //! obvious number, its short decimal forms and its neighbours, and takes the first that the reader's own arithmetic turns into
@@ -110,7 +110,7 @@ fn factors() -> impl Iterator<Item = f64> {
 
 /// A vector that readers make this unit vector of: they divide by its length, and once more when the model is built.
 pub(super) fn axis(axis: &Unit<Vector3<f64>>) -> Vector3<f64> {
-    let read = |v: &Vector3<f64>| crate::body::unit(*v).map(|u| Unit::new_normalize(u.into_inner()));
+    let read = |v: &Vector3<f64>| crate::model_ir::unit(*v).map(|u| Unit::new_normalize(u.into_inner()));
     let fits = |v: &Vector3<f64>| read(v).is_some_and(|u| same(u.as_slice(), axis.as_slice()));
     let longer = factors().map(|f| axis.into_inner() * f);
     longer.into_iter().find(fits).unwrap_or(axis.into_inner())

@@ -1,8 +1,9 @@
-//! Passive laws in the words of the formats: springs, limit forces, and formulas of `q`.
+//! Writes passive laws in the terms of the formats: springs, limit forces, and formulas of `q`.
 
 use contrapposto::passive::{CoordinateLimitForce, Exponentials, Form, PassiveLaw, Reshape, Tabulated, Term};
 
 use super::xml::number;
+use crate::osim::expression::MOST_EXPRESSION_BYTES;
 
 /// One summand of a law.
 pub(super) enum Part<'a> {
@@ -92,7 +93,7 @@ fn exponentials(law: &Exponentials) -> String {
     sum(text)
 }
 
-/// What reshaping adds near both limits.
+/// The formula that reshaping adds near both limits.
 fn ends(reshape: &Reshape, (min, max): (f64, f64)) -> String {
     let (below, above) = (min + reshape.zone, max - reshape.zone);
     let mut text = String::new();
@@ -118,7 +119,7 @@ fn tabulated(law: &Tabulated) -> Option<String> {
         text += &format!("+({on}{off})*{cubic}");
     }
     let text = sum(text);
-    (text.len() <= contrapposto::math::expression::MOST_BYTES).then_some(text)
+    (text.len() <= MOST_EXPRESSION_BYTES).then_some(text)
 }
 
 fn bracketed(x: &str) -> String {

@@ -1,8 +1,8 @@
-//! A model as an MJCF file.
+//! Writes a model as an MJCF file.
 //!
 //! Bodies lie in each other, all hinges and slides of a chain on one body, each with its axis and anchor in that body's frame.
 //! MuJoCo refuses moving bodies without mass: such a segment gives its motions to the one that it carries; one that carries
-//! none or several gets [`FEATHER_MASS`]. Gravity is the model's own. The file stands as the model does by default (`ref`).
+//! none or several gets `FEATHER_MASS`. Gravity is the model's own. The file stands as the model does by default (`ref`).
 
 use contrapposto::model::{Coordinate, JointKind, Model, Motion, Placement};
 use contrapposto::passive::PassiveLaw;
@@ -15,7 +15,7 @@ use super::names::Names;
 use super::steps::resting;
 use super::xml::{Xml, moments, number, numbers};
 use super::{FEATHER_INERTIA, FEATHER_MASS, PLACEHOLDER_LIMIT, WriteError, Written, common, exact, listed};
-use crate::body::{FREE_ENDINGS, Function};
+use crate::model_ir::{FREE_ENDINGS, Function};
 
 /// Writes the model as an MJCF file.
 ///
@@ -114,8 +114,27 @@ impl<'m> Writer<'m> {
             attributes.push((orientation.0, &orientation.1));
         }
         self.xml.open("body", &attributes);
+        self.inertial(group, &name, &frame);
+        if free {
+            let first = segment.coordinates.start;
+            let joint = self.joints.take(&segment.joint);
+            self.xml.leaf("freejoint", &[("name", &joint)]);
+            for (i, coordinate) in self.model.coordinates()[segment.coordinates.clone()].iter().enumerate() {
+                self.coordinates[first + i] = (coordinate.name.clone(), coordinate.default);
+            }
+            return;
+        }
+        for joint in &joints {
+            self.joint(joint, &self.model.segments()[joint.segment].joint);
+        }
+        self.note_names(group, &joints);
+    }
+
+    /// Mass and inertia of a body in its frame in the file.
+    fn inertial(&mut self, group: &Group, name: &str, frame: &Placement) {
+        let segment = &self.model.segments()[group.segment];
         let turn = frame.rotation.to_rotation_matrix();
-        if frame != Placement::identity() {
+        if *frame != Placement::identity() {
             self.lost.push(format!("Segment `{name}` has the frame of its ball joint in the file."));
         }
         let inertia = match frame.rotation == UnitQuaternion::identity() {
@@ -142,19 +161,6 @@ impl<'m> Writer<'m> {
             let (pos, mass, values) = (numbers(&center.coords), number(segment.mass), numbers(values));
             self.xml.leaf("inertial", &[("pos", &pos), ("mass", &mass), (kind, &values)]);
         }
-        if free {
-            let first = segment.coordinates.start;
-            let joint = self.joints.take(&segment.joint);
-            self.xml.leaf("freejoint", &[("name", &joint)]);
-            for (i, coordinate) in self.model.coordinates()[segment.coordinates.clone()].iter().enumerate() {
-                self.coordinates[first + i] = (coordinate.name.clone(), coordinate.default);
-            }
-            return;
-        }
-        for joint in &joints {
-            self.joint(joint, &self.model.segments()[joint.segment].joint);
-        }
-        self.note_names(group, &joints);
     }
 
     /// Whether MuJoCo's own free joint is this one.

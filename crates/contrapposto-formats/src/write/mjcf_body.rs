@@ -1,13 +1,12 @@
-//! Segments as MuJoCo's bodies: which ones must be one body, and where its joints are.
+//! Groups segments to MuJoCo's bodies: segments that must be one body, and the joints of each body.
 
 use contrapposto::model::{Model, Motion, Placement};
 use nalgebra::{Matrix3, SymmetricEigen, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::steps::{By, moved, steps};
 use super::{WriteError, exact};
+use crate::mjcf::LEAST_MASS;
 
-/// What MuJoCo takes for no mass.
-const LEAST: f64 = 1e-15;
 /// Degrees of freedom of one body.
 const MOST_FREEDOMS: usize = 6;
 
@@ -27,7 +26,7 @@ pub(super) struct Group {
     pub(super) segment: usize,
     /// Those without mass before it.
     pub(super) merged: Vec<usize>,
-    /// It moves, has no mass, and what it carries is not one segment that could have its motions.
+    /// The segment moves, has no mass, and does not carry exactly one segment that could have its motions.
     pub(super) feather: bool,
     /// All motions, nearest the parent first.
     pub(super) moves: Vec<Moves>,
@@ -74,11 +73,11 @@ pub(super) fn group(model: &Model, children: &[Vec<usize>], first: usize) -> Res
     Ok(Group { first, segment, merged, feather, moves, in_parent, in_segment })
 }
 
-/// Whether MuJoCo finds mass in the segment or in what is welded to it.
+/// Whether MuJoCo finds mass in the segment or in segments welded to it.
 fn has_mass(model: &Model, children: &[Vec<usize>], segment: usize) -> bool {
     let mut waiting = vec![segment];
     while let Some(at) = waiting.pop() {
-        if model.segments()[at].mass >= LEAST {
+        if model.segments()[at].mass >= LEAST_MASS {
             return true;
         }
         waiting.extend(children[at].iter().filter(|&&s| model.segments()[s].coordinates.is_empty()));
@@ -184,7 +183,7 @@ pub(super) fn solid(inertia: &Matrix3<f64>) -> (Matrix3<f64>, bool) {
     let moments = SymmetricEigen::try_new(*inertia / size.max(1e-300), 1e-15, 1000).map(|e| e.eigenvalues * size);
     let fits = moments.is_some_and(|m| {
         let largest = m.max();
-        m.min() > LEAST && largest <= (m.sum() - largest) * (1.0 + 1e-9)
+        m.min() > LEAST_MASS && largest <= (m.sum() - largest) * (1.0 + 1e-9)
     });
     if fits {
         return (*inertia, false);

@@ -1,4 +1,4 @@
-//! A model as an OpenSim, URDF or MJCF file.
+//! Writes a model as an OpenSim, URDF or MJCF file.
 //!
 //! Each writer gives the text and, in plain sentences, what the format cannot hold. Numbers stand in the shortest form that
 //! reads back as the same bits; orientations are chosen so that our readers find the same quaternion where there is one such
@@ -28,12 +28,12 @@ pub use urdf::urdf;
 
 use contrapposto::model::Model;
 
-/// A file, and what it does not say.
+/// A file, and the properties of the model that it lacks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The whole file; comments at its head tell what is lost.
     pub text: String,
-    /// What the format cannot hold: plain sentences, in the order in which it was met.
+    /// Properties that the format cannot hold: one plain sentence each, in the order of the model.
     pub lost: Vec<String>,
 }
 
@@ -52,7 +52,7 @@ pub enum WriteError {
     Joint {
         /// Name of the joint.
         joint: String,
-        /// What the format lacks.
+        /// The missing ability of the format.
         problem: &'static str,
     },
     /// A segment that the format's program would refuse.
@@ -60,27 +60,24 @@ pub enum WriteError {
     Segment {
         /// Name of the segment.
         segment: String,
-        /// What it would not accept.
+        /// The part that the format refuses.
         problem: &'static str,
     },
 }
 
 /// Written as a joint's greatest speed (rad/s or m/s): URDF asks for one, and models of posture know none.
-pub const PLACEHOLDER_VELOCITY: f64 = 10.0;
+const PLACEHOLDER_VELOCITY: f64 = 10.0;
 /// Written as a joint's greatest effort (N m or N) where the strength of its muscle groups is not known.
-pub const PLACEHOLDER_EFFORT: f64 = 1000.0;
+const PLACEHOLDER_EFFORT: f64 = 1000.0;
 /// Written as a limit where there is none but the format asks for one, rad or m.
-pub const PLACEHOLDER_LIMIT: f64 = 1e9;
+const PLACEHOLDER_LIMIT: f64 = 1e9;
 
-/// What MuJoCo gets instead of no mass at the end of a chain, kg: a torque of 1e-11 N m a metre.
-pub const FEATHER_MASS: f64 = 1e-12;
+/// Mass that a massless end of a chain gets in MuJoCo, kg: a torque of 1e-11 N m a metre.
+const FEATHER_MASS: f64 = 1e-12;
 /// Inertia of such a segment, kg m^2, which plays no part at rest.
-pub const FEATHER_INERTIA: f64 = 1e-9;
+const FEATHER_INERTIA: f64 = 1e-9;
 
-/// Stands at the head of every file.
-const MADE_BY: &str = concat!("Written by contrapposto ", env!("CARGO_PKG_VERSION"), ".");
-
-/// What no format holds, after a check of all names.
+/// Properties that no format holds, after a check of all names.
 fn common(model: &Model) -> Result<Vec<String>, WriteError> {
     let segments = model.segments().iter().flat_map(|s| [&s.name, &s.joint]);
     let all = segments.chain(model.coordinates().iter().map(|c| &c.name));

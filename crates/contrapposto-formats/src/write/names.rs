@@ -1,4 +1,4 @@
-//! Names that a format accepts, each once.
+//! Makes names that a format accepts, each once.
 
 use std::collections::BTreeSet;
 

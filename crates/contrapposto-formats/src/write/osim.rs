@@ -1,4 +1,4 @@
-//! A model as an OpenSim 4 document.
+//! Writes a model as an OpenSim 4 document.
 //!
 //! Every joint is a `CustomJoint`, `BallJoint` or `WeldJoint` between two offset frames. A chain of motions that is not "three
 //! translations, then three rotations" is turned round, or else becomes several joints with bodies without mass between them.
@@ -15,7 +15,7 @@ use super::steps::resting;
 use super::xml::{Xml, moments, number, numbers};
 use super::{WriteError, Written, common, exact, listed, osim_functions};
 
-/// What OpenSim cannot have in a name.
+/// Characters that OpenSim refuses in a name.
 fn accepts(c: char) -> bool {
     !(c.is_whitespace() || "\\/*+".contains(c))
 }
@@ -323,7 +323,7 @@ fn force(xml: &mut Xml, name: &str, (coordinate, degrees): (&str, bool), part: &
     xml.close();
 }
 
-/// In degrees for what OpenSim calls rotational.
+/// In degrees for a coordinate that OpenSim calls rotational.
 fn limit_force(xml: &mut Xml, law: &CoordinateLimitForce, degrees: bool) {
     let unit = if degrees { 1f64.to_radians() } else { 1.0 };
     let angle = |value: f64| number(exact::near(value / unit, |v| v * unit == value));

@@ -1,4 +1,4 @@
-//! Functions of one coordinate as OpenSim's objects.
+//! Writes functions of one coordinate as OpenSim's objects.
 
 use contrapposto::math::Function;
 

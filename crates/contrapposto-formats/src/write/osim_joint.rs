@@ -1,4 +1,4 @@
-//! Chains of motions as OpenSim's joints: three translations along axes of the parent's frame, then three rotations.
+//! Writes chains of motions as OpenSim's joints: three translations along axes of the parent's frame, then three rotations.
 
 use contrapposto::math::Function;
 use contrapposto::model::{Motion, Segment};
@@ -6,7 +6,7 @@ use nalgebra::{Unit, Vector3};
 
 use super::steps::{By, steps};
 
-/// What drives one of the six axes.
+/// The drive of one of the six axes.
 pub(super) enum Driver<'m> {
     /// The sum of coordinates times slopes, plus a number.
     Linear(Vec<(usize, f64)>, f64),

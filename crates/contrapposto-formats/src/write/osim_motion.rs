@@ -1,4 +1,4 @@
-//! A motion of the model that [`super::osim`] writes.
+//! Writes a motion of the model that [`super::osim`] writes.
 
 use contrapposto::model::{CoordinateKind, Model};
 use nalgebra::{Quaternion, UnitQuaternion};

@@ -1,10 +1,10 @@
-//! A segment's elementary motions, whatever its joint is called.
+//! Lists a segment's elementary motions for joints of every kind.
 
 use contrapposto::math::Function;
 use contrapposto::model::{Coordinate, Drive, JointKind, Motion, Placement, Segment};
 use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 
-/// What gives the value of a motion; coordinates by their index in the model.
+/// The source of the value of a motion; coordinates by their index in the model.
 #[derive(Clone, Copy)]
 pub(super) enum By<'m> {
     Coordinate(usize),

@@ -1,4 +1,4 @@
-//! A model as a URDF file.
+//! Writes a model as a URDF file.
 //!
 //! One joint for each hinge and slide, named after its coordinate, with links without mass between those of one chain.
 //! URDF has no gravity; its programs take 9.81 m/s^2 along -z. Where the model's gravity points elsewhere the file's ground is
@@ -14,7 +14,7 @@ use super::names::Names;
 use super::steps::{By, moved, steps};
 use super::xml::{Xml, moments, number, numbers};
 use super::{PLACEHOLDER_EFFORT, PLACEHOLDER_LIMIT, PLACEHOLDER_VELOCITY, WriteError, Written, common, exact, listed};
-use crate::body::{FREE_ENDINGS, Function};
+use crate::model_ir::{FREE_ENDINGS, Function};
 use crate::urdf::GRAVITY;
 
 /// Writes the model as a URDF file. Effort limits are the greater peak strength of a coordinate's two groups.
@@ -132,7 +132,7 @@ impl<'m> Writer<'m> {
         self.xml.close();
     }
 
-    /// A joint's beginning: everything but what moves.
+    /// A joint's beginning: all parts but its motion.
     fn joint(&mut self, name: &str, kind: &str, parent: &str, child: &str, origin: &Placement) {
         self.xml.open("joint", &[("name", name), ("type", kind)]);
         self.xml.leaf("parent", &[("link", parent)]);
@@ -148,29 +148,13 @@ impl<'m> Writer<'m> {
         &mut self,
         index: usize,
         mut parent: String,
-        mut origin: Placement,
+        origin: Placement,
         lost: &mut Vec<String>,
     ) -> Result<(), WriteError> {
         let segment = &self.model.segments()[index];
         let own = self.names[index].clone();
-        let mut movers: Vec<(Placement, Option<Motion>, usize)> = vec![];
         let planar = planar(self.model, segment);
-        if free(segment) || planar {
-            movers.push((origin, None, segment.coordinates.start));
-            origin = Placement::identity();
-        } else {
-            for (motion, by) in steps(segment) {
-                let refuse = |problem| Err(WriteError::Joint { joint: segment.joint.clone(), problem });
-                match (motion, by) {
-                    (Motion::Ball, _) => return refuse("URDF has no ball joint"),
-                    (_, By::Function(..)) => return refuse("URDF has no joint that a function drives"),
-                    (_, By::Fixed(value)) => origin *= moved(motion, value),
-                    (_, By::Coordinate(c)) => {
-                        movers.push((std::mem::replace(&mut origin, Placement::identity()), Some(motion), c))
-                    }
-                }
-            }
-        }
+        let (movers, origin) = movers(segment, planar, origin)?;
         let rest = origin * segment.in_segment.inverse();
         let fixed = movers.is_empty() || rest != Placement::identity();
         let last = movers.len();
@@ -205,17 +189,11 @@ impl<'m> Writer<'m> {
             self.xml.close();
             self.link(&own, Some(segment));
         }
-        let named = matches!(segment.joint_kind, JointKind::Weld)
-            || free(segment)
-            || planar
-            || (last == 1 && !fixed && self.coordinates[segment.coordinates.start] == segment.joint);
-        if !named {
+        let own_joint = last == 1 && !fixed && self.coordinates[segment.coordinates.start] == segment.joint;
+        if !matches!(segment.joint_kind, JointKind::Weld) && !free(segment) && !planar && !own_joint {
             let of: Vec<&str> = segment.coordinates.clone().map(|c| self.coordinates[c].as_str()).collect();
-            lost.push(format!(
-                "Joint `{}` is a chain of joints named after its coordinates: {}.",
-                segment.joint,
-                listed(&of)
-            ));
+            let (joint, of) = (&segment.joint, listed(&of));
+            lost.push(format!("Joint `{joint}` is a chain of joints named after its coordinates: {of}."));
         }
         Ok(())
     }
@@ -310,4 +288,27 @@ fn linear(function: &Function) -> Option<(f64, f64)> {
         Function::Linear { slope, intercept } => Some((*slope, *intercept)),
         _ => None,
     }
+}
+
+/// A joint of URDF: its origin in the parent, its motion (none for a floating or planar joint), and its first coordinate.
+type Mover = (Placement, Option<Motion>, usize);
+
+/// The moving joints of a segment, and the fixed placement that remains behind them.
+fn movers(segment: &Segment, planar: bool, mut origin: Placement) -> Result<(Vec<Mover>, Placement), WriteError> {
+    if free(segment) || planar {
+        return Ok((vec![(origin, None, segment.coordinates.start)], Placement::identity()));
+    }
+    let mut movers = vec![];
+    for (motion, by) in steps(segment) {
+        let refuse = |problem| Err(WriteError::Joint { joint: segment.joint.clone(), problem });
+        match (motion, by) {
+            (Motion::Ball, _) => return refuse("URDF has no ball joint"),
+            (_, By::Function(..)) => return refuse("URDF has no joint that a function drives"),
+            (_, By::Fixed(value)) => origin *= moved(motion, value),
+            (_, By::Coordinate(c)) => {
+                movers.push((std::mem::replace(&mut origin, Placement::identity()), Some(motion), c));
+            }
+        }
+    }
+    Ok((movers, origin))
 }

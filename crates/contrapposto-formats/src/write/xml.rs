@@ -1,4 +1,7 @@
-//! XML text, and numbers as text.
+//! Writes XML text, and numbers as text.
+
+/// Stands at the head of every file.
+const MADE_BY: &str = concat!("Written by contrapposto ", env!("CARGO_PKG_VERSION"), ".");
 
 /// Whether XML 1.0 can hold the character, as itself or as a reference.
 pub(super) fn holds(c: char) -> bool {
@@ -49,13 +52,13 @@ impl Xml {
         self.text.push_str(&format!("</{tag}>\n"));
     }
 
-    /// The document, headed by what made it and what it has lost.
+    /// The document, headed by the name of the program and the list of lost properties.
     pub(super) fn finish(mut self, lost: &[String]) -> String {
         while !self.open.is_empty() {
             self.close();
         }
         let mut head = Self::new();
-        head.comment(super::MADE_BY);
+        head.comment(MADE_BY);
         // Names may hold what no comment can.
         lost.iter().for_each(|lost| head.comment(&format!("Lost: {}", lost.replace("--", "\u{2010}\u{2010}"))));
         format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}{}", head.text, self.text)

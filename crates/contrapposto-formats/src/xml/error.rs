@@ -1,4 +1,4 @@
-//! What can be wrong with a text as XML.
+//! Errors of XML texts.
 
 use super::Position;
 
@@ -127,7 +127,7 @@ pub enum XmlError {
         position: Position,
         /// As written, shortened.
         found: String,
-        /// What would close the open element; empty if none is open.
+        /// The tag that would close the open element; empty if none is open.
         expected: String,
     },
     /// Another breach of XML's grammar.

@@ -1,4 +1,4 @@
-//! From bytes to the tree.
+//! Parses bytes to the tree.
 
 use super::error::{Malformed, XmlError};
 use super::{Attribute, Document, Element, Limits, NONE, Position, Span, Text};
@@ -130,7 +130,7 @@ impl<'a> Builder<'a> {
         XmlError::Entity { position: self.cursor.at(at), entity: shorten(name) }
     }
 
-    /// Translates what the tokenizer found; its own texts name its own types.
+    /// Translates the errors of the tokenizer, whose own texts name its own types.
     fn grammar_error(&mut self, error: &Error, at: usize) -> XmlError {
         let rest = self.source.get(at..).unwrap_or_default();
         if rest.get(..9).is_some_and(|s| s.eq_ignore_ascii_case("<!doctype")) {

@@ -1,4 +1,4 @@
-//! What the readers' tests share: files, and forward kinematics of a [`Body`] written from its description alone.
+//! What the readers' tests share: files, and forward kinematics of a [`ModelIr`] written from its description alone.
 #![allow(dead_code, unreachable_pub, unused_imports, reason = "each test uses a part")]
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "tests print their figures, and may stop")]
 
@@ -7,7 +7,7 @@ pub mod toml;
 
 pub use self::shared::shared;
 use contrapposto_formats::InputError;
-use contrapposto_formats::body::{Body, BodyMotion, Drive};
+use contrapposto_formats::model_ir::{Drive, ModelIr, MotionIr};
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -24,23 +24,23 @@ pub fn here() -> &'static Path {
 }
 
 /// Frames of all segments, given all coordinates (couplings are the caller's).
-pub fn frames(body: &Body, q: &[f64]) -> Vec<Isometry3<f64>> {
+pub fn frames(body: &ModelIr, q: &[f64]) -> Vec<Isometry3<f64>> {
     let mut frames: Vec<Isometry3<f64>> = vec![];
     let value = |drive: &Drive| match drive {
         Drive::Coordinate(i) => q[*i],
         Drive::Function(function, i) => function.value(q[*i]),
-        Drive::Constant(c) => *c,
+        Drive::Fixed(c) => *c,
     };
     for segment in &body.segments {
         let mut frame = segment.parent.map_or(Isometry3::identity(), |p| frames[p]) * segment.in_parent;
         for motion in &segment.motions {
             frame *= match motion {
-                BodyMotion::Hinge { axis, drive } => Isometry3::from_parts(
+                MotionIr::Hinge { axis, drive } => Isometry3::from_parts(
                     Translation3::identity(),
                     UnitQuaternion::from_axis_angle(&Unit::new_normalize(*axis), value(drive)),
                 ),
-                BodyMotion::Slide { axis, drive } => Isometry3::from(Translation3::from(axis * value(drive))),
-                BodyMotion::Ball { first } => {
+                MotionIr::Slide { axis, drive } => Isometry3::from(Translation3::from(axis * value(drive))),
+                MotionIr::Ball { first } => {
                     let q = Quaternion::new(q[*first], q[first + 1], q[first + 2], q[first + 3]);
                     Isometry3::from_parts(Translation3::identity(), UnitQuaternion::new_normalize(q))
                 }
@@ -51,9 +51,9 @@ pub fn frames(body: &Body, q: &[f64]) -> Vec<Isometry3<f64>> {
     frames
 }
 
-pub fn center_of_mass(body: &Body, q: &[f64]) -> Vector3<f64> {
+pub fn center_of_mass(body: &ModelIr, q: &[f64]) -> Vector3<f64> {
     let frames = frames(body, q);
-    let at = |(s, f): (&contrapposto_formats::body::BodySegment, &Isometry3<f64>)| {
+    let at = |(s, f): (&contrapposto_formats::model_ir::SegmentIr, &Isometry3<f64>)| {
         (f * nalgebra::Point3::from(s.center_of_mass)).coords * s.mass
     };
     let sum: Vector3<f64> = body.segments.iter().zip(&frames).map(at).sum();

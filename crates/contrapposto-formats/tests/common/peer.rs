@@ -10,7 +10,7 @@ use contrapposto::model::{Model, Placement};
 use contrapposto::posture::Posture;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{self, CenterOfMass, Orientation, Point, Task};
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::urdf;
 use hierarchical_least_squares::{Level, Problem, Solver};
 use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
@@ -38,7 +38,7 @@ impl Peer {
     pub fn read() -> Self {
         let bytes = std::fs::read(shared("models/human-gazebo/humanSubject01_48dof.urdf")).unwrap();
         let text = std::fs::read(shared("vectors/ik_targets_human48.json")).unwrap();
-        let options = urdf::Options { root: BodyRoot::Free, ..urdf::Options::default() };
+        let options = urdf::Options { root: RootAttachment::Free, ..urdf::Options::default() };
         let model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
         let file: Value = serde_json::from_slice(&text).unwrap();
         // x y z, quaternion x y z w, then the joints by name.

@@ -19,7 +19,7 @@ use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::strength::Strength;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{Effort, Point, Task};
-use contrapposto_formats::body::BodyRoot;
+use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::urdf;
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -56,7 +56,7 @@ impl Problem {
     pub(crate) fn read(standing: bool) -> Self {
         let bytes = std::fs::read(shared("models/human-gazebo/humanSubject01_48dof.urdf")).unwrap();
         let text = std::fs::read(shared("vectors/ik_targets_human48.json")).unwrap();
-        let root = if standing { BodyRoot::Free } else { BodyRoot::Fixed };
+        let root = if standing { RootAttachment::Free } else { RootAttachment::Fixed };
         let options = urdf::Options { root, ..urdf::Options::default() };
         let mut model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
         let file: Value = serde_json::from_slice(&text).unwrap();

@@ -1,4 +1,4 @@
-//! Tables of strangers: any bytes give a value or a complaint, in time proportional to their number.
+//! Tables of unknown origin: any bytes give a value or an error, in time proportional to their number.
 
 use std::time::{Duration, Instant};
 

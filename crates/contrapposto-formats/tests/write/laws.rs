@@ -1,10 +1,10 @@
 //! Passive laws: the same torque in `.osim` files, springs in MJCF, the rest listed.
 
-use contrapposto::math::expression::Expression;
 use contrapposto::model::{JointKind, Model};
 use contrapposto::passive::{
     CoordinateLimitForce, DoubleExponential, End, PassiveCurve, PassiveLaw, Reshape, Tabulated, Term,
 };
+use contrapposto_formats::osim::expression;
 use contrapposto_formats::write;
 
 use super::{Mjcf, Osim, axis, build, difference, named, read, segment};
@@ -37,7 +37,7 @@ fn laws() -> Vec<PassiveLaw> {
         PassiveLaw::Sum(vec![
             Term::CoordinateLimitForce(limit),
             Term::double_exponential(double).unwrap(),
-            Term::Expression(Expression::parse("-k*q^3; k = 2").unwrap()),
+            Term::Expression(expression::parse("-k*q^3; k = 2").unwrap()),
         ]),
     ]
 }

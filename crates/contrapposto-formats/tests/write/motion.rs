@@ -1,4 +1,4 @@
-//! Motions for other programs: what glTF and BVH files say, read by a reader of the test's own, is where our kinematics has it;
+//! Motions for other programs: glTF and BVH files, read by a reader of the test's own, place segments where our kinematics does;
 //! OpenSim plays `.mot` on `.osim` to the same places (`scripts/compare_motion.py` asks it).
 
 use contrapposto::kinematics::Kinematics;

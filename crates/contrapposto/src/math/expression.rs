@@ -1,97 +1,145 @@
-//! Evaluates the expressions of OpenSim, with their slope.
+//! Evaluates a formula of one coordinate `q` and its slope, exactly, by dual numbers.
 //!
-//! `ExpressionBasedCoordinateForce` writes a torque as a formula of the coordinate `q`, such as
-//! `-2*exp(-5*(q+0.1)) + k; k=3`. The grammar and the precedence are OpenSim's own (the Lepton parser): `-q^2` is `-(q^2)`,
-//! `2^3^2` is 512, white space does not count, there is no unary plus, and definitions follow after semicolons, each may use
-//! those to its right. Where OpenSim simplifies before it evaluates and that changes a value, so do we: `0*x`, `0/x`, `0^x` and
-//! `x-x` are 0, `x/x` and `x^0` are 1. The slope is exact, by dual numbers. At rest `qdot` is 0.
-//!
-//! Parts of a number that OpenSim drops in silence (`1e5.5` reads as 1e5, `.` as 0) are errors here.
+//! A formula is a list of operations. The list comes from a reader of text, which alone knows a grammar (the formats crate reads
+//! OpenSim's). At rest the speed `qdot` is 0.
 
 mod dual;
-mod parse;
-
-pub use parse::ExpressionError;
 
 use dual::Dual;
 
-/// Most bytes of one expression.
-pub const MOST_BYTES: usize = 16 << 10;
-/// Most operations that may wait inside each other: brackets, signs, powers.
-pub const MOST_DEPTH: usize = 64;
-
-/// A formula of `q`. Evaluation takes time linear in its length.
+/// A formula of `q`. Evaluation takes time linear in the number of operations.
 ///
 /// ```
-/// use contrapposto::math::expression::Expression;
-/// let torque = Expression::parse("-k*q^2; k=10")?;
+/// use contrapposto::math::expression::{Binary, Expression, Operation, Unary};
+/// let square = [Operation::Coordinate, Operation::Unary(Unary::Square, 0), Operation::Constant(-10.0)];
+/// let operations = [square.as_slice(), &[Operation::Binary(Binary::Multiply, 2, 1)]].concat();
+/// let torque = Expression::new("-10*q^2", operations)?;
 /// assert_eq!(torque.value_and_slope(0.5), (-2.5, -10.0));
-/// # Ok::<(), contrapposto::math::expression::ExpressionError>(())
+/// # Ok::<(), contrapposto::math::expression::OperandError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     text: String,
-    nodes: Vec<Node>,
-    root: usize,
+    operations: Vec<Operation>,
 }
 
-/// One operation; operands stand before it in the list. Constants by their bits, so that equal parts are one part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Node {
-    Constant(u64),
-    Q,
-    QDot,
+/// One operation of a formula; its operands are places in the list of operations before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operation {
+    /// A number.
+    Constant(f64),
+    /// The coordinate `q`.
+    Coordinate,
+    /// The speed `qdot`, 0 at rest.
+    Speed,
+    /// A function of one operand.
     Unary(Unary, usize),
+    /// A function of two operands.
     Binary(Binary, usize, usize),
 }
 
+/// A function of one operand a.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Unary {
+pub enum Unary {
+    /// -a.
     Negate,
+    /// Square root.
     Sqrt,
+    /// Exponential.
     Exp,
+    /// Natural logarithm.
     Log,
+    /// Sine.
     Sin,
+    /// Cosine.
     Cos,
+    /// 1 / cos a.
     Sec,
+    /// 1 / sin a.
     Csc,
+    /// Tangent.
     Tan,
+    /// 1 / tan a.
     Cot,
+    /// Inverse sine.
     Asin,
+    /// Inverse cosine.
     Acos,
+    /// Inverse tangent.
     Atan,
+    /// Hyperbolic sine.
     Sinh,
+    /// Hyperbolic cosine.
     Cosh,
+    /// Hyperbolic tangent.
     Tanh,
+    /// Error function.
     Erf,
+    /// 1 - erf a.
     Erfc,
+    /// 1 from 0 on, else 0.
     Step,
+    /// 1 at 0, else 0.
     Delta,
+    /// a a.
     Square,
+    /// a a a.
     Cube,
+    /// 1 / a.
     Recip,
+    /// Size.
     Abs,
 }
 
+/// A function of two operands a and b.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Binary {
+pub enum Binary {
+    /// a + b.
     Add,
+    /// a - b.
     Subtract,
+    /// a b.
     Multiply,
+    /// a / b.
     Divide,
+    /// a to the power b.
     Power,
+    /// The smaller one.
     Min,
+    /// The larger one.
     Max,
 }
 
+/// A list of operations was refused: an operand does not stand before its operation, or the list is empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("operation {operation} of a formula takes operand {operand}; an operand stands before its operation")]
+pub struct OperandError {
+    /// Place of the operation.
+    pub operation: usize,
+    /// Place of the operand.
+    pub operand: usize,
+}
+
 impl Expression {
-    /// Reads a formula.
+    /// The formula whose value is that of the last operation. `text` is the formula as written.
     ///
     /// # Errors
-    /// [`ExpressionError`] with the column.
-    pub fn parse(text: &str) -> Result<Self, ExpressionError> {
-        let (nodes, root) = parse::parse(text)?;
-        Ok(Self { text: text.to_owned(), nodes, root })
+    /// [`OperandError`] for an operand that does not stand before its operation.
+    pub fn new(text: &str, operations: Vec<Operation>) -> Result<Self, OperandError> {
+        for (operation, given) in operations.iter().enumerate() {
+            let operand = match *given {
+                Operation::Unary(_, a) => a,
+                Operation::Binary(_, a, b) => a.max(b),
+                Operation::Constant(_) | Operation::Coordinate | Operation::Speed => continue,
+            };
+            if operand >= operation {
+                return Err(OperandError { operation, operand });
+            }
+        }
+        if operations.is_empty() {
+            return Err(OperandError { operation: 0, operand: 0 });
+        }
+        Ok(Self { text: text.to_owned(), operations })
     }
 
     /// The formula as written.
@@ -104,19 +152,18 @@ impl Expression {
     /// the slope is the mean of both sides; the jumps of `step` and `delta` have slope 0.
     #[must_use]
     pub fn value_and_slope(&self, q: f64) -> (f64, f64) {
-        let mut done: Vec<Dual> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
-            let result = match *node {
-                Node::Constant(bits) => Dual::constant(f64::from_bits(bits)),
-                Node::Q => Dual { value: q, slope: 1.0 },
-                Node::QDot => Dual::constant(0.0),
-                Node::Unary(function, a) => dual::unary(function, done[a]),
-                Node::Binary(operation, a, b) => dual::binary(operation, done[a], done[b]),
+        let mut done: Vec<Dual> = Vec::with_capacity(self.operations.len());
+        for operation in &self.operations {
+            let result = match *operation {
+                Operation::Constant(value) => Dual::constant(value),
+                Operation::Coordinate => Dual { value: q, slope: 1.0 },
+                Operation::Speed => Dual::constant(0.0),
+                Operation::Unary(function, a) => dual::unary(function, done[a]),
+                Operation::Binary(operation, a, b) => dual::binary(operation, done[a], done[b]),
             };
             done.push(result);
         }
-        let Dual { value, slope } = done[self.root];
-        (value, slope)
+        done.last().map_or((f64::NAN, f64::NAN), |last| (last.value, last.slope))
     }
 
     /// Value at `q`.

@@ -13,15 +13,36 @@ use super::{
 };
 use crate::passive::{Coupled, PassiveError, PassiveLaw};
 
+/// A measure of the built-in adult; prints as its name with its unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AdultMeasure {
+    /// Standing height.
+    Stature,
+    /// Body mass.
+    Mass,
+    /// Length of the segment of this name, without its side.
+    SegmentLength(String),
+}
+
+impl std::fmt::Display for AdultMeasure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Stature => f.write_str("stature (m)"),
+            Self::Mass => f.write_str("mass (kg)"),
+            Self::SegmentLength(name) => write!(f, "length of `{name}` (m)"),
+        }
+    }
+}
+
 /// Why an adult was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdultError {
     /// Not the size of an adult.
-    #[error("{what} of the adult is {value}; it must lie in {min}..{max}")]
+    #[error("{measure} of the adult is {value}; it must lie in {min}..{max}")]
     Size {
-        /// Stature, mass or length with its unit.
-        what: &'static str,
+        /// The measure.
+        measure: AdultMeasure,
         /// The value.
         value: f64,
         /// Least accepted.
@@ -62,9 +83,11 @@ pub enum AdultError {
 /// # Errors
 /// [`AdultError::Size`] for a stature, mass or length that is no adult's.
 pub fn adult(size: &Adult) -> Result<Model, AdultError> {
-    for (what, value, min, max) in [("stature (m)", size.stature, 1.2, 2.3), ("mass (kg)", size.mass, 30.0, 250.0)] {
+    for (measure, value, min, max) in
+        [(AdultMeasure::Stature, size.stature, 1.2, 2.3), (AdultMeasure::Mass, size.mass, 30.0, 250.0)]
+    {
         if !(min..=max).contains(&value) {
-            return Err(AdultError::Size { what, value, min, max });
+            return Err(AdultError::Size { measure, value, min, max });
         }
     }
     let recipe = Recipe { library: library(), size };
@@ -116,7 +139,8 @@ impl Recipe<'_> {
                 return Err(AdultError::Length { name: name.clone(), accepted: known.join(", ") });
             }
             if !(0.02..=1.0).contains(value) {
-                return Err(AdultError::Size { what: "a segment length (m)", value: *value, min: 0.02, max: 1.0 });
+                let measure = AdultMeasure::SegmentLength(name.clone());
+                return Err(AdultError::Size { measure, value: *value, min: 0.02, max: 1.0 });
             }
         }
         Ok(())

@@ -14,7 +14,7 @@ mod joint;
 mod reduced;
 mod segment_spec;
 
-pub use adult::{AdultError, CoordinateSources, adult};
+pub use adult::{AdultError, AdultMeasure, CoordinateSources, adult};
 pub use adult_size::{Adult, Part, Sex};
 pub use builder::ModelBuilder;
 pub use coordinate::{Coordinate, CoordinateKind, CoordinateSpec, MuscleGroup, Side};

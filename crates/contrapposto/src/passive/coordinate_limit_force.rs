@@ -8,7 +8,7 @@
 //! The slope is not monotone in the transition: its size rises to 16/9 K at x = 2/3, then falls to K. A given slope may be
 //! met at four angles, and at none in the exactly flat middle.
 
-use super::{Form, PassiveError};
+use super::{Form, PassiveError, PassiveParameter};
 use crate::math::dichotomy_between;
 
 /// Two one-sided springs with a smooth start. Positive torque below the lower limit, negative above the upper one.
@@ -54,21 +54,29 @@ impl CoordinateLimitForce {
     /// [`PassiveError::Parameter`] for a number that is not finite, a negative stiffness, a transition that is not
     /// positive, or limits in the wrong order.
     pub fn form(self) -> Result<Form, PassiveError> {
-        let check = |ok: bool, name, value, accepted| {
-            if ok { Ok(()) } else { Err(PassiveError::Parameter { name, value, accepted }) }
+        let check = |ok: bool, parameter, value, accepted| {
+            if ok { Ok(()) } else { Err(PassiveError::Parameter { parameter, value, accepted }) }
         };
-        for (name, value) in [("upper limit (rad)", self.upper_limit), ("lower limit (rad)", self.lower_limit)] {
-            check(value.is_finite(), name, value, "finite")?;
-        }
-        for (name, value) in
-            [("upper stiffness (N m/rad)", self.upper_stiffness), ("lower stiffness (N m/rad)", self.lower_stiffness)]
+        for (parameter, value) in
+            [(PassiveParameter::UpperLimit, self.upper_limit), (PassiveParameter::LowerLimit, self.lower_limit)]
         {
-            check(value.is_finite() && value >= 0.0, name, value, "finite and not negative")?;
+            check(value.is_finite(), parameter, value, "finite")?;
         }
-        check(self.transition.is_finite() && self.transition > 0.0, "transition (rad)", self.transition, "positive")?;
+        for (parameter, value) in [
+            (PassiveParameter::UpperStiffness, self.upper_stiffness),
+            (PassiveParameter::LowerStiffness, self.lower_stiffness),
+        ] {
+            check(value.is_finite() && value >= 0.0, parameter, value, "finite and not negative")?;
+        }
+        check(
+            self.transition.is_finite() && self.transition > 0.0,
+            PassiveParameter::Transition,
+            self.transition,
+            "positive",
+        )?;
         check(
             self.lower_limit <= self.upper_limit,
-            "lower limit (rad)",
+            PassiveParameter::LowerLimit,
             self.lower_limit,
             "at or below the upper limit",
         )?;

@@ -7,7 +7,7 @@
 //! Its slope is concave, so a given slope is met at most twice, once on each side of one flattest angle: the case split
 //! of the paper's Table 1.
 
-use super::{Form, PassiveError, Zone};
+use super::{Form, PassiveError, PassiveParameter, Zone};
 use crate::math::dichotomy;
 
 /// One exponential term `torque * exp(rate * (q - angle))`; torque and rate have opposite signs.
@@ -68,7 +68,11 @@ impl DoubleExponential {
         ];
         for rate in [self.lower.rate, self.upper.rate] {
             if rate.is_nan() || rate <= 0.0 {
-                return Err(PassiveError::Parameter { name: "rate (1/rad)", value: rate, accepted: "positive" });
+                return Err(PassiveError::Parameter {
+                    parameter: PassiveParameter::Rate,
+                    value: rate,
+                    accepted: "positive",
+                });
             }
         }
         Ok(Form::Exponentials(Exponentials::new(&terms, self.stiffness, self.neutral, 0.0)?))
@@ -81,12 +85,16 @@ impl Exponentials {
     /// # Errors
     /// [`PassiveError::Parameter`] for a number that is not finite, or more than three terms.
     pub fn new(terms: &[(f64, f64, f64)], stiffness: f64, neutral: f64, constant: f64) -> Result<Self, PassiveError> {
-        let finite = |name, value: f64| {
-            if value.is_finite() { Ok(()) } else { Err(PassiveError::Parameter { name, value, accepted: "finite" }) }
+        let finite = |parameter, value: f64| {
+            if value.is_finite() {
+                Ok(())
+            } else {
+                Err(PassiveError::Parameter { parameter, value, accepted: "finite" })
+            }
         };
-        finite("stiffness (N m/rad)", stiffness)?;
-        finite("neutral angle (rad)", neutral)?;
-        finite("constant (N m)", constant)?;
+        finite(PassiveParameter::Stiffness, stiffness)?;
+        finite(PassiveParameter::NeutralAngle, neutral)?;
+        finite(PassiveParameter::Constant, constant)?;
         let mut sum = Self {
             terms: [Term { torque: 0.0, rate: 0.0, angle: 0.0 }; TERMS],
             count: 0,
@@ -95,9 +103,9 @@ impl Exponentials {
             constant,
         };
         for &(torque, rate, angle) in terms {
-            finite("torque (N m)", torque)?;
-            finite("rate (1/rad)", rate)?;
-            finite("angle (rad)", angle)?;
+            finite(PassiveParameter::Torque, torque)?;
+            finite(PassiveParameter::Rate, rate)?;
+            finite(PassiveParameter::Angle, angle)?;
             if torque == 0.0 || rate == 0.0 {
                 sum.constant += torque;
                 continue;
@@ -105,7 +113,7 @@ impl Exponentials {
             if sum.count == TERMS {
                 let value = terms.len() as f64;
                 return Err(PassiveError::Parameter {
-                    name: "number of exponential terms",
+                    parameter: PassiveParameter::Terms,
                     value,
                     accepted: "three at most",
                 });
@@ -253,7 +261,7 @@ impl Exponentials {
         // A curve that falls although one of its terms rises: its slope is not concave.
         rising_term.map_or(Ok(()), |term| {
             let accepted = "such that every exponential term falls with the angle";
-            Err(PassiveError::Parameter { name: "torque (N m)", value: term.torque, accepted })
+            Err(PassiveError::Parameter { parameter: PassiveParameter::Torque, value: term.torque, accepted })
         })
     }
 }

@@ -6,7 +6,8 @@
 use std::borrow::Cow;
 
 use super::{
-    CoordinateLimitForce, DoubleExponential, Exponentials, Form, PassiveCurve, PassiveError, RienerEdrich1999,
+    CoordinateLimitForce, DoubleExponential, Exponentials, Form, PassiveCurve, PassiveError, PassiveParameter,
+    RienerEdrich1999,
 };
 use crate::math::expression::Expression;
 
@@ -139,7 +140,11 @@ impl Term {
     pub fn double_exponential(law: DoubleExponential) -> Result<Self, PassiveError> {
         match law.form()? {
             Form::Exponentials(exponentials) => Ok(Self::Exponentials(exponentials)),
-            _ => Err(PassiveError::Parameter { name: "law", value: f64::NAN, accepted: "a double exponential" }),
+            _ => Err(PassiveError::Parameter {
+                parameter: PassiveParameter::Law,
+                value: f64::NAN,
+                accepted: "a double exponential",
+            }),
         }
     }
 }

@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 mod coordinate_limit_force;
+mod error;
 mod exponentials;
 mod law;
 mod reshape;
@@ -14,6 +15,7 @@ mod riener_edrich1999;
 mod tabulated;
 
 pub use coordinate_limit_force::CoordinateLimitForce;
+pub use error::{PassiveError, PassiveParameter};
 pub use exponentials::{DoubleExponential, End, Exponentials};
 pub use law::{Coupled, PassiveLaw, Term};
 pub use reshape::Reshape;
@@ -30,46 +32,6 @@ pub enum Form {
     CoordinateLimitForce(CoordinateLimitForce),
     /// Measured points, joined by a monotone cubic.
     Tabulated(Tabulated),
-}
-
-/// Why a curve was refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PassiveError {
-    /// A parameter has no meaning.
-    #[error("{name} is {value}; it must be {accepted}")]
-    Parameter {
-        /// Name of the parameter with its unit.
-        name: &'static str,
-        /// The value given.
-        value: f64,
-        /// The values that would be accepted.
-        accepted: &'static str,
-    },
-    /// The torque rises with the angle somewhere in the range.
-    #[error("passive torque rises at {:.4} deg (slope {slope:+.4} N m/rad); it must fall or stay level over the whole range", angle.to_degrees())]
-    Rises {
-        /// Angle where it does, rad.
-        angle: f64,
-        /// Slope there, N m/rad.
-        slope: f64,
-    },
-    /// Torque, slope or energy at a limit of the range is not a number, or beyond 1e150.
-    #[error("passive torque is {torque} N m at {:.4} deg; torque, slope and energy must stay within 1e150 over the whole range", angle.to_degrees())]
-    NotFinite {
-        /// Angle, rad.
-        angle: f64,
-        /// Torque there.
-        torque: f64,
-    },
-    /// The table's angles are not in order, or too few, or do not cover the range.
-    #[error("row {row} of the table: {problem}")]
-    Table {
-        /// Row, counted from 1.
-        row: usize,
-        /// The fault.
-        problem: &'static str,
-    },
 }
 
 /// The angles on both sides of the flattest zone at which the slope has a given value (`theta_smin`, `theta_smax` of the
@@ -140,12 +102,12 @@ impl PassiveCurve {
         for value in [min, max] {
             if value.is_nan() || value.abs() > GREATEST_ANGLE {
                 let accepted = "a number between -1e6 and 1e6";
-                return Err(PassiveError::Parameter { name: "limit of the range (rad)", value, accepted });
+                return Err(PassiveError::Parameter { parameter: PassiveParameter::RangeLimit, value, accepted });
             }
         }
         if min >= max {
             let accepted = "above the lower limit";
-            return Err(PassiveError::Parameter { name: "upper limit of the range (rad)", value: max, accepted });
+            return Err(PassiveError::Parameter { parameter: PassiveParameter::UpperRangeLimit, value: max, accepted });
         }
         if let Form::Tabulated(table) = &form {
             table.check_covers(range)?;

@@ -4,7 +4,7 @@
 //! outweighs the external one; the paper gives no coefficients. Here: inside a zone of stated width at each limit a linear
 //! term is added that starts at zero (hence the kink of Figures 7 and 9). It may be applied to every curve.
 
-use super::PassiveError;
+use super::{PassiveError, PassiveParameter};
 
 /// Linear terms near both limits.
 ///
@@ -42,14 +42,14 @@ impl Reshape {
     }
 
     pub(super) fn check(&self, (min, max): (f64, f64)) -> Result<(), PassiveError> {
-        let check = |ok: bool, name, value, accepted| {
-            if ok { Ok(()) } else { Err(PassiveError::Parameter { name, value, accepted }) }
+        let check = |ok: bool, parameter, value, accepted| {
+            if ok { Ok(()) } else { Err(PassiveError::Parameter { parameter, value, accepted }) }
         };
         let fits = self.zone > 0.0 && min + self.zone < max - self.zone;
-        check(fits, "reshape zone (rad)", self.zone, "positive and less than half the range")?;
+        check(fits, PassiveParameter::ReshapeZone, self.zone, "positive and less than half the range")?;
         for stiffness in [self.lower_stiffness, self.upper_stiffness] {
             let ok = stiffness.is_finite() && stiffness >= 0.0;
-            check(ok, "reshape stiffness (N m/rad)", stiffness, "finite and not negative")?;
+            check(ok, PassiveParameter::ReshapeStiffness, stiffness, "finite and not negative")?;
         }
         Ok(())
     }

@@ -5,7 +5,7 @@
 //! plantarflexion positive. The coefficients live in the data files. With the neighbours held it is a sum of falling
 //! exponentials in the joint's own angle; it has no energy, because the cross derivatives of the published laws differ.
 
-use super::{Exponentials, PassiveError};
+use super::{Exponentials, PassiveError, PassiveParameter};
 
 /// One term `sign * exp(c0 + rates . (hip, knee, ankle))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +85,11 @@ impl RienerEdrich1999 {
         let mut others = angles;
         let Some(own) = others.get_mut(self.joint) else {
             let value = self.joint as f64;
-            return Err(PassiveError::Parameter { name: "joint", value, accepted: "0 hip, 1 knee or 2 ankle" });
+            return Err(PassiveError::Parameter {
+                parameter: PassiveParameter::Joint,
+                value,
+                accepted: "0 hip, 1 knee or 2 ankle",
+            });
         };
         *own = 0.0;
         let terms: Vec<_> = self

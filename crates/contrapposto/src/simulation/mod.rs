@@ -21,7 +21,7 @@ pub use relief_log::{ReliefLog, ReliefRecord};
 pub use run::{Run, Snapshot, run};
 pub use sample::{Contact, Relief, Sample, Standing};
 pub use scenario::{
-    Event, ReliefSettings, RunSettings, Scenario, ScenarioError, StrategySettings, Tables, TaskSettings,
+    Event, ReliefSettings, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
 };
 pub use step::Simulation;
 pub use summary::{CoordinateSummary, Fall, StopReason, Summary};

@@ -121,6 +121,63 @@ pub struct Scenario {
     pub run: RunSettings,
 }
 
+/// A number of a scenario; prints as its name with its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Setting {
+    /// Number of free flags: one a coordinate.
+    FreeFlags,
+    /// Number of strategies: none, or one a coordinate.
+    Strategies,
+    /// Time of an event.
+    EventTime,
+    /// Number of the task that an event changes.
+    EventTask,
+    /// Number of fatigue pairs: one a coordinate.
+    FatiguePairs,
+    /// Fatigue of a muscle group at the start.
+    StartFatigue,
+    /// Least decrease ratio `R_min`.
+    MinimumDecreaseRatio,
+    /// Step gain `beta` of Eq. 9.
+    StepGain,
+    /// Greatest step `delta theta_max` of Eq. 9.
+    MaxStep,
+    /// Torque tolerance `eps`.
+    TorqueTolerance,
+    /// Fatigue at which relief begins.
+    CriticalLevel,
+    /// Fatigue at which relief ends.
+    RecoveryLevel,
+    /// Simulated time.
+    Duration,
+    /// Time from one sample to the next.
+    TimeStep,
+    /// Duration in time steps.
+    Steps,
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::FreeFlags => "number of free flags",
+            Self::Strategies => "number of strategies",
+            Self::EventTime => "time of an event (s)",
+            Self::EventTask => "place of a task that an event changes",
+            Self::FatiguePairs => "number of fatigue pairs",
+            Self::StartFatigue => "fatigue at the start",
+            Self::MinimumDecreaseRatio => "minimum decrease ratio",
+            Self::StepGain => "step gain",
+            Self::MaxStep => "greatest step (rad)",
+            Self::TorqueTolerance => "torque tolerance (N m)",
+            Self::CriticalLevel => "critical level",
+            Self::RecoveryLevel => "recovery level",
+            Self::Duration => "duration (s)",
+            Self::TimeStep => "time step (s)",
+            Self::Steps => "number of steps",
+        })
+    }
+}
+
 /// The reason for which an experiment was refused or a run ended.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -168,10 +225,10 @@ pub enum ScenarioError {
         range: (f64, f64),
     },
     /// A setting is outside the values that it may have.
-    #[error("{name} is {value}; it must be {accepted}")]
+    #[error("{setting} is {value}; it must be {accepted}")]
     Setting {
-        /// Its name with unit.
-        name: &'static str,
+        /// The setting.
+        setting: Setting,
         /// The value.
         value: f64,
         /// What would be accepted.
@@ -209,12 +266,12 @@ impl Scenario {
         self.supports.iter().try_for_each(|support| support.check(&self.model))?;
         self.tasks.iter().enumerate().try_for_each(|(i, task)| self.check_task(i, &task.goal))?;
         let count = self.model.coordinates().len() as f64;
-        setting(self.free.len() as f64 == count, "number of free flags", self.free.len() as f64, "one a coordinate")?;
+        check_setting(self.free.len() as f64 == count, Setting::FreeFlags, self.free.len() as f64, "one a coordinate")?;
         let given = self.strategies.len() as f64;
-        setting(given == 0.0 || given == count, "number of strategies", given, "none, or one a coordinate")?;
+        check_setting(given == 0.0 || given == count, Setting::Strategies, given, "none, or one a coordinate")?;
         self.check_events(count)?;
         let given = self.start_fatigue.len() as f64;
-        setting(given == count, "number of fatigue pairs", given, "one a coordinate")?;
+        check_setting(given == count, Setting::FatiguePairs, given, "one a coordinate")?;
         self.check_coordinates()?;
         self.check_settings()
     }
@@ -229,14 +286,14 @@ impl Scenario {
         let mut before = 0.0;
         for event in &self.events {
             let accepted = "finite, not negative, and not before the event before it";
-            setting(event.time >= before && event.time.is_finite(), "time of an event (s)", event.time, accepted)?;
+            check_setting(event.time >= before && event.time.is_finite(), Setting::EventTime, event.time, accepted)?;
             before = event.time;
             event.loads.iter().flatten().try_for_each(|load| load.check(&self.model))?;
             let given = event.strategies.as_ref().map_or(count, |list| list.len() as f64);
-            setting(given == count, "number of strategies", given, "none, or one a coordinate")?;
+            check_setting(given == count, Setting::Strategies, given, "none, or one a coordinate")?;
             for (i, goal) in &event.tasks {
                 let fits = self.tasks.get(*i).is_some_and(|task| alike(&task.goal, goal));
-                setting(fits, "place of a task that an event changes", *i as f64, "that of a task of the same kinds")?;
+                check_setting(fits, Setting::EventTask, *i as f64, "that of a task of the same kinds")?;
                 self.check_task(*i, goal)?;
             }
         }
@@ -258,27 +315,27 @@ impl Scenario {
 
     fn check_settings(&self) -> Result<(), ScenarioError> {
         for &value in self.start_fatigue.iter().flatten() {
-            setting((0.0..=1.0).contains(&value), "fatigue at the start", value, "in 0..1")?;
+            check_setting((0.0..=1.0).contains(&value), Setting::StartFatigue, value, "in 0..1")?;
         }
         let ratio = self.strategy.minimum_decrease_ratio;
-        setting((0.0..=1.0).contains(&ratio), "minimum decrease ratio", ratio, "in 0..1")?;
+        check_setting((0.0..=1.0).contains(&ratio), Setting::MinimumDecreaseRatio, ratio, "in 0..1")?;
         let ReliefSettings { step_gain, max_step, torque_tolerance, .. } = self.relief;
-        setting(step_gain > 0.0 && step_gain < 1.0, "step gain", step_gain, "above 0 and below 1")?;
-        setting(max_step > 0.0 && max_step.is_finite(), "greatest step (rad)", max_step, "positive")?;
+        check_setting(step_gain > 0.0 && step_gain < 1.0, Setting::StepGain, step_gain, "above 0 and below 1")?;
+        check_setting(max_step > 0.0 && max_step.is_finite(), Setting::MaxStep, max_step, "positive")?;
         let tolerable = torque_tolerance >= 0.0 && torque_tolerance.is_finite();
-        setting(tolerable, "torque tolerance (N m)", torque_tolerance, "finite and not negative")?;
+        check_setting(tolerable, Setting::TorqueTolerance, torque_tolerance, "finite and not negative")?;
         let Hysteresis { critical_level, recovery_level } = self.hysteresis;
         let rising = 0.0 < critical_level && critical_level <= 1.0;
-        setting(rising, "critical level", critical_level, "above 0, at most 1")?;
+        check_setting(rising, Setting::CriticalLevel, critical_level, "above 0, at most 1")?;
         let below = 0.0 <= recovery_level && recovery_level < critical_level;
-        setting(below, "recovery level", recovery_level, "not negative, below the critical level")?;
+        check_setting(below, Setting::RecoveryLevel, recovery_level, "not negative, below the critical level")?;
         let RunSettings { duration, step, .. } = self.run;
-        setting(duration >= 0.0 && duration.is_finite(), "duration (s)", duration, "finite and not negative")?;
-        setting(step > 0.0 && step <= 60.0, "time step (s)", step, "above 0, at most 60")?;
-        setting(duration / step <= MOST_STEPS, "number of steps", duration / step, "ten million at most")
+        check_setting(duration >= 0.0 && duration.is_finite(), Setting::Duration, duration, "finite and not negative")?;
+        check_setting(step > 0.0 && step <= 60.0, Setting::TimeStep, step, "above 0, at most 60")?;
+        check_setting(duration / step <= MOST_STEPS, Setting::Steps, duration / step, "ten million at most")
     }
 }
 
-fn setting(ok: bool, name: &'static str, value: f64, accepted: &'static str) -> Result<(), ScenarioError> {
-    if ok { Ok(()) } else { Err(ScenarioError::Setting { name, value, accepted }) }
+fn check_setting(ok: bool, setting: Setting, value: f64, accepted: &'static str) -> Result<(), ScenarioError> {
+    if ok { Ok(()) } else { Err(ScenarioError::Setting { setting, value, accepted }) }
 }

@@ -35,6 +35,30 @@ pub struct Load {
     pub kind: LoadKind,
 }
 
+/// A number of a load; prints as its name with its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadQuantity {
+    /// Point of the segment on which the load pulls.
+    Point,
+    /// Force of a load.
+    Force,
+    /// Couple of a load.
+    Couple,
+    /// Mass of a weight.
+    Mass,
+}
+
+impl std::fmt::Display for LoadQuantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Point => "point (m)",
+            Self::Force => "force (N)",
+            Self::Couple => "couple (N m)",
+            Self::Mass => "mass (kg)",
+        })
+    }
+}
+
 /// Why a load was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -48,10 +72,10 @@ pub enum LoadError {
         count: usize,
     },
     /// A number is NaN, infinite or beyond [`LARGEST`], or a mass negative.
-    #[error("{what} of a load is {value}; it must be {accepted}")]
+    #[error("{quantity} of a load is {value}; it must be {accepted}")]
     Number {
-        /// The quantity with its unit.
-        what: &'static str,
+        /// The quantity.
+        quantity: LoadQuantity,
         /// The value.
         value: f64,
         /// The values that would be accepted.
@@ -75,17 +99,17 @@ impl Load {
         if self.segment >= count {
             return Err(LoadError::Segment { segment: self.segment, count });
         }
-        let within = |what, v: &Vector3<f64>| match v.iter().find(|x| x.is_nan() || x.abs() > LARGEST) {
-            Some(&value) => Err(LoadError::Number { what, value, accepted: "finite and at most 1e9 in size" }),
+        let within = |quantity, v: &Vector3<f64>| match v.iter().find(|x| x.is_nan() || x.abs() > LARGEST) {
+            Some(&value) => Err(LoadError::Number { quantity, value, accepted: "finite and at most 1e9 in size" }),
             None => Ok(()),
         };
-        within("point (m)", &self.point)?;
+        within(LoadQuantity::Point, &self.point)?;
         match &self.kind {
-            LoadKind::Force(force, _) => within("force (N)", force),
-            LoadKind::Couple(couple, _) => within("couple (N m)", couple),
+            LoadKind::Force(force, _) => within(LoadQuantity::Force, force),
+            LoadKind::Couple(couple, _) => within(LoadQuantity::Couple, couple),
             &LoadKind::Weight(mass) if (0.0..=LARGEST).contains(&mass) => Ok(()),
             &LoadKind::Weight(value) => {
-                Err(LoadError::Number { what: "mass (kg)", value, accepted: "between 0 and 1e9" })
+                Err(LoadError::Number { quantity: LoadQuantity::Mass, value, accepted: "between 0 and 1e9" })
             }
         }
     }

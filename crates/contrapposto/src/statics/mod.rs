@@ -10,5 +10,5 @@ mod passive_torque;
 
 pub use external::ExternalTorque;
 pub use fold::Gradient;
-pub use load::{FixedIn, Load, LoadError, LoadKind};
+pub use load::{FixedIn, Load, LoadError, LoadKind, LoadQuantity};
 pub use passive_torque::{PassiveTorque, PassiveTorqueError};

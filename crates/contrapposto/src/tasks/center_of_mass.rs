@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use super::check::{Check, TaskError};
+use super::check::{Check, TaskError, TaskPart};
 use super::polygon::HalfPlane;
 use super::rows::{add_along, append, chosen, equations};
 use crate::joint_torques::JointTorques;
@@ -89,15 +89,15 @@ impl CenterOfMass {
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
         match &self.goal {
             CenterOfMassGoal::At { target, axes } => {
-                check.vector("target (m)", target)?;
-                check.some("axis", axes.contains(&true))?;
+                check.vector(TaskPart::Target, target)?;
+                check.some(TaskPart::Axis, axes.contains(&true))?;
             }
             CenterOfMassGoal::Inside { polygon, margin } => {
-                check.number("margin (m)", *margin)?;
-                check.some("edge of a polygon", !polygon.is_empty())?;
+                check.number(TaskPart::Margin, *margin)?;
+                check.some(TaskPart::Edge, !polygon.is_empty())?;
                 for edge in polygon {
-                    check.number("offset of an edge (m)", edge.offset)?;
-                    check.unit("length of an edge's normal", edge.normal.norm())?;
+                    check.number(TaskPart::EdgeOffset, edge.offset)?;
+                    check.unit(TaskPart::EdgeNormal, edge.normal.norm())?;
                 }
             }
         }

@@ -5,6 +5,70 @@ use nalgebra::Vector3;
 use crate::model::{LARGEST, Model};
 use crate::posture::PostureError;
 
+/// A part of a task; prints as its name with its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TaskPart {
+    /// Point of the segment.
+    Point,
+    /// Point of the first segment of a distance.
+    PointA,
+    /// Point of the second segment of a distance.
+    PointB,
+    /// Place to be reached.
+    Target,
+    /// Length of a vector or quaternion; must be 1.
+    TargetQuaternion,
+    /// Where the gaze begins.
+    Eye,
+    /// Length of a vector or quaternion; must be 1.
+    Direction,
+    /// Least distance.
+    LowerLimit,
+    /// Greatest distance.
+    UpperLimit,
+    /// Distance from the edges of the polygon.
+    Margin,
+    /// Offset of an edge of the polygon.
+    EdgeOffset,
+    /// Length of a vector or quaternion; must be 1.
+    EdgeNormal,
+    /// Weight of a coordinate.
+    Weight,
+    /// Least strength of a muscle group over all angles.
+    LeastStrength,
+    /// Ground axes asked for.
+    Axis,
+    /// Edges of the polygon.
+    Edge,
+    /// Coordinates asked for.
+    Coordinate,
+    /// Coordinates with a weight above 0.
+    WeightedCoordinate,
+}
+
+impl std::fmt::Display for TaskPart {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Point | Self::PointA | Self::PointB => "point (m)",
+            Self::Target => "target (m)",
+            Self::TargetQuaternion => "length of the target's quaternion",
+            Self::Eye => "eye (m)",
+            Self::Direction => "length of the direction",
+            Self::LowerLimit => "lower limit (m)",
+            Self::UpperLimit => "upper limit (m)",
+            Self::Margin => "margin (m)",
+            Self::EdgeOffset => "offset of an edge (m)",
+            Self::EdgeNormal => "length of an edge's normal",
+            Self::Weight => "weight",
+            Self::LeastStrength => "least strength (N m)",
+            Self::Axis => "axis",
+            Self::Edge => "edge of a polygon",
+            Self::Coordinate => "coordinate",
+            Self::WeightedCoordinate => "coordinate (all weights are 0)",
+        })
+    }
+}
+
 /// Why a task was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -22,24 +86,24 @@ pub enum TaskError {
         count: usize,
     },
     /// A number without meaning.
-    #[error("{task} task: {what} is {value}; it must be {accepted}")]
+    #[error("{task} task: {part} is {value}; it must be {accepted}")]
     Number {
         /// Kind of the task.
         task: &'static str,
-        /// The quantity with its unit.
-        what: &'static str,
+        /// The quantity.
+        part: TaskPart,
         /// The value.
         value: f64,
         /// Accepted values.
         accepted: &'static str,
     },
     /// The task asks for nothing.
-    #[error("{task} task: it asks for no {what}; it must ask for one at least")]
+    #[error("{task} task: it asks for no {part}; it must ask for one at least")]
     Empty {
         /// Kind of the task.
         task: &'static str,
-        /// The thing of which there should be one.
-        what: &'static str,
+        /// The list that has no entry.
+        part: TaskPart,
     },
     /// A list has another length than the model needs.
     #[error("{task} task: {given} {what}; the model needs {needed}")]
@@ -80,25 +144,25 @@ impl Check<'_> {
         if index < count { Ok(()) } else { Err(TaskError::Index { task: self.task, what: "segment", index, count }) }
     }
 
-    pub(super) fn number(&self, what: &'static str, value: f64) -> Result<(), TaskError> {
-        if value.abs() <= LARGEST { Ok(()) } else { self.refuse(what, value, "finite and at most 1e9 in size") }
+    pub(super) fn number(&self, part: TaskPart, value: f64) -> Result<(), TaskError> {
+        if value.abs() <= LARGEST { Ok(()) } else { self.refuse(part, value, "finite and at most 1e9 in size") }
     }
 
-    pub(super) fn vector(&self, what: &'static str, v: &Vector3<f64>) -> Result<(), TaskError> {
-        v.iter().try_for_each(|&value| self.number(what, value))
+    pub(super) fn vector(&self, part: TaskPart, v: &Vector3<f64>) -> Result<(), TaskError> {
+        v.iter().try_for_each(|&value| self.number(part, value))
     }
 
     /// Lengths that must be one.
-    pub(super) fn unit(&self, what: &'static str, length: f64) -> Result<(), TaskError> {
-        if (length - 1.0).abs() <= 1e-6 { Ok(()) } else { self.refuse(what, length, "1") }
+    pub(super) fn unit(&self, part: TaskPart, length: f64) -> Result<(), TaskError> {
+        if (length - 1.0).abs() <= 1e-6 { Ok(()) } else { self.refuse(part, length, "1") }
     }
 
-    pub(super) fn some(&self, what: &'static str, any: bool) -> Result<(), TaskError> {
-        if any { Ok(()) } else { Err(TaskError::Empty { task: self.task, what }) }
+    pub(super) fn some(&self, part: TaskPart, any: bool) -> Result<(), TaskError> {
+        if any { Ok(()) } else { Err(TaskError::Empty { task: self.task, part }) }
     }
 
-    pub(super) fn refuse(&self, what: &'static str, value: f64, accepted: &'static str) -> Result<(), TaskError> {
-        Err(TaskError::Number { task: self.task, what, value, accepted })
+    pub(super) fn refuse(&self, part: TaskPart, value: f64, accepted: &'static str) -> Result<(), TaskError> {
+        Err(TaskError::Number { task: self.task, part, value, accepted })
     }
 
     pub(super) fn unable(&self, name: &str, problem: &'static str) -> Result<(), TaskError> {

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use super::check::{Check, TaskError};
+use super::check::{Check, TaskError, TaskPart};
 use super::rows::{add_along, append};
 use crate::joint_torques::JointTorques;
 use crate::model::{LARGEST, Model};
@@ -54,15 +54,15 @@ impl Distance {
     }
 
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
-        for (segment, point) in [self.a, self.b] {
+        for ((segment, point), part) in [(self.a, TaskPart::PointA), (self.b, TaskPart::PointB)] {
             check.segment(segment)?;
-            check.vector("point (m)", &point)?;
+            check.vector(part, &point)?;
         }
         if !(0.0..=LARGEST).contains(&self.lower) {
-            return check.refuse("lower limit (m)", self.lower, "between 0 and 1e9");
+            return check.refuse(TaskPart::LowerLimit, self.lower, "between 0 and 1e9");
         }
         if self.upper.is_nan() || self.upper < self.lower {
-            return check.refuse("upper limit (m)", self.upper, "at or above the lower limit");
+            return check.refuse(TaskPart::UpperLimit, self.upper, "at or above the lower limit");
         }
         Ok(())
     }

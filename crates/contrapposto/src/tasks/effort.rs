@@ -7,7 +7,7 @@
 //! Passive torque is folded as external torque is: that of a dependent coordinate counts at its independent one. With
 //! `q_d(q_i)` through however many couplings, `tau_i = sum_d q_d' tau_d` and `d tau_i/dq_i` has `q_d'' tau_d` besides.
 
-use super::check::{Check, TaskError};
+use super::check::{Check, TaskError, TaskPart};
 use super::rows::{append, equation};
 use crate::joint_torques::{JointTorques, active_torque};
 use crate::model::{Model, Side};
@@ -52,7 +52,7 @@ impl Effort {
     }
 
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
-        check.some("coordinate", !self.coordinates.is_empty())?;
+        check.some(TaskPart::Coordinate, !self.coordinates.is_empty())?;
         let count = check.model.coordinates().len();
         for &index in &self.coordinates {
             let Some(coordinate) = check.model.coordinates().get(index) else {
@@ -67,7 +67,7 @@ impl Effort {
             for group in groups {
                 let least = group.strength.peak * group.strength.floor;
                 if !(least > 0.0 && least.is_finite()) {
-                    return check.refuse("least strength (N m)", least, "positive and finite");
+                    return check.refuse(TaskPart::LeastStrength, least, "positive and finite");
                 }
             }
             if check.model.is_dependent(index) {

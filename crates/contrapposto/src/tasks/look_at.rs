@@ -10,7 +10,7 @@
 
 use nalgebra::{UnitVector3, Vector3};
 
-use super::check::{Check, TaskError};
+use super::check::{Check, TaskError, TaskPart};
 use super::rows::{add_along, append, equation};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
@@ -123,8 +123,8 @@ impl LookAt {
 
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
         check.segment(self.segment)?;
-        check.vector("eye (m)", &self.eye)?;
-        check.unit("length of the direction", self.direction.norm())?;
-        check.vector("target (m)", &self.target)
+        check.vector(TaskPart::Eye, &self.eye)?;
+        check.unit(TaskPart::Direction, self.direction.norm())?;
+        check.vector(TaskPart::Target, &self.target)
     }
 }

@@ -21,7 +21,7 @@ mod task;
 mod unit;
 
 pub use center_of_mass::{CenterOfMass, CenterOfMassGoal};
-pub use check::TaskError;
+pub use check::{TaskError, TaskPart};
 pub use distance::Distance;
 pub use effort::Effort;
 pub(crate) use effort::{passive_row, share_of_strength};

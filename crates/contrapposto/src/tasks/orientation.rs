@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::check::{Check, TaskError};
+use super::check::{Check, TaskError, TaskPart};
 use super::rows::{append, equations, multiply};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
@@ -39,7 +39,7 @@ impl Orientation {
 
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
         check.segment(self.segment)?;
-        check.unit("length of the target's quaternion", self.target.coords.norm())
+        check.unit(TaskPart::TargetQuaternion, self.target.coords.norm())
     }
 }
 

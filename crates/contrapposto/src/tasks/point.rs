@@ -4,7 +4,7 @@
 
 use nalgebra::Vector3;
 
-use super::check::{Check, TaskError};
+use super::check::{Check, TaskError, TaskPart};
 use super::rows::{append, equations};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
@@ -35,8 +35,8 @@ impl Point {
 
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
         check.segment(self.segment)?;
-        check.vector("point (m)", &self.point)?;
-        check.vector("target (m)", &self.target)?;
-        check.some("axis", self.axes.contains(&true))
+        check.vector(TaskPart::Point, &self.point)?;
+        check.vector(TaskPart::Target, &self.target)?;
+        check.some(TaskPart::Axis, self.axes.contains(&true))
     }
 }

@@ -4,7 +4,7 @@
 //! turn, where it jumps to the other side). Turning a ball by `w` changes its error by `J_r^-1(r) w`, the right
 //! Jacobian's inverse, which is the left one's of `-r`. Rows are multiplied with the weight of their rate.
 
-use super::check::{Check, TaskError};
+use super::check::{Check, TaskError, TaskPart};
 use super::orientation::inverse_left_jacobian;
 use super::rows::{append, equation};
 use super::unit::Unit;
@@ -86,12 +86,12 @@ impl Posture {
         }
         for (rate, &weight) in model.rates().iter().zip(&self.weights) {
             if !(0.0..=crate::model::LARGEST).contains(&weight) {
-                return check.refuse("weight", weight, "between 0 and 1e9");
+                return check.refuse(TaskPart::Weight, weight, "between 0 and 1e9");
             }
             if weight > 0.0 && rate.coordinate.is_some_and(|c| model.is_dependent(c)) {
                 return check.unable(&rate.name, "follows another coordinate; ask that one");
             }
         }
-        check.some("coordinate (all weights are 0)", self.weights.iter().any(|weight| *weight > 0.0))
+        check.some(TaskPart::WeightedCoordinate, self.weights.iter().any(|weight| *weight > 0.0))
     }
 }

@@ -1,43 +1,47 @@
-//! A body as model files describe it, resolved: what OpenSim, URDF and MJCF readers produce, and nothing of their syntax.
+//! Holds the intermediate representation of a model: the common result of the OpenSim, URDF and MJCF readers, free of their syntax.
 //!
 //! Units rad, m, kg, N, N m. Defaults, classes, includes, degrees and Euler sequences have ended at the reader.
 
 mod build;
+mod ignored;
 mod model;
 mod root;
 
 pub use contrapposto::math::{Function, Spline, SplineError};
-pub use model::{BodyError, Imported};
-pub use root::{BodyRoot, FREE_ENDINGS};
+pub use contrapposto::model::{CoordinateKind, Coupling, Drive};
+pub use model::{Imported, ModelIrError};
+pub(crate) use root::FREE_ENDINGS;
+pub use root::RootAttachment;
 
 pub(crate) use build::{compose_couplings, first_too_large, near, polynomial, turned, unique_coordinates, unit};
+pub(crate) use ignored::Ignored;
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-/// A resolved body.
+/// A model as its file describes it, resolved.
 #[derive(Clone, Debug, Default)]
-pub struct Body {
+pub struct ModelIr {
     /// Name in the file.
     pub name: String,
     /// Gravity in the file's own ground axes, m/s^2.
     pub gravity: Vector3<f64>,
     /// Segments, parents before children.
-    pub segments: Vec<BodySegment>,
+    pub segments: Vec<SegmentIr>,
     /// All coordinates, in the file's order.
-    pub coordinates: Vec<BodyCoordinate>,
-    /// Coordinates that follow another one.
+    pub coordinates: Vec<CoordinateIr>,
+    /// Dependent coordinates.
     pub couplings: Vec<Coupling>,
     /// Passive torques on coordinates; several on one coordinate add up.
-    pub passive: Vec<BodyPassive>,
+    pub passive: Vec<PassiveIr>,
     /// Named points (markers, sites): name, segment index, position in the segment's frame.
     pub stations: Vec<(String, usize, Vector3<f64>)>,
-    /// What was read past because it does not matter to quasi-static torque: kind and count, sorted by kind.
+    /// Ignored elements, which do not matter to quasi-static torque: kind and count, sorted by kind.
     pub ignored: Vec<(String, usize)>,
 }
 
 /// A rigid part and its joint.
 #[derive(Clone, Debug)]
-pub struct BodySegment {
+pub struct SegmentIr {
     /// Unique name.
     pub name: String,
     /// Index of the parent segment; `None` for ground.
@@ -55,51 +59,40 @@ pub struct BodySegment {
     /// The joint's moved frame in this segment's frame.
     pub in_segment: Isometry3<f64>,
     /// Elementary motions from the parent outward: the frame of each is carried by the one before.
-    pub motions: Vec<BodyMotion>,
+    pub motions: Vec<MotionIr>,
 }
 
 /// One elementary motion of a joint.
 #[derive(Clone, Debug)]
-pub enum BodyMotion {
+pub enum MotionIr {
     /// Turns about `axis` (unit length, in the frame before it) by `drive`, rad.
     Hinge {
         /// Unit axis.
         axis: Vector3<f64>,
-        /// What gives the angle.
+        /// The source of the angle.
         drive: Drive,
     },
     /// Slides along `axis` by `drive`, m.
     Slide {
         /// Unit axis.
         axis: Vector3<f64>,
-        /// What gives the distance.
+        /// The source of the distance.
         drive: Drive,
     },
     /// Turns freely: four coordinates (unit quaternion w, x, y, z), the first one named by index, the others following it.
     Ball {
-        /// Index of the quaternion's w in [`Body::coordinates`].
+        /// Index of the quaternion's w in [`ModelIr::coordinates`].
         first: usize,
     },
 }
 
-/// What gives the value of an elementary motion.
-#[derive(Clone, Debug)]
-pub enum Drive {
-    /// The coordinate itself.
-    Coordinate(usize),
-    /// A function of one coordinate.
-    Function(Function, usize),
-    /// Always the same.
-    Constant(f64),
-}
-
 /// A coordinate as the file has it.
 #[derive(Clone, Debug)]
-pub struct BodyCoordinate {
+pub struct CoordinateIr {
     /// Unique name.
     pub name: String,
     /// Whether it is an angle (rad), a distance (m) or a quaternion component.
-    pub kind: BodyCoordinateKind,
+    pub kind: CoordinateKind,
     /// Range as the file has it, rad or m; infinite where the file gives none.
     pub range: (f64, f64),
     /// Default value.
@@ -110,42 +103,20 @@ pub struct BodyCoordinate {
     pub clamped: bool,
 }
 
-/// What a coordinate's number means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodyCoordinateKind {
-    /// Angle, rad.
-    Rotation,
-    /// Distance, m.
-    Translation,
-    /// Component of a unit quaternion.
-    Quaternion,
-}
-
-/// `dependent = function(independent)`.
-#[derive(Clone, Debug)]
-pub struct Coupling {
-    /// Index of the coordinate that follows.
-    pub dependent: usize,
-    /// Index of the coordinate that leads.
-    pub independent: usize,
-    /// How.
-    pub function: Function,
-}
-
 /// A passive torque law on one coordinate.
 #[derive(Clone, Debug)]
-pub struct BodyPassive {
+pub struct PassiveIr {
     /// Name in the file.
     pub name: String,
     /// Index of the coordinate.
     pub coordinate: usize,
     /// The law, in rad and N m (m and N for slides).
-    pub law: PassiveLawText,
+    pub law: PassiveLawIr,
 }
 
 /// Passive laws of the formats.
 #[derive(Clone, Debug)]
-pub enum PassiveLawText {
+pub enum PassiveLawIr {
     /// OpenSim CoordinateLimitForce: stiffnesses per rad, limits and transition in rad.
     CoordinateLimitForce(contrapposto::passive::CoordinateLimitForce),
     /// OpenSim ExponentialCoordinateLimitForce.
@@ -166,5 +137,5 @@ pub enum PassiveLawText {
         rest: f64,
     },
     /// OpenSim ExpressionBasedCoordinateForce: torque as an expression of `q` (and `qdot`, zero at rest).
-    Expression(crate::expression::Expression),
+    Expression(contrapposto::math::expression::Expression),
 }

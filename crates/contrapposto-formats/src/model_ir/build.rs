@@ -1,6 +1,6 @@
-//! What the readers share while they build a body.
+//! Helps the readers build a [`ModelIr`]: checks, couplings of couplings, polynomials.
 
-use super::{Body, BodyMotion, BodySegment, Coupling, Drive, Function, PassiveLawText};
+use super::{Coupling, Drive, Function, ModelIr, MotionIr, PassiveLawIr, SegmentIr};
 use nalgebra::{Isometry3, Matrix3, Unit, Vector3};
 use std::collections::BTreeSet;
 
@@ -17,8 +17,8 @@ pub(crate) fn turned(inertia: &Matrix3<f64>, by: &Matrix3<f64>) -> Matrix3<f64> 
     Matrix3::from_fn(|row, column| full[(row.min(column), row.max(column))])
 }
 
-/// Complains about the first coordinate name that is there twice.
-pub(crate) fn unique_coordinates(body: &Body) -> Result<(), String> {
+/// Refuses the first coordinate name that is there twice.
+pub(crate) fn unique_coordinates(body: &ModelIr) -> Result<(), String> {
     let mut seen = BTreeSet::new();
     match body.coordinates.iter().find(|c| !seen.insert(c.name.as_str())) {
         Some(twice) => Err(twice.name.clone()),
@@ -31,16 +31,16 @@ const LARGEST: f64 = 1e30;
 
 /// Index of the first segment with a number that is not finite or too large to calculate with; one past the last for
 /// anything else.
-pub(crate) fn first_too_large(body: &Body) -> Option<usize> {
+pub(crate) fn first_too_large(body: &ModelIr) -> Option<usize> {
     let fits = |x: &f64| x.abs() <= LARGEST; // false for NaN
     let pose = |p: &Isometry3<f64>| p.translation.vector.iter().chain(p.rotation.coords.iter()).all(fits);
-    let motion = |m: &BodyMotion| match m {
-        BodyMotion::Hinge { axis, drive } | BodyMotion::Slide { axis, drive } => {
-            axis.iter().all(fits) && if let Drive::Constant(value) = drive { fits(value) } else { true }
+    let motion = |m: &MotionIr| match m {
+        MotionIr::Hinge { axis, drive } | MotionIr::Slide { axis, drive } => {
+            axis.iter().all(fits) && if let Drive::Fixed(value) = drive { fits(value) } else { true }
         }
-        BodyMotion::Ball { .. } => true,
+        MotionIr::Ball { .. } => true,
     };
-    let segment = |s: &BodySegment| {
+    let segment = |s: &SegmentIr| {
         s.center_of_mass.iter().chain(s.inertia.iter()).chain([&s.mass]).all(fits)
             && pose(&s.in_parent)
             && pose(&s.in_segment)
@@ -53,8 +53,8 @@ pub(crate) fn first_too_large(body: &Body) -> Option<usize> {
     let coordinates = body.coordinates.iter().all(|c| fits(&c.default) && end(&c.range.0) && end(&c.range.1));
     let couplings = body.couplings.iter().all(|c| powers(&c.function).is_none_or(|k| k.iter().all(fits)));
     let springs = body.passive.iter().all(|p| match &p.law {
-        PassiveLawText::Spring { stiffness, rest } => fits(stiffness) && fits(rest),
-        PassiveLawText::Polynomial { coefficients, rest } => fits(rest) && coefficients.iter().all(fits),
+        PassiveLawIr::Spring { stiffness, rest } => fits(stiffness) && fits(rest),
+        PassiveLawIr::Polynomial { coefficients, rest } => fits(rest) && coefficients.iter().all(fits),
         _ => true,
     });
     let stations = body.stations.iter().all(|(_, _, at)| at.iter().all(fits));
@@ -76,9 +76,9 @@ pub(crate) fn near<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) ->
 /// Most powers of a polynomial that couplings of couplings may reach.
 const MOST_POWERS: usize = 33;
 
-/// Replaces leaders that follow another coordinate themselves by that coordinate, composing the polynomials.
+/// Replaces independent coordinates that depend on another one themselves by that one, composing the polynomials.
 ///
-/// Couplings must be linear or polynomial, and a coordinate be led at most once. The error is the index of a coupling
+/// Couplings must be linear or polynomial, and a coordinate depend on one other at most. The error is the index of a coupling
 /// in a circle, or whose composed polynomial has too many powers.
 pub(crate) fn compose_couplings(couplings: &mut [Coupling], coordinates: usize) -> Result<(), usize> {
     let mut of = vec![None; coordinates];

@@ -1,27 +1,24 @@
-//! A resolved body becomes a [`Model`].
+//! Builds the [`Model`] of an intermediate representation.
 
-use contrapposto::model::{
-    CoordinateKind, CoordinateSpec, Drive as ModelDrive, JointKind, Model, ModelBuilder, ModelError, Motion,
-    SegmentSpec,
-};
+use contrapposto::model::{CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, SegmentSpec};
 use contrapposto::passive::{PassiveError, PassiveLaw, Term};
 use nalgebra::Unit;
 
-use super::{Body, BodyCoordinate, BodyCoordinateKind, BodyMotion, BodySegment, Drive, PassiveLawText};
+use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, PassiveLawIr, SegmentIr};
 
-/// A model, and what its file needed to be told about it.
+/// A model, and notes on its file.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// The model.
     pub model: Model,
-    /// What was changed or read past, one plain sentence each.
+    /// Changes and ignored parts, one plain sentence each.
     pub notes: Vec<String>,
 }
 
-/// Why a resolved body is no model.
+/// Why an intermediate representation is no model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum BodyError {
+pub enum ModelIrError {
     /// The model refuses it.
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -30,17 +27,17 @@ pub enum BodyError {
     Passive {
         /// Name of the force in the file.
         force: String,
-        /// What is wrong.
+        /// The reason.
         problem: PassiveError,
     },
 }
 
-impl Body {
-    /// The model of this body.
+impl ModelIr {
+    /// The model.
     ///
     /// # Errors
-    /// [`BodyError`] when the model refuses a name or number.
-    pub fn model(&self) -> Result<Imported, BodyError> {
+    /// [`ModelIrError`] when the model refuses a name or number.
+    pub fn model(&self) -> Result<Imported, ModelIrError> {
         let mut notes: Vec<String> =
             self.ignored.iter().map(|(kind, count)| format!("{count} {kind} ignored")).collect();
         let mut builder = ModelBuilder::new(&self.name, self.gravity);
@@ -54,16 +51,16 @@ impl Body {
         Ok(Imported { model: builder.build(), notes })
     }
 
-    fn spec(&self, segment: &BodySegment, notes: &mut Vec<String>) -> Result<SegmentSpec, BodyError> {
+    fn spec(&self, segment: &SegmentIr, notes: &mut Vec<String>) -> Result<SegmentSpec, ModelIrError> {
         // The joint's own coordinates, in the file's order.
         let mut own: Vec<usize> = vec![];
         for motion in &segment.motions {
             match motion {
-                BodyMotion::Hinge { drive, .. } | BodyMotion::Slide { drive, .. } => match drive {
+                MotionIr::Hinge { drive, .. } | MotionIr::Slide { drive, .. } => match drive {
                     Drive::Coordinate(c) | Drive::Function(_, c) => own.push(*c),
-                    Drive::Constant(_) => {}
+                    Drive::Fixed(_) => {}
                 },
-                BodyMotion::Ball { first } => own.extend(*first..first + 4),
+                MotionIr::Ball { first } => own.extend(*first..first + 4),
             }
         }
         own.sort_unstable();
@@ -74,12 +71,12 @@ impl Body {
         let mut next = 0;
         let plain = motions.iter().all(|(motion, drive)| {
             next += motion.coordinates();
-            *drive == ModelDrive::Coordinate(next - motion.coordinates())
+            *drive == Drive::Coordinate(next - motion.coordinates())
         });
         let kind = match motions.as_slice() {
             [] => JointKind::Weld,
-            [(Motion::Hinge(axis), ModelDrive::Coordinate(_))] => JointKind::Hinge(*axis),
-            [(Motion::Slide(axis), ModelDrive::Coordinate(_))] => JointKind::Slide(*axis),
+            [(Motion::Hinge(axis), Drive::Coordinate(_))] => JointKind::Hinge(*axis),
+            [(Motion::Slide(axis), Drive::Coordinate(_))] => JointKind::Slide(*axis),
             _ if plain => JointKind::Chain(motions.iter().map(|(motion, _)| *motion).collect()),
             _ => JointKind::Driven(motions),
         };
@@ -98,9 +95,9 @@ impl Body {
         })
     }
 
-    fn coordinate(&self, index: usize, notes: &mut Vec<String>) -> Result<CoordinateSpec, BodyError> {
-        let BodyCoordinate { name, kind, range, default, locked, .. } = &self.coordinates[index];
-        if *kind == BodyCoordinateKind::Quaternion {
+    fn coordinate(&self, index: usize, notes: &mut Vec<String>) -> Result<CoordinateSpec, ModelIrError> {
+        let CoordinateIr { name, kind, range, default, locked, .. } = &self.coordinates[index];
+        if *kind == CoordinateKind::Quaternion {
             let mut component = CoordinateSpec::new(name, (-1.0, 1.0));
             component.default = default.clamp(-1.0, 1.0);
             return Ok(component);
@@ -111,42 +108,39 @@ impl Body {
         }
         let mut terms = vec![];
         for passive in self.passive.iter().filter(|passive| passive.coordinate == index) {
-            let refuse = |problem| BodyError::Passive { force: passive.name.clone(), problem };
+            let refuse = |problem| ModelIrError::Passive { force: passive.name.clone(), problem };
             terms.push(match &passive.law {
-                PassiveLawText::CoordinateLimitForce(law) => {
+                PassiveLawIr::CoordinateLimitForce(law) => {
                     law.form().map_err(refuse)?;
                     Term::CoordinateLimitForce(*law)
                 }
-                PassiveLawText::DoubleExponential(law) => Term::double_exponential(*law).map_err(refuse)?,
-                PassiveLawText::Spring { stiffness, rest } => Term::Spring { stiffness: *stiffness, rest: *rest },
-                PassiveLawText::Polynomial { coefficients, rest } => {
+                PassiveLawIr::DoubleExponential(law) => Term::double_exponential(*law).map_err(refuse)?,
+                PassiveLawIr::Spring { stiffness, rest } => Term::Spring { stiffness: *stiffness, rest: *rest },
+                PassiveLawIr::Polynomial { coefficients, rest } => {
                     Term::Polynomial { coefficients: coefficients.clone(), rest: *rest }
                 }
-                PassiveLawText::Expression(formula) => Term::Expression(formula.clone()),
+                PassiveLawIr::Expression(formula) => Term::Expression(formula.clone()),
             });
         }
         let mut spec = CoordinateSpec::new(name, wide);
         spec.default = *default;
-        spec.kind = match kind {
-            BodyCoordinateKind::Translation => CoordinateKind::Translation,
-            _ => CoordinateKind::Rotation,
-        };
+        spec.kind = *kind;
         spec.locked = *locked;
         spec.passive = (!terms.is_empty()).then_some(PassiveLaw::Sum(terms));
         Ok(spec)
     }
 }
 
-/// The motion, and what drives it, coordinates counted as `local` does; a ball is driven by its own.
-fn motion_and_drive(motion: &BodyMotion, local: impl Fn(usize) -> usize) -> (Motion, ModelDrive) {
+/// The motion and its drive, coordinates counted as `local` does; a ball is driven by its own.
+fn motion_and_drive(motion: &MotionIr, local: impl Fn(usize) -> usize) -> (Motion, Drive) {
     let drive = |drive: &Drive| match drive {
-        Drive::Coordinate(c) => ModelDrive::Coordinate(local(*c)),
-        Drive::Function(function, c) => ModelDrive::Function(function.clone(), local(*c)),
-        Drive::Constant(value) => ModelDrive::Fixed(*value),
+        Drive::Coordinate(c) => Drive::Coordinate(local(*c)),
+        Drive::Function(function, c) => Drive::Function(function.clone(), local(*c)),
+        Drive::Fixed(value) => Drive::Fixed(*value),
     };
     match motion {
-        BodyMotion::Hinge { axis, drive: by } => (Motion::Hinge(Unit::new_normalize(*axis)), drive(by)),
-        BodyMotion::Slide { axis, drive: by } => (Motion::Slide(Unit::new_normalize(*axis)), drive(by)),
-        BodyMotion::Ball { first } => (Motion::Ball, ModelDrive::Coordinate(local(*first))),
+        MotionIr::Hinge { axis, drive: by } => (Motion::Hinge(Unit::new_normalize(*axis)), drive(by)),
+        MotionIr::Slide { axis, drive: by } => (Motion::Slide(Unit::new_normalize(*axis)), drive(by)),
+        MotionIr::Ball { first } => (Motion::Ball, Drive::Coordinate(local(*first))),
     }
 }

@@ -1,91 +1,20 @@
-//! Text to operations: precedence as OpenSim's parser has it.
+//! Reads OpenSim's expressions: a torque as a formula of the coordinate `q`, such as `-2*exp(-5*(q+0.1)) + k; k=3`.
 //!
-//! `+ -` bind least, then `* /`, then the sign, then `^` (to the right). The right operand of any operator may carry a sign.
+//! Grammar and precedence are OpenSim's own (the Lepton parser of `ExpressionBasedCoordinateForce`). `+ -` bind least, then `* /`,
+//! then the sign, then `^` (to the right): `-q^2` is `-(q^2)`, `2^3^2` is 512. The right operand of any operator may carry a sign.
+//! White space does not count, there is no unary plus, and definitions follow after semicolons, each seeing those to its right.
+//! Where OpenSim simplifies before it evaluates and the value changes, this reader does the same: `0*x`, `0/x`, `0^x` and `x-x`
+//! are 0, `x/x` and `x^0` are 1.
+//!
+//! Parts of a number that OpenSim drops in silence (`1e5.5` reads as 1e5, `.` as 0) are errors here.
+
+mod error;
+
+pub use error::{ExpressionError, MOST_DEPTH, MOST_EXPRESSION_BYTES};
 
 use std::collections::HashMap;
 
-use super::{Binary, MOST_BYTES, MOST_DEPTH, Node, Unary};
-
-/// Why a formula was refused. Columns count characters of the formula from 1.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ExpressionError {
-    /// More bytes than accepted.
-    #[error("the expression has {bytes} bytes; at most {MOST_BYTES} are accepted")]
-    TooLong {
-        /// Its length.
-        bytes: usize,
-    },
-    /// Brackets, signs or powers inside each other.
-    #[error("column {column}: more than {MOST_DEPTH} brackets, signs or powers inside each other")]
-    TooDeep {
-        /// Where the first one too many stands.
-        column: usize,
-    },
-    /// The text ends, or a definition is empty.
-    #[error("column {column}: the expression ends here; a number, a name, a function or `(` is expected")]
-    Ends {
-        /// One past the last character.
-        column: usize,
-    },
-    /// Something else should stand there.
-    #[error("column {column}: found `{found}`; expected {expected}")]
-    Unexpected {
-        /// Where.
-        column: usize,
-        /// The text at that place.
-        found: String,
-        /// The text that would be accepted.
-        expected: &'static str,
-    },
-    /// Neither `q`, `qdot` nor defined.
-    #[error(
-        "column {column}: unknown name `{name}`; names are `q`, `qdot` and what is defined after a `;` to the right"
-    )]
-    UnknownName {
-        /// Where.
-        column: usize,
-        /// The name.
-        name: String,
-    },
-    /// No such function.
-    #[error("column {column}: unknown function `{name}`; there are {}", FUNCTIONS)]
-    UnknownFunction {
-        /// Where.
-        column: usize,
-        /// The name.
-        name: String,
-    },
-    /// Too many or too few operands in brackets.
-    #[error("column {column}: `{name}` takes {expected} argument(s), found {found}")]
-    Arguments {
-        /// Where.
-        column: usize,
-        /// The function.
-        name: String,
-        /// How many it takes.
-        expected: usize,
-        /// How many there are.
-        found: usize,
-    },
-    /// Digits that are no finite number.
-    #[error("column {column}: `{text}` is not a finite decimal number")]
-    Number {
-        /// Where.
-        column: usize,
-        /// The digits.
-        text: String,
-    },
-    /// A piece after `;` without `name =`.
-    #[error("column {column}: a definition has the form `name = expression`")]
-    Definition {
-        /// Where the piece begins.
-        column: usize,
-    },
-}
-
-const FUNCTIONS: &str = "sqrt, exp, log, sin, cos, sec, csc, tan, cot, asin, acos, atan, sinh, cosh, tanh, erf, erfc, step, \
-                         delta, square, cube, recip, abs, min, max";
+use contrapposto::math::expression::{Binary, Expression, Operation, Unary};
 
 const OPERAND: &str = "a number, a name, a function, `(` or `-`";
 
@@ -154,8 +83,18 @@ impl std::fmt::Display for Token {
     }
 }
 
-pub(super) fn parse(text: &str) -> Result<(Vec<Node>, usize), ExpressionError> {
-    if text.len() > MOST_BYTES {
+/// Reads a formula.
+///
+/// ```
+/// let torque = contrapposto_formats::osim::expression::parse("-k*q^2; k=10")?;
+/// assert_eq!(torque.value_and_slope(0.5), (-2.5, -10.0));
+/// # Ok::<(), contrapposto_formats::osim::expression::ExpressionError>(())
+/// ```
+///
+/// # Errors
+/// [`ExpressionError`] with the column.
+pub fn parse(text: &str) -> Result<Expression, ExpressionError> {
+    if text.len() > MOST_EXPRESSION_BYTES {
         return Err(ExpressionError::TooLong { bytes: text.len() });
     }
     let is_space = |c: char| matches!(c, ' ' | '\t'..='\r');
@@ -177,7 +116,9 @@ pub(super) fn parse(text: &str) -> Result<(Vec<Node>, usize), ExpressionError> {
         builder.definitions.insert(name, value);
     }
     let root = builder.whole(primary, primary.last().map_or(end, |g| g.1 + 1))?;
-    Ok((builder.nodes, root))
+    // All operands stand before the root; the operations behind it belong to definitions that nothing uses.
+    builder.operations.truncate(root + 1);
+    Ok(Expression::new(text, builder.operations)?)
 }
 
 fn tokens(glyphs: &[Glyph]) -> Result<Vec<(Token, usize)>, ExpressionError> {
@@ -235,9 +176,32 @@ fn number_length(rest: &[Glyph]) -> usize {
 
 #[derive(Default)]
 struct Builder {
-    nodes: Vec<Node>,
-    known: HashMap<Node, usize>,
+    operations: Vec<Operation>,
+    /// Places of the operations by their keys: equal parts of a formula are one part.
+    known: HashMap<Key, usize>,
     definitions: HashMap<String, usize>,
+}
+
+/// An operation as a key: the constant by its bits.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Key {
+    Constant(u64),
+    Coordinate,
+    Speed,
+    Unary(Unary, usize),
+    Binary(Binary, usize, usize),
+}
+
+impl From<Operation> for Key {
+    fn from(operation: Operation) -> Self {
+        match operation {
+            Operation::Constant(value) => Self::Constant(value.to_bits()),
+            Operation::Coordinate => Self::Coordinate,
+            Operation::Speed => Self::Speed,
+            Operation::Unary(function, a) => Self::Unary(function, a),
+            Operation::Binary(function, a, b) => Self::Binary(function, a, b),
+        }
+    }
 }
 
 struct Cursor<'a> {
@@ -338,8 +302,8 @@ impl Builder {
     fn name(&mut self, name: String, column: usize) -> Result<usize, ExpressionError> {
         match self.definitions.get(&name) {
             Some(&defined) => Ok(defined),
-            None if name == "q" => Ok(self.intern(Node::Q)),
-            None if name == "qdot" => Ok(self.intern(Node::QDot)),
+            None if name == "q" => Ok(self.intern(Operation::Coordinate)),
+            None if name == "qdot" => Ok(self.intern(Operation::Speed)),
             None => Err(ExpressionError::UnknownName { column, name }),
         }
     }
@@ -363,26 +327,27 @@ impl Builder {
         }
     }
 
-    fn intern(&mut self, node: Node) -> usize {
-        let nodes = &mut self.nodes;
-        *self.known.entry(node).or_insert_with(|| {
-            nodes.push(node);
-            nodes.len() - 1
+    /// The place of the operation, which is added where it is not known yet.
+    fn intern(&mut self, operation: Operation) -> usize {
+        let operations = &mut self.operations;
+        *self.known.entry(operation.into()).or_insert_with(|| {
+            operations.push(operation);
+            operations.len() - 1
         })
     }
 
     fn constant(&mut self, value: f64) -> usize {
-        self.intern(Node::Constant(value.to_bits()))
+        self.intern(Operation::Constant(value))
     }
 
     fn unary(&mut self, function: Unary, a: usize) -> usize {
-        self.intern(Node::Unary(function, a))
+        self.intern(Operation::Unary(function, a))
     }
 
     /// With OpenSim's simplifications that change a value somewhere.
     fn binary(&mut self, operation: Binary, a: usize, b: usize) -> usize {
-        let constant = |at: usize| match self.nodes[at] {
-            Node::Constant(bits) => Some(f64::from_bits(bits)),
+        let constant = |at: usize| match self.operations[at] {
+            Operation::Constant(value) => Some(value),
             _ => None,
         };
         let (first, second) = (constant(a), constant(b));
@@ -398,7 +363,7 @@ impl Builder {
         };
         match simple {
             Some(value) => self.constant(value),
-            None => self.intern(Node::Binary(operation, a, b)),
+            None => self.intern(Operation::Binary(operation, a, b)),
         }
     }
 }

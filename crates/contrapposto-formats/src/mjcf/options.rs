@@ -1,0 +1,13 @@
+//! Options of the MJCF reader.
+
+use crate::model_ir::RootAttachment;
+use crate::xml::Limits;
+
+/// Options of the reader that the file does not give.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// How the outermost body is attached to the ground; `None`: as the file says. `Free` adds `root_tx` ... `root_qz`.
+    pub root: Option<RootAttachment>,
+    /// Caps.
+    pub limits: Limits,
+}

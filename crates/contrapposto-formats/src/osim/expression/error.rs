@@ -1,0 +1,92 @@
+//! Errors of expressions, and the largest sizes that are read.
+
+use contrapposto::math::expression::OperandError;
+
+/// Most bytes of one expression.
+pub const MOST_EXPRESSION_BYTES: usize = 16 << 10;
+/// Most operations that may wait inside each other: brackets, signs, powers.
+pub const MOST_DEPTH: usize = 64;
+
+/// Why a formula was refused. Columns count characters of the formula from 1.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExpressionError {
+    /// More bytes than accepted.
+    #[error("the expression has {bytes} bytes; at most {MOST_EXPRESSION_BYTES} are accepted")]
+    TooLong {
+        /// Its length.
+        bytes: usize,
+    },
+    /// Brackets, signs or powers inside each other.
+    #[error("column {column}: more than {MOST_DEPTH} brackets, signs or powers inside each other")]
+    TooDeep {
+        /// Where the first one too many stands.
+        column: usize,
+    },
+    /// The text ends, or a definition is empty.
+    #[error("column {column}: the expression ends here; a number, a name, a function or `(` is expected")]
+    Ends {
+        /// One past the last character.
+        column: usize,
+    },
+    /// Something else should stand there.
+    #[error("column {column}: found `{found}`; expected {expected}")]
+    Unexpected {
+        /// Where.
+        column: usize,
+        /// What stands there.
+        found: String,
+        /// What would be accepted.
+        expected: &'static str,
+    },
+    /// Neither `q`, `qdot` nor defined.
+    #[error(
+        "column {column}: unknown name `{name}`; names are `q`, `qdot` and what is defined after a `;` to the right"
+    )]
+    UnknownName {
+        /// Where.
+        column: usize,
+        /// The name.
+        name: String,
+    },
+    /// No such function.
+    #[error("column {column}: unknown function `{name}`; there are {FUNCTIONS}")]
+    UnknownFunction {
+        /// Where.
+        column: usize,
+        /// The name.
+        name: String,
+    },
+    /// Too many or too few operands in brackets.
+    #[error("column {column}: `{name}` takes {expected} argument(s), found {found}")]
+    Arguments {
+        /// Where.
+        column: usize,
+        /// The function.
+        name: String,
+        /// How many it takes.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// Digits that are no finite number.
+    #[error("column {column}: `{text}` is not a finite decimal number")]
+    Number {
+        /// Where.
+        column: usize,
+        /// The digits.
+        text: String,
+    },
+    /// Operands that do not stand before their operation. The reader puts them there.
+    #[error(transparent)]
+    Operand(#[from] OperandError),
+    /// A piece after `;` without `name =`.
+    #[error("column {column}: a definition has the form `name = expression`")]
+    Definition {
+        /// Where the piece begins.
+        column: usize,
+    },
+}
+
+const FUNCTIONS: &str = "sqrt, exp, log, sin, cos, sec, csc, tan, cot, asin, acos, atan, sinh, cosh, tanh, erf, erfc, step, \
+                         delta, square, cube, recip, abs, min, max";
