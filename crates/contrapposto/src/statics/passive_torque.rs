@@ -4,12 +4,12 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 
 /// Larger torque cannot be calculated with: squares of it must stay finite. N m, N for slides.
-const GREATEST_TORQUE: f64 = 1e50;
+const PASSIVE_TORQUE_LIMIT: f64 = 1e50;
 
 /// A law of a file that gives no torque to calculate with in a posture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the passive torque of `{coordinate}` at {value:.6} (rad or m) is {torque:e} N m (or N); it must be finite and at most {GREATEST_TORQUE:e} in size"
+    "the passive torque of `{coordinate}` at {value:.6} (rad or m) is {torque:e} N m (or N); it must be finite and at most {PASSIVE_TORQUE_LIMIT:e} in size"
 )]
 pub struct PassiveTorqueError {
     /// Name of the coordinate.
@@ -60,7 +60,7 @@ impl PassiveTorque {
             *torque = 0.0;
             let Some((i, law)) = known else { continue };
             *torque = law.torque(i, &self.values);
-            if torque.is_nan() || torque.abs() > GREATEST_TORQUE {
+            if torque.is_nan() || torque.abs() > PASSIVE_TORQUE_LIMIT {
                 let (coordinate, value) = (model.coordinates()[i].name.clone(), self.values[i]);
                 return Err(PassiveTorqueError { coordinate, value, torque: *torque });
             }
