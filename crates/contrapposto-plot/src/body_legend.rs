@@ -57,22 +57,7 @@ pub(crate) fn legend(
 ) -> f64 {
     let any = |test: &dyn Fn(&BodyPosture) -> bool| postures.iter().any(test);
     let mut row = Row { canvas, at: (MARGIN, top) };
-    if any(&|posture| posture.parts.iter().any(|part| part.load.is_some())) {
-        let over = any(&|posture| posture.parts.iter().any(|part| part.load.is_some_and(|load| load > scale_end)));
-        let end = format!("{:.0} % of strength{}", 100.0 * scale_end, if over { " or more" } else { "" });
-        row.entry("muscle load: 0 %", COLOUR_SCALE, &end, |canvas, (x, y)| {
-            let step = COLOUR_SCALE / f64::from(SHADES);
-            for shade in 0..SHADES {
-                let ink = load_ink((f64::from(shade) + 0.5) / f64::from(SHADES));
-                // Pieces overlap, so that no seam shows; the last one does not stand out.
-                let wide = if shade + 1 < SHADES { 1.5 * step } else { step };
-                canvas.block((x + f64::from(shade) * step, y - 0.5 * SAMPLE_HEIGHT), wide, SAMPLE_HEIGHT, ink);
-            }
-        });
-        if any(&|posture| posture.parts.iter().any(|part| part.load.is_none())) {
-            row.entry("", SAMPLE_HEIGHT, "load not known", |canvas, (x, y)| swatch(canvas, x, y, UNKNOWN, OUTLINE_PEN));
-        }
-    }
+    load_entries(&mut row, postures, scale_end);
     if any(&|posture| !posture.start.is_empty()) {
         row.entry("", SAMPLE_HEIGHT, "start", |canvas, (x, y)| {
             swatch(canvas, x, y, GHOST, Pen::solid(GHOST_EDGE, 1.0))
@@ -107,6 +92,28 @@ pub(crate) fn legend(
         [x, x + length].into_iter().for_each(|x| canvas.line(&[(x, y - 4.0), (x, y + 4.0)], pen));
     });
     row.at.1 + 0.5 * ROW_HEIGHT
+}
+
+/// Draws the colour scale of muscle load, and the colour of parts whose load is not known.
+fn load_entries(row: &mut Row<'_>, postures: &[BodyPosture], scale_end: f64) {
+    let any = |test: &dyn Fn(&BodyPosture) -> bool| postures.iter().any(test);
+    if !any(&|posture| posture.parts.iter().any(|part| part.load.is_some())) {
+        return;
+    }
+    let over = any(&|posture| posture.parts.iter().any(|part| part.load.is_some_and(|load| load > scale_end)));
+    let end = format!("{:.0} % of strength{}", 100.0 * scale_end, if over { " or more" } else { "" });
+    row.entry("muscle load: 0 %", COLOUR_SCALE, &end, |canvas, (x, y)| {
+        let step = COLOUR_SCALE / f64::from(SHADES);
+        for shade in 0..SHADES {
+            let ink = load_ink((f64::from(shade) + 0.5) / f64::from(SHADES));
+            // Pieces overlap, so that no seam shows; the last one does not stand out.
+            let wide = if shade + 1 < SHADES { 1.5 * step } else { step };
+            canvas.block((x + f64::from(shade) * step, y - 0.5 * SAMPLE_HEIGHT), wide, SAMPLE_HEIGHT, ink);
+        }
+    });
+    if any(&|posture| posture.parts.iter().any(|part| part.load.is_none())) {
+        row.entry("", SAMPLE_HEIGHT, "load not known", |canvas, (x, y)| swatch(canvas, x, y, UNKNOWN, OUTLINE_PEN));
+    }
 }
 
 fn swatch(canvas: &mut Canvas, x: f64, y: f64, fill: Ink, pen: Pen) {

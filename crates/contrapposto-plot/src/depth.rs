@@ -15,7 +15,7 @@ pub(crate) type Ball = [f64; 4];
 const RINGS: u32 = 6;
 const SLICES: u32 = 16;
 /// Two parts are compared at this number of points squared where their boxes overlap.
-const GRID: u32 = 6;
+const SAMPLES_PER_SIDE: u32 = 6;
 
 /// Two fronts nearer to each other than this share of the thinner part's thickness count as equally near.
 const TIE_SHARE: f64 = 0.7;
@@ -64,16 +64,16 @@ impl Solid {
         if low.0 >= high.0 || low.1 >= high.1 {
             return 0.0;
         }
-        let at = |k: u32, low: f64, high: f64| low + (high - low) * (f64::from(k) + 0.5) / f64::from(GRID);
+        let at = |k: u32, low: f64, high: f64| low + (high - low) * (f64::from(k) + 0.5) / f64::from(SAMPLES_PER_SIDE);
         let tie = TIE_SHARE * self.thick.min(earlier.thick);
         let mut sum = 0.0;
-        for k in 0..GRID * GRID {
-            let point = (at(k / GRID, low.0, high.0), at(k % GRID, low.1, high.1));
+        for k in 0..SAMPLES_PER_SIDE * SAMPLES_PER_SIDE {
+            let point = (at(k / SAMPLES_PER_SIDE, low.0, high.0), at(k % SAMPLES_PER_SIDE, low.1, high.1));
             if self.outline.contains(point) && earlier.outline.contains(point) {
                 sum += self.front(point) - earlier.front(point) + tie;
             }
         }
-        sum * (high.0 - low.0) * (high.1 - low.1) / f64::from(GRID * GRID)
+        sum * (high.0 - low.0) * (high.1 - low.1) / f64::from(SAMPLES_PER_SIDE * SAMPLES_PER_SIDE)
     }
 }
 
