@@ -209,9 +209,26 @@ impl<'a, 'w> Walk<'a, 'w> {
             segment.in_parent = Isometry3::identity();
             self.push_freedoms(index, &Joint::new(item, Kind::Free));
         }
+        self.joints(&joints, index, pose, &mut segment)?;
+        self.body.segments.push(segment);
+        self.body.stations.extend(contents.stations.into_iter().map(|(name, at)| (name, index, at)));
+        for (child, context) in contents.bodies {
+            self.segment(child, context)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the motions of a body's joints, in their order, to its segment, number `index`.
+    fn joints(
+        &mut self,
+        joints: &[Joint<'a>],
+        index: usize,
+        pose: Isometry3<f64>,
+        segment: &mut SegmentIr,
+    ) -> Result<(), MjcfError> {
         let mut chain = Chain { pose, at: Vector3::zeros(), turned: false };
         for (number, joint) in joints.iter().enumerate() {
-            self.joint(joint, number, &mut segment, &mut chain)?;
+            self.joint(joint, number, segment, &mut chain)?;
             self.push_freedoms(index, joint);
             if self.body.coordinates.len() > self.options.limits.coordinates {
                 let cap = self.options.limits.coordinates;
@@ -219,11 +236,6 @@ impl<'a, 'w> Walk<'a, 'w> {
             }
         }
         segment.in_segment = Isometry3::from(Translation3::from(chain.at));
-        self.body.segments.push(segment);
-        self.body.stations.extend(contents.stations.into_iter().map(|(name, at)| (name, index, at)));
-        for (child, context) in contents.bodies {
-            self.segment(child, context)?;
-        }
         Ok(())
     }
 

@@ -68,12 +68,15 @@ pub(super) fn assemble<'a>(
         body.segments.push(segment(base, name, chain));
         at = next_base;
     }
-    if let Some(lost) = segment_of.iter().position(Option::is_none) {
-        let accepted = "bodies that joints connect to ground";
-        let what = format!("body {}, in a loop of joints apart from ground,", scene.bodies[lost].name);
-        return Err(OsimProblem::unsupported(scene.bodies[lost].node.place(), &what, accepted));
-    }
+    check_that_all_are_reached(scene, &segment_of)?;
     Ok(coordinates)
+}
+
+fn check_that_all_are_reached(scene: &Scene<'_>, segment_of: &[Option<usize>]) -> Result<(), OsimProblem> {
+    let Some(lost) = segment_of.iter().position(Option::is_none) else { return Ok(()) };
+    let accepted = "bodies that joints connect to ground";
+    let what = format!("body {}, in a loop of joints apart from ground,", scene.bodies[lost].name);
+    Err(OsimProblem::unsupported(scene.bodies[lost].node.place(), &what, accepted))
 }
 
 /// Numbers of the joints at each body, and whether a body is the child of one; ground is the last.

@@ -22,13 +22,7 @@ pub(super) fn build(
     options: &Options,
     ignored: &mut Ignored,
 ) -> Result<(), UrdfError> {
-    let mut names = Names::new();
-    for (index, &link) in links.iter().enumerate() {
-        let name = required(link, "name")?;
-        if names.insert(name, index).is_some() {
-            return Err(UrdfError::DuplicateName { place: name_place(link), value: name.to_owned() });
-        }
-    }
+    let names = names_of_links(links)?;
     let mut by_name = Names::new();
     for (index, joint) in joints.iter().enumerate() {
         if by_name.insert(joint.name, index).is_some() {
@@ -75,6 +69,18 @@ pub(super) fn build(
     }
     unique_coordinates(body).map_err(|value| UrdfError::DuplicateName { place: robot.place(), value })?;
     couple(body, joints, &by_name, &coordinate_of, ignored)
+}
+
+/// Numbers of the links by name.
+fn names_of_links<'a>(links: &[Node<'a>]) -> Result<Names<'a>, UrdfError> {
+    let mut names = Names::new();
+    for (index, &link) in links.iter().enumerate() {
+        let name = required(link, "name")?;
+        if names.insert(name, index).is_some() {
+            return Err(UrdfError::DuplicateName { place: name_place(link), value: name.to_owned() });
+        }
+    }
+    Ok(names)
 }
 
 /// The one link that is no child.

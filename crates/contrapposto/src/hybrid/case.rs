@@ -136,3 +136,21 @@ pub struct Decision {
     /// The printed tables' interval held no root, so the total mode looked further (docs/deviations.md, D3).
     pub beyond_tables: bool,
 }
+
+impl Decision {
+    /// The case that applies at `active_torque` (N m), before a goal is sought.
+    pub(super) fn without_goal(case: Case, active_torque: f64, slope_angles: SlopeAngles) -> Self {
+        Self {
+            case,
+            outcome: Outcome::None,
+            goal: None,
+            active_torque,
+            active_torque_at_goal: None,
+            decrease_ratio: None,
+            slope_angles,
+            interval: None,
+            equilibrium: None,
+            beyond_tables: false,
+        }
+    }
+}

@@ -185,19 +185,7 @@ fn table_1(problem: &Problem, active: &Extrapolation, reading: Reading) -> (Deci
         _ => (Case::C13, Request::Root((here, range.1))),
     };
     let interval = if let Request::Root((from, to)) = request { Some((from.angle, to.angle)) } else { None };
-    let decision = Decision {
-        case,
-        outcome: Outcome::None,
-        goal: None,
-        active_torque: tau_a,
-        active_torque_at_goal: None,
-        decrease_ratio: ratio,
-        slope_angles,
-        interval,
-        equilibrium: None,
-        beyond_tables: false,
-    };
-    (decision, request)
+    (Decision { decrease_ratio: ratio, interval, ..Decision::without_goal(case, tau_a, slope_angles) }, request)
 }
 
 /// The strategy in force: one accepted earlier in this recovery is kept (D4).

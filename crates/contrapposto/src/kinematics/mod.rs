@@ -54,12 +54,7 @@ impl Kinematics {
     }
 
     fn fill(&mut self, model: &Model, posture: &[f64]) {
-        self.values.copy_from_slice(posture);
-        for (coupling, derivatives) in model.couplings.iter().zip(&mut self.couplings) {
-            let [value, slope, curvature] = coupling.function.value_slope_curvature(self.values[coupling.independent]);
-            self.values[coupling.dependent] = value;
-            *derivatives = (slope, curvature);
-        }
+        self.fill_values(model, posture);
         for (i, mobility) in model.mobilities.iter().enumerate() {
             let (rotation, origin) = match mobility.parent {
                 None => (mobility.rotation, mobility.translation),
@@ -112,6 +107,16 @@ impl Kinematics {
                     self.origins[i] = origin;
                 }
             }
+        }
+    }
+
+    /// Coordinates, the dependent ones from their independent ones.
+    fn fill_values(&mut self, model: &Model, posture: &[f64]) {
+        self.values.copy_from_slice(posture);
+        for (coupling, derivatives) in model.couplings.iter().zip(&mut self.couplings) {
+            let [value, slope, curvature] = coupling.function.value_slope_curvature(self.values[coupling.independent]);
+            self.values[coupling.dependent] = value;
+            *derivatives = (slope, curvature);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Values with their slope.
 
-use super::{Binary, Unary};
+use super::operation::{Binary, Unary};
 
 /// A value and its derivative by `q`.
 #[derive(Clone, Copy, Debug)]
