@@ -49,8 +49,9 @@ pub(super) const ROUNDING_SHARE: f64 = 1e-11;
 pub(super) const PREDICTED_ROUNDING: f64 = 1e-13;
 /// Largest change of a rate in one step below which the descent has converged, rad or m.
 pub(super) const LEAST_STEP: f64 = 1e-10;
-/// Decay of the penalty from step to step, and its least size against the largest multiplier.
+/// Factor by which the penalty falls from step to step, down to its least size.
 pub(super) const PENALTY_DECAY: f64 = 0.7;
+/// Least size of the penalty, as a multiple of the largest multiplier.
 pub(super) const PENALTY_MARGIN: f64 = 1.5;
 /// Least regularisation after an accepted step that agreed badly.
 pub(super) const RAISED_REGULARISATION: f64 = 1e-5;
