@@ -282,7 +282,7 @@ impl JointTorques {
     ///
     /// # Panics
     /// When the last update did not compute both.
-    pub fn external_and_passive(&self, rate: usize) -> (f64, f64) {
+    pub(crate) fn external_and_passive(&self, rate: usize) -> (f64, f64) {
         (self.external_torque().torques()[rate], self.passive_torque().torques()[rate])
     }
 

@@ -109,7 +109,7 @@ impl Problem {
     ///
     /// # Errors
     /// [`ProblemError`] names the first list or number that does not.
-    pub fn check(&self) -> Result<(), ProblemError> {
+    pub(crate) fn check(&self) -> Result<(), ProblemError> {
         self.check_limits()?;
         for (k, level) in self.levels.iter().enumerate() {
             if let Some(&value) = level.matrix.iter().find(|a| a.is_nan() || a.abs() > LARGEST_NUMBER) {

@@ -35,14 +35,14 @@ impl HalfSpace {
     }
 
     /// How far `posture` lies outside; not positive inside.
-    pub fn violation(&self, posture: &[f64]) -> f64 {
+    pub(crate) fn violation(&self, posture: &[f64]) -> f64 {
         self.normal.iter().zip(posture).map(|(a, q)| a * q).sum::<f64>() - self.offset
     }
 
     /// Moves `posture` to the nearest point of the half-space, changing only the coordinates marked `free`.
     ///
     /// Returns `false` when no free coordinate enters the inequality and the posture stays outside.
-    pub fn project(&self, posture: &mut [f64], free: &[bool]) -> bool {
+    pub(crate) fn project(&self, posture: &mut [f64], free: &[bool]) -> bool {
         let excess = self.violation(posture);
         if excess <= 0.0 {
             return true;

@@ -276,7 +276,7 @@ impl ContactForces {
     }
 
     /// Rates that only supports can hold.
-    pub fn root(&self) -> &[usize] {
+    pub(crate) fn root(&self) -> &[usize] {
         &self.root
     }
 
@@ -306,7 +306,7 @@ impl ContactForces {
     }
 
     /// By corner: the directions of its three forces, ground axes.
-    pub fn axes(&self) -> &[[Vector3<f64>; FORCES_PER_CORNER]] {
+    pub(crate) fn axes(&self) -> &[[Vector3<f64>; FORCES_PER_CORNER]] {
         &self.axes
     }
 

@@ -82,7 +82,7 @@ pub struct Endurance {
 impl EnduranceCurve {
     /// Endurance time at relative load `load`, s: infinite where the curve ends (or at rest), never negative. A load above
     /// strength counts as 1, the end of every published curve.
-    pub fn time(&self, load: f64) -> f64 {
+    pub(crate) fn time(&self, load: f64) -> f64 {
         if load <= 0.0 {
             return f64::INFINITY;
         }
@@ -104,7 +104,7 @@ impl EnduranceCurve {
 
 impl Endurance {
     /// Fatigue after `seconds` under relative load `load`.
-    pub fn advance(&self, share: f64, load: f64, seconds: f64) -> f64 {
+    pub(crate) fn advance(&self, share: f64, load: f64, seconds: f64) -> f64 {
         if load <= REST_LOAD {
             return share * (-self.recovery_rate * seconds).exp();
         }

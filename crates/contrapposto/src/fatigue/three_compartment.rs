@@ -98,7 +98,7 @@ impl ThreeCompartment {
     }
 
     /// The same for a group with fatigue `level`, which `MF' = F TL - R MF` carries from `level (1 - TL)` to `1 - TL`.
-    pub fn time_left(&self, level: f64, load: f64) -> f64 {
+    pub(crate) fn time_left(&self, level: f64, load: f64) -> f64 {
         if load >= 1.0 || level >= 1.0 {
             return 0.0;
         }

@@ -45,7 +45,7 @@ impl<'a> Extrapolation<'a> {
     }
 
     /// Slope of the external line, N m/rad.
-    pub fn external_slope(&self) -> f64 {
+    pub(crate) fn external_slope(&self) -> f64 {
         self.external_slope
     }
 

@@ -115,12 +115,6 @@ impl Function {
         self.value_slope_curvature(x)[1]
     }
 
-    /// Second derivative.
-    #[must_use]
-    pub fn curvature(&self, x: f64) -> f64 {
-        self.value_slope_curvature(x)[2]
-    }
-
     /// The function times a number.
     #[must_use]
     pub fn scaled(self, by: f64) -> Self {
@@ -140,7 +134,7 @@ impl Function {
     }
 
     /// The numbers that it was made of.
-    pub fn numbers(&self) -> Vec<f64> {
+    pub(crate) fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Constant(value) => vec![*value],
             Self::Linear { slope, intercept } => vec![*slope, *intercept],
@@ -264,7 +258,7 @@ impl Spline {
 
     /// First and last x of the points.
     #[must_use]
-    pub fn range(&self) -> (f64, f64) {
+    pub(crate) fn range(&self) -> (f64, f64) {
         (self.knots[0], self.knots[self.knots.len() - 1])
     }
 

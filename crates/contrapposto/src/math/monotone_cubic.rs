@@ -25,14 +25,14 @@ impl Piece {
     }
 
     /// Integral of the value from the piece's start to `x`.
-    pub fn integral(&self, x: f64) -> f64 {
+    pub(crate) fn integral(&self, x: f64) -> f64 {
         let [c0, c1, c2, c3] = self.coefficients;
         let t = x - self.start;
         t * (c0 + t * (c1 / 2.0 + t * (c2 / 3.0 + t * c3 / 4.0)))
     }
 
     /// Angle inside the piece where the slope is extreme (the vertex of the slope parabola), if there is one.
-    pub fn slope_vertex(&self) -> Option<f64> {
+    pub(crate) fn slope_vertex(&self) -> Option<f64> {
         let [_, _, c2, c3] = self.coefficients;
         let x = self.start - c2 / (3.0 * c3);
         (c3 != 0.0 && x > self.start && x < self.end).then_some(x)
@@ -42,7 +42,7 @@ impl Piece {
     ///
     /// Judged by the signs of `slope(x) - slope` at both ends and at the vertex, with the tangent that a piece shares with
     /// its neighbour, so no passage falls between two pieces by rounding.
-    pub fn crossings(&self, slope: f64, mut visit: impl FnMut(f64)) {
+    pub(crate) fn crossings(&self, slope: f64, mut visit: impl FnMut(f64)) {
         let [_, c1, c2, c3] = self.coefficients;
         let (start, end) = ((self.start, c1 - slope), (self.end, self.end_slope - slope));
         let mut between = |a: (f64, f64), b: (f64, f64)| {

@@ -34,11 +34,6 @@ impl Side {
         self as usize
     }
 
-    /// +1 or -1.
-    pub fn sign(self) -> f64 {
-        if self == Self::Positive { 1.0 } else { -1.0 }
-    }
-
     /// The group that gives a torque of this sign; positive for zero.
     pub fn of(torque: f64) -> Self {
         if torque < 0.0 { Self::Negative } else { Self::Positive }

@@ -171,13 +171,6 @@ impl Model {
         self.segments.iter().position(|s| s.name == name)
     }
 
-    /// The same body under another gravity, m/s^2 in ground axes.
-    #[must_use]
-    pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
-        self.gravity = gravity;
-        self
-    }
-
     /// The same body with another passive curve at one coordinate.
     #[must_use]
     pub fn with_passive(mut self, coordinate: usize, curve: PassiveCurve) -> Self {
@@ -223,7 +216,7 @@ impl Model {
 
     /// The same body with another contact patch of one segment (corners in its frame, m).
     #[must_use]
-    pub fn with_patch(mut self, segment: usize, corners: Vec<Vector3<f64>>) -> Self {
+    pub(crate) fn with_patch(mut self, segment: usize, corners: Vec<Vector3<f64>>) -> Self {
         self.segments[segment].patch = corners;
         self
     }

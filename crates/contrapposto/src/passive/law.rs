@@ -94,7 +94,7 @@ impl Coupled {
     }
 
     /// Torque in the coordinate's direction, and its derivatives by the coordinates of hip, knee and ankle.
-    pub fn torque_and_gradient(&self, posture: &[f64]) -> (f64, [f64; 3]) {
+    pub(crate) fn torque_and_gradient(&self, posture: &[f64]) -> (f64, [f64; 3]) {
         let angles = self.angles(posture);
         let signs = self.neighbours.map(|n| n.map_or(0.0, |(_, sign)| sign));
         let (torque, mut gradient) = self.law.torque_and_gradient(angles);
@@ -106,7 +106,7 @@ impl Coupled {
     }
 
     /// Second derivatives of that torque by the coordinates of hip, knee and ankle.
-    pub fn curvature(&self, posture: &[f64]) -> [[f64; 3]; 3] {
+    pub(crate) fn curvature(&self, posture: &[f64]) -> [[f64; 3]; 3] {
         let signs = self.neighbours.map(|n| n.map_or(0.0, |(_, sign)| sign));
         let own = if signs[self.law.joint] < 0.0 { -1.0 } else { 1.0 };
         let mut curvature = self.law.curvature(self.angles(posture));

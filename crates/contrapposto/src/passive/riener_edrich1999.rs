@@ -64,7 +64,7 @@ impl RienerEdrich1999 {
     }
 
     /// Second derivatives of the torque by the three angles, N m/rad^2.
-    pub fn curvature(&self, angles: [f64; 3]) -> [[f64; 3]; 3] {
+    pub(crate) fn curvature(&self, angles: [f64; 3]) -> [[f64; 3]; 3] {
         let mut curvature = [[0.0; 3]; 3];
         for term in &self.terms {
             let value = term.sign * term.exponent(angles).exp();

@@ -139,12 +139,12 @@ impl<'a> Engine<'a> {
     }
 
     /// Length of the error of a level in the posture that was evaluated last.
-    pub fn error(&self, level: usize) -> f64 {
+    pub(crate) fn error(&self, level: usize) -> f64 {
         self.error_of(&self.settings.levels[level]).length
     }
 
     /// Distance of the supports from their places: length of the errors in m and rad together.
-    pub fn slip(&self) -> f64 {
+    pub(crate) fn slip(&self) -> f64 {
         self.settings.placements.as_ref().map_or(0.0, |placements| self.error_of(placements).length)
     }
 
@@ -293,7 +293,7 @@ impl<'a> Engine<'a> {
     ///
     /// # Errors
     /// [`EngineError::Body`] when the posture does not fit the model.
-    pub fn descend(&mut self, posture: &mut Posture) -> Result<bool, EngineError> {
+    pub(crate) fn descend(&mut self, posture: &mut Posture) -> Result<bool, EngineError> {
         if !self.settings.effort_is_last() || !self.settings.can_descend() {
             return Ok(false);
         }

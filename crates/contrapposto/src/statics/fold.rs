@@ -111,7 +111,7 @@ impl Kinematics {
     }
 
     /// Folds torques by rate, computed as if nothing were coupled: every dependent coordinate into its independent one.
-    pub fn fold_couplings(&self, model: &Model, raw: &[f64], folded: &mut [f64]) {
+    pub(crate) fn fold_couplings(&self, model: &Model, raw: &[f64], folded: &mut [f64]) {
         folded.copy_from_slice(raw);
         for (coupling, (slope, _)) in model.couplings.iter().zip(&self.couplings).rev() {
             let rate = |coordinate: usize| model.coordinates[coordinate].rate;

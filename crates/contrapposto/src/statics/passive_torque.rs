@@ -70,7 +70,7 @@ impl PassiveTorque {
     }
 
     /// The values of all coordinates, inside their ranges, at which the laws were evaluated, rad or m.
-    pub fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
 

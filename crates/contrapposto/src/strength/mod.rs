@@ -49,7 +49,7 @@ impl Strength {
     }
 
     /// Second derivative at `angle` (rad), N m/rad^2; 0 on the floor.
-    pub fn curvature(&self, angle: f64) -> f64 {
+    pub(crate) fn curvature(&self, angle: f64) -> f64 {
         let torque = self.torque(angle);
         if torque > self.peak * self.floor { -self.narrowness.powi(2) * torque } else { 0.0 }
     }

@@ -16,7 +16,7 @@ pub struct PriorityLevel {
 
 impl PriorityLevel {
     /// Number of rows: the errors of the tasks, then the half-spaces.
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.tasks.iter().map(Task::rows).sum::<usize>() + self.half_spaces.len()
     }
 }
