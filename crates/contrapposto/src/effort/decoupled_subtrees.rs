@@ -1,7 +1,8 @@
 //! Finds the subtrees of a body whose effort no constraint ties to the rest.
 //!
 //! A subtree of joints that no constraint row moves, such as the free arm and the head of a body that reaches with the other arm,
-//! has torques of its own. Of two postures each such subtree can be taken from the one in which its effort is less.
+//! has torques of its own. Of two postures each such subtree can be taken from the one in which its effort is less. The rest
+//! carries the subtrees, and so feels the exchange: the mixture is a start for a descent, no more.
 
 use super::iterate::Iterate;
 use super::problem::EffortProblem;
@@ -17,7 +18,7 @@ pub(crate) struct DecoupledSubtrees {
 }
 
 impl DecoupledSubtrees {
-    /// The subtrees at `iterate`: rates with a zero column in the constraint rows.
+    /// The subtrees at `iterate`: branches of which every rate is free and has a zero column in the constraint rows.
     pub(crate) fn of(problem: &EffortProblem<'_>, iterate: &Iterate) -> Self {
         let model = problem.model;
         let (subtrees, count) = subtrees_of_mobilities(problem, iterate);
@@ -26,7 +27,8 @@ impl DecoupledSubtrees {
         for (m, subtree) in subtrees.iter().enumerate().rev() {
             model.rates_of(m).for_each(|rate| of_rates[rate] = *subtree);
         }
-        // A dependent coordinate whose independent one lies in another subtree ties both subtrees to the rest.
+        // One rate that drives motions in two subtrees ties both to the rest. Couplings are not looked at: dependent rates are
+        // not free, so their motions are in the rest already, but their independent ones may still be in a subtree.
         for (m, subtree) in subtrees.iter().enumerate() {
             for rate in model.rates_of(m).filter(|rate| of_rates[*rate] != *subtree) {
                 (tied[*subtree], tied[of_rates[rate]]) = (true, true);

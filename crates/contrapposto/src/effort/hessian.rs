@@ -2,8 +2,10 @@
 //!
 //! `L = 1/2 |r|^2 + sum_k y_k c_k` with the relative loads `r`, the errors `c_k` of all constraints and their multipliers `y_k`.
 //! Beyond `J^T J` its second derivative has `sum_k y_k c_k''` of the tasks ([`ErrorHessian`]) and `sum_i w_i tau_i''` with
-//! `w_i = -r_i / S_i` for muscles and `w_k = y_k` for the root's equilibrium. External torque is the gradient of a potential, whose third derivatives are symmetric: that sum is the change of the gradient matrix when
-//! the body moves along `w`, and its mixed part is the change of the torques of each contact force, since these too are gradients
+//! `w_i = -r_i / S_i` for muscles and `w_k = y_k / W` for the root's equilibrium, whose rows are shares of body weight `W`.
+//! External torque is the gradient of a potential, whose third derivatives are symmetric: that sum is the change of the
+//! gradient matrix when the body moves along `w`, and its mixed part is the change of the torques of each contact force, since
+//! these too are gradients
 //! of a potential. One difference gives both. Coupled passive laws, which have no potential, and strength that changes with the
 //! angle have closed forms.
 //!
@@ -41,7 +43,7 @@ pub(crate) struct FirstOrder<'a> {
 /// Which terms of the second derivative count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HessianModel {
-    /// All.
+    /// All; only the passive laws of dependent coordinates are left out.
     Full,
     /// Tasks, weight, loads, and passive torque of single joints.
     Partial,
@@ -163,7 +165,8 @@ impl Hessian {
         }
     }
 
-    /// `sum_i w_i tau_p,i''` of coupled laws.
+    /// Adds `sum_i w_i tau_p,i''` of coupled laws, by those of hip, knee and ankle that are free. Laws of dependent coordinates,
+    /// whose passive torque counts at the independent ones, are left out.
     fn add_coupled(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
         let (model, n, values) = (problem.model, problem.unknowns(), at.body.kinematics().values());
         for (own, coordinate) in model.coordinates().iter().enumerate() {
@@ -171,8 +174,8 @@ impl Hessian {
             if model.is_dependent(own) {
                 continue;
             }
-            let places = law.neighbours.map(|n| {
-                let rate = model.coordinates()[n?.0].rate?;
+            let places = law.neighbours.map(|neighbour| {
+                let rate = model.coordinates()[neighbour?.0].rate?;
                 problem.free.iter().position(|free| *free == rate)
             });
             for (a, row) in places.into_iter().zip(law.curvature(values)) {

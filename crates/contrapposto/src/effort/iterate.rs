@@ -143,6 +143,8 @@ impl Iterate {
         }
     }
 
+    /// Rows of the supports' placements and of the levels above effort, all of one rank, zero in the forces. The tasks of all
+    /// levels come first, placements foremost: [`Iterate::first_order`] and the multipliers of the Hessian rely on that order.
     fn add_level_rows(&mut self, problem: &EffortProblem<'_>) {
         let (rates, forces) = (problem.model.rates(), self.forces.len());
         for task in problem.constraint_levels().flat_map(|level| &level.tasks) {

@@ -196,7 +196,9 @@ impl MeritRule {
         }
     }
 
-    /// Gives the effort level its second derivative.
+    /// Replaces the rows of the effort level by those of its Newton level. Equations above are weighed into the matrix, lest
+    /// curvature along them look negative. Raises the regularisation where it must; where none makes the matrix positive, the
+    /// level keeps its first derivatives. `last` are the multipliers of the last step.
     fn write_effort_level(
         &mut self,
         effort: &EffortProblem<'_>,

@@ -26,7 +26,8 @@ pub struct Sample<'a> {
     pub decisions: &'a [Option<Decision>],
     /// The muscle group of every coordinate that requests relief.
     pub asking: &'a [Option<Side>],
-    /// The outcome of the relief of every coordinate, in the step that led here.
+    /// The outcome of the relief of every coordinate, in the step that led here; [`Relief::Blocked`] and [`Relief::GivenUp`]
+    /// tell of the posture shown, and stand in place of that outcome.
     pub reliefs: &'a [Option<Relief>],
     /// Contact forces, task errors and effort of a body with supports or tasks.
     pub standing: Option<&'a Standing>,

@@ -278,7 +278,8 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Asks the hybrid minimisation for every coordinate with a recovering group, and writes the half-spaces of its decisions.
+    /// Decides anew for every free coordinate whose working group recovers ([`State::requesting_side`]), and notes whether any
+    /// relief still moves. The others have no decision; a request ends only when no group of its coordinate recovers.
     fn decide(&mut self) -> Result<(), ScenarioError> {
         let (mut decided, mut moves) = (false, false);
         for i in 0..self.state.decisions.len() {
@@ -293,7 +294,7 @@ impl<'a> Simulation<'a> {
             }
             let Some(side) = self.state.requesting_side(i, self.scenario.relief.torque_tolerance) else { continue };
             self.record.asking[i] = Some(side);
-            if let Some(step) = self.relieve(i, side)? {
+            if let Some(step) = self.decide_for(i, side)? {
                 decided = true;
                 moves |= step.abs() > SMALLEST_STEP;
             }
@@ -303,8 +304,11 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Decides how one group of a coordinate is relieved; gives the step toward the goal, rad, `None` without a decision.
-    fn relieve(&mut self, i: usize, side: Side) -> Result<Option<f64>, ScenarioError> {
+    /// Stores the decision that one group follows (on a body the last one until a new one is confirmed) and requests its step,
+    /// which the next time step carries out. Gives that step, rad, zero without a goal; `None` without a decision: given up,
+    /// which lets the half-space go, blocked, which keeps it (both replace the recorded outcome of the last motion), or a
+    /// passive law without a falling curve.
+    fn decide_for(&mut self, i: usize, side: Side) -> Result<Option<f64>, ScenarioError> {
         let Scenario { model, strategy, relief, .. } = self.scenario;
         let coordinate = &model.coordinates()[i];
         let (Some(law), Some(rate)) = (&coordinate.passive, coordinate.rate) else { return Ok(None) };

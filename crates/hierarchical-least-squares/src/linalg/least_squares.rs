@@ -13,7 +13,8 @@ pub(crate) struct LeastSquares {
     /// `T` row after row, and `c`, as given.
     given: Vec<f64>,
     given_right: Vec<f64>,
-    /// `T` column after column, rows in `row_order`; the last column is `c`. Holds the Householder vectors below the diagonal.
+    /// `T` column after column, rows in `row_order`; the last column is `c`. Once factorised, `R` above the diagonal, and the
+    /// Householder vectors on and below it.
     matrix: Vec<f64>,
     row_order: Vec<usize>,
     /// Largest entry of each row, in absolute value.
@@ -109,7 +110,8 @@ impl LeastSquares {
         column_order.extend(0..n);
     }
 
-    /// Householder reflections, the column with the largest remainder first, its largest entry as pivot.
+    /// Householder reflections of `T` and `c`, the column with the largest remainder first, its largest entry as pivot. Ends at
+    /// the first dependent column: the length of `diagonal` is the rank.
     fn factorise(&mut self) {
         let (m, n) = (self.rows, self.columns);
         self.diagonal.clear();
