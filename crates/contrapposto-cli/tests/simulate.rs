@@ -646,7 +646,7 @@ fn a_fall_ends_the_job_and_is_told() {
     let text = shortened(&scenarios().join("stand-ready.toml")) + push;
     let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folder.path()).stdin(text.as_str()).run();
     assert!(
-        run.code == 1 && run.stderr.contains("what happened at 1 s") && run.stderr.contains("m beyond the supports"),
+        run.code == 1 && run.stderr.contains("the event at 1 s") && run.stderr.contains("m beyond the supports"),
         "{}",
         run.stderr
     );
@@ -656,7 +656,7 @@ fn a_fall_ends_the_job_and_is_told() {
     assert!(run.stderr.contains(summary["fell"]["why"].as_str().unwrap()));
     assert_table(&Table::read(&folder.path().join("trajectory.csv")), &summary);
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
-    assert!(page.contains("nothing held the body any more"));
+    assert!(page.contains("the supports could no longer hold the body"));
     assert!(!folder.path().join("snapshot.json").exists());
     // A comparison has nothing to show then.
     let fallen = folder.path().join("fallen.toml");
@@ -664,7 +664,7 @@ fn a_fall_ends_the_job_and_is_told() {
     let out = folder.path().join("compared");
     let ready = scenarios().join("poses/reach-shelf.toml");
     let run = contrapposto(["compare"]).arg(&ready).arg(&fallen).arg("--out").arg(&out).run();
-    assert!(run.code == 1 && run.stderr.contains("what happened at 1 s"), "{} {}", run.code, run.stderr);
+    assert!(run.code == 1 && run.stderr.contains("the event at 1 s"), "{} {}", run.code, run.stderr);
 }
 
 /// However early Ctrl-C comes, whoever hears it shows the start, from which the run goes on.
