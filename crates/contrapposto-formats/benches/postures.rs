@@ -1,5 +1,5 @@
-//! How long does a step of the published peer problem take, and a posture of each of its targets until the success rule of its
-//! file holds? Thread time by the wall clock, the least of several runs. Needs the problem in `../shared`.
+//! Measures a step of the published peer problem, and a posture of each of its targets until the success rule of its file
+//! holds. Thread time by the wall clock, the least of several runs. Needs the problem in `../shared`.
 //! `cargo bench -p contrapposto-formats --bench postures [-- TARGET]`; with a target, only its runs, for a profiler.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark prints")]

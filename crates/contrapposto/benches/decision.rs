@@ -1,4 +1,4 @@
-//! How long does one decision take, compared with a plain search of the whole range?
+//! Measures the time of one decision, beside a plain search of the whole range.
 //!
 //! The rival scans 33 points of the same extrapolated active torque and refines each bracket by Illinois false position to
 //! 1e-12 N m: all roots, but no case, no strategy and no answer where there is no root. Both run over the same 512 problems.

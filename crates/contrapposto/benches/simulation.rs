@@ -1,4 +1,4 @@
-//! How long does a one-joint simulation of ten minutes take, at 30 steps a second?
+//! Measures the time of a one-joint simulation of ten minutes, at 30 steps a second.
 
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;

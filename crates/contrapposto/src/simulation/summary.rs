@@ -37,7 +37,10 @@ pub struct Fall {
 impl fmt::Display for Fall {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { time, missing } = self;
-        write!(f, "the event at {time} s throws the body off balance, and no posture nearby restores balance: {missing}")
+        write!(
+            f,
+            "the event at {time} s throws the body off balance, and no posture nearby restores balance: {missing}"
+        )
     }
 }
 
