@@ -25,7 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What it is not: it knows no velocities and no dynamics, no muscles with paths, and no skin. [`posture_solver`] finds postures
+//! The crate knows no velocities and no dynamics, no muscles with paths, and no skin. [`posture_solver`] finds postures
 //! from tasks in strict priority, [`equilibria`] those of least effort on their supports, [`simulation`] moves a body that tires.
 
 // Unit tests share bodies with the tests outside, which know this crate by its name.

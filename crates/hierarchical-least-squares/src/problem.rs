@@ -99,7 +99,7 @@ pub enum ProblemError {
         what: String,
         /// The number.
         value: f64,
-        /// What would be accepted.
+        /// The accepted values.
         accepted: &'static str,
     },
 }

@@ -208,7 +208,7 @@ impl GroundReaction {
 /// The columns of one plate.
 struct Columns {
     label: String,
-    /// What tells the plate from others.
+    /// The text that tells the plate from others.
     marks: String,
     columns: [[usize; 3]; 3],
     coupled: bool,

@@ -16,7 +16,7 @@ use crate::toml_file::{Located, read_toml};
 pub struct ModelFile {
     /// Its path, as seen from the scenario's folder.
     pub file: String,
-    /// What is laid over it, as seen from the scenario's folder.
+    /// The overlay's path, as seen from the scenario's folder.
     pub overlay: Option<String>,
     /// How its root is attached, if that is said.
     pub root: Option<RootAttachment>,

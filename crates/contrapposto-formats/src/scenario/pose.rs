@@ -24,13 +24,13 @@ pub struct PoseScenario {
     pub start: Posture,
     /// Rates that do not move, besides those of coordinates that the model itself locks.
     pub locked: Vec<usize>,
-    /// What pulls on it besides its weight.
+    /// The loads besides the body's weight.
     pub loads: Vec<Load>,
     /// The most important first; supports, if any, are the first one, and hard.
     pub goals: Vec<PriorityLevel>,
     /// A name for every task of every goal.
     pub labels: Vec<Vec<String>>,
-    /// What carries it, where the patches of all supports are known; else empty. Goals know supports without them.
+    /// The supports, where the patches of all of them are known; else empty. Levels know supports without them.
     pub supports: Vec<Support>,
     /// How it is solved.
     pub options: Options,

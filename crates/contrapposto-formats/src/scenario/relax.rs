@@ -22,9 +22,9 @@ pub struct RelaxScenario {
     pub start: Posture,
     /// Rates that do not move, besides those of coordinates that the model itself locks.
     pub locked: Vec<usize>,
-    /// What pulls on it besides its weight.
+    /// The loads besides the body's weight.
     pub loads: Vec<Load>,
-    /// What carries it.
+    /// The supports that carry it.
     pub supports: Vec<Support>,
     /// Tasks, the most important first; one of them is effort.
     pub goals: Vec<PriorityLevel>,

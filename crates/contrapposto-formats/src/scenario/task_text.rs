@@ -14,7 +14,7 @@ use crate::toml_file::{numbers, rows};
 pub(crate) struct SupportText {
     /// Which segment.
     pub(crate) segment: String,
-    /// What it stands on.
+    /// The surface that it stands on.
     #[serde(default)]
     pub(crate) on: OnText,
     /// Coefficient of friction, 0 to 10; 0.6 when left out. Has no part in a pose.
@@ -27,7 +27,7 @@ pub(crate) struct SupportText {
     pub(crate) corners_m: Option<Vec<[f64; 3]>>,
 }
 
-/// What a support stands on: `"ground"`, or a plane.
+/// The surface under a support: `"ground"`, or a plane.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum OnText {

@@ -16,7 +16,7 @@ use crate::toml_file::numbers;
 pub(crate) struct ScenarioText {
     /// Version of this format; 1.
     pub(crate) format: u32,
-    /// What the experiment is called.
+    /// Name of the experiment.
     #[serde(default)]
     pub(crate) title: String,
     /// The body; the built-in reference man when left out.
@@ -34,15 +34,15 @@ pub(crate) struct ScenarioText {
     /// Held weights and forces.
     #[serde(default)]
     pub(crate) load: Vec<LoadText>,
-    /// What carries weight.
+    /// The supports, which carry weight.
     #[serde(default)]
     pub(crate) support: Vec<SupportText>,
-    /// What the body should do, in order of priority.
+    /// The tasks of the body, in order of priority.
     #[serde(default)]
     pub(crate) task: Vec<TaskText>,
     /// How a pose is solved (`pose`).
     pub(crate) solver: Option<SolverText>,
-    /// What kind of relief is wanted; `simulate` needs it.
+    /// The kind of relief that is wanted; `simulate` needs it.
     pub(crate) strategy: Option<StrategyText>,
     /// How relief is carried out (`simulate`).
     #[serde(default)]
@@ -50,7 +50,7 @@ pub(crate) struct ScenarioText {
     /// How muscle groups tire (`simulate`).
     #[serde(default)]
     pub(crate) fatigue: FatigueText,
-    /// What changes on the way (`simulate`).
+    /// Changes during a run (`simulate`).
     #[serde(default)]
     pub(crate) event: Vec<EventText>,
     /// How long; `simulate` needs it.
@@ -105,7 +105,7 @@ pub(crate) enum RootText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AdultText {
-    /// Whose proportions.
+    /// The sex whose proportions count.
     pub(crate) sex: SexText,
     /// Stature, m, 1.2 to 2.3.
     pub(crate) stature_m: f64,
@@ -191,7 +191,7 @@ pub(crate) enum FixedInText {
     Segment,
 }
 
-/// What kind of relief is wanted.
+/// The kind of relief that is wanted.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StrategyText {

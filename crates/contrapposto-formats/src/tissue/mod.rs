@@ -24,7 +24,7 @@ pub struct SourcedModel {
     pub format: ModelFormat,
     /// By coordinate.
     pub origins: Vec<Origins>,
-    /// What was ignored, changed or filled in, one sentence each.
+    /// The parts that were ignored, changed or filled in, one sentence each.
     pub notes: Vec<String>,
 }
 

@@ -40,7 +40,7 @@ pub(super) struct Joint {
     pub(super) anchor: Vector3<f64>,
     pub(super) coordinate: usize,
     pub(super) reference: f64,
-    /// Whose joint it is.
+    /// The segment of the joint.
     pub(super) segment: usize,
 }
 

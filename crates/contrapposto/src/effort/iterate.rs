@@ -95,7 +95,7 @@ impl Iterate {
         Ok(())
     }
 
-    /// What the second derivative needs.
+    /// The quantities that the second derivative needs.
     pub(crate) fn first_order(&self, problem: &EffortProblem<'_>) -> FirstOrder<'_> {
         let (n, root) = (problem.unknowns(), problem.contact.root().len());
         FirstOrder {

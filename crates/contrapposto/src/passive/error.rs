@@ -87,7 +87,7 @@ pub enum PassiveError {
         parameter: PassiveParameter,
         /// The value given.
         value: f64,
-        /// What would be accepted.
+        /// The accepted values.
         accepted: &'static str,
     },
     /// The torque rises with the angle somewhere in the range.
@@ -111,7 +111,7 @@ pub enum PassiveError {
     Table {
         /// Row, counted from 1.
         row: usize,
-        /// What is wrong with it.
+        /// The fault.
         problem: &'static str,
     },
 }

@@ -32,7 +32,7 @@ pub enum EngineError {
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What would be accepted.
+        /// The accepted values.
         accepted: &'static str,
     },
     /// A support does not fit the model.

@@ -10,7 +10,7 @@ const PATH_SAMPLES: u32 = 16;
 /// The step of relief is halved once for each rejection, and at most so many times.
 const MOST_HALVINGS: u32 = 30;
 
-/// What a decision does to its joint.
+/// The predicted effect of a decision on its joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Prediction {
     /// The next step toward the goal (Eq. 9), rad.

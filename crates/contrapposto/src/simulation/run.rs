@@ -129,7 +129,7 @@ impl<'a> Run<'a> {
         &self.snapshot
     }
 
-    /// What has happened.
+    /// The results so far.
     pub fn summary(&self) -> Summary {
         Summary {
             reason: self.reason.unwrap_or(StopReason::Interrupted),

@@ -231,7 +231,7 @@ pub enum ScenarioError {
         setting: Setting,
         /// The value.
         value: f64,
-        /// What would be accepted.
+        /// The accepted values.
         accepted: &'static str,
     },
     /// A coordinate is free but has no passive curve, so that no relief can be computed for it.

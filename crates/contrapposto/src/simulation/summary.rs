@@ -30,7 +30,7 @@ pub enum StopReason {
 pub struct Fall {
     /// When, s.
     pub time: f64,
-    /// What the supports did not give, in the posture in which the event met the body.
+    /// Force and moment that the supports lacked, in the posture in which the event met the body.
     pub missing: Missing,
 }
 
@@ -56,7 +56,7 @@ impl StopReason {
     }
 }
 
-/// What happened to one coordinate.
+/// Results of one coordinate.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateSummary {
     /// Cases in the order they came, repetitions left out; the first two hundred changes.
@@ -79,7 +79,7 @@ pub struct CoordinateSummary {
     pub last_decision: Option<Decision>,
 }
 
-/// What happened in a run.
+/// Results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// Why it stopped.

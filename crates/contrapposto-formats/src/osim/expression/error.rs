@@ -34,9 +34,9 @@ pub enum ExpressionError {
     Unexpected {
         /// Where.
         column: usize,
-        /// What stands there.
+        /// The text that stands there.
         found: String,
-        /// What would be accepted.
+        /// The accepted values.
         expected: &'static str,
     },
     /// Neither `q`, `qdot` nor defined.
