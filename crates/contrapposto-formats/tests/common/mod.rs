@@ -1,4 +1,4 @@
-//! What the readers' tests share: files, and forward kinematics of a [`ModelIr`] written from its description alone.
+//! Shared by the readers' tests: files, and forward kinematics of a [`ModelIr`] written from its description alone.
 #![allow(dead_code, unreachable_pub, unused_imports, reason = "each test uses a part")]
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "tests print their figures, and may stop")]
 

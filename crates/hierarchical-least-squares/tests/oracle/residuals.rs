@@ -135,7 +135,7 @@ fn by_row(draw: &Draw, mine: &[Vec<f64>]) -> Result<f64, CascadeError> {
 
 /// Rows of one level that weigh 1e-16 to 1 against each other (their scales squared) leave the light ones to the rounding
 /// of the heavy ones as soon as the heavy ones conflict, whoever computes them; with them what the levels below may do.
-/// What is left to compare with Clarabel is the length of every level down to the first that keeps a residual.
+/// The comparison with Clarabel is by the length of every level down to the first that keeps a residual.
 fn by_length(draw: &Draw, answer: &Answer, mine: &[Vec<f64>], tally: &mut Tally) -> Result<(), String> {
     let mut cascade = Cascade::new(draw);
     let mut short = false;
