@@ -32,7 +32,7 @@ impl ScenarioFile {
 /// The model file that a scenario names, if it names one.
 fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<Model>, Fail> {
     let Some(file) = scenario_model(name, bytes)? else { return Ok(None) };
-    let opened = open(&model_args(scenario, &file), true)?;
+    let opened = open(&model_args(scenario, &file), true)?.with_fatigue(&file.fatigue);
     opened.notes.iter().for_each(|note| print_note("note", note));
     Ok(Some(opened.model))
 }

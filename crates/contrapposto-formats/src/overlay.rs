@@ -20,9 +20,6 @@ const GENERAL: &str = "general";
 /// Greatest passive torque of a named curve that anybody can have meant, N m.
 const MOST_NM: f64 = 1e4;
 
-/// Fatigue classes, for suggestions.
-const CLASSES: [&str; 7] = ["ankle", "knee", "trunk", "shoulder", "elbow", "grip", GENERAL];
-
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct OverlayText {
@@ -126,6 +123,7 @@ impl Table<'_> {
             }
         }
         self.passive(model, index, text, range, &mut said)?;
+        let had_groups = model.coordinates()[index].groups.is_some();
         self.groups(model, index, text, &mut said)?;
         if said.is_empty() {
             let help = Some("give range_deg, passive, strength or fatigue".to_owned());
@@ -136,7 +134,7 @@ impl Table<'_> {
             range,
             passive: text.passive.is_some(),
             strength: text.strength.is_some(),
-            fatigue: text.fatigue.is_some() || text.strength.is_some(),
+            fatigue: text.fatigue.is_some() || (text.strength.is_some() && !had_groups),
             note: format!("`{}`: {} from the overlay", self.path[1], said.join(", ")),
         })
     }
@@ -268,7 +266,7 @@ impl Table<'_> {
         let class = text.fatigue.as_deref();
         let law = |class: &str| {
             data::library().three_compartment(class).map(|(law, _)| law).ok_or_else(|| {
-                let help = suggestion(class, CLASSES);
+                let help = suggestion(class, data::library().fatigue_classes().collect::<Vec<_>>());
                 self.value_error("fatigue", format!("there is no fatigue class `{class}`"), help)
             })
         };

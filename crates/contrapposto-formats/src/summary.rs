@@ -8,6 +8,8 @@ use contrapposto::model::{CoordinateKind, Side};
 use contrapposto::simulation::{Contact, Scenario, Standing, StopReason, Summary};
 use serde::Serialize;
 
+use crate::tissue::FatigueParametersText;
+
 /// The whole file.
 #[derive(Clone, Debug, Serialize)]
 pub struct SummaryText {
@@ -129,6 +131,8 @@ pub struct CoordinateText {
 pub struct GroupText {
     /// Its movement.
     pub name: Option<String>,
+    /// The parameters of its fatigue law.
+    pub fatigue: Option<FatigueParametersText>,
     /// Greatest fatigue, 0 to 1.
     pub peak_fatigue: f64,
     /// When it could no longer hold its load, s.
@@ -144,6 +148,7 @@ impl SummaryText {
             let [external, passive, active] = s.final_torques;
             let group = |side: Side| GroupText {
                 name: c.groups.as_ref().map(|groups| groups[side.index()].name.clone()),
+                fatigue: c.groups.as_ref().map(|groups| FatigueParametersText::new(&groups[side.index()])),
                 peak_fatigue: s.peak_fatigue[side.index()],
                 exhausted_s: s.exhausted_at[side.index()],
             };

@@ -113,7 +113,8 @@ fn time_left_is_when_the_load_fails() {
 fn endurance_time_of_three_compartments() {
     for (class, f, r, rest, times) in CLASSES {
         let law = three_compartment(class);
-        assert_eq!(law, ThreeCompartment { fatigue_rate: f, recovery_rate: r, rest_multiplier: rest });
+        let name = class.to_owned();
+        assert_eq!(law, ThreeCompartment { name, fatigue_rate: f, recovery_rate: r, rest_multiplier: rest });
         for (load, expected) in LOADS.into_iter().zip(times) {
             let closed = law.endurance_time(load);
             assert!((closed - expected).abs() < 0.051, "{class} {load}: {closed} {expected}");

@@ -3,7 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use contrapposto::model::data::FatigueSet;
 use contrapposto_formats::model_ir::RootAttachment;
+use contrapposto_formats::tissue::{FatigueChoice, FatigueSex};
+
+use crate::fail::Fail;
 
 /// MODEL, and the options that complete it.
 #[derive(Debug, clap::Args)]
@@ -48,6 +52,58 @@ pub(crate) enum PassiveFrom {
     File,
 }
 
+/// The fatigue law of the muscle groups.
+#[derive(Debug, clap::Args)]
+pub(crate) struct FatigueArgs {
+    /// Parameters of the three-compartment fatigue law, where an overlay names none.
+    #[arg(long, value_enum, value_name = "SET", default_value = "joint")]
+    pub(crate) fatigue: ParametersChoice,
+    /// Sex whose parameters `muscle_group` takes; that of the body when left out.
+    #[arg(long, value_enum, value_name = "SEX")]
+    pub(crate) fatigue_sex: Option<FatigueSexChoice>,
+}
+
+/// Published parameters of the three-compartment law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum ParametersChoice {
+    /// One fit a joint (Frey-Law et al. 2012).
+    Joint,
+    /// One fit a functional muscle group and sex (Rakshit et al. 2021); movements without a group keep the fit of their joint.
+    MuscleGroup,
+}
+
+/// Sex whose parameters are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FatigueSexChoice {
+    /// Women's.
+    Female,
+    /// Men's.
+    Male,
+    /// Both together.
+    Any,
+}
+
+impl FatigueArgs {
+    pub(crate) fn choice(&self) -> Result<FatigueChoice, Fail> {
+        let set = match self.fatigue {
+            ParametersChoice::Joint => FatigueSet::Joint,
+            ParametersChoice::MuscleGroup => FatigueSet::MuscleGroup,
+        };
+        if self.fatigue_sex.is_some() && set == FatigueSet::Joint {
+            let why = "--fatigue-sex: the parameters of joints are the same for both sexes; add --fatigue muscle_group";
+            return Err(Fail::Refused(why.to_owned()));
+        }
+        let sex = match self.fatigue_sex {
+            None => FatigueSex::OfBody,
+            Some(FatigueSexChoice::Female) => FatigueSex::Female,
+            Some(FatigueSexChoice::Male) => FatigueSex::Male,
+            Some(FatigueSexChoice::Any) => FatigueSex::Any,
+        };
+        Ok(FatigueChoice::ThreeCompartment(set, sex))
+    }
+}
+
 #[derive(Debug, Parser)]
 #[command(
     after_help = "Examples:\n  contrapposto inspect subject.osim\n  contrapposto inspect adult:female,1.65m,60kg --json"
@@ -55,6 +111,8 @@ pub(crate) enum PassiveFrom {
 pub(crate) struct InspectArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) fatigue: FatigueArgs,
     /// Print everything as JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -91,6 +149,8 @@ pub(crate) struct TorquesArgs {
 pub(crate) struct AssessArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) fatigue: FatigueArgs,
     /// Recorded motion: .mot, .sto or .csv, one row a frame, with times.
     pub(crate) motion: PathBuf,
     #[command(flatten)]

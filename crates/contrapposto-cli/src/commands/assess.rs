@@ -10,7 +10,7 @@ use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::motion::write_sto;
-use contrapposto_formats::tissue::SourcedModel;
+use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use nalgebra::Vector3;
 
 use crate::args::AssessArgs;
@@ -46,7 +46,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     if args.model.model == Path::new("-") && args.motion == Path::new("-") {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
-    let mut opened = open(&args.model, true)?;
+    let mut opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
     let Given { motion, held, ground, settings } = given(args, &mut opened)?;
     let model = &opened.model;
 
@@ -101,6 +101,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
 /// The motion, the loads and the settings of an assessment, checked; notes about them go to standard error.
 fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
     let mut notes = std::mem::take(&mut opened.notes);
+    notes.extend(fatigue_notes(&opened.model));
     let model = &opened.model;
     let motion = read_motion(&args.motion, "MOTION is a .mot, .sto or .csv file", &args.under, model, &mut notes)?;
     let (held, ground) = loads_of(&args.under, model, &mut notes)?;

@@ -7,7 +7,7 @@ use crate::output::{json_text, print};
 use crate::view::text::inspect::{readable, report};
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Fail> {
-    let opened = open(&args.model, true)?;
+    let opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
     let file = args.model.model.display().to_string();
     if args.json {
         let text = report(&opened, &file);

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use contrapposto::posture_solver::{Engine, EngineError, Reason, SolvedPosture};
 use contrapposto_formats::motion::{write_csv, write_sto};
+use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
 use contrapposto_plot::body_figure;
 
@@ -24,6 +25,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
         print_note("note", &format!("{} is ignored by `pose`; it is for `simulate`", list.join(", ")));
     }
+    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
     let mut engine =
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;

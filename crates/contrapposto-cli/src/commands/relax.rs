@@ -8,6 +8,7 @@ use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
 use contrapposto_formats::motion::write_sto;
+use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};
 
@@ -41,6 +42,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     if scenario.effort_added {
         print_note("note", "no task is of kind `effort`; the effort of all muscles was added as the last task");
     }
+    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     let search = Search {
         model: &scenario.model,
         start: &scenario.start,

@@ -7,12 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Run, Scenario, StopReason, Summary};
+use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{SummaryText, decisions_csv, read_scenario};
 
 use self::snapshot::{SNAPSHOT, go_on, save};
 use crate::args::{DemoArgs, SimulateArgs};
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print};
+use crate::output::{Folder, json_text, print, print_note};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
 use crate::view::figures::{figures_of_run, pictures_of_run};
@@ -33,6 +34,7 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
     let scenario = read_scenario(&name, &bytes, model)?;
+    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     carry_out(&scenario, &args.out, args.resume, args.figures, args.json)
 }
 

@@ -5,6 +5,7 @@
 
 mod error_keys;
 mod events;
+mod fatigue_choice;
 mod head;
 mod load;
 mod model;

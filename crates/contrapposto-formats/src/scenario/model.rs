@@ -1,18 +1,20 @@
 //! Reads which body a scenario has: a model file, or the built-in adult with its passive curves and fatigue laws.
 
-use contrapposto::model::{Adult, AdultError, Model, Part, Sex, adult, data};
+use contrapposto::model::{Adult, AdultError, Model, Part, Sex};
 
 use super::error_keys::adult_path;
+use super::fatigue_choice::fatigue_choice;
 use super::head::check_head;
 use super::names::coordinate;
-use super::text::{AdultText, LawText, ModelText, PartText, RootText, ScenarioText, SexText};
-use crate::input_error::{InputError, suggestion};
+use super::text::{AdultText, ModelText, PartText, RootText, ScenarioText, SexText};
+use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
 use crate::passive_law::passive_curve;
+use crate::tissue::{FatigueChoice, SourcedModel};
 use crate::toml_file::{Located, read_toml};
 
 /// A model file that a scenario names.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ModelFile {
     /// Its path, as seen from the scenario's folder.
     pub file: String,
@@ -20,6 +22,8 @@ pub struct ModelFile {
     pub overlay: Option<String>,
     /// How its root is attached, if that is said.
     pub root: Option<RootAttachment>,
+    /// Fatigue law of its muscle groups, for [`SourcedModel::with_fatigue`].
+    pub fatigue: FatigueChoice,
 }
 
 /// The model file that a scenario names; `None` for the built-in adult. `name` is the scenario's name for messages.
@@ -29,11 +33,12 @@ pub struct ModelFile {
 pub fn scenario_model(name: &str, bytes: &[u8]) -> Result<Option<ModelFile>, InputError> {
     read_toml(name, bytes, |at, text: &ScenarioText| {
         check_head(at, text)?;
-        model_file(at, &text.model)
+        model_file(at, text)
     })
 }
 
-fn model_file(at: &Located, text: &ModelText) -> Result<Option<ModelFile>, InputError> {
+fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>, InputError> {
+    let text: &ModelText = &scenario.model;
     let Some(file) = &text.file else {
         for (key, given) in [("overlay", text.overlay.is_some()), ("root", text.root.is_some())] {
             if given {
@@ -56,10 +61,12 @@ fn model_file(at: &Located, text: &ModelText) -> Result<Option<ModelFile>, Input
         RootText::Fixed => RootAttachment::Fixed,
         RootText::Free => RootAttachment::Free,
     });
-    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root }))
+    let fatigue = fatigue_choice(at, scenario)?;
+    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, fatigue }))
 }
 
-/// The body: that of the model file if there is one, else the built-in adult, with its own passive curves and fatigue laws.
+/// The body: that of the model file if there is one, as it is, else the built-in adult with the fatigue law of the file; both with
+/// the passive curves of the file.
 pub(super) fn body(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Model, InputError> {
     let mut model = match (file, &text.model.file) {
         (Some(model), _) => model,
@@ -95,28 +102,6 @@ fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
             _ => at.error(&path, message, None),
         }
     };
-    with_fatigue_law(at, text, adult(&size).map_err(refuse)?)
-}
-
-/// The built-in adult with the fatigue law that the file asks for.
-fn with_fatigue_law(at: &Located, text: &ScenarioText, mut model: Model) -> Result<Model, InputError> {
-    if text.fatigue.law != LawText::Endurance {
-        if text.fatigue.curve.is_some() {
-            let help = Some("add `law = \"endurance\"`, or leave `curve` out".to_owned());
-            return Err(at.key_error(&["fatigue", "curve"], "an endurance curve needs the endurance law", help));
-        }
-        return Ok(model);
-    }
-    let library = data::library();
-    for index in 0..model.coordinates().len() {
-        let sources = library.sources(&model.coordinates()[index].name);
-        let class = sources.and_then(|sources| sources.fatigue_class).unwrap_or("general");
-        let name = text.fatigue.curve.clone().unwrap_or_else(|| library.default_endurance(class));
-        let Some((law, _)) = library.endurance(&name) else {
-            let help = suggestion(&name, library.endurance_names().collect::<Vec<_>>());
-            return Err(at.error(&["fatigue", "curve"], format!("there is no endurance curve `{name}`"), help));
-        };
-        model = model.with_fatigue(index, &law);
-    }
-    Ok(model)
+    let choice = fatigue_choice(at, text)?;
+    Ok(SourcedModel::adult(&size).map_err(refuse)?.with_fatigue(&choice).model)
 }

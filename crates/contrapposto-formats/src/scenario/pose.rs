@@ -8,6 +8,7 @@ use contrapposto::statics::Load;
 use contrapposto::tasks::{Placement, PriorityLevel, Task};
 use nalgebra::Vector3;
 
+use super::fatigue_choice::LAW_KEYS;
 use super::setup::{Setup, present};
 use super::text::ScenarioText;
 use crate::input_error::InputError;
@@ -63,6 +64,12 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
         let help = Some("add a [[task]] with a `kind`; docs/scenario.md lists the kinds".to_owned());
         return Err(at.error(&[], "the scenario asks for nothing: it has neither tasks nor supports", help));
     }
+    let mut unused = present(at, &["strategy", "relief"]);
+    // The fatigue law says in the report how long the posture can be held; the other keys of its table have no part.
+    if at.holds_beside("fatigue", &LAW_KEYS) {
+        unused.push("fatigue");
+    }
+    unused.extend(present(at, &["event", "run"]));
     Ok(PoseScenario {
         title: text.title.clone(),
         // Friction, planes and shares have no part in the goals: an error of one of them is none here.
@@ -72,7 +79,7 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
         goals,
         labels,
         options: options(at, text)?,
-        unused: present(at, &["strategy", "relief", "fatigue", "event", "run"]),
+        unused,
         start: setup.start,
         model: setup.model,
     })

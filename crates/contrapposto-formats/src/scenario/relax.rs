@@ -6,6 +6,7 @@ use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto::tasks::{Effort, PriorityLevel, Task};
 
+use super::fatigue_choice::LAW_KEYS;
 use super::setup::{Setup, present};
 use super::text::ScenarioText;
 use crate::input_error::InputError;
@@ -69,7 +70,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
     }
     let mut unused = present(at, &["strategy", "solver", "relief"]);
     // The fatigue law says how long a posture can be held; the other keys of its table have no part.
-    if at.holds_beside("fatigue", &["law", "curve"]) {
+    if at.holds_beside("fatigue", &LAW_KEYS) {
         unused.push("fatigue");
     }
     unused.extend(present(at, &["event", "run"]));

@@ -3,12 +3,14 @@
 //! Published models hold no passive torque of most joints and no strength. [`SourcedModel`] reads a model file, lays an overlay over
 //! it ([`SourcedModel::lay_over`]) and fills in what is still missing from the built-in data ([`SourcedModel::fill`]).
 
+mod fatigue;
 mod fill;
 mod origin;
 
+pub use fatigue::{FatigueChoice, FatigueParametersText, FatigueSex, fatigue_notes};
 pub use origin::{Origin, Origins};
 
-use contrapposto::model::{Adult, AdultError, Model, adult};
+use contrapposto::model::{Adult, AdultError, Model, Sex, adult};
 
 use crate::input_error::InputError;
 use crate::model_file::{ModelFileError, ModelFormat, read_model};
@@ -22,6 +24,8 @@ pub struct SourcedModel {
     pub model: Model,
     /// Format of its file.
     pub format: ModelFormat,
+    /// Sex of the body; `None` where the file does not say it.
+    pub sex: Option<Sex>,
     /// By coordinate.
     pub origins: Vec<Origins>,
     /// The parts that were ignored, changed or filled in, one sentence each.
@@ -59,7 +63,7 @@ impl SourcedModel {
     ) -> Result<Self, ModelFileError> {
         let (imported, format) = read_model(name, bytes, root, include)?;
         let origins = vec![Origins::default(); imported.model.coordinates().len()];
-        Ok(Self { model: imported.model, format, origins, notes: gathered(imported.notes) })
+        Ok(Self { model: imported.model, format, sex: None, origins, notes: gathered(imported.notes) })
     }
 
     /// The built-in adult.
@@ -73,7 +77,8 @@ impl SourcedModel {
             let (twin, meant) = (Some(coordinate.name.clone()), Some(coordinate.range));
             Origins { twin, meant, range: library, passive: library, strength: library, fatigue: library }
         });
-        Ok(Self { origins: origins.collect(), model, format: ModelFormat::Adult, notes: vec![] })
+        let origins = origins.collect();
+        Ok(Self { origins, model, format: ModelFormat::Adult, sex: Some(size.sex), notes: vec![] })
     }
 
     /// Lays the overlay in `bytes` over the model: [`overlay`].

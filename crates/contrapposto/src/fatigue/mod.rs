@@ -35,6 +35,14 @@ pub enum FatigueState {
 }
 
 impl FatigueLaw {
+    /// Name of the parameters or of the endurance curve.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::ThreeCompartment(law) => &law.name,
+            Self::Endurance(law) => &law.curve.name,
+        }
+    }
+
     /// A group with fatigue `level` (0..=1) under relative load `load`.
     pub fn start(&self, level: f64, load: f64) -> FatigueState {
         match self {

@@ -19,8 +19,10 @@ const STEP: f64 = 0.05;
 const LONGEST_TIME: f64 = 1e5;
 
 /// Rates of one muscle group.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ThreeCompartment {
+    /// Name of the parameters, for output: `knee`, `knee_extensor, male`.
+    pub name: String,
     /// Fatigue rate `F`, 1/s.
     pub fatigue_rate: f64,
     /// Recovery rate `R`, 1/s.

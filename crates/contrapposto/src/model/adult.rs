@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::adult_size::{Adult, Part, Sex};
-use super::data::{Along, CoordinateRow, GRAVITY, InRightArm, Library, Reference, SegmentRow, library};
+use super::data::{Along, CoordinateRow, FatigueSet, GRAVITY, InRightArm, Library, Reference, SegmentRow, library};
 use super::{
     CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, Placement,
     SegmentSpec,
@@ -263,12 +263,12 @@ impl Recipe<'_> {
                 None => PassiveLaw::Curve(curve.over(range, passive.sign)?),
             });
         }
-        if let (Some(strength), Some(class)) = (&row.strength, &row.fatigue) {
-            let (fatigue, _) = self.library.three_compartment(class).ok_or_else(|| missing(class))?;
+        if let Some(strength) = &row.strength {
             let group = |id: &str| -> Result<MuscleGroup, AdultError> {
                 let found = self.library.strength(id, self.size, strength.sign);
                 let (strength, _) = found.ok_or_else(|| missing(id))?;
-                Ok(MuscleGroup { name: id.replace('_', " "), strength, fatigue: fatigue.clone() })
+                let fatigue = self.library.fatigue_law(id, FatigueSet::default(), Some(self.size.sex));
+                Ok(MuscleGroup { name: id.replace('_', " "), strength, fatigue: fatigue.ok_or_else(|| missing(id))? })
             };
             spec.groups = Some([group(&strength.positive)?, group(&strength.negative)?]);
         }
@@ -308,8 +308,6 @@ pub struct CoordinateSources<'a> {
     pub curve: Option<&'a str>,
     /// +1, or -1 where the coordinate runs against the curve's own direction.
     pub curve_sign: f64,
-    /// Class of the fatigue data.
-    pub fatigue_class: Option<&'a str>,
     /// Region of the body, for strategies by region.
     pub region: &'a str,
     /// Source of the range of motion.
@@ -329,7 +327,6 @@ impl Library {
         Some(CoordinateSources {
             curve: row.passive.as_ref().map(|passive| passive.curve.as_str()),
             curve_sign: row.passive.as_ref().map_or(1.0, |passive| passive.sign),
-            fatigue_class: row.fatigue.as_deref(),
             region: &row.region,
             range: &row.range_reference,
             strength,

@@ -4,6 +4,7 @@
 //! status and a source. No number of the body is written in code.
 
 mod body_rows;
+mod fatigue_parameters;
 mod fatigue_rows;
 mod passive_rows;
 mod reference;
@@ -12,10 +13,10 @@ mod strength_rows;
 use std::sync::LazyLock;
 
 use super::adult_size::{Adult, Sex};
-use crate::fatigue::{Endurance, EnduranceCurve, FatigueLaw, ThreeCompartment};
 use crate::strength::Strength;
 use body_rows::{AdultFile, AnthropometryFile};
 pub(super) use body_rows::{Along, CoordinateRow, InRightArm, SegmentRow};
+pub use fatigue_parameters::FatigueSet;
 use fatigue_rows::FatigueFile;
 use passive_rows::PassiveFile;
 pub use passive_rows::{CurveRow, reshaped};
@@ -69,35 +70,6 @@ impl Library {
         (row.zone_deg.to_radians(), row.end_torque_nm, reference)
     }
 
-    /// 3CC-r of a fatigue class (`elbow`, `shoulder`, ...), with its reference.
-    pub fn three_compartment(&self, class: &str) -> Option<(FatigueLaw, &Reference)> {
-        let row = self.fatigue.three_compartment.iter().find(|row| row.class == class)?;
-        let law = ThreeCompartment {
-            fatigue_rate: row.fatigue_per_s,
-            recovery_rate: row.recovery_per_s,
-            rest_multiplier: row.rest_multiplier,
-        };
-        Some((FatigueLaw::ThreeCompartment(law), &row.reference))
-    }
-
-    /// The endurance integral with the curve of that name, with the curve's reference.
-    pub fn endurance(&self, name: &str) -> Option<(FatigueLaw, &Reference)> {
-        let row = self.fatigue.endurance.iter().find(|row| row.name == name)?;
-        let curve = EnduranceCurve { name: row.name.clone(), form: row.form()? };
-        let law = Endurance { curve, recovery_rate: self.fatigue.recovery.rate_per_s };
-        Some((FatigueLaw::Endurance(law), &row.reference))
-    }
-
-    /// Names of all endurance curves.
-    pub fn endurance_names(&self) -> impl Iterator<Item = &str> {
-        self.fatigue.endurance.iter().map(|row| row.name.as_str())
-    }
-
-    /// The default endurance curve of a fatigue class: Frey-Law & Avin 2010.
-    pub fn default_endurance(&self, class: &str) -> String {
-        format!("freylaw_avin_2010_{class}")
-    }
-
     /// Strength of a movement for an adult; `sign` -1 where the coordinate runs against the data. Hip and knee flexion and
     /// extension and the ankle's follow Anderson et al. 2007, young adults.
     pub(super) fn strength(&self, id: &str, size: &Adult, sign: f64) -> Option<(Strength, &Reference)> {
@@ -141,11 +113,6 @@ mod tests {
         }
         for row in &library.fatigue.endurance {
             assert!(library.endurance(&row.name).is_some(), "{} has no form", row.name);
-        }
-        for coordinate in &library.adult.coordinate {
-            let Some(class) = &coordinate.fatigue else { continue };
-            assert!(library.three_compartment(class).is_some(), "no class {class}");
-            assert!(library.endurance(&library.default_endurance(class)).is_some(), "no curve for {class}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The name of a muscle group in JSON files and terminal tables.
 
 use contrapposto::model::{Model, Side};
+use contrapposto_formats::tissue::FatigueParametersText;
 use serde::Serialize;
 
 /// A muscle group: its movement, its coordinate, and the sign of its torque.
@@ -10,13 +11,20 @@ pub(crate) struct GroupName {
     pub(crate) coordinate: String,
     /// `positive` or `negative`: the sign of its torque.
     side: &'static str,
+    /// The parameters of its fatigue law.
+    fatigue: Option<FatigueParametersText>,
 }
 
 impl GroupName {
     pub(crate) fn new(model: &Model, coordinate: usize, side: Side) -> Self {
         let coordinate = &model.coordinates()[coordinate];
-        let group = coordinate.groups.as_ref().map(|groups| groups[side.index()].name.clone());
-        Self { group: group.unwrap_or_default(), coordinate: coordinate.name.clone(), side: side.word() }
+        let group = coordinate.groups.as_ref().map(|groups| &groups[side.index()]);
+        Self {
+            group: group.map(|group| group.name.clone()).unwrap_or_default(),
+            coordinate: coordinate.name.clone(),
+            side: side.word(),
+            fatigue: group.map(FatigueParametersText::new),
+        }
     }
 }
 

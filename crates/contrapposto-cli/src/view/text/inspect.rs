@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use contrapposto::fatigue::FatigueLaw;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::Function;
-use contrapposto::model::{Coordinate, CoordinateKind, JointKind, Model};
+use contrapposto::model::{Coordinate, CoordinateKind, JointKind, Model, MuscleGroup};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
@@ -63,7 +64,7 @@ struct InspectedCoordinateText<'a> {
     follows: Option<FollowsText<'a>>,
     passive: Option<PassiveText>,
     strength: Option<StrengthText<'a>>,
-    fatigue: Option<FatigueText>,
+    fatigue: Option<FatigueText<'a>>,
 }
 
 #[derive(Serialize)]
@@ -95,9 +96,40 @@ struct GroupStrengthText<'a> {
 }
 
 #[derive(Serialize)]
-struct FatigueText {
-    class: Option<&'static str>,
+struct FatigueText<'a> {
+    positive: GroupFatigueText<'a>,
+    negative: GroupFatigueText<'a>,
+}
+
+#[derive(Serialize)]
+struct GroupFatigueText<'a> {
+    /// Name of the parameters or of the endurance curve.
+    parameters: &'a str,
+    /// Of the three-compartment law.
+    #[serde(flatten)]
+    rates: Option<RatesText>,
     source: Option<Source>,
+}
+
+#[derive(Serialize)]
+struct RatesText {
+    fatigue_per_s: f64,
+    recovery_per_s: f64,
+    rest_multiplier: f64,
+}
+
+impl<'a> GroupFatigueText<'a> {
+    fn new(law: &'a FatigueLaw, source: Option<Source>) -> Self {
+        let rates = match law {
+            FatigueLaw::ThreeCompartment(law) => Some(RatesText {
+                fatigue_per_s: law.fatigue_rate,
+                recovery_per_s: law.recovery_rate,
+                rest_multiplier: law.rest_multiplier,
+            }),
+            FatigueLaw::Endurance(_) => None,
+        };
+        Self { parameters: law.name(), rates, source }
+    }
 }
 
 pub(crate) fn report<'a>(opened: &'a SourcedModel, file: &'a str) -> Report<'a> {
@@ -176,7 +208,10 @@ fn text<'a>(
             source: known.passive.clone(),
         }),
         strength: group(0).zip(group(1)).map(|(positive, negative)| StrengthText { positive, negative }),
-        fatigue: coordinate.groups.as_ref().map(|_| FatigueText { class: known.class, source: known.fatigue.clone() }),
+        fatigue: coordinate.groups.as_ref().map(|[positive, negative]| FatigueText {
+            positive: GroupFatigueText::new(&positive.fatigue, known.fatigue.first().cloned()),
+            negative: GroupFatigueText::new(&negative.fatigue, known.fatigue.get(1).cloned()),
+        }),
     }
 }
 
@@ -310,7 +345,7 @@ fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
                     negative.strength.peak,
                     known.strength.iter().map(|source| seen.mark(Some(source))).collect::<String>()
                 ),
-                format!("{}{}", known.class.unwrap_or("of a class"), seen.mark(known.fatigue.as_ref())),
+                fatigue_words([positive, negative], &known, seen),
             ),
         };
         let range = format!("{range}{}", seen.mark(known.range.as_ref()));
@@ -325,6 +360,14 @@ fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
         ]);
     }
     table
+}
+
+/// The parameters of both groups and their sources; once where they are the same.
+fn fatigue_words(groups: [&MuscleGroup; 2], known: &Known, seen: &mut Seen) -> String {
+    let word =
+        |side: usize, seen: &mut Seen| format!("{}{}", groups[side].fatigue.name(), seen.mark(known.fatigue.get(side)));
+    let [positive, negative] = [0, 1].map(|side| word(side, seen));
+    if positive == negative { positive } else { format!("{positive} / {negative}") }
 }
 
 /// Range and default of a coordinate, in deg or m; the independent coordinate instead of the range of a dependent one.

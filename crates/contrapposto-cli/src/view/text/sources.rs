@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use contrapposto::model::MuscleGroup;
 use contrapposto::model::data::{self, Reference};
 use contrapposto_formats::ModelFormat;
 use contrapposto_formats::tissue::{Origin, SourcedModel};
@@ -37,8 +38,8 @@ pub(crate) struct Known {
     pub(crate) curve: Option<&'static str>,
     /// Of the positive and the negative group; one where both are the same, none where there are no groups.
     pub(crate) strength: Vec<Source>,
-    pub(crate) fatigue: Option<Source>,
-    pub(crate) class: Option<&'static str>,
+    /// Of the parameters of the positive and the negative group; none where there are no groups.
+    pub(crate) fatigue: Vec<Source>,
 }
 
 impl Known {
@@ -67,12 +68,19 @@ impl Known {
             };
             known.strength = [positive, negative].into_iter().filter_map(|r| pick(origins.strength, r)).collect();
             known.strength.dedup();
-            let class = sources.and_then(|s| s.fatigue_class).filter(|_| origins.fatigue == Origin::Library);
-            known.class = class;
-            let reference = class.and_then(|class| library.three_compartment(class)).map(|(_, reference)| reference);
-            known.fatigue = pick(origins.fatigue, reference);
+            known.fatigue = coordinate.groups.iter().flatten().filter_map(|g| of_fatigue(g, origins.fatigue)).collect();
         }
         known
+    }
+}
+
+fn of_fatigue(group: &MuscleGroup, origin: Origin) -> Option<Source> {
+    match origin {
+        Origin::File => Some(Source::of_status("from the file")),
+        Origin::Overlay => Some(Source::of_status("from the overlay")),
+        Origin::Library => {
+            data::library().fatigue_reference(&group.name, &group.fatigue).as_ref().map(Source::reference)
+        }
     }
 }
 

@@ -124,7 +124,6 @@ pub(crate) struct CoordinateRow {
     pub(crate) default: Option<DefaultRow>,
     pub(crate) passive: Option<PassiveUse>,
     pub(crate) strength: Option<StrengthUse>,
-    pub(crate) fatigue: Option<String>,
     pub(crate) region: String,
 }
 

@@ -4,12 +4,17 @@ use serde::Deserialize;
 
 use super::reference::{Reference, Status};
 use crate::fatigue::EnduranceForm;
+use crate::model::adult_size::Sex;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FatigueFile {
     pub(super) recovery: RecoveryRow,
     pub(super) three_compartment: Vec<ThreeCompartmentRow>,
+    pub(super) joint_use: Vec<JointUseRow>,
+    pub(super) muscle_group_set: MuscleGroupSetRow,
+    pub(super) muscle_group: Vec<MuscleGroupRow>,
+    pub(super) muscle_group_use: Vec<MuscleGroupUseRow>,
     pub(super) endurance: Vec<EnduranceRow>,
 }
 
@@ -29,8 +34,72 @@ pub(super) struct ThreeCompartmentRow {
     pub(super) fatigue_per_s: f64,
     pub(super) recovery_per_s: f64,
     pub(super) rest_multiplier: f64,
-    #[expect(dead_code, reason = "stands in the file for its readers")]
     pub(super) rest_multiplier_status: Status,
+    pub(super) reference: Reference,
+}
+
+/// The class of some movements.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct JointUseRow {
+    pub(super) class: String,
+    pub(super) movements: Vec<String>,
+    pub(super) reference: Reference,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MuscleGroupSetRow {
+    pub(super) rest_multiplier: f64,
+    pub(super) rest_multiplier_status: Status,
+    pub(super) rest_multiplier_source: String,
+    pub(super) reference: Reference,
+}
+
+/// Parameters of a functional muscle group; `rest_multiplier` where the source gives one.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MuscleGroupRow {
+    pub(super) group: String,
+    pub(super) sex: SexOfRow,
+    pub(super) fatigue_per_s: f64,
+    pub(super) recovery_per_s: f64,
+    pub(super) rest_multiplier: Option<f64>,
+}
+
+/// Sex of the people that a row was fitted to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum SexOfRow {
+    Female,
+    Male,
+    Any,
+}
+
+impl SexOfRow {
+    pub(super) fn of(sex: Option<Sex>) -> Self {
+        match sex {
+            Some(Sex::Female) => Self::Female,
+            Some(Sex::Male) => Self::Male,
+            None => Self::Any,
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Female => "female",
+            Self::Male => "male",
+            Self::Any => "any sex",
+        }
+    }
+}
+
+/// The functional muscle group of some movements.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MuscleGroupUseRow {
+    pub(super) group: String,
+    pub(super) movements: Vec<String>,
     pub(super) reference: Reference,
 }
 

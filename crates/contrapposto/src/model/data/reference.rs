@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 
-/// How far a number can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+/// How far a number can be trusted, the best first: the greater of two is the weaker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 pub enum Status {
     /// Read in the named source.
     #[serde(rename = "verified")]
