@@ -36,7 +36,10 @@ fn every_number_of_the_adult_has_a_status() {
             }
         }
         if !coordinate["fatigue"].is_null() {
-            sourced(&coordinate["fatigue"]["source"]);
+            for side in ["positive", "negative"] {
+                sourced(&coordinate["fatigue"][side]["source"]);
+                assert!(coordinate["fatigue"][side]["fatigue_per_s"].as_f64().unwrap() > 0.0);
+            }
         }
     }
     assert!(passive >= 7, "{passive}");
@@ -45,6 +48,38 @@ fn every_number_of_the_adult_has_a_status() {
     for part in ["elbow_flex_r", "sources:", "[1]", "assumed", "verified"] {
         assert!(readable.stdout.contains(part), "{part}: {}", readable.stdout);
     }
+}
+
+/// The hip has no fit of its own; by muscle group, the plantarflexors have no rest multiplier of their own, and the trunk no group.
+#[test]
+fn the_parameters_of_fatigue_stand_beside_their_sources_and_fallbacks() {
+    let fatigue = |arguments: &[&str], coordinate: &str, side: &str| {
+        let report = json(&[&["inspect", "--json"], arguments].concat());
+        report["coordinates"][coordinate]["fatigue"][side].clone()
+    };
+    let hip = fatigue(&["adult"], "hip_flexion_r", "negative");
+    assert_eq!((&hip["parameters"], &hip["source"]["status"]), (&"general".into(), &"assumed".into()));
+    assert!(hip["source"]["note"].as_str().unwrap().contains("no hip curve"), "{hip}");
+    let trunk = fatigue(&["adult"], "lumbar_extension", "positive");
+    assert!(trunk["source"]["note"].as_str().unwrap().contains("the trunk's own fit"), "{trunk}");
+    let by_group = ["adult:female,1.65m,60kg", "--fatigue", "muscle_group"];
+    let ankle = fatigue(&by_group, "ankle_angle_l", "negative");
+    assert_eq!(ankle["parameters"], "ankle_plantarflexor, female");
+    assert_eq!((&ankle["rest_multiplier"], &ankle["source"]["status"]), (&15.0.into(), &"assumed".into()));
+    let knee = fatigue(&by_group, "knee_angle_r", "negative");
+    assert_eq!((&knee["parameters"], &knee["fatigue_per_s"]), (&"knee_extensor, female".into(), &0.01407.into()));
+    assert!(knee["source"]["note"].as_str().unwrap().contains("-57 to +118 percent"), "{knee}");
+    assert_eq!(fatigue(&by_group, "knee_angle_r", "positive")["parameters"], "knee");
+    assert_eq!(fatigue(&by_group, "lumbar_extension", "positive"), trunk);
+    let any = [&by_group[..], &["--fatigue-sex", "any"]].concat();
+    assert_eq!(fatigue(&any, "knee_angle_r", "negative")["parameters"], "knee_extensor, any sex");
+    let readable = run(&["inspect", "adult", "--fatigue", "muscle_group"]).stdout;
+    assert!(readable.contains("ankle_dorsiflexor, male verified"), "{readable}");
+    assert!(readable.contains("ankle_plantarflexor, male assumed"), "{readable}");
+    let said = refused(&["inspect", "adult", "--fatigue", "muscles"]);
+    assert!(said.contains("joint") && said.contains("muscle_group"), "{said}");
+    let said = refused(&["inspect", "adult", "--fatigue-sex", "male"]);
+    assert!(said.contains("add --fatigue muscle_group"), "{said}");
 }
 
 #[test]

@@ -14,8 +14,8 @@ use crate::input_error::{InputError, suggestion};
 use crate::passive_law::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, passive_curve};
 use crate::toml_file::{Located, read_toml};
 
-/// Fatigue class of a group that is given a strength and nothing else.
-const GENERAL: &str = "general";
+/// Fatigue class of a group that is given a strength and nothing else, and of a movement that the built-in data do not know.
+pub(crate) const GENERAL: &str = "general";
 
 /// Greatest passive torque of a named curve that anybody can have meant, N m.
 const MOST_NM: f64 = 1e4;

@@ -132,6 +132,7 @@ pub struct GroupText {
     /// Its movement.
     pub name: Option<String>,
     /// The parameters of its fatigue law.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub fatigue: Option<FatigueParametersText>,
     /// Greatest fatigue, 0 to 1.
     pub peak_fatigue: f64,

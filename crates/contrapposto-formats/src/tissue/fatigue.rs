@@ -10,9 +10,7 @@ use serde::Serialize;
 
 use super::origin::Origin;
 use super::{Origins, SourcedModel};
-
-/// Class of a movement that the built-in data do not know.
-const GENERAL: &str = "general";
+use crate::overlay::GENERAL;
 
 /// Sex whose parameters are taken, where a set distinguishes the sexes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,8 +84,8 @@ fn chosen(choice: &FatigueChoice, group: &MuscleGroup, origins: &Origins, of_bod
 pub struct FatigueParametersText {
     /// Name of the parameters or of the endurance curve; `inspect` gives the numbers and the source.
     pub parameters: String,
-    /// Status of the weakest part: the numbers, the rest multiplier, or their use for this movement. `null` where the built-in data
-    /// do not know the movement.
+    /// Status of the weakest part: the numbers, the rest multiplier, or their use for this movement.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub status: Option<String>,
 }
 

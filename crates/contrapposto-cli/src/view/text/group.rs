@@ -12,6 +12,7 @@ pub(crate) struct GroupName {
     /// `positive` or `negative`: the sign of its torque.
     side: &'static str,
     /// The parameters of its fatigue law.
+    #[serde(skip_serializing_if = "Option::is_none")]
     fatigue: Option<FatigueParametersText>,
 }
 
