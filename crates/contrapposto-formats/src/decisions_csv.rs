@@ -157,8 +157,7 @@ mod tests {
     fn a_relief_that_fell_short_says_why() {
         let way = |end: &str| {
             format!(
-                "hip_flexion_r, hip extension, tired to 0.60, goes to 102.0 deg, a balance near the end of its \
-                 range, stable by ligaments: from 10.0 deg to {end} deg, active torque from -12.6 to -18.2 N m"
+                "hip_flexion_r, hip extension, tired to 0.60, goes to 102.0 deg, a balance, stable by ligaments: from 10.0 deg to {end} deg, active torque from -12.6 to -18.2 N m"
             )
         };
         assert_eq!(told(102.0, 0, 0), way("102.0"));

@@ -30,7 +30,7 @@ struct ProblemLine {
 pub struct DecisionLine {
     /// Case of Table 1.
     pub case: &'static str,
-    /// `stay`, `active`, `passive`, `at_limit`; `none` in literal mode.
+    /// `stay`, `active`, `passive`, `least_torque`, `at_limit`; `none` in literal mode.
     pub outcome: &'static str,
     /// Goal angle, deg.
     pub goal_deg: Option<f64>,
@@ -42,7 +42,7 @@ pub struct DecisionLine {
     pub decrease_ratio: Option<f64>,
     /// Interval searched for a root, deg.
     pub interval_deg: Option<[f64; 2]>,
-    /// Whether the balance at the goal is stable; null where it is none.
+    /// Whether the balance at the goal is stable; null where the goal is no balance.
     pub stable: Option<bool>,
     /// One plain sentence.
     pub why: String,

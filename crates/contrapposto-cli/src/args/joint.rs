@@ -39,15 +39,26 @@ pub(crate) enum ElbowCurve {
     \"angle_deg\": 0}, \"upper\": {\"torque_nm\": 9.324, \"rate_per_rad\": 3.811, \"angle_deg\": 150}, \
     \"stiffness_nm_per_rad\": 0.4, \"neutral_deg\": 73}, \"range_deg\": [0, 150], \"angle_deg\": 20, \"external_nm\": -2.7, \
     \"external_slope_nm_per_rad\": 0.9, \"strategy\": \"active\", \"minimum_decrease_ratio\": 0.9, \"tolerance_nm\": 0.05}' \
-    | contrapposto minimize"
+    | contrapposto minimize\n\n\
+    Each answer: `case` of Table 1; `outcome`; `goal_deg`; `active_nm` now and `active_at_goal_nm` at the goal, with the external \
+    torque continued as a straight line; `decrease_ratio` R (Eq. 3) in cases 3.1 and 3.2; `interval_deg` that was searched; \
+    `stable`, null where the goal is no balance; `why`, one sentence. A line that cannot be read gets `error` and `line`, and the exit \
+    code is 2.\n\n\
+    Outcomes:\n  \
+    stay          the present angle is the goal\n  \
+    active        an unstable balance, where muscles work well\n  \
+    passive       a stable balance: passive tissue, or the load itself, restores it\n  \
+    least_torque  no balance: the goal of case 3.1, or the least active torque in the range\n  \
+    at_limit      no balance: the least active torque in the range is at this limit\n  \
+    none          only with --literal: the printed tables give no goal"
 )]
 pub(crate) struct MinimizeArgs {
-    /// File of JSON lines; standard input when left out or `-`.
+    /// File of JSON lines, one problem a line; standard input when left out or `-`.
     pub(crate) file: Option<PathBuf>,
     /// Follow the printed Tables 1 and 2 to the letter; outcome `none` where they have no answer.
     #[arg(long)]
     pub(crate) literal: bool,
-    /// Print JSON lines (the default and only form; accepted so that scripts may say it).
+    /// Print JSON lines: the default, and the only form.
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -70,23 +70,27 @@ impl std::fmt::Display for Case {
 pub enum Outcome {
     /// The present angle is the goal.
     Stay,
-    /// The goal lies where muscles work well: an unstable balance, or the least torque between the slopes (case 3.1).
+    /// The goal is an unstable balance, where muscles work well.
     Active,
-    /// The goal is a balance that needs no holding: ligaments, or gravity in the pendulum's sense, bring it back.
+    /// The goal is a stable balance: passive tissue, or the load as in a hanging pendulum, restores it.
     Passive,
-    /// No balance exists; the limit of the range is where the least active torque is left.
+    /// The active torque is least at the goal, which is neither a stable nor an unstable balance: a slope angle, in case 3.1 or
+    /// where the range holds no balance, or an angle in a zone of level torque.
+    LeastTorque,
+    /// The goal is no balance: the range holds none, and the active torque is least at this limit.
     AtLimit,
     /// Literal mode only: the printed tables search an interval without a root.
     None,
 }
 
 impl Outcome {
-    /// The word used in outputs: `stay`, `active`, `passive`, `at_limit`, `none`.
+    /// The word used in outputs: `stay`, `active`, `passive`, `least_torque`, `at_limit`, `none`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Stay => "stay",
             Self::Active => "active",
             Self::Passive => "passive",
+            Self::LeastTorque => "least_torque",
             Self::AtLimit => "at_limit",
             Self::None => "none",
         }
@@ -102,8 +106,8 @@ pub enum Carrier {
     Gravity,
 }
 
-/// Kind of balance at the goal, if it is a balance. With muscles off the net torque is `-tau_a`, so a balance is stable
-/// when `d tau_a / d theta > 0`.
+/// Kind of balance. With muscles off the net torque is `-tau_a`, so a balance is stable when `d tau_a / d theta > 0` and
+/// unstable when it is negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Equilibrium {
     /// Stable: the joint returns by itself.
@@ -131,7 +135,8 @@ pub struct Decision {
     pub slope_angles: SlopeAngles,
     /// The interval that was searched for a root, rad.
     pub interval: Option<(f64, f64)>,
-    /// Kind of balance at the goal; `None` where the goal is no balance (case 3.1, a limit).
+    /// Kind of balance at the goal: unstable for [`Outcome::Active`], stable for [`Outcome::Passive`], either for
+    /// [`Outcome::Stay`] within the tolerance; otherwise, and where the active torque is level, `None`.
     pub equilibrium: Option<Equilibrium>,
     /// The printed tables' interval held no root, so the total mode looked further (docs/deviations.md, D3).
     pub beyond_tables: bool,

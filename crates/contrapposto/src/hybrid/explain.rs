@@ -51,17 +51,19 @@ pub fn explain(problem: &Problem, decision: &Decision) -> String {
             )
         }
         Outcome::AtLimit => format!(
-            "passive torque at the limit is too weak for a balance; {goal:.2} deg leaves {at_goal:.3} of {torque:.3} N m"
+            "the range holds no balance, because passive torque at a limit is too weak; the limit at {goal:.2} deg leaves \
+             {at_goal:.3} of {torque:.3} N m"
         ),
-        Outcome::Active if decision.case == Case::C31 => {
+        Outcome::LeastTorque if decision.case == Case::C31 => {
             let share = 100.0 * decision.decrease_ratio.unwrap_or(0.0);
-            format!("mid-range at {goal:.2} deg removes {share:.0} percent of {torque:.3} N m")
+            format!(
+                "least torque between the slope angles at {goal:.2} deg removes {share:.0} percent of {torque:.3} N m; no balance"
+            )
         }
-        Outcome::Active if decision.equilibrium.is_none() => {
-            format!("no balance in reach; {goal:.2} deg leaves the least, {at_goal:.3} of {torque:.3} N m")
-        }
-        Outcome::Active => format!("mid-range balance at {goal:.2} deg"),
-        Outcome::Passive => match (decision.case, decision.decrease_ratio) {
+        Outcome::LeastTorque => format!(
+            "least torque at {goal:.2} deg leaves {at_goal:.3} of {torque:.3} N m; neither a stable nor an unstable balance"
+        ),
+        Outcome::Active | Outcome::Passive => match (decision.case, decision.decrease_ratio) {
             (Case::C32, Some(ratio)) if in_force == Strategy::Active => format!(
                 "mid-range would remove {:.0} percent of {torque:.3} N m, not more than {:.0}; balance at {goal:.2} deg instead",
                 100.0 * ratio.max(0.0),
@@ -76,17 +78,15 @@ pub fn explain(problem: &Problem, decision: &Decision) -> String {
     format!("case {} ({strategy} strategy): {body}{kind}{beyond}", decision.case)
 }
 
-/// The goal of a decision in words that follow its value: `a balance near the end of its range, stable by ligaments`.
+/// The goal of a decision in words that follow its value: `a balance, stable by ligaments`.
 pub fn goal_in_words(decision: &Decision) -> String {
-    let place = match (decision.outcome, decision.equilibrium) {
-        (Outcome::Stay, _) => return "where muscles hold almost nothing".to_owned(),
-        (Outcome::None, _) => return "because the printed tables give no goal".to_owned(),
-        (Outcome::AtLimit, _) => return "the end of its range, where muscles hold least".to_owned(),
-        (Outcome::Active, None) => return "in the middle of its range, where muscles hold least".to_owned(),
-        (Outcome::Active, Some(_)) => "a balance in the middle of its range",
-        (Outcome::Passive, _) => "a balance near the end of its range",
-    };
-    decision.equilibrium.map_or(place.to_owned(), |kind| format!("{place}, {}", equilibrium_in_words(kind)))
+    match (decision.outcome, decision.equilibrium) {
+        (Outcome::Stay, Some(_)) => "where muscles hold almost nothing".to_owned(),
+        (Outcome::None, _) => "because the printed tables give no goal".to_owned(),
+        (Outcome::AtLimit, _) => "the end of its range, where muscles hold least".to_owned(),
+        (_, Some(equilibrium)) => format!("a balance, {}", equilibrium_in_words(equilibrium)),
+        (_, None) => "where muscles hold least".to_owned(),
+    }
 }
 
 fn equilibrium_in_words(equilibrium: Equilibrium) -> &'static str {

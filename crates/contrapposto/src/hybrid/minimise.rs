@@ -286,29 +286,36 @@ fn describe(problem: &Problem, active: &Extrapolation, decision: &mut Decision, 
         Goal::Root(angle) | Goal::Least(angle) => angle,
     };
     let (torque, slope) = active.active_and_slope(angle);
-    let stable = slope > 0.0;
-    let (by_load, by_tissue) = (-active.external_slope(), slope + active.external_slope());
-    let kind = if !stable {
-        Equilibrium::Unstable
-    } else if by_tissue >= by_load {
-        Equilibrium::Stable(Carrier::Ligaments)
-    } else {
-        Equilibrium::Stable(Carrier::Gravity)
-    };
     let balance = match goal {
         Goal::Stay => torque.abs() <= problem.torque_tolerance,
         Goal::Root(_) => true,
         Goal::Least(_) => false,
     };
+    let equilibrium = if balance { equilibrium(slope, active.external_slope()) } else { None };
+    let unbalanced_limit = !balance && decision.case != Case::C31 && (angle == range.0 || angle == range.1);
     decision.goal = Some(angle);
     decision.active_torque_at_goal = Some(torque);
-    decision.equilibrium = balance.then_some(kind);
-    decision.outcome = match goal {
+    decision.equilibrium = equilibrium;
+    decision.outcome = match equilibrium {
         _ if angle == problem.angle => Outcome::Stay,
-        Goal::Root(_) if stable => Outcome::Passive,
-        Goal::Least(_) if decision.case != Case::C31 && (angle == range.0 || angle == range.1) => Outcome::AtLimit,
-        _ => Outcome::Active,
+        Some(Equilibrium::Stable(_)) => Outcome::Passive,
+        Some(Equilibrium::Unstable) => Outcome::Active,
+        None if unbalanced_limit => Outcome::AtLimit,
+        None => Outcome::LeastTorque,
     };
+}
+
+/// Kind of a balance where the active torque has the slope `slope` and the external torque `external_slope` (N m/rad);
+/// `None` on level torque.
+fn equilibrium(slope: f64, external_slope: f64) -> Option<Equilibrium> {
+    let (by_load, by_tissue) = (-external_slope, slope + external_slope);
+    if slope > 0.0 {
+        Some(Equilibrium::Stable(if by_tissue >= by_load { Carrier::Ligaments } else { Carrier::Gravity }))
+    } else if slope < 0.0 {
+        Some(Equilibrium::Unstable)
+    } else {
+        None
+    }
 }
 
 /// Sign with zero as its own: the printed comparisons of signs treat it so.

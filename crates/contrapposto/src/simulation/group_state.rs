@@ -30,7 +30,7 @@ impl GroupState {
     /// begins or ends to carry weight, so a decision for the other kind of relief counts only when it is repeated.
     pub(super) fn count(&mut self, outcome: Outcome) {
         let kind = match outcome {
-            Outcome::Active => Some(Strategy::Active),
+            Outcome::Active | Outcome::LeastTorque => Some(Strategy::Active),
             Outcome::Passive | Outcome::AtLimit => Some(Strategy::Passive),
             Outcome::Stay | Outcome::None => None,
         };
@@ -52,7 +52,7 @@ impl GroupState {
     /// Keeps the first strategy that found a goal; from active it may fall back to passive once, never the other way.
     pub(super) fn accept(&mut self, outcome: Outcome) {
         match outcome {
-            Outcome::Active if self.accepted.is_none() => self.accepted = Some(Strategy::Active),
+            Outcome::Active | Outcome::LeastTorque if self.accepted.is_none() => self.accepted = Some(Strategy::Active),
             Outcome::Passive | Outcome::AtLimit => self.accepted = Some(Strategy::Passive),
             _ => {}
         }
