@@ -40,10 +40,10 @@ pub(crate) enum ElbowCurve {
     \"stiffness_nm_per_rad\": 0.4, \"neutral_deg\": 73}, \"range_deg\": [0, 150], \"angle_deg\": 20, \"external_nm\": -2.7, \
     \"external_slope_nm_per_rad\": 0.9, \"strategy\": \"active\", \"minimum_decrease_ratio\": 0.9, \"tolerance_nm\": 0.05}' \
     | contrapposto minimize\n\n\
-    Each answer: `case` of Table 1; `outcome`; `goal_deg`; `active_nm` now and `active_at_goal_nm` at the goal, with the external \
-    torque continued as a straight line; `decrease_ratio` R (Eq. 3) in cases 3.1 and 3.2; `interval_deg` that was searched; \
-    `stable`, null where the goal is no balance; `why`, one sentence. A line that cannot be read gets `error` and `line`, and the exit \
-    code is 2.\n\n\
+    Each answer: `case` of Table 1; `outcome`; `goal_deg`; `active_nm` now and `active_at_goal_nm` at the goal, with the \
+    external torque continued as a straight line; `decrease_ratio` R (Eq. 3) in cases 3.1 and 3.2; `interval_deg` that was \
+    searched; `stable`, null where the goal is no balance; `why`, one sentence. A line that cannot be read gets `error` and \
+    `line`, and the exit code is 2.\n\n\
     Outcomes:\n  \
     stay          the present angle is the goal\n  \
     active        an unstable balance, where muscles work well\n  \
