@@ -7,7 +7,10 @@ use clap::{Parser, ValueEnum};
 #[derive(Debug, Parser)]
 #[command(
     after_help = "Examples:\n  contrapposto figures --out out\n  contrapposto figures --only 7,8 --json --out out\n  \
-    contrapposto figures --curve measured --out measured"
+    contrapposto figures --curve measured --out measured\n\n\
+    Each run of a figure starts with tired elbow muscles and ends where it settles. `cases`: of Table 1, in order, with their \
+    number of steps. `kink`: the angle between start and end where reshaping makes the passive slope jump. `as printed`: \
+    the cases are those of the paper, and a kink occurs exactly where the paper's text names one (Figures 7 and 9)."
 )]
 pub(crate) struct FiguresArgs {
     /// Folder for the pictures; made if it is not there.
@@ -16,10 +19,10 @@ pub(crate) struct FiguresArgs {
     /// Only these figures: 1, 7, 8, 9, 10, 11, 12, 13, 14.
     #[arg(long, value_delimiter = ',', value_name = "N,N")]
     pub(crate) only: Vec<u8>,
-    /// Elbow curve: mid-range stiffness 0 as the paper assumes, or the measured 0.4 N m/rad.
+    /// Elbow curve, reshaped near both limits: mid-range stiffness 0 as the paper assumes, or the measured 0.4 N m/rad.
     #[arg(long, value_enum, default_value_t = ElbowCurve::Neutral)]
     pub(crate) curve: ElbowCurve,
-    /// Print cases and goals as JSON instead of a table.
+    /// Print cases, final angles and the comparison with the paper as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -1,11 +1,12 @@
 //! `contrapposto figures`: the published elbow cases, Figures 1 and 7-14 of Rodriguez & Boulic 2007.
 //!
-//! One scenario file a figure, one named elbow curve for all of them; nothing is tuned per figure. The paper gives no angles
-//! for its oblique and lateral arms: they are chosen once, in the scenario files, and disclosed in docs/deviations.md.
+//! One scenario file a figure, one reshaped elbow curve for all of them; nothing is tuned per figure. The paper gives no angles
+//! for its oblique and lateral arms: they are chosen once, in the scenario files, and disclosed in docs/deviations.md. A run
+//! is as printed if its cases are the printed ones and its path has a kink exactly where the text names one.
 
 use comfy_table::Table;
 use contrapposto::hybrid::{Case, Strategy};
-use contrapposto::model::data;
+use contrapposto::model::{Model, data};
 use contrapposto::simulation::{CoordinateSummary, Scenario, run};
 use contrapposto_formats::{iterations, read_scenario};
 use contrapposto_plot::{SketchRole, TorqueBalance, torque_balance};
@@ -27,50 +28,79 @@ struct Published {
     runs: &'static [(Strategy, f64)],
     /// The cases as printed.
     printed: &'static [Case],
+    /// Whether the text says that reshaping shows as a kink in the path (section 4.1).
+    kink: bool,
 }
+
+/// A close-up shows so much on each side of a kink, deg.
+const CLOSE_UP_DEG: f64 = 3.0;
 
 const ACTIVE: Strategy = Strategy::Active;
 const PASSIVE: Strategy = Strategy::Passive;
 
 const FIGURES: [Published; 9] = [
-    Published { number: 1, scenario: include_str!("../../../../scenarios/figure-01.toml"), runs: &[], printed: &[] },
+    Published {
+        number: 1,
+        scenario: include_str!("../../../../scenarios/figure-01.toml"),
+        runs: &[],
+        printed: &[],
+        kink: false,
+    },
     Published {
         number: 7,
         scenario: include_str!("../../../../scenarios/figure-07.toml"),
         runs: &[(ACTIVE, 1.0), (PASSIVE, 1.0)],
         printed: &[Case::C32, Case::C21],
+        kink: true,
     },
     Published {
         number: 8,
         scenario: include_str!("../../../../scenarios/figure-08.toml"),
         runs: &[(ACTIVE, 0.2)],
         printed: &[Case::C31, Case::C33, Case::C21],
+        kink: false,
     },
     Published {
         number: 9,
         scenario: include_str!("../../../../scenarios/figure-09.toml"),
         runs: &[(PASSIVE, 1.0)],
         printed: &[Case::C34, Case::C23],
+        kink: true,
     },
-    Published { number: 10, scenario: include_str!("../../../../scenarios/figure-10.toml"), runs: &[], printed: &[] },
+    Published {
+        number: 10,
+        scenario: include_str!("../../../../scenarios/figure-10.toml"),
+        runs: &[],
+        printed: &[],
+        kink: false,
+    },
     Published {
         number: 11,
         scenario: include_str!("../../../../scenarios/figure-11.toml"),
         runs: &[(ACTIVE, 1.0), (ACTIVE, 0.2), (PASSIVE, 1.0), (PASSIVE, 0.2)],
         printed: &[Case::C32, Case::C11],
+        kink: false,
     },
-    Published { number: 12, scenario: include_str!("../../../../scenarios/figure-12.toml"), runs: &[], printed: &[] },
+    Published {
+        number: 12,
+        scenario: include_str!("../../../../scenarios/figure-12.toml"),
+        runs: &[],
+        printed: &[],
+        kink: false,
+    },
     Published {
         number: 13,
         scenario: include_str!("../../../../scenarios/figure-13.toml"),
         runs: &[(ACTIVE, 1.0), (PASSIVE, 1.0)],
         printed: &[Case::C32, Case::C11],
+        kink: false,
     },
     Published {
         number: 14,
         scenario: include_str!("../../../../scenarios/figure-14.toml"),
         runs: &[(ACTIVE, 1.0)],
         printed: &[Case::C33, Case::C21],
+        kink: false,
     },
 ];
 
@@ -91,6 +121,11 @@ struct RunText {
     iterations: BTreeMap<&'static str, u64>,
     final_deg: f64,
     final_active_nm: f64,
+    /// Angle between start and end where the passive slope jumps.
+    kink_deg: Option<f64>,
+    as_printed: bool,
+    /// Differences from the printed figure.
+    differences: Vec<&'static str>,
 }
 
 pub(crate) fn figures(args: &FiguresArgs) -> Result<(), Fail> {
@@ -101,14 +136,14 @@ pub(crate) fn figures(args: &FiguresArgs) -> Result<(), Fail> {
     let folder = Folder::open(&args.out)?;
     let mut texts = vec![];
     let mut table = plain_table();
-    table.set_header(["figure", "strategy", "cases", "ends", "as printed"]);
+    table.set_header(["figure", "strategy", "cases", "ends", "kink", "as printed"]);
     for figure in FIGURES.iter().filter(|figure| args.only.is_empty() || args.only.contains(&figure.number)) {
         texts.push(draw(figure, args.curve, &folder, &mut table)?);
     }
     if args.json {
         return print(&json_text("JSON", &texts)?);
     }
-    print(&format!("{table}\npictures in {}\n", args.out.display()))
+    print(&format!("{table}\nD13, D14: docs/deviations.md\npictures in {}\n", args.out.display()))
 }
 
 fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Table) -> Result<FigureText, Fail> {
@@ -130,7 +165,8 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
             panel.postures.push(sweep.sketch(&format!("{zero:.1} deg"), zero, SketchRole::Zero)?);
         }
         panels.push(panel);
-        table.add_row([figure.number.to_string(), String::new(), subtitle, list(&zeros), String::new()]);
+        let none = String::new;
+        table.add_row([figure.number.to_string(), none(), subtitle, list(&zeros), none(), none()]);
     }
     for &(strategy, ratio) in figure.runs {
         let mut scenario = scenario.clone();
@@ -140,7 +176,9 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
             scenario.title.clear();
         }
         let (text, panel) = carry_out(figure, &scenario, elbow, &mut sweep, table)?;
+        let close_up = text.kink_deg.map(|kink| close_up(&panel, kink));
         panels.push(panel);
+        panels.extend(close_up);
         runs.push(text);
     }
     let picture = torque_balance(&panels);
@@ -163,24 +201,32 @@ fn carry_out(
     let summary = run(scenario, |sample| path.push((sample.posture[elbow].to_degrees(), sample.active[elbow])))
         .map_err(|error| Fail::job(format!("figure {}", figure.number), error))?;
     let summary = &summary.coordinates[elbow];
+    let start = scenario.start.values()[elbow];
+    let kink = kink(&scenario.model, elbow, (start, summary.final_value));
+    let differences = differences(figure, summary, kink);
     let text = RunText {
         strategy: if strategy == ACTIVE { "active" } else { "passive" },
         minimum_decrease_ratio: ratio,
-        start_deg: scenario.start.values()[elbow].to_degrees(),
+        start_deg: start.to_degrees(),
         cases: summary.cases.iter().map(|case| case.number()).collect(),
         iterations: iterations(&summary.iterations),
         final_deg: summary.final_value.to_degrees(),
         final_active_nm: summary.final_torques[2],
+        kink_deg: kink.map(f64::to_degrees),
+        as_printed: differences.is_empty(),
+        differences,
     };
-    let verdict = verdict(figure, summary);
+    let verdict = if text.as_printed { "yes".to_owned() } else { format!("no: {}", text.differences.join(", ")) };
     table.add_row([
         figure.number.to_string(),
-        if strategy == ACTIVE { format!("active, R_min {ratio}") } else { "passive".to_owned() },
+        format!("{}, R_min {ratio}", text.strategy),
         cases(summary),
         format!("{:.1} deg", text.final_deg),
-        verdict.to_owned(),
+        text.kink_deg.map_or(String::new(), |angle| format!("{angle:.1} deg")),
+        verdict,
     ]);
-    let note = if verdict == "yes" { String::new() } else { format!(" ({verdict})") };
+    let note =
+        if text.as_printed { String::new() } else { format!("; not as printed: {}", text.differences.join(", ")) };
     let tolerance = scenario.relief.torque_tolerance;
     let mut panel = sweep.balance(&scenario.title, &(strategy_and_cases(scenario, summary) + &note), tolerance)?;
     let (start, goal) = (path.first().copied(), path.last().copied());
@@ -193,15 +239,51 @@ fn carry_out(
     Ok((text, panel))
 }
 
-/// How the cases that occurred compare with the printed ones.
-fn verdict(figure: &Published, summary: &CoordinateSummary) -> &'static str {
-    let inner: Vec<Case> = summary.cases.iter().copied().filter(|case| *case != Case::C12).collect();
-    if summary.cases == figure.printed {
-        "yes"
-    } else if inner == figure.printed {
-        "with 1.2 between: docs/deviations.md, D13"
+/// How a run differs from the printed figure.
+fn differences(figure: &Published, summary: &CoordinateSummary, kink: Option<f64>) -> Vec<&'static str> {
+    let without_12: Vec<Case> = summary.cases.iter().copied().filter(|case| *case != Case::C12).collect();
+    let cases = if summary.cases == figure.printed {
+        None
+    } else if without_12 == figure.printed {
+        Some("case 1.2 between (D13)")
     } else {
-        "no"
+        Some("other cases")
+    };
+    let kink = match (figure.kink, kink.is_some()) {
+        (true, false) => Some("no kink (D14)"),
+        (false, true) => Some("a kink that the text does not name (D14)"),
+        _ => None,
+    };
+    cases.into_iter().chain(kink).collect()
+}
+
+/// The angle (rad) between `start` and `end` where reshaping makes the passive slope of the coordinate jump.
+fn kink(model: &Model, coordinate: usize, (start, end): (f64, f64)) -> Option<f64> {
+    let curve = model.coordinates()[coordinate].curve()?;
+    let (reshape, (min, max)) = (curve.reshape()?, curve.range());
+    let kinks = [(min + reshape.zone, reshape.lower_stiffness), (max - reshape.zone, reshape.upper_stiffness)];
+    let passed = |angle: f64| start.min(end) < angle && angle < start.max(end);
+    kinks.into_iter().find(|&(angle, stiffness)| stiffness > 0.0 && passed(angle)).map(|(angle, _)| angle)
+}
+
+/// The part of a panel around the kink of its path.
+fn close_up(panel: &TorqueBalance, kink_deg: f64) -> TorqueBalance {
+    let near = |angle: f64| (angle - kink_deg).abs() <= CLOSE_UP_DEG;
+    let part = |torques: &[f64]| -> Vec<f64> {
+        let points = panel.angles_deg.iter().zip(torques).filter(|point| near(*point.0));
+        points.map(|point| *point.1).collect()
+    };
+    TorqueBalance {
+        subtitle: format!("close-up of the kink at {kink_deg:.1} deg"),
+        angle_label: panel.angle_label.clone(),
+        angles_deg: part(&panel.angles_deg),
+        external_nm: part(&panel.external_nm),
+        minus_passive_nm: part(&panel.minus_passive_nm),
+        active_nm: part(&panel.active_nm),
+        tolerance_nm: panel.tolerance_nm,
+        path: panel.path.iter().copied().filter(|point| near(point.0)).collect(),
+        goal: panel.goal.filter(|point| near(point.0)),
+        ..TorqueBalance::default()
     }
 }
 
@@ -212,7 +294,9 @@ fn elbow(scenario: &Scenario) -> Result<usize, Fail> {
 fn with_measured_curve(mut scenario: Scenario, elbow: usize) -> Result<Scenario, Fail> {
     let range = scenario.model.coordinates()[elbow].range;
     let row = data::library().curve("elbow_flexion").ok_or_else(|| Fail::Job("no curve `elbow_flexion`".into()))?;
-    let curve = row.over(range, 1.0).map_err(|error| Fail::job("elbow_flexion", error))?;
+    let (zone, end_torque, _) = data::library().reshape();
+    let curve = row.over(range, 1.0).and_then(|curve| data::reshaped(&curve, zone, end_torque));
+    let curve = curve.map_err(|error| Fail::job("elbow_flexion", error))?;
     scenario.model = scenario.model.with_passive(elbow, curve);
     Ok(scenario)
 }
