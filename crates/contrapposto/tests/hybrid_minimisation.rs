@@ -469,6 +469,41 @@ fn an_accepted_strategy_is_kept() {
     assert_eq!(minimise(&problem).unwrap().case, Case::C34);
 }
 
+/// D4, limits. A hip at 3.5 deg with -12 N m: no balance exists between the external slopes of 18 and 69 N m/rad, and the goal
+/// changes sides with the slope although the passive strategy is kept.
+#[test]
+fn a_kept_strategy_does_not_keep_the_side_of_the_goal() {
+    let [min, max, angle] = [-45f64, 30.0, 3.5].map(f64::to_radians);
+    let form = DoubleExponential {
+        lower: End { torque: 31.5, rate: 3.0, angle: -30f64.to_radians() },
+        upper: End { torque: 11.14, rate: 3.53, angle: 20f64.to_radians() },
+        stiffness: 0.0,
+        neutral: 0.0,
+    };
+    let curve = PassiveCurve::new(form.form().unwrap(), (min, max), None).unwrap();
+    for (external_slope, outcome, goal_deg) in [
+        (15.0, Outcome::Passive, 28.3),
+        (40.0, Outcome::AtLimit, 30.0),
+        (45.0, Outcome::LeastTorque, -13.6),
+        (69.0, Outcome::Passive, -26.4),
+    ] {
+        let decision = minimise(&Problem {
+            curve: &curve,
+            angle,
+            external_torque: 10.55,
+            external_slope,
+            strategy: Strategy::Passive,
+            minimum_decrease_ratio: 0.9,
+            torque_tolerance: 0.05,
+            accepted: Some(Strategy::Passive),
+        });
+        let decision = decision.unwrap();
+        assert_eq!(decision.outcome, outcome, "{external_slope}");
+        let goal = decision.goal.unwrap().to_degrees();
+        assert!((goal - goal_deg).abs() < 0.1, "{external_slope}: {goal}");
+    }
+}
+
 /// D5. The lower slope angle, -1, lies beyond the range: g falls from -0.5 to 1 and rises above.
 #[test]
 fn one_slope_only_is_not_monotone() {
