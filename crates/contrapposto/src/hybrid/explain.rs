@@ -69,7 +69,7 @@ pub fn explain(problem: &Problem, decision: &Decision) -> String {
                 100.0 * ratio.max(0.0),
                 100.0 * problem.minimum_decrease_ratio
             ),
-            _ => format!("balance at {goal:.2} deg takes {torque:.3} N m off the muscles"),
+            _ => format!("balance at {goal:.2} deg takes {:.3} N m off the muscles", torque.abs()),
         },
     };
     let kind =
