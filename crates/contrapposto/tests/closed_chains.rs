@@ -17,6 +17,11 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// Step of the difference along the motion, rad or m.
+#[path = "axes/mod.rs"]
+mod axes;
+
+use axes::moved_about_axis;
+
 const STEP: f64 = 1e-4;
 
 /// Torque of a rate in a posture: weight, loads, contact forces of least effort and ligaments.
@@ -30,8 +35,8 @@ struct Scale<'a> {
 impl Scale<'_> {
     fn weigh(&mut self, posture: &Posture, rate: usize) -> Option<f64> {
         self.torques.update(self.model, posture, self.loads, Quantities::TORQUES).unwrap();
-        let active = self.torques.active_torque();
-        let balance = self.contact.update(self.model, self.torques.kinematics(), active);
+        let (body, active) = (&self.torques, self.torques.active_torque());
+        let balance = self.contact.update(self.model, body.kinematics_by_axes(), body.angles(), active);
         let torque = self.contact.torques()[rate] - active[rate];
         (balance == Balance::Held).then_some(torque)
     }
@@ -53,6 +58,22 @@ fn rows(model: &Model, kinematics: &Kinematics, feet: &[Support], hand: Option<&
         all.extend(&part);
     }
     DMatrix::from_row_slice(all.len() / n, n, &all)
+}
+
+/// Rotation about the axis of a coordinate by each rate.
+fn row_of(model: &Model, posture: &Posture, coordinate: usize) -> DVector<f64> {
+    let mut row = DVector::zeros(model.rates().len());
+    match model.three_axis_joint_of(coordinate) {
+        Some((joint, place)) => {
+            let joint = &model.three_axis_joints()[joint];
+            let hinges = joint.orientation(posture.values()).hinges;
+            for (k, i) in joint.coordinates.into_iter().enumerate() {
+                row[model.coordinates()[i].rate.unwrap()] = hinges[(place, k)];
+            }
+        }
+        None => row[model.coordinates()[coordinate].rate.unwrap()] = 1.0,
+    }
+    row
 }
 
 #[test]
@@ -98,25 +119,28 @@ fn the_slope_is_that_of_the_motion_which_feet_and_goals_allow() {
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             let (Some(rate), true) = (coordinate.rate, coordinate.groups.is_some()) else { continue };
             let slope = engine.slope_along(&posture, rate, above).unwrap().unwrap();
-            let own = projection[(rate, rate)];
-            let along: DVector<f64> = projection.column(rate) / own;
+            // The row of the rate: the rotation about the axis of a three-axis joint, else the rate itself.
+            let turning = row_of(&model, &posture, i);
+            let projected = &projection * &turning;
+            let along: DVector<f64> = &projected / turning.dot(&projected);
             let mut at = |by: f64| {
                 let mut moved = posture.clone();
                 moved.displace(&model, (by * &along).as_slice());
                 scale.weigh(&moved, rate)
             };
             let (Some(before), Some(after)) = (at(-STEP), at(STEP)) else { continue };
-            let law = coordinate.passive.as_ref();
-            let passive = |by: f64| {
-                let mut moved = posture.clone();
-                moved.values_mut()[i] += by;
-                law.map_or(0.0, |law| law.torque(i, moved.values()))
+            let mut alone_at = |by: f64| {
+                let moved = moved_about_axis(&model, &posture, rate, by);
+                scale.torques.update(&model, &moved, &loads, Quantities::TORQUES).unwrap();
+                scale.torques.passive_torque().about_axes()[rate]
             };
-            let found = (after - before - passive(STEP) + passive(-STEP)) / (2.0 * STEP);
+            let passive = [STEP, -STEP].map(&mut alone_at);
+            let found = (after - before - passive[0] + passive[1]) / (2.0 * STEP);
             let off = (found - slope).abs() / (1.0 + slope.abs());
             worst = worst.max(off);
             compared += 1;
-            let own_slope = scale.torques.external_torque().own_slope(scale.torques.kinematics(), &model, rate);
+            scale.torques.update(&model, &posture, &loads, Quantities::ALL).unwrap();
+            let own_slope = scale.torques.gradient_about_axes().get(rate, rate);
             alone = alone.max((own_slope - slope).abs());
         }
     }

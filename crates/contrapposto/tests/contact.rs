@@ -6,13 +6,12 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use contrapposto::contact::{Balance, Condition, ContactForces, FACES, Support, SupportError, root_rates};
-use contrapposto::joint_torques::active_torque;
-use contrapposto::kinematics::Kinematics;
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::model::{
     Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Motion, Placement, SegmentSpec, Side, adult,
 };
 use contrapposto::posture::Posture;
-use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind, PassiveTorque};
+use contrapposto::statics::{FixedIn, Load, LoadKind};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -31,9 +30,7 @@ fn random(test: &str) -> Pcg64 {
 /// A body, its torques without contact, and its contact forces.
 struct Stand {
     model: Model,
-    kinematics: Kinematics,
-    external: ExternalTorque,
-    passive: PassiveTorque,
+    body: JointTorques,
     contact: ContactForces,
     loads: Vec<Load>,
 }
@@ -41,9 +38,8 @@ struct Stand {
 impl Stand {
     fn new(model: Model, supports: Vec<Support>, loads: Vec<Load>) -> Self {
         let contact = ContactForces::new(&model, supports).unwrap();
-        let (kinematics, external) = (Kinematics::new(&model), ExternalTorque::new(&model));
-        let passive = PassiveTorque::new(&model);
-        Self { model, kinematics, external, passive, contact, loads }
+        let body = JointTorques::new(&model);
+        Self { model, body, contact, loads }
     }
 
     /// The adult on both soles, 3 kg in a hand.
@@ -60,22 +56,20 @@ impl Stand {
     }
 
     fn update(&mut self, posture: &Posture) -> Balance {
-        self.kinematics.update(&self.model, posture).unwrap();
-        self.external.update(&self.model, &self.kinematics, &self.loads).unwrap();
-        self.passive.update(&self.model, &self.kinematics).unwrap();
-        let torques = self.external.torques().iter().zip(self.passive.torques());
-        let required: Vec<f64> = torques.map(|(external, passive)| active_torque(*external, *passive)).collect();
-        self.contact.update(&self.model, &self.kinematics, &required)
+        self.body.update(&self.model, posture, &self.loads, Quantities::TORQUES).unwrap();
+        let Self { body, contact, .. } = self;
+        contact.update(&self.model, body.kinematics_by_axes(), body.angles(), body.active_torque())
     }
 
     /// Torque of muscles, and of the root what is missing.
     fn active(&self, rate: usize) -> f64 {
-        -(self.external.torques()[rate] + self.passive.torques()[rate] + self.contact.torques()[rate])
+        let passive = self.body.passive_torque().about_axes()[rate];
+        -(self.body.external_about_axes()[rate] + passive + self.contact.torques()[rate])
     }
 
     /// Why the supports do not hold.
     fn condition(&self) -> Condition {
-        self.contact.missing(&self.model, &self.kinematics).unwrap().condition
+        self.contact.missing(&self.model, self.body.kinematics()).unwrap().condition
     }
 
     fn effort(&self) -> f64 {
@@ -83,7 +77,7 @@ impl Stand {
             self.model.coordinates().iter().enumerate().filter_map(|(i, c)| Some((i, c.rate?, c.groups.as_ref()?)));
         let load = |(i, rate, groups): (usize, usize, &[contrapposto::model::MuscleGroup; 2])| {
             let active = self.active(rate);
-            let strength = groups[Side::of(active).index()].strength.torque(self.kinematics.values()[i]);
+            let strength = groups[Side::of(active).index()].strength.torque(self.body.angles()[i]);
             (active / strength).powi(2)
         };
         groups.map(load).sum()
@@ -104,7 +98,7 @@ fn near_standing(rng: &mut Pcg64, model: &Model) -> Posture {
 fn forces_hold_the_root_push_and_stay_inside_friction_and_patch() {
     let mut rng = random("forces");
     let (mut held, mut worst, mut wished) = (0, 0f64, 0);
-    let mut without = ExternalTorque::new(&Stand::adult(0.6, 1.0).model);
+    let mut without = JointTorques::new(&Stand::adult(0.6, 1.0).model);
     for round in 0..4 {
         let (friction, share_max) = [(0.6, 1.0), (0.3, 0.4), (f64::INFINITY, 1.0), (0.8, 0.15)][round];
         let mut stand = Stand::adult(friction, share_max);
@@ -117,14 +111,14 @@ fn forces_hold_the_root_push_and_stay_inside_friction_and_patch() {
             held += 1;
             // With the forces as plain loads the root is in equilibrium.
             let loads: Vec<Load> = stand.loads.iter().chain(stand.contact.loads()).copied().collect();
-            without.update(&stand.model, &stand.kinematics, &loads).unwrap();
+            without.update(&stand.model, &posture, &loads, Quantities::TORQUES).unwrap();
             for rate in root_rates(&stand.model) {
                 let size = if stand.model.rates()[rate].rotational { weight * STATURE } else { weight };
-                worst = worst.max((without.torques()[rate] + stand.passive.torques()[rate]).abs() / size);
+                worst = worst.max(without.active_torque()[rate].abs() / size);
             }
             // Two ways to the torque of contact forces.
             for rate in 0..stand.model.rates().len() {
-                let difference = without.torques()[rate] - stand.external.torques()[rate];
+                let difference = without.external_about_axes()[rate] - stand.body.external_about_axes()[rate];
                 assert!((difference - stand.contact.torques()[rate]).abs() < 1e-9 * weight);
             }
             for support in 0..2 {
@@ -160,14 +154,14 @@ fn forces_hold_the_root_push_and_stay_inside_friction_and_patch() {
 
 /// The centre of pressure, from force and moment of the loads alone, lies within the corners in every direction of the plane.
 fn inside_the_patch(stand: &Stand, support: usize) {
-    let Some(center) = stand.contact.center_of_pressure(&stand.model, &stand.kinematics, support) else { return };
+    let Some(center) = stand.contact.center_of_pressure(&stand.model, stand.body.kinematics(), support) else { return };
     let corners = stand.contact.corners(support);
     let mut force = 0.0;
     let mut moment = V::zeros();
     let mut stations = vec![];
     for load in &stand.contact.loads()[corners] {
         let LoadKind::Force(f, _) = load.kind else { panic!() };
-        let at = stand.kinematics.station(&stand.model, load.segment, load.point);
+        let at = stand.body.kinematics().station(&stand.model, load.segment, load.point);
         force += f.y;
         moment += at.cross(&V::new(0.0, f.y, 0.0));
         stations.push(at);
@@ -201,14 +195,14 @@ impl Oracle {
         let row = |rate: usize, size: f64| -> Vec<(usize, f64)> {
             (0..forces).map(|j| (j, columns[j * n + rate] / size)).collect()
         };
-        let rest = |rate: usize| stand.external.torques()[rate] + stand.passive.torques()[rate];
+        let rest = |rate: usize| -stand.body.active_torque()[rate];
         let mut oracle = Self { forces, joints: 0, equal: vec![], below: vec![] };
         for rate in root_rates(&stand.model) {
             oracle.equal.push((row(rate, weight), -rest(rate) / weight));
         }
         for (i, coordinate) in stand.model.coordinates().iter().enumerate() {
             let (Some(rate), Some(groups)) = (coordinate.rate, &coordinate.groups) else { continue };
-            let q = stand.kinematics.values()[i];
+            let q = stand.body.angles()[i];
             let strengths = [0, 1].map(|side| groups[side].strength.torque(q));
             let [positive, negative] = [0, 1].map(|side| forces + 2 * oracle.joints + side);
             // Loads of both groups, shares of their strength: S+ positive - S- negative = active, all over S+.
@@ -370,7 +364,7 @@ fn a_body_that_leans_beyond_its_feet_is_short_by_that_much() {
             block(V::new(center, 1.0, 0.0), vec![V::new(-0.1, 0.0, 0.0), V::new(0.1, 0.0, 0.0)], V::y(), 0.5);
         let start = stand.model.default_posture();
         assert_eq!(stand.update(&start), Balance::Held, "{center}");
-        let at = stand.contact.center_of_pressure(&stand.model, &stand.kinematics, 0).unwrap();
+        let at = stand.contact.center_of_pressure(&stand.model, stand.body.kinematics(), 0).unwrap();
         assert!((at.x - center).abs() < 1e-9);
     }
 }
@@ -484,7 +478,7 @@ fn without_a_common_plane_no_distance_is_given() {
     let start = stand.model.default_posture();
     assert!(matches!(stand.update(&start), Balance::Short { .. }));
     assert_eq!(stand.condition(), Condition::Friction);
-    let missing = stand.contact.missing(&stand.model, &stand.kinematics).unwrap();
+    let missing = stand.contact.missing(&stand.model, stand.body.kinematics()).unwrap();
     assert!(missing.to_string().ends_with(" N m are missing") && !missing.to_string().contains("beyond"));
 }
 
@@ -502,7 +496,8 @@ fn forces_do_the_work_that_their_torques_say() {
         let mut power = 0.0;
         for load in stand.contact.loads() {
             let LoadKind::Force(force, _) = load.kind else { panic!() };
-            stand.kinematics.point_jacobian(&stand.model, load.segment, load.point, &mut jacobian);
+            let kinematics = stand.body.kinematics_by_axes();
+            kinematics.point_jacobian(stand.model.by_axes(), load.segment, load.point, &mut jacobian);
             for k in 0..3 {
                 power += force[k] * jacobian[k * n..(k + 1) * n].iter().zip(&rates).map(|(a, b)| a * b).sum::<f64>();
             }

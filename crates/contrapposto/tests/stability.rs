@@ -11,10 +11,15 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec, adult};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto::posture::Posture;
-use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind, PassiveTorque};
+use contrapposto::statics::{FixedIn, Load, LoadKind};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+
+#[path = "axes/mod.rs"]
+mod axes;
+
+use axes::moved_about_axis;
 
 type V = Vector3<f64>;
 
@@ -140,6 +145,7 @@ fn anywhere(rng: &mut Pcg64, model: &Model) -> Posture {
     Posture::new(values.collect())
 }
 
+/// Between rates of different joints; within a three-axis joint the symmetric part, which the order of rotations does not change.
 #[test]
 fn stiffness_is_the_central_difference_of_torque() {
     let mut rng = random("stiffness");
@@ -155,37 +161,30 @@ fn stiffness_is_the_central_difference_of_torque() {
         },
     ];
     let mut body = JointTorques::new(&model);
-    let mut kinematics = Kinematics::new(&model);
-    let (mut external, mut passive) = (ExternalTorque::new(&model), PassiveTorque::new(&model));
+    let joint_of = |rate: usize| model.rates()[rate].coordinate.and_then(|c| model.three_axis_joint_of(c)).map(|j| j.0);
     let mut worst = [0f64; 2];
     for _ in 0..30 {
         let posture = anywhere(&mut rng, &model);
         body.update(&model, &posture, &loads, NEEDS).unwrap();
         let exact = stiffness(&model, &body);
+        let h = 1e-5;
+        let mut numeric = [vec![0.0; n * n], vec![0.0; n * n]];
         for j in 0..n {
-            let error =
-                |h: f64, kinematics: &mut Kinematics, external: &mut ExternalTorque, passive: &mut PassiveTorque| {
-                    let mut numeric = [vec![0.0; n], vec![0.0; n]];
-                    for sign in [1.0, -1.0] {
-                        let mut moved = posture.clone();
-                        let mut step = vec![0.0; n];
-                        step[j] = sign * h;
-                        moved.displace(&model, &step);
-                        kinematics.update(&model, &moved).unwrap();
-                        external.update(&model, kinematics, &loads).unwrap();
-                        passive.update(&model, kinematics).unwrap();
-                        for (part, torques) in numeric.iter_mut().zip([passive.torques(), external.torques()]) {
-                            part.iter_mut().zip(torques).for_each(|(sum, torque)| *sum -= sign * torque / (2.0 * h));
-                        }
-                    }
-                    numeric
-                };
-            let numeric = error(1e-5, &mut kinematics, &mut external, &mut passive);
-            for part in 0..2 {
-                let size = exact[part].iter().fold(1.0, |size: f64, e| size.max(e.abs()));
-                for (i, numeric) in numeric[part].iter().enumerate() {
-                    worst[part] = worst[part].max((exact[part][i * n + j] - numeric).abs() / size);
+            for sign in [1.0, -1.0] {
+                body.update(&model, &moved_about_axis(&model, &posture, j, sign * h), &loads, NEEDS).unwrap();
+                for (part, torques) in
+                    numeric.iter_mut().zip([body.passive_torque().about_axes(), body.external_about_axes()])
+                {
+                    (0..n).for_each(|i| part[i * n + j] -= sign * torques[i] / (2.0 * h));
                 }
+            }
+        }
+        for (part, (exact, numeric)) in exact.iter().zip(&numeric).enumerate() {
+            let size = exact.iter().fold(1.0, |size: f64, e| size.max(e.abs()));
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                let same_joint = joint_of(i).is_some() && joint_of(i) == joint_of(j);
+                let of = |m: &[f64]| if same_joint { 0.5 * (m[i * n + j] + m[j * n + i]) } else { m[i * n + j] };
+                worst[part] = worst[part].max((of(exact) - of(numeric)).abs() / size);
             }
         }
     }
@@ -272,12 +271,19 @@ fn energy_bends_as_stiffness_says_on_standing_feet() {
             }
             kinematics.update(&model, &moved).unwrap();
             assert!(off(&model, &supports, &places, &kinematics).0.norm() < 1e-12);
+            let mut now = JointTorques::new(&model);
+            now.update(&model, &moved, &[], NEEDS).unwrap();
+            let mut turned = DVector::from_column_slice(moved.values()) - DVector::from_column_slice(posture.values());
+            for joint in model.three_axis_joints() {
+                let turn = (joint.rotation(posture.values()).inverse() * joint.rotation(moved.values())).scaled_axis();
+                joint.coordinates.iter().zip(&joint.axes).for_each(|(i, axis)| turned[*i] = axis.dot(&turn));
+            }
             let mut sum = model.mass() * G * kinematics.center_of_mass(&model).unwrap().y;
             for (i, coordinate) in model.coordinates().iter().enumerate() {
-                let (q, q0) = (moved.values()[i], posture.values()[i]);
-                sum += coordinate.passive.as_ref().map_or(0.0, |law| law.curve().unwrap().energy(q));
+                let law = coordinate.passive.as_ref();
+                sum += law.map_or(0.0, |law| law.curve().unwrap().energy(now.angles()[i]));
                 if coordinate.groups.is_some() {
-                    sum -= active[coordinate.rate.unwrap()] * (q - q0);
+                    sum -= active[coordinate.rate.unwrap()] * turned[i];
                 }
             }
             sum
@@ -287,7 +293,13 @@ fn energy_bends_as_stiffness_says_on_standing_feet() {
         for direction in weakest {
             // The same size of joint motion for all.
             let size = direction.motion.iter().fold(0.0, |size: f64, m| size.max(m.abs()));
-            let motion: Vec<f64> = direction.motion.iter().map(|m| m / size).collect();
+            let mut motion: Vec<f64> = direction.motion.iter().map(|m| m / size).collect();
+            for joint in model.three_axis_joints() {
+                let rates = joint.coordinates.map(|i| model.coordinates()[i].rate.unwrap());
+                let by_axes = V::from(rates.map(|rate| motion[rate]));
+                let step = joint.orientation(posture.values()).hinges.lu().solve(&by_axes).unwrap();
+                rates.iter().zip(step.iter()).for_each(|(rate, step)| motion[*rate] = *step);
+            }
             let second = |h: f64| (energy(h, &motion) + energy(-h, &motion) - 2.0 * energy(0.0, &motion)) / (h * h);
             // The error of either is of second order in h, that of this sum of fourth.
             let numeric = (4.0 * second(1e-3) - second(2e-3)) / 3.0;

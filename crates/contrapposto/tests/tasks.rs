@@ -113,7 +113,7 @@ fn tasks(rng: &mut Pcg64, model: &Model) -> Vec<Task> {
 }
 
 fn needs() -> Quantities {
-    Quantities { center_of_mass: true, gradient: true, ..Quantities::default() }
+    Quantities { center_of_mass: true, gradient: true, passive_torque: true, ..Quantities::default() }
 }
 
 /// Rows and what they are derivatives of: `-upper`, or `-lower` where there is no upper limit.
@@ -141,14 +141,22 @@ fn differences(task: &Task, model: &Model, posture: &posture::Posture, loads: &[
     rows
 }
 
-/// An effort row has a kink where the other group takes over, and where the floor of strength begins.
+/// An effort row has a kink where the other group takes over, where the floor of strength begins, and where a passive law of a
+/// three-axis joint goes on along its tangent: at the end of the range of an angle.
 fn kinks(task: &Task, model: &Model, posture: &posture::Posture, values: &[f64], row: usize) -> bool {
     let Task::Effort(effort) = task else { return false };
     let i = effort.coordinates[row];
     let strength = model.coordinates()[i].groups.as_ref().unwrap()[Side::of(values[row]).index()].strength;
-    let q = posture.values()[i];
+    let mut body = JointTorques::new(model);
+    body.update(model, posture, &[], Quantities::TORQUES).unwrap();
+    let q = body.angles()[i];
     let [a, b] = [q - 2e-3, q + 2e-3].map(|q| strength.torque_and_slope(q).1 == 0.0);
-    values[row].abs() < 0.05 || a != b
+    let at_an_end = |c: &usize| {
+        let (low, high) = model.coordinates()[*c].range;
+        [low, high].iter().any(|end| (body.angles()[*c] - end).abs() < 5e-3)
+    };
+    let joint = model.three_axis_joint_of(i).map(|(joint, _)| &model.three_axis_joints()[joint]);
+    values[row].abs() < 0.05 || a != b || joint.is_some_and(|joint| joint.coordinates.iter().any(at_an_end))
 }
 
 /// Errors bend sharply toward half a turn, where they jump; `turns_of_any_size` goes there.
@@ -383,10 +391,10 @@ fn effort_is_active_torque_over_strength() {
         task.residual(&model, &body, &mut residual);
         for (&i, share) in effort.coordinates.iter().zip(&residual) {
             let coordinate = &model.coordinates()[i];
-            let passive = coordinate.passive.as_ref().map_or(0.0, |law| law.torque(i, posture.values()));
-            let active = -(passive + body.external_torque().torques()[coordinate.rate.unwrap()]);
+            let rate = coordinate.rate.unwrap();
+            let active = -(body.passive_torque().about_axes()[rate] + body.external_about_axes()[rate]);
             let group = &coordinate.groups.as_ref().unwrap()[Side::of(active).index()];
-            assert_eq!(*share, active / group.strength.torque(posture.values()[i]));
+            assert_eq!(*share, active / group.strength.torque(body.angles()[i]));
         }
     }
 }

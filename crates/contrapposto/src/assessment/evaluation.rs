@@ -78,20 +78,20 @@ impl<'a> Evaluation<'a> {
     pub(super) fn propose(&self, group: &mut GroupAssessment, at: PeakKind, time: f64, settings: &AssessSettings) {
         let i = group.coordinate;
         let coordinate = &self.model.coordinates()[i];
-        let (Some(law), Some(rate)) = (&coordinate.passive, coordinate.rate) else { return };
+        let Some(rate) = coordinate.rate else { return };
         if Side::of(self.active(rate)) != group.side {
             return;
         }
         let range = self.ranges.get(i).copied().flatten().unwrap_or(coordinate.range);
-        let values = self.torques.passive_torque().values();
-        let Some(curve) = law.curve_at(i, values, range) else { return };
-        let external = self.torques.external_torque();
-        let slope = external.own_slope(self.torques.kinematics(), self.model, rate);
+        let (passive, kinematics) = (self.torques.passive_torque(), self.torques.kinematics());
+        let Some(curve) = passive.curve_about_axis(self.model, kinematics, i, range) else { return };
+        let value = passive.values()[i];
+        let slope = self.torques.own_slope_about_axis(self.model, rate);
         for strategy in [Strategy::Active, Strategy::Passive] {
             let problem = Problem {
                 curve: &curve,
-                angle: values[i].max(curve.range().0).min(curve.range().1),
-                external_torque: external.torques()[rate],
+                angle: value.max(curve.range().0).min(curve.range().1),
+                external_torque: self.torques.external_about_axes()[rate],
                 external_slope: slope,
                 strategy,
                 minimum_decrease_ratio: settings.minimum_decrease_ratio,
@@ -99,7 +99,7 @@ impl<'a> Evaluation<'a> {
                 accepted: None,
             };
             if let Ok(decision) = minimise(&problem) {
-                let (angle, sentence) = (values[i], explain(&problem, &decision));
+                let (angle, sentence) = (value, explain(&problem, &decision));
                 group.proposals.push(Proposal { at, time, angle, strategy, decision, sentence });
             }
         }

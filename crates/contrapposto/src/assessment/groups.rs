@@ -92,8 +92,8 @@ impl Groups {
             let coordinate = &evaluation.model.coordinates()[i];
             let (Some(groups), Some(rate)) = (&coordinate.groups, coordinate.rate) else { continue };
             let active = evaluation.active(rate);
-            let value = evaluation.torques.kinematics().values()[i];
-            let load = if Side::of(active) == side { relative_load(coordinate, value, active) } else { 0.0 };
+            let angle = evaluation.torques.angles()[i];
+            let load = if Side::of(active) == side { relative_load(coordinate, angle, active) } else { 0.0 };
             let before = std::mem::replace(&mut self.load[i][side.index()], load);
             let law = &groups[side.index()].fatigue;
             if index == 0 {

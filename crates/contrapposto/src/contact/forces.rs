@@ -51,9 +51,9 @@ pub struct ContactForces {
     axes: Vec<[Vector3<f64>; 3]>,
     /// By unknown, in body weights.
     forces: Vec<f64>,
-    /// Torque of every rate at one body weight of each unknown, N m: one row an unknown.
+    /// Torque of every rate about its axis at one body weight of each unknown, N m: one row an unknown.
     columns: Vec<f64>,
-    /// Torque of every rate by all of them, N m.
+    /// Torque of every rate about its axis by all of them, N m.
     torques: Vec<f64>,
     jacobian: Vec<f64>,
     row: Vec<f64>,
@@ -121,6 +121,11 @@ impl ContactForces {
         forces
     }
 
+    /// Supports need not hold the root at a rate: it is locked.
+    pub(crate) fn hold_root(&mut self, rate: usize) {
+        self.root.retain(|own| *own != rate);
+    }
+
     /// Forgets what earlier postures have shown: the next answer is that of new forces, to the bit.
     pub fn forget(&mut self) {
         self.solver.forget();
@@ -128,13 +133,14 @@ impl ContactForces {
         self.forces.fill(0.0);
     }
 
-    /// Finds the forces in the posture that `kinematics` holds. `required` is the active torque of every rate that would be needed
-    /// without contact forces, dependent coordinates folded into independent ones, N m. Does not allocate once it has solved.
-    pub fn update(&mut self, model: &Model, kinematics: &Kinematics, required: &[f64]) -> Balance {
-        self.gather(model, kinematics);
+    /// Finds the forces in a posture. `kinematics` are those of the body with balls ([`Model::by_axes`]), `angles` those about the
+    /// axes of all coordinates, rad; `required` is the active torque of every rate about its axis that would be needed without
+    /// contact forces, dependent coordinates folded into independent ones, N m. Does not allocate once it has solved.
+    pub fn update(&mut self, model: &Model, kinematics: &Kinematics, angles: &[f64], required: &[f64]) -> Balance {
+        self.gather(model.by_axes(), kinematics);
         self.hard_levels(required);
         for _ in 0..SIGNS {
-            self.effort_level(model, kinematics, required);
+            self.effort_level(model, angles, required);
             if !matches!(self.solver.solve_next(&self.problem), Ok(Status::Solved | Status::Infeasible { .. })) {
                 self.solver.forget();
                 if self.solver.solve(&self.problem).is_err() {
@@ -143,7 +149,7 @@ impl ContactForces {
             }
             self.forces.copy_from_slice(self.solver.solution());
             self.sum();
-            if !self.turn_sides(model, kinematics, required) {
+            if !self.turn_sides(model, angles, required) {
                 break;
             }
         }
@@ -212,12 +218,12 @@ impl ContactForces {
         self.problem.levels[1].hard = true;
     }
 
-    fn effort_level(&mut self, model: &Model, kinematics: &Kinematics, required: &[f64]) {
+    fn effort_level(&mut self, model: &Model, angles: &[f64], required: &[f64]) {
         self.problem.levels[3].clear();
         for i in 0..self.working.len() {
             let (coordinate, rate) = self.working[i];
             let Some(groups) = &model.coordinates()[coordinate].groups else { continue };
-            let strength = groups[self.sides[i].index()].strength.torque(kinematics.values()[coordinate]);
+            let strength = groups[self.sides[i].index()].strength.torque(angles[coordinate]);
             self.fill_row(rate, strength);
             let rest = required[rate] / strength;
             self.problem.levels[3].push(&self.row, rest, rest);
@@ -233,15 +239,14 @@ impl ContactForces {
     }
 
     /// Puts the sides right on which muscles work; `false` if that changes no strength.
-    fn turn_sides(&mut self, model: &Model, kinematics: &Kinematics, required: &[f64]) -> bool {
+    fn turn_sides(&mut self, model: &Model, angles: &[f64], required: &[f64]) -> bool {
         let mut turned = false;
         for (side, &(coordinate, rate)) in self.sides.iter_mut().zip(&self.working) {
             let now = Side::of(required[rate] - self.torques[rate]);
             if now != *side
                 && let Some(groups) = &model.coordinates()[coordinate].groups
             {
-                let [before, after] =
-                    [*side, now].map(|side| groups[side.index()].strength.torque(kinematics.values()[coordinate]));
+                let [before, after] = [*side, now].map(|side| groups[side.index()].strength.torque(angles[coordinate]));
                 turned |= before != after;
             }
             *side = now;
@@ -295,7 +300,7 @@ impl ContactForces {
         &self.loads
     }
 
-    /// Torque of every rate by all contact forces, N m.
+    /// Torque of every rate about its axis by all contact forces, N m.
     pub fn torques(&self) -> &[f64] {
         &self.torques
     }
@@ -315,7 +320,7 @@ impl ContactForces {
         &self.forces
     }
 
-    /// Torque of every rate at one body weight of each of [`ContactForces::forces`], N m: one row an unknown.
+    /// Torque of every rate about its axis at one body weight of each of [`ContactForces::forces`], N m: one row an unknown.
     pub fn columns(&self) -> &[f64] {
         &self.columns
     }

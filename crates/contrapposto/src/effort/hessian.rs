@@ -3,11 +3,11 @@
 //! `L = 1/2 |r|^2 + sum_k y_k c_k` with the relative loads `r`, the errors `c_k` of all constraints and their multipliers `y_k`.
 //! Beyond `J^T J` its second derivative has `sum_k y_k c_k''` of the tasks ([`ErrorHessian`]) and `sum_i w_i tau_i''` with
 //! `w_i = -r_i / S_i` for muscles and `w_k = y_k / W` for the root's equilibrium, whose rows are shares of body weight `W`.
-//! External torque is the gradient of a potential, whose third derivatives are symmetric: that sum is the change of the
-//! gradient matrix when the body moves along `w`, and its mixed part is the change of the torques of each contact force, since
-//! these too are gradients
-//! of a potential. One difference gives both. Coupled passive laws, which have no potential, and strength that changes with the
-//! angle have closed forms.
+//! External torque about axes is the derivative of a potential by rotations about them: that sum is the change of the gradient
+//! matrix when the body moves along `w`, and its mixed part is the change of the torques of each contact force, since these too are
+//! derivatives of a potential, both with the terms of rotations that do not commute ([`SecondByAxes`]). One difference gives both.
+//! Passive laws, of the angles about axes, and strength that changes with an angle have closed forms but for the third derivatives of
+//! those angles, which are a difference along `w`, too.
 //!
 //! Exploratory solves omit forces, coupled laws and strength ([`HessianModel::Partial`]), to escape shallow minima.
 //!
@@ -15,14 +15,14 @@
 //! support. These are projected out of the mixed part, which changes only the multipliers of the supports: otherwise the matrix
 //! would have negative curvature in directions in which no step may go.
 
+use super::passive_hessian::add_passive;
 use super::problem::EffortProblem;
-use super::tolerances::{DIFFERENCE_STEP, INDEPENDENT_ROW, PASSIVE_DIFFERENCE_STEP};
-use crate::joint_torques::{JointTorques, Quantities};
+use super::second_by_axes::{SecondByAxes, rates, turned_axes};
+use super::tolerances::{DIFFERENCE_STEP, INDEPENDENT_ROW};
+use crate::joint_torques::{AboutAxes, JointTorques};
 use crate::model::{Model, Side};
-use crate::passive::PassiveLaw;
-use crate::posture::Posture;
 use crate::statics::{Gradient, Load};
-use crate::tasks::{ErrorHessian, Task, share_of_strength};
+use crate::tasks::{ErrorHessian, Task, for_each_angle_slope, share_of_strength};
 use hierarchical_least_squares::linalg::{add_scaled, dot};
 
 /// Body, loads and first derivatives at the iterate.
@@ -53,8 +53,8 @@ pub(crate) enum HessianModel {
 #[derive(Clone, Debug)]
 pub(crate) struct Hessian {
     errors: ErrorHessian,
-    moved: Posture,
-    body: JointTorques,
+    /// The body moved along `w`.
+    moved: AboutAxes,
     /// `w`, by rate.
     weights: Vec<f64>,
     step: Vec<f64>,
@@ -62,6 +62,8 @@ pub(crate) struct Hessian {
     jacobian: Vec<f64>,
     basis: Vec<f64>,
     mixed: Vec<f64>,
+    row: Vec<f64>,
+    by_axes: SecondByAxes,
 }
 
 impl Hessian {
@@ -69,14 +71,15 @@ impl Hessian {
         let n = model.rates().len();
         Self {
             errors: ErrorHessian::new(model, 0),
-            moved: model.default_posture(),
-            body: JointTorques::new(model),
+            moved: AboutAxes::new(model),
             weights: vec![0.0; n],
             step: vec![0.0; n],
             columns: vec![],
             jacobian: vec![0.0; 3 * n],
             basis: vec![],
             mixed: vec![],
+            row: vec![0.0; n],
+            by_axes: SecondByAxes::new(n),
         }
     }
 
@@ -92,15 +95,18 @@ impl Hessian {
     ) {
         self.weigh(problem, at, multipliers);
         self.add_tasks(problem, at, multipliers, matrix);
-        let moved = self.add_torques(problem, at, matrix);
-        self.add_passive(problem, at, matrix);
+        self.by_axes.clear();
+        self.add_gradient_about_axes(problem, at);
+        let moved = self.add_torques(problem, at);
+        add_passive(problem.model, at.body, &self.weights, terms == HessianModel::Full, &mut self.by_axes);
         if terms == HessianModel::Full {
             if let Some(moved) = moved {
                 self.add_forces(problem, at, moved, matrix);
             }
-            self.add_coupled(problem, at, matrix);
             self.add_strength(problem, at, matrix);
         }
+        self.by_axes.fold(problem.model, at.body);
+        self.by_axes.add_to(problem.free, problem.unknowns(), matrix);
     }
 
     /// Sets `w`.
@@ -124,12 +130,29 @@ impl Hessian {
             multipliers = rest;
         }
         if let Some(hessian) = self.errors.evaluate(problem.model, at.body.kinematics()) {
-            add_gradient(problem, 1.0, hessian, None, matrix);
+            add_gradient(problem, hessian, matrix);
+        }
+    }
+
+    /// Adds `E_l sum_i w_i (tau_e,i + tau_p,i)` at the axes of three-axis joints.
+    fn add_gradient_about_axes(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>) {
+        let model = problem.model;
+        if model.three_axis_joints().is_empty() {
+            return;
+        }
+        for (rate, weight) in self.weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+            self.row.fill(0.0);
+            if let Some(coordinate) = model.rates()[rate].coordinate {
+                let body = at.body;
+                body.passive_torque().add_row_about_axis(model, body.kinematics(), coordinate, &mut self.row);
+            }
+            add_scaled(&mut self.by_axes.gradient, *weight, &self.row);
+            add_scaled(&mut self.by_axes.gradient, *weight, at.body.gradient_about_axes().row(rate));
         }
     }
 
     /// Adds the change of the torque gradient along `w`; returns how far along `w` the body has moved for the difference.
-    fn add_torques(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) -> Option<f64> {
+    fn add_torques(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>) -> Option<f64> {
         let model = problem.model;
         let size = self.weights.iter().fold(0.0, |size: f64, w| size.max(w.abs()));
         if size.is_nan() || size <= 0.0 {
@@ -137,77 +160,53 @@ impl Hessian {
         }
         let h = DIFFERENCE_STEP / size;
         self.step.iter_mut().zip(&self.weights).for_each(|(step, w)| *step = h * w);
-        self.moved.values_mut().copy_from_slice(at.body.posture().values());
-        self.moved.displace(model, &self.step);
-        let needs = Quantities { gradient: true, ..Quantities::default() };
-        if self.body.update(model, &self.moved, at.loads, needs).is_err() {
-            return None;
-        }
-        add_gradient(problem, 1.0 / h, self.body.gradient(), Some(at.body.gradient()), matrix);
+        self.moved.update_displaced(model, at.body.posture(), &self.step, at.loads).ok()?;
+        let (now, after) = (at.body.gradient_about_axes(), self.moved.gradient());
+        self.by_axes.add_along(model, &self.weights, h, |row| now.row(row), |row| after.row(row));
         Some(h)
     }
 
-    /// `sum_i w_i tau_p,i''` of joints whose passive torque depends on their own angle.
-    fn add_passive(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
-        let (model, n, values) = (problem.model, problem.unknowns(), at.body.kinematics().values());
-        for (i, &rate) in problem.free.iter().enumerate() {
-            let Some(own) = model.rates()[rate].coordinate else { continue };
-            let slope = |slope: &dyn Fn(f64) -> f64| {
-                (slope(values[own] + PASSIVE_DIFFERENCE_STEP) - slope(values[own] - PASSIVE_DIFFERENCE_STEP))
-                    / (2.0 * PASSIVE_DIFFERENCE_STEP)
-            };
-            let curvature = match &model.coordinates()[own].passive {
-                Some(PassiveLaw::Curve(curve)) => slope(&|q| curve.torque_and_slope(q).1),
-                Some(PassiveLaw::Sum(terms)) => slope(&|q| terms.iter().map(|term| term.torque_and_slope(q).1).sum()),
-                _ => 0.0,
-            };
-            matrix[i * n + i] += self.weights[rate] * curvature;
-        }
-    }
-
-    /// Adds `sum_i w_i tau_p,i''` of coupled laws, by those of hip, knee and ankle that are free. Laws of dependent coordinates,
-    /// whose passive torque counts at the independent ones, are left out.
-    fn add_coupled(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
-        let (model, n, values) = (problem.model, problem.unknowns(), at.body.kinematics().values());
-        for (own, coordinate) in model.coordinates().iter().enumerate() {
-            let (Some(PassiveLaw::Coupled(law)), Some(rate)) = (&coordinate.passive, coordinate.rate) else { continue };
-            if model.is_dependent(own) {
+    /// Adds `(J^T k + k^T J) r - r^2 S''/S` at each joint whose strength `S` changes with the angle `x` about its axis, where `J` is
+    /// the row of the relative load `r` and `k = -S'/S`; derivatives by the posture are those by the angle times `dx/dq`, and
+    /// `- r^2 (S'/S) x''`.
+    fn add_strength(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
+        let (model, n) = (problem.model, problem.unknowns());
+        for (coordinate, _, residual, row) in relative_loads(problem, at) {
+            let Some(groups) = &model.coordinates()[coordinate].groups else { continue };
+            let strength = &groups[Side::of(residual).index()].strength;
+            let angle = at.body.angles()[coordinate];
+            let ((torque, slope), curvature) = (strength.torque_and_slope(angle), strength.curvature(angle));
+            if slope == 0.0 && curvature == 0.0 {
                 continue;
             }
-            let places = law.neighbours.map(|neighbour| {
-                let rate = model.coordinates()[neighbour?.0].rate?;
-                problem.free.iter().position(|free| *free == rate)
-            });
-            for (a, row) in places.into_iter().zip(law.curvature(values)) {
-                for (b, entry) in places.into_iter().zip(row) {
-                    if let (Some(a), Some(b)) = (a, b)
-                        && a <= b
-                    {
-                        matrix[a * n + b] += self.weights[rate] * entry;
-                    }
+            self.add_second_of_angle(model, at.body, coordinate, -residual * residual * slope / torque);
+            self.row.fill(0.0);
+            for_each_angle_slope(model, at.body, coordinate, |rate, slope| self.row[rate] = slope);
+            at.body.fold_axes(model, &mut self.row);
+            let by = -residual * slope / torque;
+            for (own, rate) in problem.free.iter().enumerate().filter(|(_, rate)| self.row[**rate] != 0.0) {
+                let share = self.row[*rate];
+                for (other, entry) in row.iter().enumerate() {
+                    let twice = if other == own { 2.0 } else { 1.0 };
+                    matrix[own.min(other) * n + own.max(other)] += twice * by * share * entry;
+                }
+                for (other, rate) in problem.free.iter().enumerate().skip(own) {
+                    matrix[own * n + other] -= residual * residual * curvature / torque * share * self.row[*rate];
                 }
             }
         }
     }
 
-    /// Adds `(J^T k + k^T J) r - r^2 S''/S` at each joint whose strength `S` changes with the angle, where `J` is the row of the
-    /// relative load `r` and `k = -S'/S`.
-    fn add_strength(&mut self, problem: &EffortProblem<'_>, at: &FirstOrder<'_>, matrix: &mut [f64]) {
-        let n = problem.unknowns();
-        for (coordinate, rate, residual, row) in relative_loads(problem, at) {
-            let Some(groups) = &problem.model.coordinates()[coordinate].groups else { continue };
-            let strength = &groups[Side::of(residual).index()].strength;
-            let angle = at.body.kinematics().values()[coordinate];
-            let ((torque, slope), curvature) = (strength.torque_and_slope(angle), strength.curvature(angle));
-            if slope == 0.0 && curvature == 0.0 {
-                continue;
+    /// Adds `share` times the second derivative of the angle about the axis of a coordinate.
+    fn add_second_of_angle(&mut self, model: &Model, body: &JointTorques, coordinate: usize, share: f64) {
+        let Some((joint, place)) = model.three_axis_joint_of(coordinate) else { return };
+        let angles = &body.passive_torque().orientations()[joint].angles;
+        let rates = rates(model, &model.three_axis_joints()[joint]);
+        for (m, by) in rates.into_iter().enumerate() {
+            self.by_axes.gradient[by] += share * angles.first[(place, m)];
+            for (l, other) in rates.into_iter().enumerate() {
+                self.by_axes.add(by, other, share * angles.second[place][(m, l)]);
             }
-            let Some(own) = problem.free.iter().position(|free| *free == rate) else { continue };
-            let by = -residual * slope / torque;
-            for (other, entry) in row.iter().enumerate() {
-                matrix[own.min(other) * n + own.max(other)] += by * entry;
-            }
-            matrix[own * n + own] += by * row[own] - residual * residual * curvature / torque;
         }
     }
 
@@ -216,8 +215,8 @@ impl Hessian {
         if at.columns.is_empty() {
             return;
         }
-        let (rates, n, k) = (problem.model.rates().len(), problem.unknowns(), problem.free.len());
-        problem.contact_columns(&self.body, &mut self.jacobian, &mut self.columns);
+        let (model, n, k) = (problem.model, problem.unknowns(), problem.free.len());
+        problem.contact_columns(self.moved.kinematics(), &mut self.jacobian, &mut self.columns);
         self.basis.clear();
         self.mixed.resize(k, 0.0);
         for row in at.support_rows.chunks_exact(n) {
@@ -229,8 +228,18 @@ impl Hessian {
                 self.basis.extend(self.mixed.iter().map(|entry| entry / left));
             }
         }
-        for (force, (to, from)) in self.columns.chunks_exact(rates).zip(at.columns.chunks_exact(rates)).enumerate() {
-            self.mixed.iter_mut().zip(problem.free).for_each(|(entry, rate)| *entry = (to[*rate] - from[*rate]) / h);
+        let rates_of_body = model.rates().len();
+        let columns = self.columns.chunks_exact(rates_of_body).zip(at.columns.chunks_exact(rates_of_body));
+        for (force, (to, from)) in columns.enumerate() {
+            self.row.iter_mut().zip(to.iter().zip(from)).for_each(|(entry, (to, from))| *entry = (to - from) / h);
+            for joint in model.three_axis_joints() {
+                let (rates, turned) = (rates(model, joint), turned_axes(model, joint, &self.weights));
+                for (m, by) in rates.into_iter().enumerate() {
+                    self.row[by] += (0..3).map(|n| turned[(m, n)] * from[rates[n]]).sum::<f64>();
+                }
+            }
+            at.body.fold_axes(model, &mut self.row);
+            self.mixed.iter_mut().zip(problem.free).for_each(|(entry, rate)| *entry = self.row[*rate]);
             project_out(&mut self.mixed, &self.basis);
             for (i, entry) in self.mixed.iter().enumerate() {
                 matrix[i * n + k + force] += entry;
@@ -239,19 +248,14 @@ impl Hessian {
     }
 }
 
-/// Adds `share` times the symmetric part of a gradient, less that of another one.
-fn add_gradient(problem: &EffortProblem<'_>, share: f64, of: &Gradient, less: Option<&Gradient>, matrix: &mut [f64]) {
+/// Adds the symmetric part of a gradient.
+fn add_gradient(problem: &EffortProblem<'_>, of: &Gradient, matrix: &mut [f64]) {
     let n = problem.unknowns();
-    let symmetric = of.is_symmetric() && less.is_none_or(Gradient::is_symmetric);
     for (i, &a) in problem.free.iter().enumerate() {
-        let (row, rest) = (of.row(a), less.map(|less| less.row(a)));
+        let row = of.row(a);
         let to = &mut matrix[i * n + i..i * n + problem.free.len()];
         for (entry, &b) in to.iter_mut().zip(&problem.free[i..]) {
-            let mut sum = row[b] - rest.map_or(0.0, |rest| rest[b]);
-            if !symmetric {
-                sum = 0.5 * (sum + of.get(b, a) - less.map_or(0.0, |less| less.get(b, a)));
-            }
-            *entry += share * sum;
+            *entry += if of.is_symmetric() { row[b] } else { 0.5 * (row[b] + of.get(b, a)) };
         }
     }
 }

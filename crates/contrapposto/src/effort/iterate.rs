@@ -79,12 +79,10 @@ impl Iterate {
             self.loads.push(Load { kind, ..*load });
         }
         let tasks = problem.constraint_levels().flat_map(|level| &level.tasks);
-        // Passive torque is for the equilibrium of a root that supports must hold.
-        let passive_torque = !contact.root().is_empty();
-        let needs = Quantities { gradient: true, passive_torque, ..Quantities::default() };
+        let needs = Quantities { gradient: true, passive_torque: true, ..Quantities::default() };
         let needs = tasks.fold(needs, |needs, task| needs.with(task.quantities()));
         self.body.update(model, &self.posture, &self.loads, needs)?;
-        problem.contact_columns(&self.body, &mut self.point_jacobian, &mut self.columns);
+        problem.contact_columns(self.body.kinematics_by_axes(), &mut self.point_jacobian, &mut self.columns);
         self.evaluate_residual(problem);
         self.constraints.clear();
         self.lower.clear();

@@ -10,9 +10,11 @@ pub(crate) mod basin_hopping;
 mod decoupled_subtrees;
 pub(crate) mod hessian;
 mod iterate;
+mod passive_hessian;
 pub(crate) mod problem;
 mod qp;
 mod reduced_problem;
+mod second_by_axes;
 mod sqp;
 #[cfg(test)]
 mod standing_adult;

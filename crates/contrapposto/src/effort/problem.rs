@@ -6,6 +6,7 @@
 
 use crate::contact::ContactForces;
 use crate::joint_torques::JointTorques;
+use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
@@ -48,12 +49,12 @@ impl EffortProblem<'_> {
         self.free.len() + self.contact.forces().len()
     }
 
-    /// Fills `columns` with the torque of every rate at one body weight of each unknown force.
-    pub(crate) fn contact_columns(&self, body: &JointTorques, jacobian: &mut [f64], columns: &mut Vec<f64>) {
+    /// Fills `columns` with the torque of every rate about its axis at one body weight of each unknown force; `kinematics` are those of the body with balls.
+    pub(crate) fn contact_columns(&self, kinematics: &Kinematics, jacobian: &mut [f64], columns: &mut Vec<f64>) {
         let n = self.model.rates().len();
         columns.clear();
         for (load, axes) in self.contact.loads().iter().zip(self.contact.axes()) {
-            body.kinematics().point_jacobian(self.model, load.segment, load.point, jacobian);
+            kinematics.point_jacobian(self.model.by_axes(), load.segment, load.point, jacobian);
             for axis in axes {
                 let force = self.contact.weight() * axis;
                 columns.extend(

@@ -32,7 +32,7 @@ pub(super) fn describe(
         locked[i] |= rate.coordinate.is_some_and(|c| model.coordinates()[c].locked);
     }
     let stability = stability(model, body, search.supports, search.loads, &locked);
-    let torques = [body.external_torque().torques().to_vec(), body.passive_torque().torques().to_vec()];
+    let torques = [body.external_about_axes().to_vec(), body.passive_torque().about_axes().to_vec()];
     let mut work: Vec<Work> = (0..model.coordinates().len()).filter_map(|i| work_of(model, engine, i)).collect();
     work.sort_by(|a, b| b.relative_load().total_cmp(&a.relative_load()));
     let hanging = work.iter().filter_map(|work| {
@@ -56,7 +56,7 @@ pub(super) fn work_of(model: &Model, engine: &Engine<'_>, i: usize) -> Option<Wo
     let active = engine.torques().active_torque()[rate];
     let side = Side::of(active);
     let group = &groups[side.index()];
-    let strength = group.strength.torque(engine.torques().kinematics().values()[i]);
+    let strength = group.strength.torque(engine.torques().angles()[i]);
     let endurance = group.fatigue.endurance_time(active.abs() / strength);
     Some(Work { coordinate: i, side, active, strength, endurance })
 }
@@ -66,9 +66,8 @@ pub(super) fn relative_torques(model: &Model, engine: &Engine<'_>) -> Vec<[f64; 
     let shares = |i: usize| {
         let rate = model.coordinates()[i].rate?;
         let work = work_of(model, engine, i)?;
-        let torques =
-            [engine.torques().external_torque().torques()[rate], engine.torques().passive_torque().torques()[rate]];
-        Some(torques.map(|torque| torque / work.strength))
+        let (external, passive) = engine.torques().external_and_passive(rate);
+        Some([external, passive].map(|torque| torque / work.strength))
     };
     (0..model.coordinates().len()).map(|i| shares(i).unwrap_or_default()).collect()
 }

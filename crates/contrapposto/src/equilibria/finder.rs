@@ -56,6 +56,15 @@ enum Stage {
     Converged = 1,
 }
 
+/// A goal angle of a coordinate.
+#[derive(Clone, Debug)]
+struct Goal {
+    /// About the axis of the coordinate, rad.
+    angle: f64,
+    /// The least step of all coordinates that turns the joint so far.
+    step: Vec<f64>,
+}
+
 /// A posture that a solve has reached.
 #[derive(Clone, Debug)]
 struct Candidate {
@@ -220,14 +229,12 @@ impl<'a> Finder<'a> {
     }
 
     /// Solves with goal angles as half-spaces, and then without them.
-    fn explore_with(&mut self, from: &Posture, goals: &[(usize, f64)], label: String) {
+    fn explore_with(&mut self, from: &Posture, goals: &[&Goal], label: String) {
         let n = self.search.model.coordinates().len();
         let mut spaces = vec![];
-        for &(coordinate, goal) in goals {
+        for goal in goals {
             let mut space = HalfSpace::new(n);
-            let mut step = vec![0.0; n];
-            step[coordinate] = goal - from.values()[coordinate];
-            if space.ask_for(from.values(), &step) {
+            if space.ask_for(from.values(), &goal.step) {
                 spaces.push(space);
             }
         }
@@ -242,7 +249,7 @@ impl<'a> Finder<'a> {
     /// Solves with the goal angles of both strategies in a posture: all together, and one by one.
     fn explore_goals(&mut self, posture: &Posture) -> Result<(), SearchError> {
         let model = self.search.model;
-        let mut asked: Vec<(f64, usize, [Option<f64>; 2])> = vec![];
+        let mut asked: Vec<(f64, usize, [Option<Goal>; 2])> = vec![];
         for i in 0..model.coordinates().len() {
             let goals = self.goals_of(posture, i)?;
             if goals.iter().any(Option::is_some) {
@@ -251,7 +258,7 @@ impl<'a> Finder<'a> {
             }
         }
         for (k, word) in ["active", "passive"].into_iter().enumerate() {
-            let all: Vec<(usize, f64)> = asked.iter().filter_map(|(_, i, goals)| Some((*i, goals[k]?))).collect();
+            let all: Vec<&Goal> = asked.iter().filter_map(|(_, _, goals)| goals[k].as_ref()).collect();
             if !all.is_empty() {
                 self.explore_with(posture, &all, format!("all {word} goals"));
             }
@@ -264,44 +271,51 @@ impl<'a> Finder<'a> {
                 let Some(goal) = goal else { continue };
                 let coordinate = &model.coordinates()[i];
                 let value = match coordinate.kind {
-                    CoordinateKind::Rotation => format!("{:.1} deg", goal.to_degrees()),
-                    _ => format!("{goal:.3} m"),
+                    CoordinateKind::Rotation => format!("{:.1} deg", goal.angle.to_degrees()),
+                    _ => format!("{:.3} m", goal.angle),
                 };
-                self.explore_with(posture, &[(i, goal)], format!("{word} goal of {}, {value}", coordinate.name));
+                self.explore_with(posture, &[&goal], format!("{word} goal of {}, {value}", coordinate.name));
             }
         }
         Ok(())
     }
 
-    /// Active and passive goal angle of a coordinate that are not reached yet.
-    fn goals_of(&mut self, posture: &Posture, i: usize) -> Result<[Option<f64>; 2], SearchError> {
+    /// Active and passive goal of a coordinate that are not reached yet.
+    fn goals_of(&mut self, posture: &Posture, i: usize) -> Result<[Option<Goal>; 2], SearchError> {
+        const NONE: [Option<Goal>; 2] = [None, None];
         let coordinate = &self.search.model.coordinates()[i];
-        let (Some(law), Some(rate), true) = (&coordinate.passive, coordinate.rate, coordinate.groups.is_some()) else {
-            return Ok([None; 2]);
-        };
+        let (Some(rate), true) = (coordinate.rate, coordinate.groups.is_some()) else { return Ok(NONE) };
         if self.search.locked.contains(&rate) || coordinate.locked || self.search.model.is_dependent(i) {
-            return Ok([None; 2]);
+            return Ok(NONE);
         }
         let engine = &mut self.engines[Stage::Exploratory as usize];
-        let Some(external_slope) = engine.slope_along(posture, rate, self.slot)? else { return Ok([None; 2]) };
-        let Some(curve) = law.curve_at(i, posture.values(), coordinate.range) else { return Ok([None; 2]) };
+        let Some(external_slope) = engine.slope_along(posture, rate, self.slot)? else { return Ok(NONE) };
+        let (model, body) = (self.search.model, engine.torques());
+        let passive_torque = body.passive_torque();
+        let Some(curve) = passive_torque.curve_about_axis(model, body.kinematics(), i, coordinate.range) else {
+            return Ok(NONE);
+        };
         let goal = |strategy: Strategy| {
             let problem = Problem {
                 curve: &curve,
-                angle: posture.values()[i],
-                external_torque: engine.torques().external_torque().torques()[rate],
+                angle: passive_torque.angles()[i],
+                external_torque: body.external_about_axes()[rate],
                 external_slope,
                 strategy,
                 minimum_decrease_ratio: MINIMUM_DECREASE_RATIO,
                 torque_tolerance: TORQUE_TOLERANCE,
                 accepted: None,
             };
-            let goal = minimise(&problem).ok()?.goal?;
-            ((goal - problem.angle).abs() > LEAST_GOAL_DISTANCE).then_some(goal)
+            let angle = minimise(&problem).ok()?.goal?;
+            let turn = angle - problem.angle;
+            let mut step = vec![0.0; model.coordinates().len()];
+            body.write_turn(model, i, turn, &mut step);
+            (turn.abs() > LEAST_GOAL_DISTANCE).then_some(Goal { angle, step })
         };
         let (active, passive) = (goal(Strategy::Active), goal(Strategy::Passive));
         // The tables give both strategies the same answer where there is only one.
-        Ok([active.filter(|_| active != passive), passive])
+        let same = active.as_ref().map(|goal| goal.angle) == passive.as_ref().map(|goal| goal.angle);
+        Ok([active.filter(|_| !same), passive])
     }
 
     /// The posture of least effort so far.

@@ -10,6 +10,8 @@
 //! slides and angles need no weights against each other. Joints without mass behind them get
 //! [`LEAST_MASS`] of the largest entry, so that every `s` is finite.
 //!
+//! Motions of three-axis joints ([`crate::model::ThreeAxisJoint`]) are rotations about their axes.
+//!
 //! For one joint the result is that of [`crate::hybrid::Equilibrium`]: stable where `d tau_a / d theta > 0`.
 
 use nalgebra::{Cholesky, DMatrix, DVector, SVD, SymmetricEigen};
@@ -19,7 +21,6 @@ use crate::hybrid::{Carrier, Equilibrium};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::statics::{Load, LoadKind};
-use crate::tasks::passive_row;
 
 /// Share of the largest diagonal entry of the mass matrix that every rate has at least.
 pub const LEAST_MASS: f64 = 1e-9;
@@ -31,7 +32,7 @@ const ZERO_EIGENVALUE: f64 = 1e-12;
 /// A motion that the supports allow, orthogonal to the others in the metric of the mass matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// Change of every rate, rad or m; of length 1 in the metric of the mass matrix (kg m^2).
+    /// Change of every rate, of three-axis joints about their axes, rad or m; of length 1 in the metric of the mass matrix (kg m^2).
     pub motion: Vec<f64>,
     /// `s`, 1/s^2: acceleration back (positive) or away (negative) per motion.
     pub stiffness: f64,
@@ -73,16 +74,30 @@ impl Stability {
 }
 
 /// Stiffness at every pair of rates, N m/rad, from passive tissue and from weight, loads and contact forces; row after row, not
-/// symmetric.
+/// symmetric. Three-axis joints turn about their axes, which turn with them: moments that have an energy give a symmetric matrix,
+/// as half the moment about `e_m x e_l` is taken off.
 pub fn stiffness(model: &Model, body: &JointTorques) -> [Vec<f64>; 2] {
     let n = model.rates().len();
     let mut tissue = vec![0.0; n * n];
     for (i, coordinate) in model.coordinates().iter().enumerate() {
         let (Some(rate), false) = (coordinate.rate, model.is_dependent(i)) else { continue };
-        passive_row(model, body, i, rate, &mut tissue[rate * n..(rate + 1) * n]);
+        let row = &mut tissue[rate * n..(rate + 1) * n];
+        body.passive_torque().add_row_about_axis(model, body.kinematics(), i, row);
     }
-    let load = (0..n).flat_map(|rate| body.gradient().row(rate).iter().map(|slope| -slope)).collect();
-    tissue.iter_mut().for_each(|slope| *slope = -*slope);
+    let mut load: Vec<f64> = (0..n).flat_map(|rate| body.gradient_about_axes().row(rate).iter().copied()).collect();
+    for (slopes, torques) in
+        [(&mut tissue, body.passive_torque().about_axes()), (&mut load, body.external_about_axes())]
+    {
+        for joint in model.three_axis_joints() {
+            let rates = joint.coordinates.map(|i| model.coordinates()[i].rate.unwrap_or_default());
+            let turned = joint.turned(&rates.map(|rate| torques[rate]).into());
+            for (l, row) in rates.into_iter().enumerate() {
+                // Row l and column m hold E_m of the component about axis l.
+                rates.into_iter().enumerate().for_each(|(m, by)| slopes[row * n + by] += 0.5 * turned[(l, m)]);
+            }
+        }
+        slopes.iter_mut().for_each(|slope| *slope = -*slope);
+    }
     [tissue, load]
 }
 
@@ -184,9 +199,9 @@ fn free_motions(model: &Model, body: &JointTorques, supports: &[Support], free: 
         let middle = corners.clone().sum::<nalgebra::Vector3<f64>>() / corners.count().max(1) as f64;
         for turn in [false, true] {
             if turn {
-                body.kinematics().rotation_jacobian(model, segment, &mut rows);
+                body.kinematics_by_axes().rotation_jacobian(model.by_axes(), segment, &mut rows);
             } else {
-                body.kinematics().point_jacobian(model, segment, middle, &mut rows);
+                body.kinematics_by_axes().point_jacobian(model.by_axes(), segment, middle, &mut rows);
             }
             for row in 0..3 {
                 for (column, &rate) in free.iter().enumerate() {
@@ -211,7 +226,7 @@ fn mass_matrix(model: &Model, body: &JointTorques, loads: &[Load]) -> DMatrix<f6
     let n = model.rates().len();
     let mut sum = DMatrix::zeros(n, n);
     let mut rows = vec![0.0; 3 * n];
-    let kinematics = body.kinematics();
+    let (kinematics, model) = (body.kinematics_by_axes(), model.by_axes());
     let mut points: Vec<_> = model.segments().iter().enumerate().map(|(i, s)| (i, s.center_of_mass, s.mass)).collect();
     for load in loads {
         if let LoadKind::Weight(mass) = load.kind {

@@ -8,7 +8,7 @@ pub use center_of_mass::CenterOfMass;
 
 use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 
-use crate::model::{Drive, Model, Motion, Placement};
+use crate::model::{Drive, Mobility, Model, Motion, Placement};
 use crate::posture::{Posture, PostureError};
 
 /// Frames and axes of a posture. Depends on the posture only; filled by [`Kinematics::update`].
@@ -26,6 +26,8 @@ pub struct Kinematics {
     pub(crate) drives: Vec<(f64, f64)>,
     /// First and second derivative of each coupling.
     pub(crate) couplings: Vec<(f64, f64)>,
+    /// How far each ball that coordinates turn is turned beyond them.
+    turns: Vec<UnitQuaternion<f64>>,
 }
 
 impl Kinematics {
@@ -38,6 +40,7 @@ impl Kinematics {
             values: vec![0.0; model.coordinates.len()],
             drives: vec![(1.0, 0.0); model.elements.len()],
             couplings: vec![(0.0, 0.0); model.couplings.len()],
+            turns: vec![UnitQuaternion::identity(); model.three_axis.len()],
         };
         kinematics.fill(model, model.default_posture().values());
         kinematics
@@ -49,6 +52,23 @@ impl Kinematics {
     /// [`PostureError`] when the posture does not fit the model; nothing is changed then.
     pub fn update(&mut self, model: &Model, posture: &Posture) -> Result<(), PostureError> {
         posture.check(model)?;
+        self.turns.fill(UnitQuaternion::identity());
+        self.fill(model, posture.values());
+        Ok(())
+    }
+
+    /// As [`Kinematics::update`] for a body with balls ([`Model::by_axes`]), each turned further about its axes by its entries of
+    /// `step` (rad, one a rate).
+    ///
+    /// # Errors
+    /// As [`Kinematics::update`].
+    pub(crate) fn update_turned(&mut self, model: &Model, posture: &Posture, step: &[f64]) -> Result<(), PostureError> {
+        posture.check(model)?;
+        for (turn, joint) in self.turns.iter_mut().zip(&model.three_axis) {
+            let by = |(axis, c): (&Vector3<f64>, usize)| model.coordinates[c].rate.map(|rate| step[rate] * axis);
+            let turned: Vector3<f64> = joint.axes.iter().zip(joint.coordinates).filter_map(by).sum();
+            *turn = UnitQuaternion::from_scaled_axis(turned);
+        }
         self.fill(model, posture.values());
         Ok(())
     }
@@ -64,12 +84,8 @@ impl Kinematics {
                     (rotation, parent * mobility.translation + self.origins[p])
                 }
             };
-            let mut quaternion = [0.0; 4];
             let value = match &mobility.drive {
-                Drive::Coordinate(c) if mobility.motion == Motion::Ball => {
-                    quaternion.copy_from_slice(&self.values[*c..c + 4]);
-                    0.0
-                }
+                _ if mobility.motion == Motion::Ball => 0.0,
                 Drive::Coordinate(c) => self.values[*c],
                 Drive::Fixed(value) => *value,
                 Drive::Function(function, c) => {
@@ -96,17 +112,26 @@ impl Kinematics {
                     self.origins[i] = origin + value * axis;
                 }
                 Motion::Ball => {
-                    let quaternion =
-                        nalgebra::Quaternion::new(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
-                    let turn = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().into_inner();
-                    let rotation = rotation * turn;
-                    for axis in 0..3 {
-                        self.axes[mobility.rate + axis] = rotation.column(axis).into_owned();
-                    }
-                    self.rotations[i] = rotation;
+                    self.turn_ball(model, mobility, &rotation, i);
                     self.origins[i] = origin;
                 }
             }
+        }
+    }
+
+    /// Turns a ball by its quaternion, or by the coordinates of its three-axis joint, from its resting `rotation` in ground.
+    fn turn_ball(&mut self, model: &Model, mobility: &Mobility, rotation: &Matrix3<f64>, i: usize) {
+        let axes = &mut self.axes[mobility.rate..mobility.rate + 3];
+        if let Some(j) = mobility.angles {
+            let joint = &model.three_axis[j];
+            let turn = joint.rotation(&self.values) * self.turns[j];
+            self.rotations[i] = rotation * turn.to_rotation_matrix().into_inner();
+            axes.iter_mut().zip(&joint.axes).for_each(|(axis, of_joint)| *axis = self.rotations[i] * of_joint);
+        } else if let Drive::Coordinate(c) = mobility.drive {
+            let [w, x, y, z] = [0, 1, 2, 3].map(|k| self.values[c + k]);
+            let turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+            self.rotations[i] = rotation * turn.to_rotation_matrix().into_inner();
+            axes.iter_mut().enumerate().for_each(|(k, axis)| *axis = self.rotations[i].column(k).into_owned());
         }
     }
 

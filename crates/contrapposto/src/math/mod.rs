@@ -1,10 +1,13 @@
-//! Numerical ground floor: root finding, monotone curves, functions of one variable. Knows nothing of bodies.
+//! Numerical ground floor: root finding, monotone curves, functions of one variable, angles of a rotation. Knows nothing of bodies.
 
 mod dichotomy;
 pub mod expression;
 mod function;
+mod jet;
 mod monotone_cubic;
+mod swing_twist;
 
 pub use dichotomy::{dichotomy, dichotomy_between};
 pub use function::{Function, Spline, SplineError};
 pub use monotone_cubic::{MonotoneCubic, Piece};
+pub use swing_twist::{Angles, SwingTwist};

@@ -35,6 +35,9 @@ impl ModelBuilder {
             ancestors: vec![],
             ancestor_starts: vec![0],
             fixed: (0.0, Vector3::zeros()),
+            three_axis: vec![],
+            by_axes: None,
+            has_balls: false,
             direct: true,
         };
         Self { model }
@@ -142,6 +145,7 @@ impl ModelBuilder {
         let model = &mut self.model;
         model.order_couplings();
         model.set_direct();
+        model.find_three_axis_joints();
         self.model
     }
 }
@@ -184,6 +188,7 @@ impl Model {
                 translation: rest.translation.vector,
                 motion,
                 drive,
+                angles: None,
                 rate,
                 mass: 0.0,
                 first_moment: Vector3::zeros(),
@@ -232,8 +237,9 @@ impl Model {
         }
     }
 
-    /// Notes whether torques need no folding.
+    /// Notes whether torques need no folding, and whether there are balls.
     pub(crate) fn set_direct(&mut self) {
+        self.has_balls = self.mobilities.iter().any(|m| m.motion == Motion::Ball);
         let plain = |m: &Mobility| matches!(m.drive, Drive::Coordinate(_));
         let in_order = self.elements.iter().enumerate().all(|(i, rate)| *rate == Some(i));
         let idle = |coupling: &Coupling| self.coordinates[coupling.dependent].rate.is_none();

@@ -13,6 +13,7 @@ mod error;
 mod joint;
 mod reduced;
 mod segment_spec;
+mod three_axis;
 
 pub use adult::{AdultError, AdultMeasure, CoordinateSources, adult};
 pub use adult_size::{Adult, Part, Sex};
@@ -22,6 +23,7 @@ pub use error::ModelError;
 pub use joint::{Drive, JointKind, Motion};
 pub(crate) use reduced::reduced;
 pub use segment_spec::SegmentSpec;
+pub use three_axis::{Orientation, ThreeAxisJoint};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -81,6 +83,8 @@ pub(crate) struct Mobility {
     pub(crate) turned: bool,
     /// Source of its value; for a ball the first of its four coordinates.
     pub(crate) drive: Drive,
+    /// The three-axis joint whose three coordinates, not a quaternion, turn a ball.
+    pub(crate) angles: Option<usize>,
     /// Its first elementary rate: one for a hinge or slide, three for a ball.
     pub(crate) rate: usize,
     /// Mass of the segments fixed to it, and mass times their centre in the mobility's frame.
@@ -120,6 +124,12 @@ pub struct Model {
     pub(crate) ancestor_starts: Vec<usize>,
     /// Mass fixed in ground, and mass times position.
     pub(crate) fixed: (f64, Vector3<f64>),
+    /// Joints of three hinges through one point.
+    pub(crate) three_axis: Vec<ThreeAxisJoint>,
+    /// The same body with a ball for each of them; `None` without such joints, and in that body itself.
+    pub(crate) by_axes: Option<Box<Self>>,
+    /// Some mobility is a ball: its axes turn with it.
+    pub(crate) has_balls: bool,
     /// Every motion is a coordinate of its own and nothing is coupled: torques need no folding.
     pub(crate) direct: bool,
 }
@@ -178,10 +188,12 @@ impl Model {
         self
     }
 
-    /// The same body with another passive law at one coordinate, or none.
+    /// The same body with another passive law at one coordinate, or none. A joint with a sum of a file's terms on a coordinate is
+    /// judged by its coordinates.
     #[must_use]
     pub fn with_passive_law(mut self, coordinate: usize, law: Option<PassiveLaw>) -> Self {
         self.coordinates[coordinate].passive = law;
+        self.find_three_axis_joints();
         self
     }
 

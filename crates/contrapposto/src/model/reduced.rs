@@ -47,10 +47,13 @@ pub(crate) fn reduced(
         segment.offset = Placement::from_parts(origin.into(), rotation) * segment.offset;
     }
     model.set_direct();
+    model.three_axis.retain(|joint| joint.coordinates.iter().all(|c| model.coordinates[*c].rate.is_some()));
+    model.build_by_axes();
     (model, places)
 }
 
-/// Whether each rate and each mobility remains: a mobility remains with all of its rates if one of them moves.
+/// Whether each rate and each mobility remains: a mobility remains with all of its rates if one of them moves, a three-axis joint
+/// with all of its hinges.
 fn what_remains(body: &Model, moves: &[bool]) -> (Vec<bool>, Vec<bool>) {
     let mut moves = moves.to_vec();
     let rate = |coordinate: usize| body.coordinates[coordinate].rate;
@@ -58,6 +61,11 @@ fn what_remains(body: &Model, moves: &[bool]) -> (Vec<bool>, Vec<bool>) {
         if let (Some(independent), Some(dependent)) = (rate(coupling.independent), rate(coupling.dependent)) {
             moves[dependent] = moves[independent];
         }
+    }
+    for joint in &body.three_axis {
+        let rates = joint.coordinates.map(rate);
+        let any = rates.iter().flatten().any(|rate| moves[*rate]);
+        rates.iter().flatten().for_each(|rate| moves[*rate] = any);
     }
     let remains: Vec<bool> = (0..body.mobilities.len()).map(|m| body.rates_of(m).any(|rate| moves[rate])).collect();
     for m in (0..remains.len()).filter(|m| remains[*m]) {

@@ -87,6 +87,43 @@ impl PassiveLaw {
     }
 }
 
+impl PassiveLaw {
+    /// Torque (N m) of coordinate `own` in a posture (values of all coordinates, rad), and through `visit` its derivatives by
+    /// coordinates, N m/rad.
+    pub(crate) fn torque_and_slopes(&self, own: usize, posture: &[f64], mut visit: impl FnMut(usize, f64)) -> f64 {
+        match self {
+            Self::Curve(curve) => {
+                let (torque, slope) = curve.torque_and_slope(posture[own]);
+                visit(own, slope);
+                torque
+            }
+            Self::Coupled(coupled) => {
+                let (torque, gradient) = coupled.torque_and_gradient(posture);
+                for (neighbour, slope) in coupled.neighbours.iter().zip(gradient) {
+                    if let Some((by, _)) = neighbour {
+                        visit(*by, slope);
+                    }
+                }
+                torque
+            }
+            Self::Sum(terms) => terms.iter().fold(0.0, |sum, term| {
+                let (torque, slope) = term.torque_and_slope(posture[own]);
+                visit(own, slope);
+                sum + torque
+            }),
+        }
+    }
+
+    /// Derivative by the own coordinate at `angle`, N m/rad; 0 for coupled laws.
+    pub(crate) fn own_slope(&self, angle: f64) -> f64 {
+        match self {
+            Self::Curve(curve) => curve.torque_and_slope(angle).1,
+            Self::Coupled(_) => 0.0,
+            Self::Sum(terms) => terms.iter().map(|term| term.torque_and_slope(angle).1).sum(),
+        }
+    }
+}
+
 impl Coupled {
     /// Hip, knee and ankle angle in the law's own directions, rad.
     fn angles(&self, posture: &[f64]) -> [f64; 3] {

@@ -96,9 +96,11 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Locks a rate, besides those of locked coordinates.
+    /// Locks a rate, besides those of locked coordinates. A locked rate of the root is held by its lock, not by supports.
     pub fn lock(&mut self, rate: usize) {
         self.settings.lock(rate);
+        self.iterate.hold_root(rate);
+        self.slope.hold_root(rate);
     }
 
     /// The levels, to move targets between steps. A changed level must still fit the model; effort must stay where it

@@ -37,6 +37,12 @@ impl Iterate {
         Ok(())
     }
 
+    /// Supports need not hold the root at a rate.
+    pub(super) fn hold_root(&mut self, rate: usize) {
+        self.contact.hold_root(rate);
+        self.is_current = false;
+    }
+
     /// The next evaluation computes everything anew.
     pub(super) fn invalidate(&mut self) {
         self.is_current = false;

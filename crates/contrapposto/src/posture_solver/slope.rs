@@ -1,7 +1,8 @@
 //! Computes the slope of a joint's torque along the least motion that moves the joint while supports and tasks stay.
 //!
 //! `d = P e / (e^T P e)`, with `P` the projection on the motions that the constraints leave free and `e` the unit
-//! vector of the rate, is the least motion with `e^T d = 1`: the solution of one lexicographic problem. The slope is a
+//! vector of the rate (for a three-axis joint the row that gives its rotation about the axis of the coordinate, `A^T e_k`), is the
+//! least motion with `e^T d = 1`: the solution of one lexicographic problem. The slope is a
 //! central difference along `d`, of external torque and of the neighbours' part in the joint's passive torque; contact
 //! forces are solved anew on both sides.
 
@@ -49,6 +50,11 @@ impl SlopeAlongMotion {
         }
     }
 
+    /// Supports need not hold the root at a rate.
+    pub(super) fn hold_root(&mut self, rate: usize) {
+        self.contact.hold_root(rate);
+    }
+
     /// Forgets the motions so far.
     pub(super) fn forget(&mut self) {
         self.solver.forget();
@@ -67,10 +73,12 @@ impl SlopeAlongMotion {
         self.write_constraints(settings, iterate, above);
         self.row.fill(0.0);
         self.row[rate] = 1.0;
+        iterate.torques.fold_axes(settings.model, &mut self.row);
         self.problem.levels[1].clear();
         self.problem.levels[1].push(&self.row, 1.0, 1.0);
         self.solver.solve_next(&self.problem)?;
-        if self.solver.solution()[rate] < FREE_MOTION {
+        let moved: f64 = self.row.iter().zip(self.solver.solution()).map(|(by, along)| by * along).sum();
+        if moved < FREE_MOTION {
             return Ok(None);
         }
         let mut slope = 0.0;
@@ -118,15 +126,17 @@ impl SlopeAlongMotion {
             Err(JointTorquesError::Passive(_)) => return Ok(None),
             updated => updated?,
         }
-        self.contact.update(model, self.torques.kinematics(), self.torques.active_torque());
-        let torque = self.torques.external_torque().torques()[rate] + self.contact.torques()[rate];
-        let own = model.rates()[rate].coordinate;
-        let Some((own, law)) = own.and_then(|own| Some((own, model.coordinates()[own].passive.as_ref()?))) else {
-            return Ok(Some(torque));
-        };
-        let together = law.torque(own, self.moved.values());
-        self.moved.values_mut().copy_from_slice(start.values());
-        self.moved.values_mut()[own] += length;
-        Ok(Some(torque + together - law.torque(own, self.moved.values())))
+        let body = &self.torques;
+        self.contact.update(model, body.kinematics_by_axes(), body.angles(), body.active_torque());
+        let torque = body.external_about_axes()[rate] + self.contact.torques()[rate];
+        let Some(own) = model.rates()[rate].coordinate else { return Ok(Some(torque)) };
+        let together = body.passive_torque().law_about_axis(model, own);
+        let alone = iterate.torques.passive_torque().torque_after_turn(
+            (model, iterate.torques.kinematics()),
+            own,
+            length,
+            self.moved.values_mut(),
+        );
+        Ok(Some(torque + together - alone))
     }
 }

@@ -48,6 +48,6 @@ impl<'a> JointMotion<'a> {
 
     /// Slope of a rate's external torque when that joint alone moves, N m/rad.
     pub(super) fn external_slope(&self, rate: usize) -> f64 {
-        self.torques.external_torque().own_slope(self.torques.kinematics(), &self.scenario.model, rate)
+        self.torques.own_slope_about_axis(&self.scenario.model, rate)
     }
 }

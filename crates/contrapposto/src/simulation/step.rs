@@ -251,7 +251,7 @@ impl<'a> Simulation<'a> {
             let (external, passive) = coordinate.rate.map_or((0.0, 0.0), of_rate);
             (self.record.external[i], self.record.passive[i]) = (external, passive);
             self.state.active[i] = active_torque(external, passive);
-            self.record.load[i] = relative_load(coordinate, self.state.posture.values()[i], self.state.active[i]);
+            self.record.load[i] = relative_load(coordinate, torques.angles()[i], self.state.active[i]);
         }
         Ok(effort(&self.record.load))
     }
@@ -311,7 +311,7 @@ impl<'a> Simulation<'a> {
     fn decide_for(&mut self, i: usize, side: Side) -> Result<Option<f64>, ScenarioError> {
         let Scenario { model, strategy, relief, .. } = self.scenario;
         let coordinate = &model.coordinates()[i];
-        let (Some(law), Some(rate)) = (&coordinate.passive, coordinate.rate) else { return Ok(None) };
+        let Some(rate) = coordinate.rate else { return Ok(None) };
         let group = self.state.groups[i][side.index()];
         if group.rejections >= REJECTIONS_BEFORE_END {
             self.record.reliefs[i] = Some(Relief::GivenUp);
@@ -322,12 +322,14 @@ impl<'a> Simulation<'a> {
             self.record.reliefs[i] = Some(Relief::Blocked);
             return Ok(None);
         };
-        let values = self.motion.torques().kinematics().values();
-        let Some(curve) = law.curve_at(i, values, coordinate.range) else { return Ok(None) };
+        let (passive_torque, kinematics) = (self.motion.torques().passive_torque(), self.motion.torques().kinematics());
+        let Some(curve) = passive_torque.curve_about_axis(model, kinematics, i, coordinate.range) else {
+            return Ok(None);
+        };
         let passive = group.rejections >= REJECTIONS_BEFORE_PASSIVE;
         let problem = Problem {
             curve: &curve,
-            angle: self.state.posture.values()[i],
+            angle: passive_torque.angles()[i],
             external_torque: self.record.external[i],
             external_slope,
             strategy: if passive { Strategy::Passive } else { self.state.strategies[i] },
@@ -355,8 +357,8 @@ impl<'a> Simulation<'a> {
         (request.predicted_change, request.predicted_peak) = (prediction.change, prediction.peak);
         // On a body a half-space stays as long as its group recovers, whatever less important tasks ask for.
         if !is_body || !request.in_force || prediction.step.abs() > SMALLEST_STEP {
-            self.relief_step.fill(0.0);
-            self.relief_step[i] = prediction.step;
+            let model = &self.scenario.model;
+            self.motion.torques().write_turn(model, i, prediction.step, &mut self.relief_step);
             request.in_force = request.half_space.ask_for(self.state.posture.values(), &self.relief_step);
         }
     }

@@ -60,7 +60,7 @@ impl Gradient {
             matrix.fill(0.0);
         }
         self.dirty = twisted;
-        self.symmetric = !twisted && model.balls.is_empty();
+        self.symmetric = !twisted && !model.has_balls;
         matrix
     }
 

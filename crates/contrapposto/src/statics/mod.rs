@@ -6,6 +6,8 @@
 mod external;
 mod fold;
 mod load;
+mod passive_arc;
+mod passive_gradient;
 mod passive_torque;
 
 pub use external::ExternalTorque;

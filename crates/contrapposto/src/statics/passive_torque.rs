@@ -1,7 +1,9 @@
 //! Computes the torque of ligaments and other passive tissue of all coordinates.
 
+use nalgebra::Vector3;
+
 use crate::kinematics::Kinematics;
-use crate::model::Model;
+use crate::model::{Model, Orientation};
 
 /// Larger torque cannot be calculated with: squares of it must stay finite. N m, N for slides.
 const PASSIVE_TORQUE_LIMIT: f64 = 1e50;
@@ -22,12 +24,24 @@ pub struct PassiveTorqueError {
 
 /// Passive torque of every rate, N m, in the posture that `kinematics` holds. Torques of a dependent coordinate are folded into its
 /// independent one, as with external torque. Filled by [`PassiveTorque::update`].
+///
+/// The laws of a three-axis joint are those of the angles `x_j` about its axes ([`crate::model::ThreeAxisJoint`]): its passive moment has the
+/// components `m_k = sum_j tau_j(x) E_k x_j`, minus the derivative of an energy where the laws have one, and gives its coordinates
+/// the torques `A^T m`. Beyond the coordinate's range a law goes on along its tangent there.
 #[derive(Clone, Debug)]
 pub struct PassiveTorque {
     /// By coordinate; empty for none.
     ranges: Vec<Option<(f64, f64)>>,
-    /// Values of all coordinates, those with a range clamped into it.
+    /// By three-axis joint.
+    orientations: Vec<Orientation>,
+    /// Angles of all coordinates: of a three-axis joint those about its axes.
+    angles: Vec<f64>,
+    /// The same, inside the range of the law.
     values: Vec<f64>,
+    /// Torque of the law of each coordinate.
+    laws: Vec<f64>,
+    raw_about_axes: Vec<f64>,
+    about_axes: Vec<f64>,
     raw: Vec<f64>,
     torques: Vec<f64>,
 }
@@ -41,9 +55,18 @@ impl PassiveTorque {
     /// Space for `model`. Outside of its range (rad, one entry a coordinate) the torque of a coordinate stays what it is at the
     /// nearer end: laws that were measured inside a range say nothing outside of it.
     pub fn within(model: &Model, ranges: &[Option<(f64, f64)>]) -> Self {
-        let n = model.rates().len();
-        let values = vec![0.0; model.coordinates().len()];
-        Self { ranges: ranges.to_vec(), values, raw: vec![0.0; n], torques: vec![0.0; n] }
+        let (n, coordinates) = (model.rates().len(), model.coordinates().len());
+        Self {
+            ranges: ranges.to_vec(),
+            orientations: vec![Orientation::default(); model.three_axis_joints().len()],
+            angles: vec![0.0; coordinates],
+            values: vec![0.0; coordinates],
+            laws: vec![0.0; coordinates],
+            raw_about_axes: vec![0.0; n],
+            about_axes: vec![0.0; n],
+            raw: vec![0.0; n],
+            torques: vec![0.0; n],
+        }
     }
 
     /// Computes them. Does not allocate.
@@ -51,32 +74,112 @@ impl PassiveTorque {
     /// # Errors
     /// [`PassiveTorqueError`] where a law gives no number, as `1/q` does at 0.
     pub fn update(&mut self, model: &Model, kinematics: &Kinematics) -> Result<(), PassiveTorqueError> {
-        self.values.copy_from_slice(kinematics.values());
-        for (value, range) in self.values.iter_mut().zip(&self.ranges) {
-            *value = range.map_or(*value, |(min, max)| value.max(min).min(max));
+        self.place(model, kinematics);
+        for (i, coordinate) in model.coordinates().iter().enumerate() {
+            self.laws[i] = 0.0;
+            if coordinate.passive.is_none() || coordinate.rate.is_none() {
+                continue;
+            }
+            let torque = self.law(model, i, |_, _| {});
+            if torque.is_nan() || torque.abs() > PASSIVE_TORQUE_LIMIT {
+                return Err(PassiveTorqueError { coordinate: coordinate.name.clone(), value: self.values[i], torque });
+            }
+            self.laws[i] = torque;
         }
         for (torque, rate) in self.raw.iter_mut().zip(model.rates()) {
-            let known = rate.coordinate.and_then(|i| Some((i, model.coordinates()[i].passive.as_ref()?)));
-            *torque = 0.0;
-            let Some((i, law)) = known else { continue };
-            *torque = law.torque(i, &self.values);
-            if torque.is_nan() || torque.abs() > PASSIVE_TORQUE_LIMIT {
-                let (coordinate, value) = (model.coordinates()[i].name.clone(), self.values[i]);
-                return Err(PassiveTorqueError { coordinate, value, torque: *torque });
+            *torque = rate.coordinate.map_or(0.0, |i| self.laws[i]);
+        }
+        self.raw_about_axes.copy_from_slice(&self.raw);
+        for (joint, orientation) in model.three_axis_joints().iter().zip(&self.orientations) {
+            let of_laws = Vector3::from(joint.coordinates.map(|i| self.laws[i]));
+            let moment = orientation.angles.first.tr_mul(&of_laws);
+            let by_coordinate = orientation.hinges.tr_mul(&moment);
+            for (k, i) in joint.coordinates.into_iter().enumerate() {
+                let Some(rate) = model.coordinates()[i].rate else { continue };
+                (self.raw_about_axes[rate], self.raw[rate]) = (moment[k], by_coordinate[k]);
             }
         }
+        kinematics.fold_couplings(model, &self.raw_about_axes, &mut self.about_axes);
         kinematics.fold_couplings(model, &self.raw, &mut self.torques);
         Ok(())
     }
 
-    /// The values of all coordinates, inside their ranges, at which the laws were evaluated, rad or m.
+    /// Computes angles and orientations.
+    fn place(&mut self, model: &Model, kinematics: &Kinematics) {
+        self.angles.copy_from_slice(kinematics.values());
+        self.values.copy_from_slice(kinematics.values());
+        for (value, range) in self.values.iter_mut().zip(&self.ranges) {
+            *value = range.map_or(*value, |(min, max)| value.max(min).min(max));
+        }
+        for (joint, orientation) in model.three_axis_joints().iter().zip(&mut self.orientations) {
+            *orientation = joint.orientation(kinematics.values());
+            for (&i, angle) in joint.coordinates.iter().zip(orientation.angles.values) {
+                let (min, max) = self.ranges.get(i).copied().flatten().unwrap_or(model.coordinates()[i].range);
+                (self.angles[i], self.values[i]) = (angle, angle.max(min).min(max));
+            }
+        }
+    }
+
+    /// Range of the law of a coordinate, rad.
+    pub(super) fn range(&self, model: &Model, coordinate: usize) -> (f64, f64) {
+        self.ranges.get(coordinate).copied().flatten().unwrap_or(model.coordinates()[coordinate].range)
+    }
+
+    /// Whether the law of a coordinate keeps its torque beyond its range. Without a range of its own the law of an angle of a
+    /// three-axis joint goes on along its tangent.
+    pub(super) fn is_held(&self, coordinate: usize) -> bool {
+        self.ranges.get(coordinate).is_some_and(Option::is_some)
+    }
+
+    /// Whether the laws follow the angle of a coordinate: it lies inside the range.
+    pub(crate) fn follows(&self, coordinate: usize) -> bool {
+        self.angles[coordinate] == self.values[coordinate]
+    }
+
+    /// Torque of the law of a coordinate, N m, and through `visit` its derivatives by the angles of coordinates; 0 without a law.
+    pub(crate) fn law(&self, model: &Model, coordinate: usize, mut visit: impl FnMut(usize, f64)) -> f64 {
+        let Some(law) = &model.coordinates()[coordinate].passive else { return 0.0 };
+        let beyond = |i: usize| if self.is_held(i) { 0.0 } else { self.angles[i] - self.values[i] };
+        let mut own = 0.0;
+        let torque = law.torque_and_slopes(coordinate, &self.values, |by, slope| {
+            if by == coordinate {
+                own += slope;
+            }
+            if by == coordinate || beyond(by) == 0.0 {
+                visit(by, slope);
+            }
+        });
+        torque + own * beyond(coordinate)
+    }
+
+    /// Torque of the law of a coordinate about its axis, N m, nothing coupled.
+    pub(crate) fn law_about_axis(&self, model: &Model, coordinate: usize) -> f64 {
+        model.coordinates()[coordinate].rate.map_or(0.0, |rate| self.raw_about_axes[rate])
+    }
+
+    /// The angles of all coordinates at which the laws were evaluated, inside the ranges of the laws, rad or m.
     pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// By rate, N m (N for slides).
+    /// The angles of all coordinates, rad or m: those of a three-axis joint about its axes.
+    pub fn angles(&self) -> &[f64] {
+        &self.angles
+    }
+
+    /// By three-axis joint of the model: angles about its axes, and the axes of its hinges.
+    pub fn orientations(&self) -> &[Orientation] {
+        &self.orientations
+    }
+
+    /// By rate, N m (N for slides), of the coordinates.
     pub fn torques(&self) -> &[f64] {
         &self.torques
+    }
+
+    /// By rate, N m (N for slides): of the coordinates of a three-axis joint about the axes that stand for them.
+    pub fn about_axes(&self) -> &[f64] {
+        &self.about_axes
     }
 
     /// As [`PassiveTorque::torques`], but as if no coordinate depended on another one.

@@ -1,17 +1,15 @@
 //! Error and Jacobian of effort: active torque as a share of strength.
 //!
-//! Error `e = tau_a / S` of every asked coordinate, a share of the strength `S(q)` of the group that works (the sign of
-//! the active torque `tau_a = -(tau_p + tau_e)`), so between -1 and 1 for a posture that can be held. Its derivative is
-//! `-(d tau_p/dq + d tau_e/dq)/S - tau_a S'/S^2`; it has a kink where the other group takes over, at `e = 0`.
-//!
-//! Passive torque is folded as external torque is: that of a dependent coordinate counts at its independent one. With
-//! `q_d(q_i)` through however many couplings, `tau_i = sum_d q_d' tau_d` and `d tau_i/dq_i` has `q_d'' tau_d` besides.
+//! Error `e = tau_a / S` of every asked coordinate, a share of the strength `S(x)` of the group that works (the sign of
+//! the active torque `tau_a = -(tau_p + tau_e)` about its axis), so between -1 and 1 for a posture that can be held. Its derivative
+//! is `-(d tau_p/dq + d tau_e/dq)/S - tau_a S' (dx/dq)/S^2` with the angle `x` about the axis; it has a kink where the other group
+//! takes over, at `e = 0`. Derivatives are by rotations about the axes of three-axis joints first, then by their coordinates
+//! ([`JointTorques::fold_axes`]).
 
 use super::check::{Check, TaskError, TaskPart};
 use super::rows::{append, equation};
-use crate::joint_torques::{JointTorques, active_torque};
+use crate::joint_torques::JointTorques;
 use crate::model::{Model, Side};
-use crate::passive::PassiveLaw;
 use hierarchical_least_squares::Level;
 
 /// Little muscle torque.
@@ -37,17 +35,10 @@ impl Effort {
 
     pub(super) fn evaluate(&self, model: &Model, body: &JointTorques, level: &mut Level) {
         for &coordinate in &self.coordinates {
-            let Some(rate) = model.coordinates()[coordinate].rate else { continue };
             let row = append(level, model, 1);
-            let passive = passive_row(model, body, coordinate, rate, row);
-            let active = active_torque(external(model, body, coordinate), passive);
-            let (strength, slope) = strength(model, body, coordinate, active);
-            let share = -1.0 / strength;
-            for (entry, external) in row.iter_mut().zip(body.gradient().row(rate)) {
-                *entry = share * (*entry + external);
-            }
-            row[rate] -= active * slope / (strength * strength);
-            equation(level, active / strength);
+            let Some(load) = add_relative_load_row(model, body, coordinate, row) else { continue };
+            body.fold_axes(model, row);
+            equation(level, load);
         }
     }
 
@@ -78,87 +69,63 @@ impl Effort {
     }
 }
 
-/// Active torque of a coordinate, N m, dependent coordinates folded in.
-fn active(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
-    active_torque(external(model, body, coordinate), passive(model, body, coordinate, [1.0, 0.0], None))
+/// Writes the derivatives of the relative load of a coordinate into `row`, one entry a rate, by rotations about the axes of
+/// three-axis joints. Returns the relative load, with the sign of the active torque.
+pub(crate) fn add_relative_load_row(
+    model: &Model,
+    body: &JointTorques,
+    coordinate: usize,
+    row: &mut [f64],
+) -> Option<f64> {
+    let rate = model.coordinates()[coordinate].rate?;
+    body.passive_torque().add_row_about_axis(model, body.kinematics(), coordinate, row);
+    let active = body.active_torque()[rate];
+    let (strength, slope) = strength(model, body, coordinate, active);
+    let share = -1.0 / strength;
+    for (entry, external) in row.iter_mut().zip(body.gradient_about_axes().row(rate)) {
+        *entry = share * (*entry + external);
+    }
+    if slope != 0.0 {
+        let by_angle = -active * slope / (strength * strength);
+        for_each_angle_slope(model, body, coordinate, |rate, slope| row[rate] += by_angle * slope);
+    }
+    Some(active / strength)
 }
 
-/// The error that a torque of 1 N m on a coordinate takes away: one over the strength of the group that works where the
-/// error is `error`.
+/// Calls `visit` with the rates that change the angle of a coordinate, and the slopes.
+pub(crate) fn for_each_angle_slope(
+    model: &Model,
+    body: &JointTorques,
+    coordinate: usize,
+    mut visit: impl FnMut(usize, f64),
+) {
+    let rate = |i: usize| model.coordinates()[i].rate;
+    let Some((joint, place)) = model.three_axis_joint_of(coordinate) else {
+        rate(coordinate).into_iter().for_each(|rate| visit(rate, 1.0));
+        return;
+    };
+    let first = &body.passive_torque().orientations()[joint].angles.first;
+    for (k, i) in model.three_axis_joints()[joint].coordinates.into_iter().enumerate() {
+        rate(i).into_iter().for_each(|rate| visit(rate, first[(place, k)]));
+    }
+}
+
+/// Active torque of a coordinate about its axis, N m, dependent coordinates folded in.
+fn active(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
+    model.coordinates()[coordinate].rate.map_or(0.0, |rate| body.active_torque()[rate])
+}
+
+/// The error that a torque of 1 N m about the axis of a coordinate takes away: one over the strength of the group that works where
+/// the error is `error`.
 pub(crate) fn share_of_strength(model: &Model, body: &JointTorques, coordinate: usize, error: f64) -> f64 {
     1.0 / strength(model, body, coordinate, error).0
 }
 
-/// Adds the derivatives of an independent coordinate's passive torque, dependent coordinates folded in, to `row`, one
-/// entry a rate. Returns the torque.
-pub(crate) fn passive_row(model: &Model, body: &JointTorques, coordinate: usize, rate: usize, row: &mut [f64]) -> f64 {
-    let torque = passive(model, body, coordinate, [1.0, 0.0], Some((rate, &mut *row)));
-    body.kinematics().fold_columns(model, row);
-    torque
-}
-
-fn external(model: &Model, body: &JointTorques, coordinate: usize) -> f64 {
-    model.coordinates()[coordinate].rate.map_or(0.0, |rate| body.external_torque().torques()[rate])
-}
-
-/// Strength and slope of the group that gives `active`; without end where it is not known.
+/// Strength of the group that gives `active`, N m, and its slope by the angle about the axis, N m/rad; without end where it is not
+/// known.
 fn strength(model: &Model, body: &JointTorques, coordinate: usize, active: f64) -> (f64, f64) {
     let groups = model.coordinates()[coordinate].groups.as_ref();
     groups.map_or((f64::INFINITY, 0.0), |groups| {
-        groups[Side::of(active).index()].strength.torque_and_slope(body.kinematics().values()[coordinate])
+        groups[Side::of(active).index()].strength.torque_and_slope(body.angles()[coordinate])
     })
-}
-
-/// Passive torque of a coordinate and of all that follow it, `[q', q'']` times: derivatives of the coordinate by that
-/// of `slopes`. Adds its derivatives by all rates, dependent coordinates not yet folded, to the row; the rate of the
-/// independent coordinate is given beside the row.
-fn passive(
-    model: &Model,
-    body: &JointTorques,
-    coordinate: usize,
-    [first, second]: [f64; 2],
-    mut slopes: Option<(usize, &mut [f64])>,
-) -> f64 {
-    let values = body.kinematics().values();
-    let q = values[coordinate];
-    let mut sum = 0.0;
-    if let Some(law) = &model.coordinates()[coordinate].passive {
-        let mut add = |by: usize, slope: f64| {
-            if let (Some((_, row)), Some(rate)) = (&mut slopes, model.coordinates()[by].rate) {
-                row[rate] += first * slope;
-            }
-        };
-        let torque = match law {
-            PassiveLaw::Curve(curve) => {
-                let (torque, slope) = curve.torque_and_slope(q);
-                add(coordinate, slope);
-                torque
-            }
-            PassiveLaw::Coupled(coupled) => {
-                let (torque, gradient) = coupled.torque_and_gradient(values);
-                for (neighbour, slope) in coupled.neighbours.iter().zip(gradient) {
-                    if let Some((by, _)) = neighbour {
-                        add(*by, slope);
-                    }
-                }
-                torque
-            }
-            PassiveLaw::Sum(terms) => terms.iter().fold(0.0, |sum, term| {
-                let (torque, slope) = term.torque_and_slope(q);
-                add(coordinate, slope);
-                sum + torque
-            }),
-        };
-        sum += first * torque;
-        if let Some((independent, row)) = &mut slopes {
-            row[*independent] += second * torque;
-        }
-    }
-    for coupling in model.couplings().iter().filter(|coupling| coupling.independent == coordinate) {
-        let [_, slope, curvature] = coupling.function.value_slope_curvature(q);
-        let by = [slope * first, curvature * first * first + slope * second];
-        let slopes = slopes.as_mut().map(|(independent, row)| (*independent, &mut **row));
-        sum += passive(model, body, coupling.dependent, by, slopes);
-    }
-    sum
 }

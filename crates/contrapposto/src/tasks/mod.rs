@@ -24,7 +24,7 @@ pub use center_of_mass::{CenterOfMass, CenterOfMassGoal};
 pub use check::{TaskError, TaskPart};
 pub use distance::Distance;
 pub use effort::Effort;
-pub(crate) use effort::{passive_row, share_of_strength};
+pub(crate) use effort::{for_each_angle_slope, share_of_strength};
 pub(crate) use error_hessian::ErrorHessian;
 pub use look_at::LookAt;
 pub use orientation::Orientation;

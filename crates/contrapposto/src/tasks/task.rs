@@ -43,7 +43,7 @@ impl Task {
     pub fn quantities(&self) -> Quantities {
         match self {
             Self::CenterOfMass(_) => Quantities { center_of_mass: true, ..Quantities::default() },
-            Self::Effort(_) => Quantities { gradient: true, ..Quantities::default() },
+            Self::Effort(_) => Quantities { gradient: true, passive_torque: true, ..Quantities::default() },
             _ => Quantities::default(),
         }
     }

@@ -8,10 +8,18 @@
 //! effort = sum_i l_i^2
 //! ```
 //!
+//! Muscles of a three-axis joint ([`crate::model::ThreeAxisJoint`]) are judged by the components of its moment along the axes that
+//! stand for its coordinates, which no choice of angles can hide: there `tau_e`, `tau_p`, `tau_a` and `S` are those about the axes,
+//! and `q` is the angle about the axis. All other coordinates have one axis, their own.
+//!
 //! External torque is that of gravity, of the loads and of the contact forces of supports. The contact forces of a body on supports
 //! ([`ContactForces`]) depend on the active torque that the joints would need without them; [`JointTorques::update_with_contact`]
 //! computes that torque, then the forces, then all torques with the forces among the loads. Torques of a dependent coordinate are
 //! folded into its independent one. Least-squares solvers minimise `effort / 2`; that half is called objective there.
+
+mod about_axes;
+
+pub(crate) use about_axes::AboutAxes;
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};
@@ -19,16 +27,19 @@ use crate::model::{Coordinate, Model, Side};
 use crate::posture::{Posture, PostureError};
 use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, PassiveTorqueError};
 
+/// Square of the rotation about an axis by steps of length 1 of the coordinates, from which on they turn the joint about it.
+const LEAST_TURN: f64 = 1e-6;
+
 /// Active torque (Eq. 1), N m: what muscles give for external and passive torque to be in equilibrium.
 #[inline]
 pub fn active_torque(external: f64, passive: f64) -> f64 {
     -(passive + external)
 }
 
-/// Relative load of a coordinate at `value` (rad): `|active|` (N m) over the strength of the muscle group that gives it; 0 for a
-/// coordinate of unknown strength.
-pub fn relative_load(coordinate: &Coordinate, value: f64, active: f64) -> f64 {
-    let strength = |groups: &[crate::model::MuscleGroup; 2]| groups[Side::of(active).index()].strength.torque(value);
+/// Relative load of a coordinate at `angle` (rad; [`JointTorques::angles`]): `|active|` (N m, about its axis) over the strength of
+/// the muscle group that gives it; 0 for a coordinate of unknown strength.
+pub fn relative_load(coordinate: &Coordinate, angle: f64, active: f64) -> f64 {
+    let strength = |groups: &[crate::model::MuscleGroup; 2]| groups[Side::of(active).index()].strength.torque(angle);
     coordinate.groups.as_ref().map_or(0.0, |groups| active.abs() / strength(groups))
 }
 
@@ -46,7 +57,7 @@ pub struct Quantities {
     pub external_torque: bool,
     /// External torque and its gradient.
     pub gradient: bool,
-    /// Passive torque; with external torque, active torque too.
+    /// Passive torque; with external torque, active torque and all torques about axes, too.
     pub passive_torque: bool,
 }
 
@@ -69,6 +80,10 @@ impl Quantities {
 
     fn needs_external_torque(self) -> bool {
         self.external_torque || self.gradient
+    }
+
+    fn about_axes(self) -> bool {
+        self.passive_torque && self.needs_external_torque()
     }
 }
 
@@ -97,7 +112,9 @@ pub struct JointTorques {
     external: ExternalTorque,
     gradient: Gradient,
     passive: PassiveTorque,
-    /// By rate, N m.
+    /// External torque about axes, for a body with three-axis joints.
+    axes: Option<AboutAxes>,
+    /// By rate, about axes, N m.
     active: Vec<f64>,
     /// The loads given, then the contact forces.
     loads: Vec<Load>,
@@ -124,6 +141,7 @@ impl JointTorques {
             external: ExternalTorque::new(model),
             gradient: Gradient::new(model),
             passive,
+            axes: (!model.three_axis_joints().is_empty()).then(|| AboutAxes::new(model)),
             active: vec![0.0; model.rates().len()],
             loads: vec![],
             computed: Quantities::default(),
@@ -200,7 +218,7 @@ impl JointTorques {
         quantities: Quantities,
     ) -> Result<(), JointTorquesError> {
         self.apply(model, loads, Quantities::TORQUES)?;
-        contact.update(model, &self.kinematics, &self.active);
+        contact.update(model, self.kinematics_by_axes(), self.passive.angles(), &self.active);
         self.loads.extend_from_slice(contact.loads());
         self.finish(model, Quantities::TORQUES.with(quantities))
     }
@@ -215,8 +233,12 @@ impl JointTorques {
         if quantities.gradient {
             self.external.gradient(model, &self.kinematics, &mut self.gradient);
         }
-        if quantities.passive_torque && quantities.needs_external_torque() {
-            let torques = self.external.torques().iter().zip(self.passive.torques());
+        if quantities.about_axes() {
+            if let Some(axes) = &mut self.axes {
+                axes.update(model, &self.posture, &self.loads, quantities.gradient)?;
+            }
+            let external = self.axes.as_ref().map_or(self.external.torques(), |axes| axes.external().torques());
+            let torques = external.iter().zip(self.passive.about_axes());
             for (active, (external, passive)) in self.active.iter_mut().zip(torques) {
                 *active = active_torque(*external, *passive);
             }
@@ -278,22 +300,98 @@ impl JointTorques {
         &self.passive
     }
 
-    /// External and passive torque of a rate, N m.
+    /// The angles of all coordinates, rad or m: those of a three-axis joint about its axes.
+    ///
+    /// # Panics
+    /// When the last update did not compute passive torque, which is a function of them.
+    pub fn angles(&self) -> &[f64] {
+        self.passive_torque().angles()
+    }
+
+    /// External torque of every rate, contact forces included, N m: of the coordinates of a three-axis joint about the axes that
+    /// stand for them.
+    ///
+    /// # Panics
+    /// When the last update did not compute it.
+    pub fn external_about_axes(&self) -> &[f64] {
+        assert!(self.computed.about_axes(), "the last update left external or passive torque out");
+        let of_coordinates = self.external_torque().torques();
+        self.axes.as_ref().map_or(of_coordinates, |axes| axes.external().torques())
+    }
+
+    /// Its derivatives, N m/rad, by rotations about the axes of three-axis joints and by the rates of all other coordinates.
+    ///
+    /// # Panics
+    /// When the last update did not compute it.
+    pub fn gradient_about_axes(&self) -> &Gradient {
+        assert!(self.computed.about_axes(), "the last update left external or passive torque out");
+        let of_coordinates = self.gradient();
+        self.axes.as_ref().map_or(of_coordinates, AboutAxes::gradient)
+    }
+
+    /// External and passive torque of a rate about its axis, N m.
     ///
     /// # Panics
     /// When the last update did not compute both.
     pub(crate) fn external_and_passive(&self, rate: usize) -> (f64, f64) {
-        (self.external_torque().torques()[rate], self.passive_torque().torques()[rate])
+        (self.external_about_axes()[rate], self.passive_torque().about_axes()[rate])
     }
 
-    /// Active torque of every rate (Eq. 1), N m (N for slides).
+    /// Active torque of every rate about its axis (Eq. 1), N m (N for slides).
     ///
     /// # Panics
-    /// When the last update did not compute external and passive torque.
+    /// When the last update did not compute external and passive torque, and those about axes.
     pub fn active_torque(&self) -> &[f64] {
-        let known = self.computed.passive_torque && self.computed.needs_external_torque();
-        assert!(known, "the last update left external or passive torque out");
+        assert!(self.computed.about_axes(), "the last update left external or passive torque out");
         &self.active
+    }
+
+    /// Frames of the body with a ball for each three-axis joint ([`Model::by_axes`]), to which the derivatives about axes belong.
+    ///
+    /// # Panics
+    /// When the last update did not compute torques about axes.
+    pub fn kinematics_by_axes(&self) -> &Kinematics {
+        self.axes.as_ref().map_or(&self.kinematics, AboutAxes::kinematics)
+    }
+
+    /// Slope of the external torque of a rate about its axis when that joint alone turns about it, N m/rad.
+    ///
+    /// # Panics
+    /// As [`JointTorques::external_about_axes`].
+    pub(crate) fn own_slope_about_axis(&self, model: &Model, rate: usize) -> f64 {
+        let external = self.axes.as_ref().map_or_else(|| self.external_torque(), AboutAxes::external);
+        external.own_slope(self.kinematics_by_axes(), model.by_axes(), rate)
+    }
+
+    /// Writes the least step of coordinates that turns a joint by `turn` (rad) about the axis of a coordinate into `step`, one entry
+    /// a coordinate: `A^T e_k turn / |A^T e_k|^2` for a three-axis joint. The step is zero where no coordinate turns it so.
+    pub(crate) fn write_turn(&self, model: &Model, coordinate: usize, turn: f64, step: &mut [f64]) {
+        step.fill(0.0);
+        let Some((joint, place)) = model.three_axis_joint_of(coordinate) else {
+            step[coordinate] = turn;
+            return;
+        };
+        let row = self.passive.orientations()[joint].hinges.row(place).into_owned();
+        let squared = row.norm_squared();
+        if squared > LEAST_TURN {
+            for (i, by) in model.three_axis_joints()[joint].coordinates.into_iter().zip(row.iter()) {
+                step[i] = turn * by / squared;
+            }
+        }
+    }
+
+    /// Changes derivatives by rotations about the axes of three-axis joints into derivatives by their coordinates, row by row.
+    pub(crate) fn fold_axes(&self, model: &Model, rows: &mut [f64]) {
+        for (joint, orientation) in model.three_axis_joints().iter().zip(self.passive.orientations()) {
+            let rates = joint.coordinates.map(|i| model.coordinates()[i].rate.unwrap_or_default());
+            for row in rows.chunks_exact_mut(model.rates().len()) {
+                let by_axes = nalgebra::Vector3::from(rates.map(|rate| row[rate]));
+                let by_coordinates = orientation.hinges.tr_mul(&by_axes);
+                for (k, rate) in rates.into_iter().enumerate() {
+                    row[rate] = by_coordinates[k];
+                }
+            }
+        }
     }
 }
 
