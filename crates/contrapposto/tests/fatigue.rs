@@ -135,8 +135,11 @@ fn endurance_time_of_three_compartments() {
     }
 }
 
-/// Movement, sex, name of the row, F, R, r: Rakshit, Xiang & Yang 2021, Table 2, typed a second time; 15 where the table has no r.
-const BY_GROUP: [(&str, Option<Sex>, &str, f64, f64, f64); 19] = [
+/// Movement, sex, name of the row, F, R, r.
+type GroupRow = (&'static str, Option<Sex>, &'static str, f64, f64, f64);
+
+/// Rakshit, Xiang & Yang 2021, Table 2, typed a second time; r 15 where the table has none.
+const BY_GROUP: [GroupRow; 19] = [
     ("ankle_dorsiflexion", FEMALE, "ankle_dorsiflexor, female", 0.00746, 0.00081, 4.97),
     ("ankle_dorsiflexion", MALE, "ankle_dorsiflexor, male", 0.00725, 0.00096, 10.36),
     ("ankle_dorsiflexion", None, "ankle_dorsiflexor, any sex", 0.00828, 0.00204, 7.07),
