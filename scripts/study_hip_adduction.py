@@ -20,8 +20,9 @@ SCALES = [0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 8.0]
 
 
 def curve(scale):
-    """The built-in curve (crates/contrapposto/data/passive.toml, hip_adduction) with its torques scaled."""
-    end = lambda angle: f"{{ torque_nm = {30.0 * scale}, rate_per_rad = 8.0, angle_deg = {angle} }}"
+    """The built-in curve (crates/contrapposto/data/passive.toml, hip_adduction) of a woman of 60 kg with its torques scaled."""
+    torque = 30.0 * 60 / 73 * scale
+    end = lambda angle: f"{{ torque_nm = {torque}, rate_per_rad = 8.0, angle_deg = {angle} }}"
     return f"{{ double_exponential = {{ lower = {end(-45.0)}, upper = {end(20.0)}, stiffness_nm_per_rad = 0.0, neutral_deg = 0.0 }} }}"
 
 

@@ -23,6 +23,10 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail>
             let why = "the built-in adult has six root coordinates of its own (pelvis_tilt .. pelvis_tz)";
             return Err(Fail::Refused(format!("--root: {}", ModelFileError::RootGiven(why))));
         }
+        Some(_) if args.person.is_some() => {
+            let why = "the built-in adult has a size of its own: `adult:female,1.65m,60kg`";
+            return Err(Fail::Refused(format!("--person: {why}")));
+        }
         Some(size) => SourcedModel::adult(&size.map_err(refused)?).map_err(refused)?,
         None => file(&args.model, root)?,
     };
@@ -37,7 +41,8 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail>
         let text = "with an overlay nothing else is filled from the built-in data; --passive library does so";
         opened.notes.push(text.to_owned());
     }
-    if fill { opened.fill().map_err(|error| Fail::job("adult", error)) } else { Ok(opened) }
+    let person = args.person.unwrap_or_default();
+    if fill { opened.fill(&person).map_err(|error| Fail::Refused(format!("--person: {error}"))) } else { Ok(opened) }
 }
 
 fn refused(error: impl std::fmt::Display) -> Fail {

@@ -49,5 +49,6 @@ fn model_args(scenario: &Path, file: &ModelFile) -> ModelArgs {
             RootAttachment::Free => RootChoice::Free,
         }),
         passive: None,
+        person: Some(file.person),
     }
 }

@@ -82,7 +82,7 @@ fn a_constant_posture_fails_at_the_endurance_time() {
         }
         failed += usize::from(expected < END);
     }
-    assert!(failed >= 5, "{failed}");
+    assert!(failed >= 4, "{failed}");
     // The arm that holds the weight is among them, at the load that `torques` says.
     let elbow = group(&report, "elbow_flex_r", "positive");
     let torque =

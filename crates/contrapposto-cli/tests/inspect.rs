@@ -16,7 +16,15 @@ fn every_number_of_the_adult_has_a_status() {
     assert!((report["mass_kg"].as_f64().unwrap() - 60.0).abs() < 0.02); // De Leva's shares are rounded.
     let order = report["coordinate_order"].as_array().unwrap();
     assert_eq!(order.len(), report["coordinates"].as_object().unwrap().len());
-    let known = ["verified", "derived", "derived (partly assumed)", "recalled (unverified)", "assumed"];
+    let known = [
+        "measured",
+        "verified",
+        "derived",
+        "derived (partly assumed)",
+        "numeric stop",
+        "recalled (unverified)",
+        "assumed",
+    ];
     let mut passive = 0;
     for (name, coordinate) in report["coordinates"].as_object().unwrap() {
         let sourced = |at: &serde_json::Value| {
@@ -125,8 +133,8 @@ fn a_published_full_body_is_filled_joint_by_joint() {
 #[test]
 fn a_file_with_tissue_of_its_own_gets_strength() {
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/models/adult-female.osim");
-    let report = json(&["inspect", model.to_str().unwrap(), "--json"]);
-    let adult = json(&["inspect", "adult", "--json"]);
+    let report = json(&["inspect", model.to_str().unwrap(), "--person", "female, 1.65m, 60kg", "--json"]);
+    let adult = json(&["inspect", "adult:female,1.65m,60kg", "--json"]);
     let (hip, own) = (&report["coordinates"]["hip_adduction_r"], &adult["coordinates"]["hip_adduction_r"]);
     assert_eq!(hip["passive"]["source"]["status"], "from the file");
     assert!(hip["strength"]["positive"]["peak_nm"].as_f64().unwrap() > 0.0);
@@ -136,6 +144,16 @@ fn a_file_with_tissue_of_its_own_gets_strength() {
         notes.contains("`hip_adduction_r`: strength from the built-in data, passive torque from the file"),
         "{notes}"
     );
+    assert!(notes.contains("those of a woman (given) of 60.0 kg (given) and 1.65 m (given)"), "{notes}");
+    // Without a person: a man of the model's mass.
+    let report = json(&["inspect", model.to_str().unwrap(), "--json"]);
+    let man = json(&["inspect", "adult:male,1.65m,60kg", "--json"]);
+    let peak = |report: &serde_json::Value| {
+        report["coordinates"]["hip_adduction_r"]["strength"]["positive"]["peak_nm"].as_f64()
+    };
+    assert!((peak(&report).unwrap() / peak(&man).unwrap() - 1.0).abs() < 0.001);
+    let told = refused(&["inspect", "adult", "--person", "female"]);
+    assert!(told.contains("the built-in adult has a size of its own"), "{told}");
 }
 
 #[test]

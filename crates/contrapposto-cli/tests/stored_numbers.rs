@@ -62,11 +62,11 @@ mass_kg = 5
 [strategy]
 kind = "active"
 [run]
-duration_s = 400
+duration_s = 600
 "#;
 
 #[test]
-fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_175_seconds() {
+fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_142_seconds() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = write(folder.path(), "arm.toml", LOADED_ARM);
     let summary = result("simulate", Path::new(&scenario), "summary.json");
@@ -75,7 +75,7 @@ fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_175_second
     let elbow = &summary["coordinates"]["elbow_flex_r"]["positive"]["exhausted_s"];
     let wrist = &summary["coordinates"]["wrist_dev_r"]["negative"]["exhausted_s"];
     // Times of samples, 1/30 s apart: one step of room.
-    for (time, stored) in [(&first["at_s"], 175.1), (wrist, 219.566_666_666_666_66), (elbow, 363.166_666_666_666_7)] {
+    for (time, stored) in [(&first["at_s"], 142.1), (wrist, 341.066_666_666_666_7), (elbow, 421.1)] {
         assert!((time.as_f64().unwrap() - stored).abs() < 0.034, "{time}, stored {stored}");
     }
     let arm = [0.0, -19.42856656593811, 0.5241969775273483, 18.90436958841076];
@@ -93,7 +93,7 @@ fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
     let scenario = write(folder.path(), "hold-tool.toml", &short);
     let summary = result("simulate", Path::new(&scenario), "summary.json");
     let effort = summary["standing"]["effort_at_start"].as_f64().unwrap();
-    assert!(effort > 0.0 && effort < 0.06373357394910872 * (1.0 + TOLERANCE), "{effort}");
+    assert!(effort > 0.0 && effort < 0.05261552049628891 * (1.0 + TOLERANCE), "{effort}");
 }
 
 #[test]

@@ -1,18 +1,24 @@
-//! Reads the size of the built-in adult from a short text: `adult`, `adult:female,1.65m,60kg`.
+//! Reads the size of a body from a short text: `adult`, `adult:female,1.65m,60kg`; `female,60kg` of a person.
 
 use contrapposto::model::{Adult, Sex};
+
+use crate::tissue::Person;
 
 const ADULT_FORM: &str = "accepted: `adult` (de Leva's reference man), or `adult:` and sex, stature and mass: \
     `adult:female,1.65m,60kg`";
 
-/// Why a text is no size of the built-in adult.
+const PERSON_FORM: &str = "accepted: sex, stature and mass, or some of them: `female,1.65m,60kg`, `female`";
+
+/// Why a text is no size of a body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{text}`: {problem}\n  {ADULT_FORM}")]
+#[error("`{text}`: {problem}\n  {accepted}")]
 pub struct AdultTextError {
     /// The text.
     pub text: String,
     /// The part that is wrong, and why.
     pub problem: String,
+    /// The texts that are accepted.
+    pub accepted: &'static str,
 }
 
 /// The size of the adult that `text` names, stature in m and mass in kg; `None` where the text does not begin with `adult`.
@@ -32,10 +38,36 @@ pub fn adult_size(text: &str) -> Option<Result<Adult, AdultTextError>> {
         return Some(Ok(Adult::default()));
     }
     let rest = text.strip_prefix("adult:")?;
-    Some(parsed(rest).map_err(|problem| AdultTextError { text: text.to_owned(), problem }))
+    Some(parsed(rest).map_err(|problem| AdultTextError { text: text.to_owned(), problem, accepted: ADULT_FORM }))
+}
+
+/// The person that `text` describes, stature in m and mass in kg; the parts that it leaves out stay unknown.
+///
+/// ```
+/// let person = contrapposto_formats::person("female, 60kg")?;
+/// assert_eq!((person.stature, person.mass), (None, Some(60.0)));
+/// # Ok::<(), contrapposto_formats::AdultTextError>(())
+/// ```
+///
+/// # Errors
+/// [`AdultTextError`] names the part that is neither a sex, a stature nor a mass, or that is given twice.
+pub fn person(text: &str) -> Result<Person, AdultTextError> {
+    let wrong = |problem| AdultTextError { text: text.to_owned(), problem, accepted: PERSON_FORM };
+    parts(text).map_err(wrong)
 }
 
 fn parsed(text: &str) -> Result<Adult, String> {
+    let Person { sex, stature, mass } = parts(text)?;
+    let missing = |what: &str| format!("the {what} is missing");
+    Ok(Adult {
+        sex: sex.ok_or_else(|| missing("sex"))?,
+        stature: stature.ok_or_else(|| missing("stature"))?,
+        mass: mass.ok_or_else(|| missing("mass"))?,
+        ..Adult::default()
+    })
+}
+
+fn parts(text: &str) -> Result<Person, String> {
     let (mut sex, mut stature, mut mass) = (None, None, None);
     for part in text.split(',').map(str::trim) {
         let twice = match part {
@@ -61,13 +93,7 @@ fn parsed(text: &str) -> Result<Adult, String> {
             return Err(format!("`{part}` repeats a size that was given before"));
         }
     }
-    let missing = |what: &str| format!("the {what} is missing");
-    Ok(Adult {
-        sex: sex.ok_or_else(|| missing("sex"))?,
-        stature: stature.ok_or_else(|| missing("stature"))?,
-        mass: mass.ok_or_else(|| missing("mass"))?,
-        ..Adult::default()
-    })
+    Ok(Person { sex, stature, mass })
 }
 
 fn size(number: &str, part: &str) -> Result<f64, String> {

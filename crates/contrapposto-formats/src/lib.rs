@@ -28,7 +28,7 @@ mod summary;
 mod toml_file;
 mod trajectory_csv;
 
-pub use adult_text::{AdultTextError, adult_size};
+pub use adult_text::{AdultTextError, adult_size, person};
 pub use decisions_csv::{decisions_csv, relief_sentence};
 pub use input_error::{InputError, nearest};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};

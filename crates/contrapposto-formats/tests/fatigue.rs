@@ -24,7 +24,7 @@ fn model(body: &str, fatigue: &str, overlay: Option<&str>) -> Model {
         if let Some(overlay) = overlay {
             model = model.lay_over("overlay.toml", overlay.as_bytes()).unwrap();
         }
-        model.fill().unwrap().with_fatigue(&file.fatigue).model
+        model.fill(&file.person).unwrap().with_fatigue(&file.fatigue).model
     });
     read_relax("scenario.toml", text.as_bytes(), file).unwrap().model
 }

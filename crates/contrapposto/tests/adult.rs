@@ -161,13 +161,13 @@ fn names_ranges_and_defaults() {
 #[test]
 fn muscle_groups_pull_the_way_their_name_says() {
     let groups = [
-        ("arm_flex_r", "shoulder flexion", "shoulder extension", 71.0, 88.0),
-        ("arm_add_r", "shoulder adduction", "shoulder abduction", 68.0, 71.0),
-        ("arm_rot_r", "shoulder internal rotation", "shoulder external rotation", 50.0, 35.0),
-        ("elbow_flex_r", "elbow flexion", "elbow extension", 75.0, 46.0),
-        ("pro_sup_r", "forearm pronation", "forearm supination", 13.0, 13.0),
-        ("wrist_flex_r", "wrist flexion", "wrist extension", 12.2, 7.1),
-        ("wrist_dev_r", "wrist ulnar deviation", "wrist radial deviation", 9.5, 11.0),
+        ("arm_flex_r", "shoulder flexion", "shoulder extension", 62.3, 90.9),
+        ("arm_add_r", "shoulder adduction", "shoulder abduction", 88.6, 59.5),
+        ("arm_rot_r", "shoulder internal rotation", "shoulder external rotation", 58.8, 35.5),
+        ("elbow_flex_r", "elbow flexion", "elbow extension", 82.2, 53.1),
+        ("pro_sup_r", "forearm pronation", "forearm supination", 6.8, 8.0),
+        ("wrist_flex_r", "wrist flexion", "wrist extension", 23.6, 13.0),
+        ("wrist_dev_r", "wrist ulnar deviation", "wrist radial deviation", 26.0, 14.6),
     ];
     let (men, women) = (adult(&MALE).unwrap(), adult(&FEMALE).unwrap());
     for (name, positive, negative, pull, push) in groups {
@@ -176,14 +176,16 @@ fn muscle_groups_pull_the_way_their_name_says() {
         let weaker = women.coordinates()[index].groups.as_ref().unwrap();
         for (side, word, peak) in [(Side::Positive, positive, pull), (Side::Negative, negative, push)] {
             let group = &given[side.index()];
-            assert_eq!((group.name.as_str(), group.strength.peak), (word, peak), "{name}");
+            let greatest = (10.0 * group.strength.greatest()).round() / 10.0;
+            assert_eq!((group.name.as_str(), greatest), (word, peak), "{name}");
             assert!(weaker[side.index()].strength.peak < peak, "{name}");
             assert!(group.fatigue.endurance_time(0.5).is_finite());
         }
     }
     let elbow = &men.coordinates()[3].groups.as_ref().unwrap()[Side::Positive.index()].strength;
-    assert!((elbow.torque(90f64.to_radians()) - 75.0).abs() < 1e-12);
-    assert!((elbow.torque(0.0) / 75.0 - 0.83).abs() < 0.001);
+    // 70.3 N m of men of 73.8 kg at 60 deg; below 32 deg, which nobody tested, the strength at 32 deg.
+    assert!((elbow.torque(60f64.to_radians()) - 70.3 * MALE.mass / 73.8).abs() < 1e-9);
+    assert_eq!(elbow.torque(0.0), elbow.torque(32f64.to_radians()));
 }
 
 #[test]

@@ -69,11 +69,11 @@ fn the_same_motion_of_left_and_right_arm_gives_the_same_load_and_fatigue() {
     assert!(right.proposals.iter().zip(&left.proposals).all(|(r, l)| r.sentence == l.sentence));
 }
 
-/// The load is greatest in the middle, where the forearm is level; fatigue at the end.
+/// The load is greatest in the middle, where the forearm is nearer to level; fatigue at the end.
 #[test]
-fn load_peaks_where_the_forearm_is_level_and_fatigue_at_the_end() {
+fn load_peaks_in_the_middle_and_fatigue_at_the_end() {
     let model = body();
-    let angles = [20.0, 50.0, 90.0, 50.0, 20.0];
+    let angles = [10.0, 20.0, 60.0, 20.0, 10.0];
     let motion: Vec<_> = angles
         .iter()
         .zip(0..)
@@ -88,7 +88,7 @@ fn load_peaks_where_the_forearm_is_level_and_fatigue_at_the_end() {
         let decision = &proposal.decision;
         assert!(decision.active_torque_at_goal.unwrap().abs() <= decision.active_torque.abs(), "{proposal:?}");
     }
-    assert!((elbow.proposals[0].angle.to_degrees() - 90.0).abs() < 1e-9);
+    assert!((elbow.proposals[0].angle.to_degrees() - 60.0).abs() < 1e-9);
     // The group that never works neither tires nor asks.
     let rests = group(&model, &found, "knee_angle_r", Side::Positive);
     assert!(rests.peak_load.value > 0.0 || (rests.fatigue == 0.0 && rests.proposals.is_empty()));

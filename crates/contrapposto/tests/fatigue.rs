@@ -8,7 +8,7 @@
 use contrapposto::fatigue::{Compartments, FatigueLaw, FatigueState, Hysteresis, REST_LOAD, ThreeCompartment};
 use contrapposto::model::Sex;
 use contrapposto::model::data::{FatigueSet, Status, library};
-use contrapposto::strength::Strength;
+use contrapposto::strength::{EVERY_ANGLE, Strength};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -575,6 +575,7 @@ fn strength_slope_and_floor() {
             best: rng.random_range(-2.0..2.0),
             narrowness: rng.random_range(0.0..2.0),
             floor: rng.random_range(0.01..0.5),
+            tested: EVERY_ANGLE,
         };
         let angle = rng.random_range(-4.0..4.0);
         let (torque, slope) = strength.torque_and_slope(angle);
@@ -596,4 +597,21 @@ fn strength_slope_and_floor() {
     assert!(worst < 1e-9 && inside > 4000);
     let constant = Strength::constant(42.0);
     assert_eq!((constant.torque_and_slope(-7.0), constant.torque(1e9)), ((42.0, 0.0), 42.0));
+}
+
+#[test]
+fn strength_outside_the_tested_angles_is_that_of_the_nearer_end() {
+    let mut rng = random("strength_outside_the_tested_angles_is_that_of_the_nearer_end");
+    for _ in 0..1000 {
+        let low = rng.random_range(-1.5..0.0);
+        let tested = (low, low + rng.random_range(0.2..2.0));
+        let strength = Strength { peak: 100.0, best: rng.random_range(-2.0..2.0), narrowness: 0.9, floor: 0.1, tested };
+        for (outside, end) in [(tested.0 - 0.7, tested.0), (tested.1 + 0.7, tested.1)] {
+            assert_eq!(strength.torque_and_slope(outside), (strength.torque(end), 0.0));
+            assert!(strength.is_extrapolated(outside) && !strength.is_extrapolated(end));
+        }
+        let angle = rng.random_range(-4.0..4.0);
+        assert_eq!(strength.mirrored().torque(-angle), strength.torque(angle));
+        assert!(strength.torque(angle) <= strength.greatest());
+    }
 }

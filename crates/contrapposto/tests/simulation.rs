@@ -139,7 +139,7 @@ fn fatigue_of_a_held_posture_is_the_same_at_time_steps_from_5_ms_to_60_s() {
     scenario.free.fill(false);
     scenario.hysteresis = Hysteresis { critical_level: 1.0, recovery_level: 0.0 };
     let load = |kilograms| Some(vec![Load { kind: LoadKind::Weight(kilograms), ..scenario.loads[0] }]);
-    let loads = [load(1.0), load(7.0), Some(vec![]), load(3.0)];
+    let loads = [load(1.0), load(6.0), Some(vec![]), load(2.0)];
     scenario.events = (60..)
         .step_by(60)
         .zip(loads)

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Parser, ValueEnum};
 use contrapposto::model::data::FatigueSet;
 use contrapposto_formats::model_ir::RootAttachment;
-use contrapposto_formats::tissue::{FatigueChoice, FatigueSex};
+use contrapposto_formats::person;
+use contrapposto_formats::tissue::{FatigueChoice, FatigueSex, Person};
 
 use crate::fail::Fail;
 
@@ -23,6 +24,10 @@ pub(crate) struct ModelArgs {
     /// Passive torque and strength that the file does not have: from the built-in library by name, or none.
     #[arg(long, value_enum)]
     pub(crate) passive: Option<PassiveFrom>,
+    /// The person whom a model file stands for, as the built-in strength and passive torque need: `female,1.65m,60kg`, or some
+    /// of them. Without it: a man of the model's mass, and of a stature in proportion to it.
+    #[arg(long, value_name = "SEX,STATURE,MASS", value_parser = person)]
+    pub(crate) person: Option<Person>,
 }
 
 /// How a root is attached.

@@ -1,16 +1,16 @@
 //! Reads which body a scenario has: a model file, or the built-in adult with its passive curves and fatigue laws.
 
-use contrapposto::model::{Adult, AdultError, Model, Part, Sex};
+use contrapposto::model::{Adult, AdultError, Model, Part};
 
 use super::error_keys::adult_path;
 use super::fatigue_choice::fatigue_choice;
 use super::head::check_head;
 use super::names::coordinate;
-use super::text::{AdultText, ModelText, PartText, RootText, ScenarioText, SexText};
+use super::text::{AdultText, ModelText, PartText, PersonText, RootText, ScenarioText, SexText};
 use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
 use crate::passive_law::passive_curve;
-use crate::tissue::{FatigueChoice, SourcedModel};
+use crate::tissue::{FatigueChoice, Person, SourcedModel};
 use crate::toml_file::{Located, read_toml};
 
 /// A model file that a scenario names.
@@ -24,6 +24,8 @@ pub struct ModelFile {
     pub root: Option<RootAttachment>,
     /// Fatigue law of its muscle groups, for [`SourcedModel::with_fatigue`].
     pub fatigue: FatigueChoice,
+    /// The person whom it stands for.
+    pub person: Person,
 }
 
 /// The model file that a scenario names; `None` for the built-in adult. `name` is the scenario's name for messages.
@@ -40,7 +42,9 @@ pub fn scenario_model(name: &str, bytes: &[u8]) -> Result<Option<ModelFile>, Inp
 fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>, InputError> {
     let text: &ModelText = &scenario.model;
     let Some(file) = &text.file else {
-        for (key, given) in [("overlay", text.overlay.is_some()), ("root", text.root.is_some())] {
+        let given =
+            [("overlay", text.overlay.is_some()), ("root", text.root.is_some()), ("person", text.person.is_some())];
+        for (key, given) in given {
             if given {
                 let help = Some("add `file = \"MODEL\"`, or leave it out".to_owned());
                 return Err(at.key_error(&["model", key], format!("`{key}` goes with a model file"), help));
@@ -62,7 +66,21 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
         RootText::Free => RootAttachment::Free,
     });
     let fatigue = fatigue_choice(at, scenario)?;
-    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, fatigue }))
+    let person = text.person.as_ref().map_or(Ok(Person::default()), |text| person(at, text))?;
+    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, fatigue, person }))
+}
+
+fn person(at: &Located, text: &PersonText) -> Result<Person, InputError> {
+    for (key, value, sizes) in
+        [("stature_m", text.stature_m, Adult::STATURES), ("mass_kg", text.mass_kg, Adult::MASSES)]
+    {
+        if value.is_some_and(|value| !sizes.contains(&value)) {
+            let message = format!("`{key}` must lie in {}..{}", sizes.start(), sizes.end());
+            return Err(at.error(&["model", "person", key], message, None));
+        }
+    }
+    let sex = text.sex.map(SexText::sex);
+    Ok(Person { sex, stature: text.stature_m, mass: text.mass_kg })
 }
 
 /// The body: that of the model file if there is one, as it is, else the built-in adult with the fatigue law of the file; both with
@@ -84,10 +102,7 @@ pub(super) fn body(at: &Located, text: &ScenarioText, file: Option<Model>) -> Re
 fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
     let default = AdultText::default();
     let size = text.model.adult.as_ref().unwrap_or(&default);
-    let sex = match size.sex {
-        SexText::Female => Sex::Female,
-        SexText::Male => Sex::Male,
-    };
+    let sex = size.sex.sex();
     let part = match size.part {
         PartText::Whole => Part::Whole,
         PartText::RightArm => Part::RightArm,

@@ -89,6 +89,20 @@ pub(crate) struct ModelText {
     pub(crate) overlay: Option<String>,
     /// How the root of a URDF or MJCF file is attached; as the file says when left out.
     pub(crate) root: Option<RootText>,
+    /// The person whom a model file stands for: size of the built-in strength and passive torque.
+    pub(crate) person: Option<PersonText>,
+}
+
+/// The person whom a model file stands for; what is left out comes from the model.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PersonText {
+    /// Sex; male when left out.
+    pub(crate) sex: Option<SexText>,
+    /// Stature, m, 1.2 to 2.3; in proportion to the mass when left out.
+    pub(crate) stature_m: Option<f64>,
+    /// Mass, kg, 30 to 250; the model's when left out.
+    pub(crate) mass_kg: Option<f64>,
 }
 
 /// How a root is attached.
@@ -151,6 +165,15 @@ pub(crate) enum SexText {
     Female,
     /// De Leva's men.
     Male,
+}
+
+impl SexText {
+    pub(crate) fn sex(self) -> contrapposto::model::Sex {
+        match self {
+            Self::Female => contrapposto::model::Sex::Female,
+            Self::Male => contrapposto::model::Sex::Male,
+        }
+    }
 }
 
 /// Which coordinates may move: one of the two lists.

@@ -5,9 +5,8 @@
 //! ground axes at zero angles, which both must have as OpenSim does: x forward, y up, z right.
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{Adult, AdultError, Coordinate, CoordinateKind, Model, MuscleGroup, adult, data};
+use contrapposto::model::{Adult, Coordinate, CoordinateKind, Model, MuscleGroup, data};
 use contrapposto::passive::{Coupled, PassiveLaw};
-use contrapposto::strength::Strength;
 use nalgebra::Vector3;
 
 use super::origin::{Origin, Origins};
@@ -30,18 +29,19 @@ const BEYOND: f64 = 0.1;
 pub(super) fn fill(
     model: Model,
     format: ModelFormat,
+    size: &Adult,
+    twin: &Model,
     origins: &mut [Origins],
     notes: &mut Vec<String>,
-) -> Result<Model, AdultError> {
-    let twin = adult(&Adult::default())?;
-    let signs = Signs::new(&model, format, &twin);
+) -> Model {
+    let signs = Signs::new(&model, format, size, twin);
     let mut changed = model.clone();
     let mut unknown = vec![];
     for (index, (coordinate, origins)) in model.coordinates().iter().zip(origins).enumerate() {
         if coordinate.kind != CoordinateKind::Rotation || model.is_dependent(index) {
             continue;
         }
-        let Some((own, found)) = known(&twin, &coordinate.name) else {
+        let Some((own, found)) = known(twin, &coordinate.name) else {
             if coordinate.passive.is_none() {
                 unknown.push(format!("`{}`", coordinate.name));
             }
@@ -60,7 +60,7 @@ pub(super) fn fill(
         let list = unknown.join(", ");
         notes.push(format!("no passive torque is known for {all} coordinates, which have none: {list}{more}"));
     }
-    Ok(changed)
+    changed
 }
 
 /// A coordinate of the model, and the adult's of that name.
@@ -108,7 +108,7 @@ impl Filling<'_> {
                 return model;
             }
         };
-        notes.push(said(coordinate, found, sign));
+        notes.push(said(coordinate, found, signs.size, sign));
         origins.passive = Origin::Library;
         origins.twin = Some(found.name.clone());
         origins.meant = Some(mirrored(found.range, sign));
@@ -129,19 +129,21 @@ fn known<'a>(twin: &'a Model, name: &str) -> Option<(usize, &'a Coordinate)> {
 /// The senses in which coordinates turn, against those of the built-in adult.
 struct Signs<'a> {
     model: &'a Model,
+    /// Size of the twin.
+    size: &'a Adult,
     twin: &'a Model,
     /// The model's ground axes are not known to be the adult's: why.
     elsewhere: Option<String>,
 }
 
 impl<'a> Signs<'a> {
-    fn new(model: &'a Model, format: ModelFormat, twin: &'a Model) -> Self {
+    fn new(model: &'a Model, format: ModelFormat, size: &'a Adult, twin: &'a Model) -> Self {
         let down = model.gravity();
         let along = down.dot(&-Vector3::y()) / down.norm();
         let upright = if down.norm() > 0.0 { along > 0.99 } else { format == ModelFormat::OpenSim };
         let elsewhere = "its direction cannot be verified, for gravity does not act along -y, so that the file's axes are not \
             OpenSim's (x forward, y up, z right)";
-        Self { model, twin, elsewhere: (!upright).then(|| elsewhere.to_owned()) }
+        Self { model, size, twin, elsewhere: (!upright).then(|| elsewhere.to_owned()) }
     }
 
     /// +1 where both turn the same way, -1 where they turn against each other.
@@ -201,7 +203,8 @@ fn law_for(
         PassiveLaw::Curve(_) => {
             let missing = || "the built-in data have no curve for it".to_owned();
             let sources = data::library().sources(&found.name).ok_or_else(missing)?;
-            let row = sources.curve.and_then(|name| data::library().curve(name)).ok_or_else(missing)?;
+            let name = sources.curve_of(signs.size.sex).ok_or_else(missing)?;
+            let row = data::library().curve_of_size(name, signs.size).ok_or_else(missing)?;
             let (min, max) = coordinate.range;
             let own = min < max && min.is_finite() && max.is_finite();
             let range = if own { coordinate.range } else { mirrored(found.range, sign) };
@@ -238,14 +241,13 @@ fn turned(groups: [MuscleGroup; 2], sign: f64) -> [MuscleGroup; 2] {
     if sign > 0.0 {
         return groups;
     }
-    let [positive, negative] = groups
-        .map(|group| MuscleGroup { strength: Strength { best: -group.strength.best, ..group.strength }, ..group });
+    let [positive, negative] = groups.map(|group| MuscleGroup { strength: group.strength.mirrored(), ..group });
     [negative, positive]
 }
 
-fn said(coordinate: &Coordinate, found: &Coordinate, sign: f64) -> String {
+fn said(coordinate: &Coordinate, found: &Coordinate, size: &Adult, sign: f64) -> String {
     let sources = data::library().sources(&found.name);
-    let row = sources.and_then(|sources| sources.curve).and_then(|name| data::library().curve(name));
+    let row = sources.and_then(|sources| sources.curve_of(size.sex)).and_then(|name| data::library().curve(name));
     let curve = row.map_or(String::new(), |row| format!(", curve `{}` ({})", row.name, row.reference.status));
     let way = if sign < 0.0 { format!(", turned round: {} is negative here", found.positive) } else { String::new() };
     let (min, max) = coordinate.range;

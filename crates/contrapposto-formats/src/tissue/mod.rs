@@ -6,9 +6,11 @@
 mod fatigue;
 mod fill;
 mod origin;
+mod person;
 
 pub use fatigue::{FatigueChoice, FatigueParametersText, FatigueSex, fatigue_notes};
 pub use origin::{Origin, Origins};
+pub use person::Person;
 
 use contrapposto::model::{Adult, AdultError, Model, Sex, adult};
 
@@ -24,7 +26,7 @@ pub struct SourcedModel {
     pub model: Model,
     /// Format of its file.
     pub format: ModelFormat,
-    /// Sex of the body; `None` where the file does not say it.
+    /// Sex of the body; `None` where nobody says it, and strength and passive torque of the library are a man's.
     pub sex: Option<Sex>,
     /// By coordinate.
     pub origins: Vec<Origins>,
@@ -36,7 +38,7 @@ impl SourcedModel {
     /// Reads a model file: [`read_model`].
     ///
     /// ```
-    /// use contrapposto_formats::tissue::SourcedModel;
+    /// use contrapposto_formats::tissue::{Person, SourcedModel};
     /// let urdf = r#"<robot name="arm">
     ///   <link name="base"/>
     ///   <link name="forearm"><inertial><mass value="1.5"/>
@@ -46,7 +48,7 @@ impl SourcedModel {
     /// </robot>"#;
     /// let no_includes = &mut |_: &str| Err("none".to_owned());
     /// let file = SourcedModel::read("arm.urdf", urdf.as_bytes(), None, no_includes)?;
-    /// let filled = file.fill()?;
+    /// let filled = file.fill(&Person::default())?;
     /// // A URDF file has gravity along -z, so that its axes are not known to be OpenSim's.
     /// assert!(filled.model.coordinates()[0].passive.is_none());
     /// assert!(filled.notes[0].contains("the built-in one is not applied"));
@@ -107,13 +109,23 @@ impl SourcedModel {
 
     /// Fills in passive laws and muscle groups that the model does not have, from the built-in adult, by the standard OpenSim names.
     /// A coordinate is filled where its turning axis lies along that of the adult's (or against it; its curve runs the other way
-    /// then) and gravity acts along -y; a note says of each what was filled, or why not. The adult itself stays as it is.
+    /// then) and gravity acts along -y; a note says of each what was filled, or why not. Strength and passive torque are those of an
+    /// adult of the size of `person`. The adult itself stays as it is.
     ///
     /// # Errors
-    /// [`AdultError`] when the built-in adult cannot be built.
-    pub fn fill(mut self) -> Result<Self, AdultError> {
+    /// [`AdultError`] when `person` has no adult's size.
+    pub fn fill(mut self, person: &Person) -> Result<Self, AdultError> {
         if self.format != ModelFormat::Adult {
-            self.model = fill::fill(self.model, self.format, &mut self.origins, &mut self.notes)?;
+            let size = person.size(&self.model);
+            let twin = adult(&size)?;
+            let said = person.said(&self.model, &size);
+            let count = self.notes.len();
+            self.model = fill::fill(self.model, self.format, &size, &twin, &mut self.origins, &mut self.notes);
+            let filled = |origins: &Origins| [origins.passive, origins.strength].contains(&Origin::Library);
+            if self.origins.iter().any(filled) {
+                self.notes.insert(count, said);
+            }
+            self.sex = self.sex.or(person.sex);
         }
         Ok(self)
     }

@@ -6,7 +6,9 @@
 use nalgebra::{Matrix3, Unit, Vector3};
 
 use super::adult_size::{Adult, Part, Sex};
-use super::data::{Along, CoordinateRow, FatigueSet, GRAVITY, InRightArm, Library, Reference, SegmentRow, library};
+use super::data::{
+    Along, CoordinateRow, FatigueSet, GRAVITY, InRightArm, Library, Reference, SegmentRow, StrengthSources, library,
+};
 use super::{
     CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, Placement,
     SegmentSpec,
@@ -83,11 +85,11 @@ pub enum AdultError {
 /// # Errors
 /// [`AdultError::Size`] for a stature, mass or length that is no adult's.
 pub fn adult(size: &Adult) -> Result<Model, AdultError> {
-    for (measure, value, min, max) in
-        [(AdultMeasure::Stature, size.stature, 1.2, 2.3), (AdultMeasure::Mass, size.mass, 30.0, 250.0)]
+    for (measure, value, sizes) in
+        [(AdultMeasure::Stature, size.stature, Adult::STATURES), (AdultMeasure::Mass, size.mass, Adult::MASSES)]
     {
-        if !(min..=max).contains(&value) {
-            return Err(AdultError::Size { measure, value, min, max });
+        if !sizes.contains(&value) {
+            return Err(AdultError::Size { measure, value, min: *sizes.start(), max: *sizes.end() });
         }
     }
     let recipe = Recipe { library: library(), size };
@@ -257,7 +259,7 @@ impl Recipe<'_> {
         if let Some(passive) = &row.passive {
             let female = passive.female_curve.as_ref().filter(|_| self.size.sex == Sex::Female);
             let name = female.unwrap_or(&passive.curve);
-            let curve = self.library.curve(name).ok_or_else(|| missing(name))?;
+            let curve = self.library.curve_of_size(name, self.size).ok_or_else(|| missing(name))?;
             spec.passive = Some(match curve.coupled() {
                 Some(law) => PassiveLaw::Coupled(Coupled { law, neighbours: [None; 3] }), // see `couple_legs`
                 None => PassiveLaw::Curve(curve.over(range, passive.sign)?),
@@ -306,6 +308,8 @@ fn direction(row: &SegmentRow) -> Vector3<f64> {
 pub struct CoordinateSources<'a> {
     /// Name of the passive curve (a man's, where the sexes differ); `None` for the root.
     pub curve: Option<&'a str>,
+    /// Name of a woman's passive curve, where the sexes differ.
+    pub female_curve: Option<&'a str>,
     /// +1, or -1 where the coordinate runs against the curve's own direction.
     pub curve_sign: f64,
     /// Region of the body, for strategies by region.
@@ -313,7 +317,14 @@ pub struct CoordinateSources<'a> {
     /// Source of the range of motion.
     pub range: &'a Reference,
     /// Sources of the strength of the positive and the negative group.
-    pub strength: Option<[&'a Reference; 2]>,
+    pub strength: Option<[StrengthSources<'a>; 2]>,
+}
+
+impl<'a> CoordinateSources<'a> {
+    /// Name of the passive curve of that sex.
+    pub fn curve_of(&self, sex: Sex) -> Option<&'a str> {
+        self.female_curve.filter(|_| sex == Sex::Female).or(self.curve)
+    }
 }
 
 impl Library {
@@ -322,10 +333,11 @@ impl Library {
         let left = coordinate.ends_with("_l");
         let row = self.adult.coordinate.iter().find(|row| sided(&row.name, left && row.mirrored) == coordinate)?;
         let size = Adult::default();
-        let reference = |id: &str| self.strength(id, &size, 1.0).map(|(_, reference)| reference);
-        let strength = row.strength.as_ref().and_then(|s| Some([reference(&s.positive)?, reference(&s.negative)?]));
+        let sources = |id: &str| self.strength(id, &size, 1.0).map(|(_, sources)| sources);
+        let strength = row.strength.as_ref().and_then(|s| Some([sources(&s.positive)?, sources(&s.negative)?]));
         Some(CoordinateSources {
             curve: row.passive.as_ref().map(|passive| passive.curve.as_str()),
+            female_curve: row.passive.as_ref().and_then(|passive| passive.female_curve.as_deref()),
             curve_sign: row.passive.as_ref().map_or(1.0, |passive| passive.sign),
             region: &row.region,
             range: &row.range_reference,

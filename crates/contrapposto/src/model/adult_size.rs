@@ -1,5 +1,7 @@
 //! Describes the built-in adult: sex, stature, mass and measured lengths.
 
+use std::ops::RangeInclusive;
+
 use serde::Deserialize;
 
 /// Sex, as the body tables distinguish it.
@@ -26,9 +28,9 @@ pub enum Part {
 pub struct Adult {
     /// Sex whose proportions the body has.
     pub sex: Sex,
-    /// Stature, m, 1.2..=2.3.
+    /// Stature, m, one of [`Adult::STATURES`].
     pub stature: f64,
-    /// Mass, kg, 30..=250.
+    /// Mass, kg, one of [`Adult::MASSES`].
     pub mass: f64,
     /// How much of the body.
     pub part: Part,
@@ -45,6 +47,19 @@ impl Default for Adult {
 }
 
 impl Adult {
+    /// Masses that are an adult's, kg.
+    pub const MASSES: RangeInclusive<f64> = 30.0..=250.0;
+    /// Statures that are an adult's, m.
+    pub const STATURES: RangeInclusive<f64> = 1.2..=2.3;
+
+    /// De Leva's reference woman or man.
+    pub fn reference(sex: Sex) -> Self {
+        match sex {
+            Sex::Female => Self { sex, stature: 1.735, mass: 61.9, ..Self::default() },
+            Sex::Male => Self::default(),
+        }
+    }
+
     /// The right arm of the reference man.
     pub fn right_arm() -> Self {
         Self { part: Part::RightArm, ..Self::default() }

@@ -12,7 +12,7 @@ mod strength_rows;
 
 use std::sync::LazyLock;
 
-use super::adult_size::{Adult, Sex};
+use super::adult_size::Adult;
 use crate::strength::Strength;
 use body_rows::{AdultFile, AnthropometryFile};
 pub(super) use body_rows::{Along, CoordinateRow, InRightArm, SegmentRow};
@@ -21,7 +21,9 @@ use fatigue_rows::FatigueFile;
 use passive_rows::PassiveFile;
 pub use passive_rows::{CurveRow, reshaped};
 pub use reference::{Reference, Status};
+pub(super) use strength_rows::GRAVITY;
 use strength_rows::StrengthFile;
+pub use strength_rows::StrengthSources;
 
 /// All embedded data.
 #[derive(Debug)]
@@ -58,6 +60,12 @@ impl Library {
         self.passive.curve.iter().find(|row| row.name == name)
     }
 
+    /// The passive curve of that name for an adult of that size: its torque grows with body mass.
+    pub fn curve_of_size(&self, name: &str, size: &Adult) -> Option<CurveRow> {
+        let row = self.curve(name)?;
+        Some(row.scaled(size.mass / row.mass_kg.unwrap_or(self.passive.scale.mass_kg)))
+    }
+
     /// Names of all passive curves, in the file's order.
     pub fn curve_names(&self) -> impl Iterator<Item = &str> {
         self.passive.curve.iter().map(|row| row.name.as_str())
@@ -70,34 +78,11 @@ impl Library {
         (row.zone_deg.to_radians(), row.end_torque_nm, reference)
     }
 
-    /// Strength of a movement for an adult; `sign` -1 where the coordinate runs against the data. Hip and knee flexion and
-    /// extension and the ankle's follow Anderson et al. 2007, young adults.
-    pub(super) fn strength(&self, id: &str, size: &Adult, sign: f64) -> Option<(Strength, &Reference)> {
-        let floor = self.strength.floor.share;
-        let measured =
-            self.strength.anderson2007.row.iter().find(|r| r.id == id && r.sex == size.sex && r.age == YOUNG);
-        if let Some(row) = measured {
-            let peak = row.c1 * size.mass * GRAVITY * size.stature;
-            let strength = Strength { peak, best: sign * row.c3_rad, narrowness: row.c2_per_rad, floor };
-            return Some((strength, &self.strength.anderson2007.reference));
-        }
-        let row = self.strength.group.iter().find(|row| row.id == id)?;
-        let factor = if size.sex == Sex::Female { row.female_factor } else { 1.0 };
-        let strength = Strength {
-            peak: row.male_nm * factor,
-            best: sign * row.shape.best_deg.to_radians(),
-            narrowness: row.shape.narrowness_per_rad,
-            floor,
-        };
-        Some((strength, &row.reference))
+    /// Strength of a movement for an adult, with its sources; `sign` -1 where the coordinate runs against the data.
+    pub(super) fn strength(&self, id: &str, size: &Adult, sign: f64) -> Option<(Strength, StrengthSources<'_>)> {
+        self.strength.strength(id, size, sign)
     }
 }
-
-/// Age group of Anderson et al. 2007 that the built-in adult belongs to.
-const YOUNG: &str = "18-25";
-
-/// Gravity in Anderson's normalisation and of the built-in adult, m/s^2.
-pub(super) const GRAVITY: f64 = 9.81;
 
 #[cfg(test)]
 mod tests {

@@ -1,13 +1,14 @@
 //! Computes the greatest torque that a rested muscle group can give at an angle.
 //!
-//! One shape: `S(q) = peak max(floor, cos(narrowness (q - best)))`. With `narrowness = 0` strength is the same everywhere.
-//! With Anderson, Madigan & Nussbaum 2007 (J. Biomech. 40:3105-3113, Table 3) `peak = C1 M g H`, `narrowness = C2`,
-//! `best = C3`. The floor keeps relative load finite inside the range; it is a design choice (status "assumed").
+//! One shape: `S(q) = peak max(floor, cos(narrowness (q' - best)))`, where `q'` is the nearest angle to `q` that was tested: outside
+//! the tested angles the strength at the nearer end is held, an extrapolation. With `narrowness = 0` strength is the same
+//! everywhere. Anderson, Madigan & Nussbaum 2007 (J. Biomech. 40:3105-3113, Table 3) use this cosine: `peak = C1 M g H`,
+//! `narrowness = C2`, `best = C3`. The floor keeps relative load finite inside the range.
 
 /// Greatest voluntary torque of one muscle group against angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strength {
-    /// Torque at the best angle, N m, positive.
+    /// Torque at the best angle, N m, positive. It is not reached where the best angle was not tested.
     pub peak: f64,
     /// Angle of greatest torque, rad.
     pub best: f64,
@@ -15,20 +16,27 @@ pub struct Strength {
     pub narrowness: f64,
     /// Least share of the peak, in 0..=1, positive.
     pub floor: f64,
+    /// Least and greatest angle (rad) of the measurement; infinite where no angle is known to lie outside of it.
+    pub tested: (f64, f64),
 }
+
+/// Every angle: nothing is held.
+pub const EVERY_ANGLE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 impl Strength {
     /// The same at every angle.
     pub fn constant(peak: f64) -> Self {
-        Self { peak, best: 0.0, narrowness: 0.0, floor: 1.0 }
+        Self { peak, best: 0.0, narrowness: 0.0, floor: 1.0, tested: EVERY_ANGLE }
     }
 
     /// Greatest torque at `angle` (rad), N m; always positive.
     ///
     /// ```
-    /// let knee = contrapposto::strength::Strength { peak: 203.0, best: 1.133, narrowness: 1.258, floor: 0.1 };
+    /// use contrapposto::strength::Strength;
+    /// let knee = Strength { peak: 203.0, best: 1.133, narrowness: 1.258, floor: 0.5, tested: (0.1745, 1.798) };
     /// assert_eq!(knee.torque(1.133), 203.0);
-    /// assert_eq!(knee.torque(1.133 + 3.0), 20.3);
+    /// assert_eq!(knee.torque(0.0), 101.5);
+    /// assert_eq!(knee.torque(2.3), knee.torque(1.798));
     /// ```
     pub fn torque(&self, angle: f64) -> f64 {
         self.torque_and_slope(angle).0
@@ -39,18 +47,35 @@ impl Strength {
         if self.narrowness == 0.0 {
             return (self.peak, 0.0);
         }
-        let phase = self.narrowness * (angle - self.best);
+        let phase = self.narrowness * (angle.clamp(self.tested.0, self.tested.1) - self.best);
         let share = if phase.abs() < std::f64::consts::FRAC_PI_2 { phase.cos() } else { 0.0 };
-        if share > self.floor {
-            (self.peak * share, -self.peak * self.narrowness * phase.sin())
-        } else {
-            (self.peak * self.floor, 0.0)
+        if share <= self.floor {
+            return (self.peak * self.floor, 0.0);
         }
+        let slope = if self.is_extrapolated(angle) { 0.0 } else { -self.peak * self.narrowness * phase.sin() };
+        (self.peak * share, slope)
     }
 
-    /// Second derivative at `angle` (rad), N m/rad^2; 0 on the floor.
+    /// Second derivative at `angle` (rad), N m/rad^2; 0 on the floor and outside the tested angles.
     pub(crate) fn curvature(&self, angle: f64) -> f64 {
         let torque = self.torque(angle);
-        if torque > self.peak * self.floor { -self.narrowness.powi(2) * torque } else { 0.0 }
+        let flat = torque <= self.peak * self.floor || self.is_extrapolated(angle);
+        if flat { 0.0 } else { -self.narrowness.powi(2) * torque }
+    }
+
+    /// `angle` (rad) lies outside the tested angles.
+    pub fn is_extrapolated(&self, angle: f64) -> bool {
+        angle < self.tested.0 || angle > self.tested.1
+    }
+
+    /// Greatest torque at any angle, N m.
+    pub fn greatest(&self) -> f64 {
+        self.torque(self.best)
+    }
+
+    /// The same strength of a coordinate that counts the other way round.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        Self { best: -self.best, tested: (-self.tested.1, -self.tested.0), ..self }
     }
 }

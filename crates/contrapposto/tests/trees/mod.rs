@@ -8,7 +8,7 @@ use contrapposto::model::{
 };
 use contrapposto::passive::{Coupled, CoupledTerm, PassiveLaw, RienerEdrich1999, Term};
 use contrapposto::posture::Posture;
-use contrapposto::strength::Strength;
+use contrapposto::strength::{EVERY_ANGLE, Strength};
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -197,6 +197,7 @@ pub fn with_muscles(rng: &mut Pcg64, mut model: Model, fatigue: &FatigueLaw) -> 
                     best: rng.random_range(-1.0..1.0),
                     narrowness: [0.0, rng.random_range(0.2..1.2)][rng.random_range(0..2)],
                     floor: rng.random_range(0.05..0.5),
+                    tested: EVERY_ANGLE,
                 },
                 fatigue: fatigue.clone(),
             };

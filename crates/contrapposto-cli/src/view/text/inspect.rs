@@ -90,9 +90,14 @@ struct StrengthText<'a> {
 #[derive(Serialize)]
 struct GroupStrengthText<'a> {
     name: &'a str,
+    /// Greatest torque at any angle, and the angle.
     peak_nm: f64,
     at_rad: f64,
+    /// Angles of the measurement; outside of them the torque at the nearer end is held (extrapolated).
+    tested_rad: Option<[f64; 2]>,
     source: Option<Source>,
+    /// Of the dependence on the angle.
+    angle_source: Option<Source>,
 }
 
 #[derive(Serialize)]
@@ -185,8 +190,16 @@ fn text<'a>(
     let group = |side: usize| {
         let source = known.strength.get(side).or(known.strength.first()).cloned();
         coordinate.groups.as_ref().map(|groups| {
-            let group = &groups[side];
-            GroupStrengthText { name: &group.name, peak_nm: group.strength.peak, at_rad: group.strength.best, source }
+            let (group, strength) = (&groups[side], &groups[side].strength);
+            let (least, greatest) = strength.tested;
+            GroupStrengthText {
+                name: &group.name,
+                peak_nm: strength.greatest(),
+                at_rad: strength.best.clamp(least, greatest),
+                tested_rad: Some([least, greatest]).filter(|[least, greatest]| (least - greatest).is_finite()),
+                source,
+                angle_source: known.shapes.as_ref().map(|shapes| shapes[side].clone()),
+            }
         })
     };
     InspectedCoordinateText {
@@ -341,8 +354,8 @@ fn coordinates(opened: &SourcedModel, seen: &mut Seen) -> comfy_table::Table {
             Some([positive, negative]) => (
                 format!(
                     "{:.0} / {:.0}{}",
-                    positive.strength.peak,
-                    negative.strength.peak,
+                    positive.strength.greatest(),
+                    negative.strength.greatest(),
                     known.strength.iter().map(|source| seen.mark(Some(source))).collect::<String>()
                 ),
                 fatigue_words([positive, negative], &known, seen),

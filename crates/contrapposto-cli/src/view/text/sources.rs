@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use contrapposto::model::MuscleGroup;
 use contrapposto::model::data::{self, Reference};
-use contrapposto_formats::ModelFormat;
+use contrapposto::model::{MuscleGroup, Sex};
 use contrapposto_formats::tissue::{Origin, SourcedModel};
 use serde::Serialize;
 
@@ -38,6 +37,8 @@ pub(crate) struct Known {
     pub(crate) curve: Option<&'static str>,
     /// Of the positive and the negative group; one where both are the same, none where there are no groups.
     pub(crate) strength: Vec<Source>,
+    /// Of the dependence of built-in strength on the angle, by group.
+    pub(crate) shapes: Option<[Source; 2]>,
     /// Of the parameters of the positive and the negative group; none where there are no groups.
     pub(crate) fatigue: Vec<Source>,
 }
@@ -56,17 +57,19 @@ impl Known {
         };
         let mut known = Self { range: pick(origins.range, sources.map(|s| s.range)), ..Self::default() };
         if coordinate.passive.is_some() {
-            let curve = sources.and_then(|s| s.curve).and_then(|name| library.curve(name));
-            let curve = curve.map(|row| of_sex(row, opened));
+            let curve =
+                sources.and_then(|s| s.curve_of(opened.sex.unwrap_or(Sex::Male))).and_then(|name| library.curve(name));
             known.passive = pick(origins.passive, curve.map(|row| &row.reference));
             known.curve = curve.filter(|_| origins.passive == Origin::Library).map(|row| row.name.as_str());
         }
         if coordinate.groups.is_some() {
             let [positive, negative] = match sources.and_then(|s| s.strength) {
-                Some(strength) => strength.map(Some),
+                Some(strength) => strength.map(|of| Some(of.size)),
                 None => [None; 2],
             };
             known.strength = [positive, negative].into_iter().filter_map(|r| pick(origins.strength, r)).collect();
+            let shapes = sources.and_then(|s| s.strength).filter(|_| origins.strength == Origin::Library);
+            known.shapes = shapes.map(|shapes| shapes.map(|of| Source::reference(of.shape)));
             known.strength.dedup();
             known.fatigue = coordinate.groups.iter().flatten().filter_map(|g| of_fatigue(g, origins.fatigue)).collect();
         }
@@ -82,13 +85,6 @@ fn of_fatigue(group: &MuscleGroup, origin: Origin) -> Option<Source> {
             data::library().fatigue_reference(&group.name, &group.fatigue).as_ref().map(Source::reference)
         }
     }
-}
-
-/// Curves of the trunk differ between the sexes; the library's list names the man's.
-fn of_sex(row: &'static data::CurveRow, opened: &SourcedModel) -> &'static data::CurveRow {
-    let female = opened.format == ModelFormat::Adult && opened.model.name().ends_with(", female");
-    let hers = row.name.strip_suffix("_male").filter(|_| female).map(|stem| format!("{stem}_female"));
-    hers.and_then(|name| data::library().curve(&name)).unwrap_or(row)
 }
 
 /// Sources that a table refers to by number.

@@ -8,7 +8,7 @@ use crate::passive::{
 };
 
 /// One row of `data/passive.toml`.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CurveRow {
     /// Its name.
@@ -17,6 +17,8 @@ pub struct CurveRow {
     pub positive: String,
     /// The range it is meant for, deg.
     pub range_deg: [f64; 2],
+    /// Mass of the body that has this torque, kg; that of the whole file when left out.
+    pub(super) mass_kg: Option<f64>,
     double_exponential: Option<DoubleExponentialRow>,
     riener_edrich1999: Option<RienerEdrichRow>,
     /// Where it comes from.
@@ -36,6 +38,23 @@ impl CurveRow {
             (None, None) => return Err(PassiveError::Table { row: 0, problem: "the data row holds no law" }),
         };
         PassiveCurve::new(form, range, None)
+    }
+
+    /// The same curve with `times` the torque at every angle.
+    pub(super) fn scaled(&self, times: f64) -> Self {
+        let mut row = self.clone();
+        if let Some(law) = &mut row.double_exponential {
+            law.lower.torque_nm *= times;
+            law.upper.torque_nm *= times;
+            law.stiffness_nm_per_rad *= times;
+        }
+        if let Some(law) = &mut row.riener_edrich1999 {
+            for [_, c0, ..] in &mut law.terms {
+                *c0 += times.ln();
+            }
+            law.constant_nm *= times;
+        }
+        row
     }
 
     /// The coupled law, where it is one.
@@ -59,7 +78,19 @@ pub fn reshaped(curve: &PassiveCurve, zone: f64, end_torque: f64) -> Result<Pass
 #[serde(deny_unknown_fields)]
 pub(crate) struct PassiveFile {
     pub(super) reshape: ReshapeRow,
+    pub(super) scale: ScaleRow,
     pub(super) curve: Vec<CurveRow>,
+}
+
+/// How torque follows the size of the body.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScaleRow {
+    /// Mass of the body whose torque the curves give.
+    pub(super) mass_kg: f64,
+    /// Of the torque in proportion to body mass.
+    #[serde(rename = "reference")]
+    _reference: Reference,
 }
 
 #[derive(Debug, Deserialize)]
@@ -71,7 +102,7 @@ pub(super) struct ReshapeRow {
     pub(super) source: String,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EndRow {
     torque_nm: f64,
@@ -79,7 +110,7 @@ struct EndRow {
     angle_deg: f64,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DoubleExponentialRow {
     lower: EndRow,
@@ -102,7 +133,7 @@ impl DoubleExponentialRow {
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RienerEdrichRow {
     joint: String,

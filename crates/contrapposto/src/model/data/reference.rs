@@ -5,15 +5,24 @@ use serde::Deserialize;
 /// How far a number can be trusted, the best first: the greater of two is the weaker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 pub enum Status {
-    /// Read in the named source.
+    /// Somebody measured it, in the named source.
+    #[serde(rename = "measured")]
+    Measured,
+    /// Copied rightly from the named source; says nothing of a measurement.
     #[serde(rename = "verified")]
     Verified,
-    /// Computed from verified numbers.
+    /// Computed from measured or verified numbers.
     #[serde(rename = "derived")]
     Derived,
-    /// Verified size, assumed shape.
+    /// Measured size, assumed shape.
     #[serde(rename = "derived (partly assumed)")]
     DerivedPartlyAssumed,
+    /// Held or continued outside of the measurement.
+    #[serde(rename = "extrapolated")]
+    Extrapolated,
+    /// A steep torque that ends a range in a computation, without a measurement of its size.
+    #[serde(rename = "numeric stop")]
+    NumericStop,
     /// From memory; never cite as verified.
     #[serde(rename = "recalled (unverified)")]
     Recalled,
@@ -25,9 +34,12 @@ pub enum Status {
 impl std::fmt::Display for Status {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
+            Self::Measured => "measured",
             Self::Verified => "verified",
             Self::Derived => "derived",
             Self::DerivedPartlyAssumed => "derived (partly assumed)",
+            Self::Extrapolated => "extrapolated",
+            Self::NumericStop => "numeric stop",
             Self::Recalled => "recalled (unverified)",
             Self::Assumed => "assumed",
         })
