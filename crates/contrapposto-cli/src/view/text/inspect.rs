@@ -1,5 +1,7 @@
 //! The contents of a model, as `inspect --json` prints them and as terminal tables.
 
+mod group_strength;
+
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -13,6 +15,7 @@ use serde::Serialize;
 
 use super::plain_table;
 use super::sources::{Known, Seen, Source};
+use group_strength::StrengthText;
 
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
@@ -79,25 +82,6 @@ struct PassiveText {
     curve: Option<&'static str>,
     torque_at_limits_nm: Option<[f64; 2]>,
     source: Option<Source>,
-}
-
-#[derive(Serialize)]
-struct StrengthText<'a> {
-    positive: GroupStrengthText<'a>,
-    negative: GroupStrengthText<'a>,
-}
-
-#[derive(Serialize)]
-struct GroupStrengthText<'a> {
-    name: &'a str,
-    /// Greatest torque at any angle, and the angle.
-    peak_nm: f64,
-    at_rad: f64,
-    /// Angles of the measurement; outside of them the torque at the nearer end is held (extrapolated).
-    tested_rad: Option<[f64; 2]>,
-    source: Option<Source>,
-    /// Of the dependence on the angle.
-    angle_source: Option<Source>,
 }
 
 #[derive(Serialize)]
@@ -187,21 +171,6 @@ fn text<'a>(
     };
     let limit = |limit: f64| Some(limit).filter(|limit| limit.is_finite());
     let follows = model.couplings().iter().find(|coupling| coupling.dependent == index);
-    let group = |side: usize| {
-        let source = known.strength.get(side).or(known.strength.first()).cloned();
-        coordinate.groups.as_ref().map(|groups| {
-            let (group, strength) = (&groups[side], &groups[side].strength);
-            let (least, greatest) = strength.tested;
-            GroupStrengthText {
-                name: &group.name,
-                peak_nm: strength.greatest(),
-                at_rad: strength.best.clamp(least, greatest),
-                tested_rad: Some([least, greatest]).filter(|[least, greatest]| (least - greatest).is_finite()),
-                source,
-                angle_source: known.shapes.as_ref().map(|shapes| shapes[side].clone()),
-            }
-        })
-    };
     InspectedCoordinateText {
         kind,
         unit,
@@ -220,7 +189,7 @@ fn text<'a>(
             torque_at_limits_nm: at_limits(opened, index),
             source: known.passive.clone(),
         }),
-        strength: group(0).zip(group(1)).map(|(positive, negative)| StrengthText { positive, negative }),
+        strength: coordinate.groups.as_ref().map(|groups| StrengthText::new(groups, &known)),
         fatigue: coordinate.groups.as_ref().map(|[positive, negative]| FatigueText {
             positive: GroupFatigueText::new(&positive.fatigue, known.fatigue.first().cloned()),
             negative: GroupFatigueText::new(&negative.fatigue, known.fatigue.get(1).cloned()),
