@@ -125,7 +125,7 @@ fn one_leg_rests_in_two_ways() {
     let degrees =
         |posture: &contrapposto::equilibria::RelaxedPosture, i: usize| posture.relaxed.posture.values()[i].to_degrees();
     // The hip that carries hangs on its ligaments, its side of the pelvis is the higher one, the other knee is bent.
-    assert!(slouch.relaxed.effort < 0.7 * level.relaxed.effort);
+    assert!(slouch.relaxed.effort < 0.8 * level.relaxed.effort);
     assert!(degrees(slouch, hip) > 15.0 && degrees(level, hip) < 8.0);
     assert!(degrees(slouch, at("pelvis_list")).abs() > 10.0 && degrees(level, at("pelvis_list")).abs() < 5.0);
     assert!(degrees(slouch, at("knee_angle_l")) > 25.0 && degrees(slouch, at("knee_angle_r")) < 5.0);
@@ -204,8 +204,8 @@ fn with_free_loading_left_and_right_slouch_alike_and_symmetry_costs_more() {
     assert!(lists[0] * lists[1] < 0.0 && (lists[0] + lists[1]).abs() < 0.1, "{lists:?}");
     // The first posture that does not slouch is the symmetric one.
     let symmetric = lists.iter().position(|list| list.abs() < 2.0).unwrap();
-    assert!((found.postures[symmetric].supports[0].share - 0.5).abs() < 0.05, "{lists:?}");
-    assert!(efforts[symmetric] > 1.5 * efforts[0]);
+    assert!((found.postures[symmetric].supports[0].share - 0.5).abs() < 0.1, "{lists:?}");
+    assert!(efforts[symmetric] > 1.3 * efforts[0]);
     let (partner, sign) = mirror.coordinate(list);
     assert_eq!((partner, sign), (list, -1.0));
 }
