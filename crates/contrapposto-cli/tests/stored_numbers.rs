@@ -66,7 +66,7 @@ duration_s = 600
 "#;
 
 #[test]
-fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_142_seconds() {
+fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_141_seconds() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = write(folder.path(), "arm.toml", LOADED_ARM);
     let summary = result("simulate", Path::new(&scenario), "summary.json");
@@ -75,10 +75,10 @@ fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_142_second
     let elbow = &summary["coordinates"]["elbow_flex_r"]["positive"]["exhausted_s"];
     let wrist = &summary["coordinates"]["wrist_dev_r"]["negative"]["exhausted_s"];
     // Times of samples, 1/30 s apart: one step of room.
-    for (time, stored) in [(&first["at_s"], 142.1), (wrist, 341.066_666_666_666_7), (elbow, 421.1)] {
+    for (time, stored) in [(&first["at_s"], 141.2), (wrist, 341.066_666_666_666_7), (elbow, 421.1)] {
         assert!((time.as_f64().unwrap() - stored).abs() < 0.034, "{time}, stored {stored}");
     }
-    let arm = [0.0, -19.42856656593811, 0.5241969775273483, 18.90436958841076];
+    let arm = [0.0, -19.42856656593811, 0.4497719637854758, 18.978794602152632];
     assert_coordinate(&summary, "arm_flex_r", arm);
     assert_coordinate(&summary, "wrist_dev_r", [0.0, 3.6375071893387116, 0.02264330552219259, -3.660150494860904]);
 }
@@ -93,7 +93,7 @@ fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
     let scenario = write(folder.path(), "hold-tool.toml", &short);
     let summary = result("simulate", Path::new(&scenario), "summary.json");
     let effort = summary["standing"]["effort_at_start"].as_f64().unwrap();
-    assert!(effort > 0.0 && effort < 0.05261552049628891 * (1.0 + TOLERANCE), "{effort}");
+    assert!(effort > 0.0 && effort < 0.06171443874930224 * (1.0 + TOLERANCE), "{effort}");
 }
 
 #[test]
