@@ -85,7 +85,8 @@ fn load_of_the_shoulders_is_that_of_their_moment_in_every_posture_found() {
         for posture in &found.postures {
             let values = posture.relaxed.posture.values();
             contact.forget();
-            body.update_with_contact(model, &posture.relaxed.posture, loads, &mut contact, Quantities::TORQUES).unwrap();
+            body.update_with_contact(model, &posture.relaxed.posture, loads, &mut contact, Quantities::TORQUES)
+                .unwrap();
             for joint in model.three_axis_joints().iter().filter(|joint| joint.name.starts_with("shoulder")) {
                 let all: Vec<Load> = loads.iter().chain(contact.loads()).copied().collect();
                 let moment = moment(model, &body, joint, &all);
