@@ -1,7 +1,7 @@
 //! Ten minutes of quiet standing: adults of five sizes and published models at their natural posture, no muscle group tired.
 //!
-//! The natural posture is that of least effort with the chest upright: both soles on the ground, the centre of mass midway
-//! between them, the head level where there is one, the arms hanging. The table of all bodies is in `docs/strength.md`.
+//! The natural posture is that of least effort with the chest upright: both soles on the ground, the pelvis level and straight
+//! ahead, the centre of mass midway between the feet, the head level where there is one, the arms hanging. The table of all bodies is in `docs/strength.md`.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -50,6 +50,7 @@ fn scenario(model: &str, known: &Model, sole: Option<&str>) -> String {
             }
         }
     }
+    text += "[coordinates]\nlocked = [\"pelvis_rotation\", \"pelvis_list\", \"pelvis_tz\"]\n";
     let corners = sole.map_or(String::new(), |corners| format!("corners_m = {corners}\n"));
     for side in ["r", "l"] {
         text += &format!("[[support]]\nsegment = \"calcn_{side}\"\n{corners}");
