@@ -18,15 +18,17 @@ use crate::tasks::{Effort, Task};
 const SINGLE_GOALS: usize = 6;
 /// Times that goal angles are taken, each time from a better posture.
 const ROUNDS: usize = 2;
+/// Best postures from which lower local minima are searched for.
+const SEARCHED_FOR_LOWER: usize = 3;
 /// Steps of an exploratory solve.
 const EXPLORATORY_STEPS: usize = 40;
 /// Postures count as one if at no joint the external or the passive torque differs by more than this share of strength.
 const SAME_TORQUE: f64 = 0.05;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
 /// exploratory and to converged postures.
-const ALLOWED_ERROR: [f64; 2] = [0.02, 1e-5];
+const ALLOWED_ERROR: [f64; 3] = [0.02, 1e-5, 1e-5];
 /// Missing contact force and moment that are allowed to exploratory and to converged postures, body weights (times 1 m).
-const ALLOWED_MISSING: [f64; 2] = [1e-3, 1e-8];
+const ALLOWED_MISSING: [f64; 3] = [1e-3, 1e-8, 1e-8];
 /// Distance of a goal angle below which it is no start, rad or m.
 const LEAST_GOAL_DISTANCE: f64 = 0.01;
 /// Change of every rate below which the approach to the tasks ends, rad or m.
@@ -54,6 +56,8 @@ pub fn equilibria(search: &Search<'_>, options: Options) -> Result<Equilibria, S
 enum Stage {
     Exploratory = 0,
     Converged = 1,
+    /// Basin hopping from the best postures.
+    Lowest = 2,
 }
 
 /// A goal angle of a coordinate.
@@ -94,7 +98,7 @@ impl Candidate {
 struct Finder<'a> {
     search: &'a Search<'a>,
     /// For exploratory and for converging solves.
-    engines: [Engine<'a>; 2],
+    engines: [Engine<'a>; 3],
     /// Without effort.
     approach: Engine<'a>,
     /// Index of the level of goal angles among the engines' levels.
@@ -118,18 +122,19 @@ impl<'a> Finder<'a> {
         }
         levels.insert(slot, PriorityLevel::default());
         // Steps of priorities pass over shallow minima, in which a descent ends.
-        let engine = |max_steps: usize, levels: &[PriorityLevel]| {
+        let engine = |max_steps: usize, local_minima: usize, levels: &[PriorityLevel]| {
             let (supports, levels) = (search.supports.to_vec(), levels.to_vec());
-            let options = Options { max_steps, local_minima: 0, ..options };
+            let options = Options { max_steps, local_minima, ..options };
             let mut engine =
                 Engine::with_supports(search.model, search.start, supports, levels, search.loads, options)?;
             search.locked.iter().for_each(|&rate| engine.lock(rate));
             Ok::<_, SearchError>(engine)
         };
         let exploratory = EXPLORATORY_STEPS.min(options.max_steps);
-        let mut engines = [engine(exploratory, &levels)?, engine(options.max_steps, &levels)?];
+        let (most, minima) = (options.max_steps, options.local_minima);
+        let mut engines = [engine(exploratory, 0, &levels)?, engine(most, 0, &levels)?, engine(most, minima, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
-        let approach = engine(EXPLORATORY_STEPS, &levels[..slot])?;
+        let approach = engine(EXPLORATORY_STEPS, 0, &levels[..slot])?;
         Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], refused: None, starts: 0, steps: 0 })
     }
 
@@ -169,10 +174,28 @@ impl<'a> Finder<'a> {
             let Candidate { relaxed, starts, .. } = explored[i].clone();
             self.solve(Stage::Converged, &relaxed.posture, starts);
         }
+        self.lower();
         if self.found.is_empty() {
             self.found.append(&mut explored);
         }
         self.starts = starts;
+    }
+
+    /// Searches for lower local minima from the best postures, and converges from the mirror images of what is found.
+    fn lower(&mut self) {
+        let mut best = self.selected(Stage::Converged);
+        best.sort_by(|&a, &b| self.found[a].relaxed.effort.total_cmp(&self.found[b].relaxed.effort));
+        best.truncate(SEARCHED_FOR_LOWER);
+        let count = self.found.len();
+        for i in best {
+            let from = self.found[i].relaxed.posture.clone();
+            self.solve(Stage::Lowest, &from, vec![format!("lower minima near: {}", self.found[i].starts[0])]);
+        }
+        let Some(mirror) = Mirror::of(self.search.model) else { return };
+        for i in count..self.found.len() {
+            let image = mirror.posture(&self.found[i].relaxed.posture);
+            self.solve(Stage::Converged, &image, vec![format!("mirror image of: {}", self.found[i].starts[0])]);
+        }
     }
 
     /// Solves from a posture with the engine of a stage, and keeps the result if it is new or better.
