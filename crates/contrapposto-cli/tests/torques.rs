@@ -55,7 +55,7 @@ fn json_has_the_promised_shape() {
     for (index, frame) in frames.iter().enumerate() {
         assert_eq!(
             keys(frame),
-            ["center_of_mass", "coordinate_order", "coordinates", "frame", "gradient", "uncoupled"]
+            ["center_of_mass", "coordinate_order", "coordinates", "effort", "frame", "gradient", "joints", "uncoupled"]
         );
         assert_eq!(frame["frame"], index);
         assert_eq!(frame["coordinate_order"], serde_json::json!(["hip", "shin"]));
@@ -69,7 +69,113 @@ fn json_has_the_promised_shape() {
         assert_balanced(frame);
     }
     let plain = json(&["torques", &model, &two, "--json"]);
-    assert_eq!(keys(&plain[0]), ["center_of_mass", "coordinate_order", "coordinates", "frame", "uncoupled"]);
+    assert_eq!(
+        keys(&plain[0]),
+        ["center_of_mass", "coordinate_order", "coordinates", "effort", "frame", "joints", "uncoupled"]
+    );
+    // Hinges of a body without known strength.
+    assert_eq!((&plain[0]["effort"], &plain[0]["joints"]), (&serde_json::json!(0.0), &serde_json::json!({})));
+}
+
+/// Length of three numbers.
+fn length(three: &Value) -> f64 {
+    numbers(three).iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+#[test]
+fn an_arm_held_out_sideways_has_one_moment_load_and_effort_by_both_triples_of_angles() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = "time,arm_flex_r_deg,arm_add_r_deg\n0,0,-90\n1,90,-90\n";
+    let motion = write(folder.path(), "sideways.csv", motion);
+    let frames = json(&["torques", "adult:female,1.65m,60kg", &motion, "--json"]);
+    let shoulder = |frame: usize| &frames[frame]["joints"]["shoulder_r"];
+    for frame in 0..2 {
+        let moment = length(&shoulder(frame)["external_nm"]);
+        assert!((moment - 7.19).abs() < 0.005, "{moment} N m in row {frame}");
+        // external + passive + active = 0.
+        for k in 0..3 {
+            let parts = ["external_nm", "passive_nm", "active_nm"].map(|part| numbers(&shoulder(frame)[part])[k]);
+            assert!(parts.iter().sum::<f64>().abs() < BALANCE, "{parts:?}");
+        }
+    }
+    // Turned by flexion about its long axis: the weight's moment has the same length, and its coordinates have no torque.
+    let lost = ["arm_flex_r", "arm_add_r", "arm_rot_r"]
+        .map(|name| frames[1]["coordinates"][name]["external"].as_f64().unwrap().abs());
+    assert!(lost.iter().all(|torque| *torque < 1e-3), "{lost:?}");
+    let lengths = [0, 1].map(|frame| length(&shoulder(frame)["external_nm"]));
+    assert!((lengths[0] - lengths[1]).abs() < 1e-9, "{lengths:?}");
+    let axes: Vec<&str> =
+        shoulder(0)["axes"].as_array().unwrap().iter().map(|axis| axis["name"].as_str().unwrap()).collect();
+    assert_eq!(axes, ["arm_flex_r", "arm_add_r", "arm_rot_r"]);
+    for (k, axis) in shoulder(0)["axes"].as_array().unwrap().iter().enumerate() {
+        // Flexion z, adduction x, axial rotation y of the humerus.
+        let expected = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]][k];
+        let direction = numbers(&axis["direction"]);
+        assert!(direction.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{direction:?}");
+    }
+    for frame in 0..2 {
+        let load = shoulder(frame)["load"].as_f64().unwrap();
+        let effort = frames[frame]["effort"].as_f64().unwrap();
+        assert!(load > 0.1 && effort >= load * load, "load {load}, effort {effort} in row {frame}");
+    }
+}
+
+#[test]
+fn one_orientation_by_two_triples_of_angles_has_one_load_and_one_effort() {
+    let folder = tempfile::tempdir().unwrap();
+    // (f, a, r) and (f + 180, 180 - a, r + 180) are one orientation; 260 degrees are -100.
+    let motion = "time,arm_flex_r_deg,arm_add_r_deg,arm_rot_r_deg\n0,30,-80,20\n1,-150,-100,-160\n";
+    let motion = write(folder.path(), "twice.csv", motion);
+    let frames = json(&["torques", "adult:female,1.65m,60kg", &motion, "--json"]);
+    let number = |frame: usize, pointer: &str| frames[frame].pointer(pointer).unwrap().as_f64().unwrap();
+    for pointer in ["/effort", "/joints/shoulder_r/load"] {
+        assert!((number(0, pointer) - number(1, pointer)).abs() < 1e-9, "{pointer}");
+    }
+    for part in ["external_nm", "passive_nm", "active_nm"] {
+        let [first, second] = [0, 1].map(|frame: usize| numbers(&frames[frame]["joints"]["shoulder_r"][part]));
+        assert!(first.iter().zip(&second).all(|(a, b)| (a - b).abs() < 1e-9), "{part}: {first:?} {second:?}");
+    }
+}
+
+#[test]
+fn moments_at_angles_zero_are_the_torques_of_the_coordinates() {
+    let frames = json(&["torques", "adult", "default", "--json"]);
+    let joints = frames[0]["joints"].as_object().unwrap();
+    assert!(joints.len() >= 5, "{:?}", joints.keys());
+    for (joint, moment) in joints {
+        for (k, axis) in moment["axes"].as_array().unwrap().iter().enumerate() {
+            let row = &frames[0]["coordinates"][axis["name"].as_str().unwrap()];
+            for part in ["external", "passive", "active"] {
+                let (torque, about_axis) = (row[part].as_f64().unwrap(), numbers(&moment[&format!("{part}_nm")])[k]);
+                assert!((torque - about_axis).abs() < BALANCE, "{joint}, {axis}, {part}: {torque} {about_axis}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ball_of_a_file_has_a_moment_about_the_moved_frames_axes_and_no_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = leg(1, "shin").replace(
+        r#"<joint name="hip" type="hinge" axis="0 0 1" range="-1 1"/>"#,
+        "<joint name=\"hip\" type=\"ball\"/>",
+    );
+    let model = write(folder.path(), "ball.xml", &ball);
+    // A quarter of a turn about z: the leg, 12 kg, lies level, and its moment about z is its weight times its lever arm.
+    let half = 0.5f64.sqrt();
+    let level =
+        write(folder.path(), "level.csv", &format!("time,hip_qw,hip_qx,hip_qy,hip_qz\n0,{half:?},0,0,{half:?}\n"));
+    let frame = &json(&["torques", &model, &level, "--json"])[0];
+    let hip = &frame["joints"]["hip"];
+    let names: Vec<&str> = hip["axes"].as_array().unwrap().iter().map(|axis| axis["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["hip_mx", "hip_my", "hip_mz"]);
+    assert_eq!((&hip["passive_nm"], &hip["load"]), (&serde_json::json!([0.0, 0.0, 0.0]), &Value::Null));
+    let external = numbers(&hip["external_nm"]);
+    let center = numbers(&frame["center_of_mass"]);
+    let expected = -12.0 * 9.81 * center[0];
+    assert!(expected.abs() > 1.0 && (external[2] - expected).abs() < 1e-9, "{external:?}, {expected}");
+    assert_eq!(external[2], -numbers(&hip["active_nm"])[2]);
+    assert!(external[0].abs() < 1e-9 && external[1].abs() < 1e-9, "{external:?}");
 }
 
 #[test]

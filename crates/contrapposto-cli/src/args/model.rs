@@ -127,7 +127,8 @@ pub(crate) struct InspectArgs {
 #[command(after_help = "Examples:\n  contrapposto torques adult default --load \"hand_r 3kg\"\n  \
     contrapposto torques subject.osim gait.mot --grf forces.mot --out torques.csv\n  \
     contrapposto torques robot.urdf pose.csv --root free --gradient --json\n\n\
-    Torques act in the direction of their coordinate; external + passive + active = 0.")]
+    Torques act in the direction of their coordinate, as OpenSim's generalised forces; external + passive + active = 0. Loads and \
+    effort of three-axis joints are those of their moment: --json gives it about their axes.")]
 pub(crate) struct TorquesArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,

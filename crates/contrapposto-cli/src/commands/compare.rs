@@ -50,7 +50,7 @@ fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
     let mut last: Option<Frame> = None;
     while let Some(sample) = run.next_sample().map_err(failed)? {
         progress.set_position(sample.time as u64);
-        last = Some(Frame::of_sample(&sample));
+        last = Some(Frame::of_sample(&scenario.model, &sample));
     }
     progress.finish_and_clear();
     if let Some(fall) = run.summary().fall {

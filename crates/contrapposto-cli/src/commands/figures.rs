@@ -153,7 +153,7 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
     if curve == ElbowCurve::Measured {
         scenario = with_measured_curve(scenario, elbow)?;
     }
-    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, elbow, scenario.start.values());
+    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, elbow, scenario.start.values())?;
     let tolerance = scenario.relief.torque_tolerance;
     let zeros = sweep.zeros()?;
     let mut runs = vec![];

@@ -1,6 +1,6 @@
 //! From scenarios and runs to the plain numbers that charts are drawn from.
 
-use contrapposto::joint_torques::{JointTorques, Quantities, active_torque};
+use contrapposto::joint_torques::{AboutAxes, JointTorques, Quantities, active_torque};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::dichotomy;
 use contrapposto::model::Model;
@@ -11,6 +11,7 @@ use contrapposto_plot::{PostureSketch, SketchRole, TimeLine, TorqueBalance};
 use nalgebra::Vector3;
 
 use super::recording::Recording;
+use super::three_axis::angles;
 use crate::fail::Fail;
 
 /// Most points of a curve.
@@ -19,37 +20,62 @@ const MOST_POINTS: usize = 4096;
 /// Number of intervals of a torque curve over the range.
 const SWEEP_INTERVALS: usize = 720;
 
-/// The torques of one coordinate over its range, all other coordinates held.
+/// The torques of one coordinate while its joint alone turns about its axis, all other joints held.
 pub(crate) struct Sweep<'a> {
     model: &'a Model,
     loads: &'a [Load],
     coordinate: usize,
     posture: Posture,
+    /// The body in the posture, and turned.
     body: JointTorques,
+    turned: AboutAxes,
+    /// By rate; angles of all coordinates.
+    step: Vec<f64>,
+    values: Vec<f64>,
 }
 
 impl<'a> Sweep<'a> {
-    pub(crate) fn new(model: &'a Model, loads: &'a [Load], coordinate: usize, posture: &[f64]) -> Self {
-        Self { model, loads, coordinate, posture: Posture::new(posture.to_vec()), body: JointTorques::new(model) }
+    pub(crate) fn new(model: &'a Model, loads: &'a [Load], coordinate: usize, posture: &[f64]) -> Result<Self, Fail> {
+        let posture = Posture::new(posture.to_vec());
+        let mut body = JointTorques::new(model);
+        let passive = Quantities { passive_torque: true, ..Quantities::default() };
+        body.update(model, &posture, &[], passive).map_err(|error| Fail::job("posture", error))?;
+        let (turned, step) = (AboutAxes::new(model), vec![0.0; model.rates().len()]);
+        Ok(Self { model, loads, coordinate, posture, body, turned, step, values: vec![0.0; model.coordinates().len()] })
+    }
+
+    /// The angles (rad, m) over which passive torque is known: the range of the coordinate, or the arc of its three-axis joint.
+    pub(crate) fn range(&self) -> (f64, f64) {
+        let range = self.model.coordinates()[self.coordinate].range;
+        if self.model.three_axis_joint_of(self.coordinate).is_none() {
+            return range;
+        }
+        let passive = self.body.passive_torque();
+        let curve = passive.curve_about_axis(self.model, self.body.kinematics(), self.coordinate, range);
+        curve.map_or(range, |curve| curve.range())
+    }
+
+    /// Passive torque at `angle` (rad), N m.
+    pub(crate) fn passive(&mut self, angle: f64) -> f64 {
+        let turn = angle - self.body.angles()[self.coordinate];
+        let body = (self.model, self.body.kinematics());
+        self.body.passive_torque().torque_after_turn(body, self.coordinate, turn, &mut self.values)
     }
 
     /// External and passive torque at `angle` (rad), N m.
     pub(crate) fn torques(&mut self, angle: f64) -> Result<(f64, f64), Fail> {
-        self.posture.values_mut()[self.coordinate] = angle;
-        let model = self.model;
-        let external = Quantities { external_torque: true, ..Quantities::default() };
-        self.body.update(model, &self.posture, self.loads, external).map_err(|error| Fail::job("posture", error))?;
-        let coordinate = &model.coordinates()[self.coordinate];
-        let external = coordinate.rate.map_or(0.0, |rate| self.body.external_torque().torques()[rate]);
-        Ok((
-            external,
-            coordinate.passive.as_ref().map_or(0.0, |law| law.torque(self.coordinate, self.body.kinematics().values())),
-        ))
+        let rate = self.model.coordinates()[self.coordinate].rate;
+        if let Some(rate) = rate {
+            self.step[rate] = angle - self.body.angles()[self.coordinate];
+        }
+        let turned = self.turned.update_displaced(self.model, &self.posture, &self.step, self.loads);
+        turned.map_err(|error| Fail::job("posture", error))?;
+        Ok((rate.map_or(0.0, |rate| self.turned.external().torques()[rate]), self.passive(angle)))
     }
 
     /// Angles (deg) where the true active torque is zero.
     pub(crate) fn zeros(&mut self) -> Result<Vec<f64>, Fail> {
-        let (min, max) = self.model.coordinates()[self.coordinate].range;
+        let (min, max) = self.range();
         let mut zeros: Vec<f64> = vec![];
         let mut before = (min, self.active(min)?);
         for i in 1..=SWEEP_INTERVALS {
@@ -74,7 +100,7 @@ impl<'a> Sweep<'a> {
     /// The chart's curves; path, start, goal and sketches are the caller's.
     pub(crate) fn balance(&mut self, title: &str, subtitle: &str, tolerance: f64) -> Result<TorqueBalance, Fail> {
         let coordinate = &self.model.coordinates()[self.coordinate];
-        let (min, max) = coordinate.range;
+        let (min, max) = self.range();
         let mut chart = TorqueBalance {
             title: title.to_owned(),
             subtitle: subtitle.to_owned(),
@@ -97,16 +123,16 @@ impl<'a> Sweep<'a> {
     /// A small drawing of the body with the coordinate at `angle_deg`.
     pub(crate) fn sketch(&mut self, label: &str, angle_deg: f64, role: SketchRole) -> Result<PostureSketch, Fail> {
         self.torques(angle_deg.to_radians())?;
-        let model = self.model;
-        let rate = model.coordinates()[self.coordinate].rate;
-        let axis = rate.map_or(Vector3::z(), |rate| self.body.kinematics().axis(model, rate));
+        let rate = self.model.coordinates()[self.coordinate].rate;
+        let (model, kinematics) = (self.model.by_axes(), self.turned.kinematics());
+        let axis = rate.map_or(Vector3::z(), |rate| kinematics.axis(model, rate));
         // Look along the ground axis nearest the joint's: from the right, from behind, or from above.
         let view = |p: Vector3<f64>| match axis.iamax() {
             0 => [p.z, p.y],
             1 => [p.z, p.x],
             _ => [p.x, p.y],
         };
-        let lines = sticks(model, self.body.kinematics(), self.coordinate);
+        let lines = sticks(model, kinematics, self.coordinate);
         let polylines = lines.into_iter().map(|line| line.into_iter().map(view).collect());
         Ok(PostureSketch { label: label.to_owned(), angle_deg, polylines: polylines.collect(), role })
     }
@@ -161,14 +187,14 @@ fn sticks(model: &Model, kinematics: &Kinematics, coordinate: usize) -> Vec<Vec<
 }
 
 /// One coordinate over time, thinned to the points that a picture can show, with its reliefs.
-pub(crate) fn course(recording: &Recording, log: &ReliefLog, coordinate: usize) -> TimeLine {
+pub(crate) fn course(model: &Model, recording: &Recording, log: &ReliefLog, coordinate: usize) -> TimeLine {
     let mut line = TimeLine::default();
     let rows = recording.times().len();
     let stride = rows.div_ceil(MOST_POINTS).max(1);
     // The end is always drawn.
     for row in (0..rows).filter(|row| row % stride == 0 || row + 1 == rows).map(|row| recording.row(row)) {
         line.time_s.push(row.time);
-        line.angle_deg.push(row.posture[coordinate].to_degrees());
+        line.angle_deg.push(angles(model, row.posture)[coordinate].to_degrees());
         line.external_nm.push(row.external[coordinate]);
         line.passive_nm.push(row.passive[coordinate]);
         line.active_nm.push(row.active(coordinate));

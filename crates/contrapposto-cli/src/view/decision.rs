@@ -18,7 +18,7 @@ pub(crate) fn decision(model: &Model, event: &Event, frame: &Frame) -> String {
     };
     match &event.kind {
         EventKind::Decided(decision) => {
-            let from = value(model, i, frame.posture[i]);
+            let from = value(model, i, frame.angles[i]);
             let goal = decision.goal.map(|goal| value(model, i, goal)).unwrap_or_default();
             let answer = sentence(&answer(decision, &from, &goal));
             format!("{name}: {tired}. {answer} (case {})", decision.case)

@@ -69,6 +69,10 @@ impl RunExcerpt {
         rows.extend(events.iter().map(|event| row_of(event.time)));
         rows.sort_unstable();
         rows.dedup();
-        Self { frames: rows.into_iter().map(|row| Frame::of_row(recording.row(row))).collect(), events, happened }
+        Self {
+            frames: rows.into_iter().map(|row| Frame::of_row(&scenario.model, recording.row(row))).collect(),
+            events,
+            happened,
+        }
     }
 }

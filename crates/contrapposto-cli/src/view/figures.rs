@@ -40,12 +40,12 @@ pub(crate) fn figures_of_run(
     let excerpt = RunExcerpt::new(scenario, recording, summary);
     let mut figures = vec![("body".to_owned(), moments(&scenario.title, model, &scenario.supports, &excerpt.frames)?)];
     for (number, i) in joints(scenario, summary).into_iter().enumerate() {
-        let mut line = course(recording, &summary.reliefs, i);
+        let mut line = course(model, recording, &summary.reliefs, i);
         line.subtitle = strategy_and_cases(scenario, &summary.coordinates[i]);
         line.critical_level = scenario.hysteresis.critical_level;
         line.recovery_level = scenario.hysteresis.recovery_level;
         let balance = match scenario.has_supports_or_tasks() {
-            true => visited_torques(model, &excerpt.frames, i),
+            true => visited_torques(model, &excerpt.frames, i)?,
             false => swept_torques(scenario, &excerpt.frames, i)?,
         };
         let balance = TorqueBalance { tolerance_nm: scenario.relief.torque_tolerance, ..balance };
@@ -74,7 +74,7 @@ pub(crate) fn figures_of_assessment(
         let line = TimeLine {
             subtitle: "every posture held at rest".to_owned(),
             time_s: over(&|frame| frame.time),
-            angle_deg: over(&|frame| frame.posture[i].to_degrees()),
+            angle_deg: over(&|frame| frame.angles[i].to_degrees()),
             external_nm: over(&|frame| frame.external[i]),
             passive_nm: over(&|frame| frame.passive[i]),
             active_nm: over(&|frame| frame.active(i)),
@@ -84,7 +84,7 @@ pub(crate) fn figures_of_assessment(
             recovery_level: f64::NAN,
             ..TimeLine::default()
         };
-        charts(&mut figures, title, (number, &model.coordinates()[i]), visited_torques(model, frames, i), line);
+        charts(&mut figures, title, (number, &model.coordinates()[i]), visited_torques(model, frames, i)?, line);
     }
     files(&figures)
 }
@@ -103,13 +103,12 @@ pub(crate) fn figures_of_postures(
     let mut figures = vec![];
     for (number, i) in joints.into_iter().take(MOST_JOINTS).enumerate() {
         let coordinate = &model.coordinates()[i];
-        let panel = |(frame, name): (&Frame, &String)| TorqueBalance {
-            title: title.to_owned(),
-            subtitle: format!("{}, {name}", words::plain(&coordinate.name)),
-            goal: None,
-            ..visited_torques(model, std::slice::from_ref(frame), i)
+        let panel = |(frame, name): (&Frame, &String)| {
+            let subtitle = format!("{}, {name}", words::plain(&coordinate.name));
+            let balance = visited_torques(model, std::slice::from_ref(frame), i)?;
+            Ok(TorqueBalance { title: title.to_owned(), subtitle, goal: None, ..balance })
         };
-        let panels: Vec<TorqueBalance> = frames.iter().zip(names).map(panel).collect();
+        let panels = frames.iter().zip(names).map(panel).collect::<Result<Vec<_>, Fail>>()?;
         let name = format!("torque-balance-{}-{}", number + 1, plain_name(&coordinate.name));
         figures.push((name, torque_balance(&panels)));
     }
@@ -156,7 +155,7 @@ pub(crate) fn both(name: &str, figure: &Figure) -> Result<[(String, Vec<u8>); 2]
 /// The body as a run leaves it, and pale as it began.
 fn before_and_after(scenario: &Scenario, recording: &Recording, subtitle: &str) -> Result<BodyFigure, Fail> {
     let rows = recording.times().len();
-    let [first, last] = [0, rows.saturating_sub(1)].map(|row| Frame::of_row(recording.row(row)));
+    let [first, last] = [0, rows.saturating_sub(1)].map(|row| Frame::of_row(&scenario.model, recording.row(row)));
     let mut posture = body::body(&scenario.model, &scenario.supports, &last)?;
     posture.start = body::parts(&scenario.model, &first.posture, None)?;
     posture.notes = vec![body::key_numbers(&scenario.model, &scenario.supports, &last).join("; ")];
@@ -177,7 +176,7 @@ pub(crate) fn pictures_of_run(
     let main = main_coordinate(scenario, summary);
     let coordinate = &scenario.model.coordinates()[main];
     let subtitle = strategy_and_cases(scenario, &summary.coordinates[main]);
-    let mut line = course(recording, &summary.reliefs, main);
+    let mut line = course(&scenario.model, recording, &summary.reliefs, main);
     line.title = scenario.title.clone();
     line.subtitle.clone_from(&subtitle);
     line.coordinate.clone_from(&coordinate.name);
@@ -187,7 +186,7 @@ pub(crate) fn pictures_of_run(
         return Ok([body_figure(&before_and_after(scenario, recording, &subtitle)?), time_line(&line)]);
     }
     let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
-    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, main, &posture);
+    let mut sweep = Sweep::new(&scenario.model, &scenario.loads, main, &posture)?;
     let mut balance = sweep.balance(&scenario.title, &subtitle, scenario.relief.torque_tolerance)?;
     balance.path = line.angle_deg.iter().copied().zip(line.active_nm.iter().copied()).collect();
     balance.start = balance.path.first().copied();
@@ -241,31 +240,32 @@ fn joints(scenario: &Scenario, summary: &Summary) -> Vec<usize> {
 /// Torques of a joint over its range while all other coordinates are held, and its active torque in the frames.
 fn swept_torques(scenario: &Scenario, frames: &[Frame], i: usize) -> Result<TorqueBalance, Fail> {
     let Some(last) = frames.last() else { return Ok(TorqueBalance::default()) };
-    let chart = Sweep::new(&scenario.model, &scenario.loads, i, &last.posture).balance("", "", 0.0)?;
+    let chart = Sweep::new(&scenario.model, &scenario.loads, i, &last.posture)?.balance("", "", 0.0)?;
     Ok(with_path(chart, &scenario.model.coordinates()[i], frames, i))
 }
 
 /// Torques of a joint of a body on supports: passive torque over its range, external torque in the frames.
-fn visited_torques(model: &Model, frames: &[Frame], i: usize) -> TorqueBalance {
-    let Some(last) = frames.last() else { return TorqueBalance::default() };
+fn visited_torques(model: &Model, frames: &[Frame], i: usize) -> Result<TorqueBalance, Fail> {
+    let Some(last) = frames.last() else { return Ok(TorqueBalance::default()) };
     let coordinate = &model.coordinates()[i];
-    let ((min, max), mut values) = (coordinate.range, last.posture.clone());
+    let mut sweep = Sweep::new(model, &[], i, &last.posture)?;
+    let (min, max) = sweep.range();
     let mut chart = TorqueBalance {
         angle_label: angle_label(&coordinate.name, &coordinate.positive),
-        external_path: frames.iter().map(|frame| (visible(coordinate, frame.posture[i]), frame.external[i])).collect(),
+        external_path: frames.iter().map(|frame| (visible(coordinate, frame.angles[i]), frame.external[i])).collect(),
         ..TorqueBalance::default()
     };
     for k in 0..ANGLES {
-        values[i] = min + (max - min) * k as f64 / (ANGLES - 1) as f64;
-        chart.angles_deg.push(visible(coordinate, values[i]));
-        chart.minus_passive_nm.push(-coordinate.passive.as_ref().map_or(0.0, |law| law.torque(i, &values)));
+        let angle = min + (max - min) * k as f64 / (ANGLES - 1) as f64;
+        chart.angles_deg.push(visible(coordinate, angle));
+        chart.minus_passive_nm.push(-sweep.passive(angle));
     }
-    with_path(chart, coordinate, frames, i)
+    Ok(with_path(chart, coordinate, frames, i))
 }
 
 /// Adds the active torque of the frames.
 fn with_path(mut chart: TorqueBalance, coordinate: &Coordinate, frames: &[Frame], i: usize) -> TorqueBalance {
-    chart.path = frames.iter().map(|frame| (visible(coordinate, frame.posture[i]), frame.active(i))).collect();
+    chart.path = frames.iter().map(|frame| (visible(coordinate, frame.angles[i]), frame.active(i))).collect();
     (chart.start, chart.goal) = (chart.path.first().copied(), chart.path.last().copied());
     chart
 }

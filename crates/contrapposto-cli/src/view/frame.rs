@@ -10,6 +10,7 @@ use contrapposto::simulation::{Contact, Sample, Standing};
 use nalgebra::Vector3;
 
 use super::recording::Row;
+use super::three_axis::angles;
 use crate::fail::Fail;
 
 /// One moment.
@@ -17,6 +18,9 @@ use crate::fail::Fail;
 pub(crate) struct Frame {
     pub(crate) time: f64,
     pub(crate) posture: Vec<f64>,
+    /// By coordinate, rad or m: of a three-axis joint the angles about the axes that stand for its coordinates.
+    pub(crate) angles: Vec<f64>,
+    /// By coordinate, N m: of a three-axis joint about these axes.
     pub(crate) external: Vec<f64>,
     pub(crate) passive: Vec<f64>,
     pub(crate) load: Vec<f64>,
@@ -26,7 +30,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    pub(crate) fn of_row(row: Row) -> Self {
+    pub(crate) fn of_row(model: &Model, row: Row) -> Self {
         let contact = |numbers: &[f64; 10]| {
             let [share, fx, fy, fz, px, py, pz, cx, cy, cz] = *numbers;
             let (force, at, couple) = ([fx, fy, fz].into(), [px, py, pz].into(), [cx, cy, cz].into());
@@ -40,6 +44,7 @@ impl Frame {
         Self {
             time: row.time,
             posture: row.posture.to_vec(),
+            angles: angles(model, row.posture),
             external: row.external.to_vec(),
             passive: row.passive.to_vec(),
             load: row.load.to_vec(),
@@ -49,10 +54,11 @@ impl Frame {
     }
 
     /// One sample of a run.
-    pub(crate) fn of_sample(sample: &Sample) -> Self {
+    pub(crate) fn of_sample(model: &Model, sample: &Sample) -> Self {
         Self {
             time: sample.time,
             posture: sample.posture.to_vec(),
+            angles: angles(model, sample.posture),
             external: sample.external.to_vec(),
             passive: sample.passive.to_vec(),
             load: sample.load.to_vec(),
@@ -61,21 +67,22 @@ impl Frame {
         }
     }
 
-    /// A posture with its torques by rate.
+    /// A posture with its torques by rate, about axes.
     pub(crate) fn at(model: &Model, time: f64, posture: &[f64], [external, passive]: [&[f64]; 2]) -> Self {
         let of = |torques: &[f64]| -> Vec<f64> {
             model.coordinates().iter().map(|coordinate| coordinate.rate.map_or(0.0, |rate| torques[rate])).collect()
         };
         let (external, passive) = (of(external), of(passive));
-        let load = |(i, coordinate)| relative_load(coordinate, posture[i], active_torque(external[i], passive[i]));
+        let angles = angles(model, posture);
+        let load = |(i, coordinate)| relative_load(coordinate, angles[i], active_torque(external[i], passive[i]));
         let load = model.coordinates().iter().enumerate().map(load).collect();
-        Self { time, posture: posture.to_vec(), external, passive, load, fatigue: None, standing: None }
+        Self { time, posture: posture.to_vec(), angles, external, passive, load, fatigue: None, standing: None }
     }
 
     /// A posture that was given, held at rest.
     pub(crate) fn of_instant(model: &Model, instant: &Instant) -> Self {
         let values = instant.torques.kinematics().values();
-        let torques = [instant.torques.external_torque().torques(), instant.torques.passive_torque().torques()];
+        let torques = [instant.torques.external_about_axes(), instant.torques.passive_torque().about_axes()];
         let contact = |contact: &ContactForces, i: usize| Contact {
             force: contact.force(i),
             share: contact.share(i),
@@ -90,7 +97,7 @@ impl Frame {
         Self { standing, ..Self::at(model, instant.time, values, torques) }
     }
 
-    /// Active torque of a coordinate, N m.
+    /// Active torque of a coordinate about its axis, N m.
     pub(crate) fn active(&self, i: usize) -> f64 {
         active_torque(self.external[i], self.passive[i])
     }

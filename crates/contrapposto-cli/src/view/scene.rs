@@ -133,7 +133,7 @@ impl<'a> Scene<'a> {
             positive: coordinate.positive.clone(),
             slides: coordinate.kind == CoordinateKind::Translation,
             groups: group(Side::Positive).zip(group(Side::Negative)).map(|(a, b)| [a, b]),
-            angle: over(&|frame| visible(coordinate, frame.posture[i])),
+            angle: over(&|frame| visible(coordinate, frame.angles[i])),
             external: over(&|frame| frame.external[i]),
             passive: over(&|frame| frame.passive[i]),
             load: over(&|frame| frame.load[i]),
@@ -144,21 +144,21 @@ impl<'a> Scene<'a> {
     /// Torques over the range, in the posture of a frame; none of a joint without passive tissue.
     fn balance(&self, i: usize, frame: &Frame) -> Result<Option<Balance>, Fail> {
         let coordinate = &self.model.coordinates()[i];
-        let Some(law) = &coordinate.passive else { return Ok(None) };
-        let (min, max) = coordinate.range;
+        if coordinate.passive.is_none() {
+            return Ok(None);
+        }
         let mut balance = Balance::default();
-        let mut values = frame.posture.clone();
-        let mut sweep = self.held.map(|loads| Sweep::new(self.model, loads, i, &frame.posture));
+        let mut sweep = Sweep::new(self.model, self.held.unwrap_or_default(), i, &frame.posture)?;
+        let (min, max) = sweep.range();
         for k in 0..ANGLES {
             let angle = min + (max - min) * k as f64 / (ANGLES - 1) as f64;
             balance.angle.push(visible(coordinate, angle));
-            if let Some(sweep) = &mut sweep {
+            if self.held.is_some() {
                 let (external, passive) = sweep.torques(angle)?;
                 balance.minus_passive.push(-passive);
                 balance.external.push(external);
             } else {
-                values[i] = angle;
-                balance.minus_passive.push(-law.torque(i, &values));
+                balance.minus_passive.push(-sweep.passive(angle));
             }
         }
         Ok(Some(balance))

@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 
+use contrapposto::joint_torques::active_torque;
 use contrapposto::model::{Coordinate, CoordinateKind};
 use contrapposto::simulation::Scenario;
 use contrapposto_formats::motion::write_sto;
@@ -9,6 +10,7 @@ use contrapposto_formats::write::osim_motion;
 use contrapposto_formats::{TableRow, csv_header, csv_row};
 
 use super::recording::{Recording, Row};
+use super::three_axis::of_coordinates;
 use crate::fail::Fail;
 
 /// `trajectory.csv`.
@@ -28,11 +30,14 @@ pub(crate) fn motion(scenario: &Scenario, recording: &Recording) -> Result<Strin
     osim_motion(&scenario.model, title(scenario), recording.times(), &rows).map_err(failed("motion.mot"))
 }
 
-/// `torques.sto`: external, passive and active torque of every coordinate, N m (N for slides).
+/// `torques.sto`: external, passive and active torque of every coordinate, N m (N for slides), those of OpenSim's generalised forces.
 pub(crate) fn torques(scenario: &Scenario, recording: &Recording) -> Result<String, Fail> {
     let names = ["external", "passive", "active"];
-    let row =
-        |row: Row| (0..row.posture.len()).flat_map(|i| [row.external[i], row.passive[i], row.active(i)]).collect();
+    let row = |row: Row| {
+        let of = |torques| of_coordinates(&scenario.model, row.posture, torques);
+        let torques = of(row.external).into_iter().zip(of(row.passive));
+        torques.flat_map(|(external, passive)| [external, passive, active_torque(external, passive)]).collect()
+    };
     table("torques.sto", scenario, recording, &names, row)
 }
 

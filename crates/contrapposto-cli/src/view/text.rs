@@ -4,6 +4,7 @@ pub(crate) mod assess;
 pub(crate) mod compare;
 mod group;
 pub(crate) mod inspect;
+mod joint;
 pub(crate) mod pose;
 pub(crate) mod relax;
 pub(crate) mod simulate;

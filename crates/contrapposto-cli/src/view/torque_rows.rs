@@ -1,11 +1,13 @@
 //! External, passive and active torque of one frame, and the order and names of their rows.
 
-use contrapposto::joint_torques::{JointTorques, active_torque};
+use contrapposto::joint_torques::{JointTorques, active_torque, effort};
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::statics::Gradient;
 use nalgebra::Vector3;
 
-/// The three torques of one rate, N m (N for slides), which add up to zero.
+use super::moment::{Moment, MomentJoint, loads};
+
+/// The three torques of one coordinate or rate, N m (N for slides), which add up to zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Torques {
     pub(crate) external: f64,
@@ -40,6 +42,8 @@ pub(crate) struct Order {
     pub(crate) coupled: Vec<Row>,
     /// Coordinates whose value has no place in `rows` or `coupled`: those of free joints and balls.
     pub(crate) values: Vec<usize>,
+    /// Joints that are judged by their moment.
+    pub(crate) joints: Vec<MomentJoint>,
 }
 
 /// One frame.
@@ -51,6 +55,10 @@ pub(crate) struct Frame<'a> {
     /// By `Order::rows` and `Order::coupled`.
     pub(crate) rows: Vec<Torques>,
     pub(crate) coupled: Vec<Torques>,
+    /// Sum of squares of relative loads.
+    pub(crate) effort: f64,
+    /// By `Order::joints`.
+    pub(crate) moments: Vec<Moment>,
     pub(crate) center_of_mass: Option<Vector3<f64>>,
     /// Rows and columns by `Order::rows`.
     pub(crate) gradient: Option<Vec<Vec<f64>>>,
@@ -60,7 +68,7 @@ impl Order {
     pub(crate) fn new(model: &Model) -> Self {
         let coordinates = model.coordinates();
         let is_coupled = |c: usize| model.couplings().iter().any(|k| k.dependent == c || k.independent == c);
-        let mut order = Self { rows: vec![], coupled: vec![], values: vec![] };
+        let mut order = Self { rows: vec![], coupled: vec![], values: vec![], joints: MomentJoint::all(model) };
         for (index, rate) in model.rates().iter().enumerate() {
             let row = |name: String, coordinate| Row { name, rate: index, turns: rate.rotational, coordinate };
             match rate.coordinate {
@@ -108,6 +116,8 @@ impl<'a> Frame<'a> {
             values: body.kinematics().values(),
             rows: torques(&order.rows, external.torques(), passive.torques()),
             coupled: torques(&order.coupled, external.uncoupled_torques(model), passive.uncoupled_torques()),
+            effort: effort(&loads(model, body)),
+            moments: order.joints.iter().map(|joint| joint.moment(model, body)).collect(),
             center_of_mass: body.kinematics().center_of_mass(model),
             gradient: None,
         }

@@ -10,7 +10,7 @@ use crate::statics::{ExternalTorque, Gradient, Load};
 
 /// External torque about axes, and its gradient by rotations about them. Filled by [`AboutAxes::update`].
 #[derive(Clone, Debug)]
-pub(crate) struct AboutAxes {
+pub struct AboutAxes {
     kinematics: Kinematics,
     external: ExternalTorque,
     gradient: Gradient,
@@ -21,7 +21,7 @@ pub(crate) struct AboutAxes {
 
 impl AboutAxes {
     /// Space for `model`, which need not have such joints.
-    pub(crate) fn new(model: &Model) -> Self {
+    pub fn new(model: &Model) -> Self {
         let balls = model.by_axes();
         Self {
             kinematics: Kinematics::new(balls),
@@ -51,7 +51,7 @@ impl AboutAxes {
     ///
     /// # Errors
     /// As [`AboutAxes::update`].
-    pub(crate) fn update_displaced(
+    pub fn update_displaced(
         &mut self,
         model: &Model,
         posture: &Posture,
@@ -75,13 +75,13 @@ impl AboutAxes {
         Ok(())
     }
 
-    /// Frames of the body with balls.
-    pub(crate) fn kinematics(&self) -> &Kinematics {
+    /// Frames of the body with balls ([`Model::by_axes`]).
+    pub fn kinematics(&self) -> &Kinematics {
         &self.kinematics
     }
 
     /// External torque about axes, N m.
-    pub(crate) fn external(&self) -> &ExternalTorque {
+    pub fn external(&self) -> &ExternalTorque {
         &self.external
     }
 

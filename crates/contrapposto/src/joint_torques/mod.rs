@@ -19,7 +19,7 @@
 
 mod about_axes;
 
-pub(crate) use about_axes::AboutAxes;
+pub use about_axes::AboutAxes;
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};

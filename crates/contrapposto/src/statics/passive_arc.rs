@@ -118,7 +118,7 @@ impl PassiveTorque {
 
     /// Torque of the law of a coordinate about its axis, nothing coupled, after the joint alone has turned by `turn` (rad) about it,
     /// N m; `values` is space for the angles of all coordinates.
-    pub(crate) fn torque_after_turn(
+    pub fn torque_after_turn(
         &self,
         (model, kinematics): (&Model, &Kinematics),
         coordinate: usize,

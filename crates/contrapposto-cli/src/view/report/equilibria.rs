@@ -147,7 +147,7 @@ fn description(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &
     }
     let hanging = found.hanging.iter().take(MOST_JOINTS_SHOWN).map(|joint| {
         let i = joint.coordinate;
-        let at = value(model, i, frame.posture[i]);
+        let at = value(model, i, frame.angles[i]);
         format!(
             "{} at {at} ({} of {:.1} N m)",
             plain(&model.coordinates()[i].name),

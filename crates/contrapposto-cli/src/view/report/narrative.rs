@@ -79,7 +79,7 @@ impl Narrative<'_> {
     fn of_joint(&self) -> String {
         let name = sentence(&plain(&self.scenario.model.coordinates()[self.main].name));
         let [from, to] =
-            [self.first, self.last].map(|frame| value(&self.scenario.model, self.main, frame.posture[self.main]));
+            [self.first, self.last].map(|frame| value(&self.scenario.model, self.main, frame.angles[self.main]));
         let [before, after] = [self.first, self.last].map(|frame| frame.active(self.main).abs());
         if self.moved().abs() < STAYED {
             return format!("{name} stayed at {to}: its muscles hold {after:.1} N m.");
@@ -89,7 +89,7 @@ impl Narrative<'_> {
     }
 
     fn moved(&self) -> f64 {
-        (self.last.posture[self.main] - self.first.posture[self.main]).to_degrees()
+        (self.last.angles[self.main] - self.first.angles[self.main]).to_degrees()
     }
 
     /// The support that carries most at the end, and its share.
@@ -113,7 +113,7 @@ impl Narrative<'_> {
             ));
         }
         if standing && self.moved().abs() >= STAYED {
-            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.posture[main]));
+            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.angles[main]));
             let [before, after] = [first, last].map(|frame| frame.active(main).abs());
             reasons.push(format!(
                 "{} moved from {from} to {to}; its muscles hold {after:.1} N m, at the start {before:.1}.",
@@ -173,7 +173,7 @@ impl Narrative<'_> {
             ));
         }
         if scenario.supports.is_empty() {
-            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.posture[main]));
+            let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.angles[main]));
             figures.push(figure(
                 &sentence(&plain(&scenario.model.coordinates()[main].name)),
                 to,

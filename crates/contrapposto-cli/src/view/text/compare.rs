@@ -161,7 +161,7 @@ fn work(stance: &ComparedPosture, i: usize, side: Side) -> Option<(f64, f64)> {
     let load = if Side::of(frame.active(i)) == side { frame.load[i] } else { 0.0 };
     let (external, passive) = (frame.external[i], frame.passive[i]);
     let carried = (-passive * external.signum()).clamp(0.0, external.abs());
-    let strength = group.strength.torque(frame.posture[i]);
+    let strength = group.strength.torque(frame.angles[i]);
     let spared = Side::of(-external) == side && strength > 0.0;
     Some((load, if spared { carried / strength } else { 0.0 }))
 }

@@ -8,14 +8,16 @@ use std::fmt::Write;
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::Function;
-use contrapposto::model::{Coordinate, CoordinateKind, JointKind, Model, MuscleGroup};
+use contrapposto::model::{Coordinate, CoordinateKind, Model, MuscleGroup};
 use contrapposto::passive::{PassiveLaw, Term};
 use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
 
+use super::joint::{JointText, joint_word, three_rotations};
 use super::plain_table;
 use super::sources::{Known, Seen, Source};
 use group_strength::StrengthText;
+use crate::view::moment::MomentJoint;
 
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
@@ -42,13 +44,6 @@ struct SegmentText<'a> {
     center_of_mass_m: [f64; 3],
     inertia_kg_m2: [[f64; 3]; 3],
     joint: JointText<'a>,
-}
-
-#[derive(Serialize)]
-struct JointText<'a> {
-    name: &'a str,
-    kind: &'static str,
-    coordinates: Vec<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -123,7 +118,7 @@ impl<'a> GroupFatigueText<'a> {
 
 pub(crate) fn report<'a>(opened: &'a SourcedModel, file: &'a str) -> Report<'a> {
     let model = &opened.model;
-    let coordinates = model.coordinates();
+    let (coordinates, moments) = (model.coordinates(), MomentJoint::all(model));
     Report {
         file,
         format: opened.format.word(),
@@ -134,17 +129,14 @@ pub(crate) fn report<'a>(opened: &'a SourcedModel, file: &'a str) -> Report<'a> 
         segments: model
             .segments()
             .iter()
-            .map(|segment| SegmentText {
+            .enumerate()
+            .map(|(s, segment)| SegmentText {
                 name: &segment.name,
                 parent: segment.parent.map(|parent| model.segments()[parent].name.as_str()),
                 mass_kg: segment.mass,
                 center_of_mass_m: segment.center_of_mass.into(),
                 inertia_kg_m2: [0, 1, 2].map(|i| [0, 1, 2].map(|j| segment.inertia[(i, j)])),
-                joint: JointText {
-                    name: &segment.joint,
-                    kind: joint_word(&segment.joint_kind),
-                    coordinates: coordinates[segment.coordinates.clone()].iter().map(|c| c.name.as_str()).collect(),
-                },
+                joint: JointText::new(model, &moments, s),
             })
             .collect(),
         coordinate_order: coordinates.iter().map(|c| c.name.as_str()).collect(),
@@ -209,21 +201,6 @@ fn function_word(function: &Function) -> &'static str {
     }
 }
 
-/// `hinge`, `free`, `driven by functions`.
-fn joint_word(kind: &JointKind) -> &'static str {
-    match kind {
-        JointKind::Weld => "weld",
-        JointKind::Hinge(_) => "hinge",
-        JointKind::Slide(_) => "slide",
-        JointKind::Universal(_) => "universal",
-        JointKind::Gimbal(_) => "gimbal",
-        JointKind::Ball => "ball",
-        JointKind::Free => "free",
-        JointKind::Chain(_) => "chain",
-        JointKind::Driven(_) => "driven",
-    }
-}
-
 /// The law in a word or two.
 fn law_word(law: &PassiveLaw) -> String {
     let term = |term: &Term| match term {
@@ -283,7 +260,7 @@ pub(crate) fn readable(opened: &SourcedModel, file: &str) -> String {
             names.join(", "),
         ]);
     }
-    let _ = write!(text, "\n{table}\n\n");
+    let _ = write!(text, "\n{table}\n{}\n", three_rotations(model));
     let mut seen = Seen::default();
     let _ = writeln!(text, "{}", coordinates(opened, &mut seen));
     text.push_str(&seen.legend());

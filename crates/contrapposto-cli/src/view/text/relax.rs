@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use super::group::GroupName;
 use super::plain_table;
+use crate::view::three_axis::angles;
 use crate::view::words::MOST_JOINTS_SHOWN;
 use crate::view::words::how_long;
 
@@ -98,6 +99,7 @@ struct TaskErrorText {
 #[derive(Serialize)]
 struct HangingText {
     coordinate: String,
+    /// Of a three-axis joint the angle about the axis that stands for the coordinate.
     value: f64,
     external_nm: f64,
     passive_nm: f64,
@@ -144,9 +146,10 @@ impl RelaxedPostureText {
         let effort = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
         let goals = scenario.goals.iter().zip(&scenario.labels).zip(&found.relaxed.levels);
         let tasks = goals.filter(|((goal, _), _)| !effort(goal));
+        let angles = angles(model, found.relaxed.posture.values());
         let hanging = found.hanging.iter().map(|hanging| HangingText {
             coordinate: name(hanging.coordinate),
-            value: found.relaxed.posture.values()[hanging.coordinate],
+            value: angles[hanging.coordinate],
             external_nm: hanging.external,
             passive_nm: hanging.passive,
             share: hanging.share(),

@@ -5,7 +5,9 @@ use std::fmt::Write;
 use contrapposto::model::{CoordinateKind, Model};
 use serde::{Serialize, Serializer};
 
+use super::joint::AxisText;
 use super::plain_table;
+use crate::view::moment::{Moment, MomentJoint};
 use crate::view::torque_rows::{Frame, Order, Row, Torques};
 
 /// One frame in rad, m, N and N m.
@@ -15,6 +17,9 @@ pub(crate) struct FrameText<'a> {
     coordinate_order: Vec<&'a str>,
     coordinates: Named<'a, TorquesText>,
     uncoupled: Named<'a, TorquesText>,
+    /// Sum of squares of relative loads, those of three-axis joints about their axes.
+    effort: f64,
+    joints: Named<'a, MomentText<'a>>,
     /// Of free joints and balls, whose rates are no coordinates.
     #[serde(skip_serializing_if = "Option::is_none")]
     values: Option<Named<'a, f64>>,
@@ -29,6 +34,16 @@ struct TorquesText {
     external: f64,
     passive: f64,
     active: f64,
+}
+
+/// The moment of a joint with three rotations, about axes of its distal segment.
+#[derive(Serialize)]
+struct MomentText<'a> {
+    axes: Vec<AxisText<'a>>,
+    external_nm: [f64; 3],
+    passive_nm: [f64; 3],
+    active_nm: [f64; 3],
+    load: Option<f64>,
 }
 
 /// An object whose keys keep their order.
@@ -55,10 +70,18 @@ pub(crate) fn json<'a>(model: &'a Model, order: &'a Order, frame: &'a Frame<'_>)
         coordinate_order: order.rows.iter().map(|row| row.name.as_str()).collect(),
         coordinates: named(&order.rows, &frame.rows),
         uncoupled: named(&order.coupled, &frame.coupled),
+        effort: frame.effort,
+        joints: Named(order.joints.iter().zip(&frame.moments).map(|joint| moment(model, joint)).collect()),
         values: (!order.values.is_empty()).then(|| Named(order.values.iter().map(value).collect())),
         center_of_mass: frame.center_of_mass.map(Into::into),
         gradient: frame.gradient.as_deref(),
     }
+}
+
+fn moment<'a>(model: &'a Model, (joint, moment): (&'a MomentJoint, &Moment)) -> (&'a str, MomentText<'a>) {
+    let Moment { external, passive, active, load } = *moment;
+    let axes = AxisText::all(model, joint);
+    (&joint.name, MomentText { axes, external_nm: external, passive_nm: passive, active_nm: active, load })
 }
 
 /// Heads of the table, with OpenSim's own header where tabs separate.
