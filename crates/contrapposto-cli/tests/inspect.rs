@@ -250,3 +250,60 @@ fn models_that_are_no_plain_files_are_refused() {
         refused(&["torques", "adult", model]);
     }
 }
+
+/// An upper arm on three hinges: `more` in the third one, `equality` after the bodies.
+fn three_hinges(more: &str, equality: &str) -> String {
+    format!(
+        r#"<mujoco><compiler angle="radian" autolimits="true"/><option gravity="0 -9.81 0"/><worldbody><body name="arm" pos="0 1 0">
+        <joint name="flex" type="hinge" axis="0 0 1" range="-1 3"/><joint name="add" type="hinge" axis="1 0 0" range="-2 1"/>
+        <joint name="rot" type="hinge" axis="0 1 0" range="-1 1" {more}/>
+        <inertial pos="0 -0.2 0" mass="2" diaginertia="0.1 0.1 0.1"/></body></worldbody>{equality}</mujoco>"#
+    )
+}
+
+#[test]
+fn inspect_gives_the_axes_of_a_joint_judged_by_its_moment_and_the_reason_of_one_that_is_not() {
+    let adult = json(&["inspect", "adult", "--json"]);
+    let muscles = |report: &serde_json::Value, segment: &str| {
+        let segments = report["segments"].as_array().unwrap();
+        segments.iter().find(|s| s["name"] == segment).unwrap()["joint"]["muscles"].clone()
+    };
+    let shoulder = muscles(&adult, "humerus_r");
+    assert_eq!((&shoulder["judged_by"], &shoulder["long_axis"]), (&"moment".into(), &"arm_rot_r".into()));
+    let names: Vec<&serde_json::Value> =
+        shoulder["axes"].as_array().unwrap().iter().map(|axis| &axis["name"]).collect();
+    assert_eq!(names, ["arm_flex_r", "arm_add_r", "arm_rot_r"]);
+    // A quarter of the ranges, -60 .. 150 (of 180) and -150 (of -180) .. 10 deg.
+    let reference: Vec<f64> = serde_json::from_value(shoulder["reference_deg"].clone()).unwrap();
+    assert!(reference.iter().zip([22.5, -35.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-9), "{reference:?}");
+    assert!(muscles(&adult, "hand_r").is_null());
+    assert_eq!(muscles(&adult, "pelvis")["because"], "it joins the body to ground and slides");
+
+    let folder = tempfile::tempdir().unwrap();
+    let coupled = r#"<equality><joint joint1="rot" joint2="add" polycoef="0 0.5 0 0 0"/></equality>"#;
+    for (name, more, equality, because) in [
+        ("moment.xml", "", "", None),
+        ("coupled.xml", "", coupled, Some("`add` is coupled")),
+        ("sprung.xml", r#"stiffness="3""#, "", Some("the file gives forces on `rot`")),
+        (
+            "apart.xml",
+            r#"pos="0 0 0.1""#,
+            "",
+            Some("its hinges do not pass through one point, or two of them are parallel"),
+        ),
+    ] {
+        let file = write(folder.path(), name, &three_hinges(more, equality));
+        let found = muscles(&json(&["inspect", &file, "--json"]), "arm");
+        assert_eq!(found["because"].as_str(), because, "{name}: {found}");
+        assert_eq!(found["judged_by"], if because.is_some() { "coordinates" } else { "moment" }, "{name}");
+        let told = run(&["inspect", &file]).stdout;
+        let sentence = because.map_or(
+            "judged by its moment about flex (0 0 1), add (1 0 0), rot (0 1 0); long axis rot".to_owned(),
+            |why| format!("judged by its coordinates, because {why}"),
+        );
+        assert!(told.contains(&sentence), "{told}");
+        // `torques` agrees: by its moment or not at all.
+        let frames = json(&["torques", &file, "default", "--json"]);
+        assert_eq!(frames[0]["joints"].as_object().unwrap().is_empty(), because.is_some(), "{name}");
+    }
+}

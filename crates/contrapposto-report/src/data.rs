@@ -82,6 +82,7 @@ fn joint(joint: &Joint, n: usize) -> Value {
         "label": joint.label,
         "positive": joint.positive,
         "slides": joint.slides,
+        "about_axis": joint.about_axis,
         "groups": joint.groups.as_ref().map(|groups| groups.iter().map(|g| group(g, n)).collect::<Value>()),
         "angle": list(&joint.angle, angle),
         "external": list(&joint.external, TORQUE),

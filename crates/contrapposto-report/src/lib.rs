@@ -120,6 +120,8 @@ pub struct Joint {
     pub positive: String,
     /// Whether the coordinate is a length: values in m and N, not degrees and N m.
     pub slides: bool,
+    /// Whether angle and torques are those about an axis of a joint with three, not those of the coordinate.
+    pub about_axis: bool,
     /// Its two muscle groups, positive torque first.
     pub groups: Option<[Group; 2]>,
     /// Value in every frame, degrees (m for slides).

@@ -132,6 +132,7 @@ impl<'a> Scene<'a> {
             label: words::plain(&coordinate.name),
             positive: coordinate.positive.clone(),
             slides: coordinate.kind == CoordinateKind::Translation,
+            about_axis: self.model.three_axis_joint_of(i).is_some(),
             groups: group(Side::Positive).zip(group(Side::Negative)).map(|(a, b)| [a, b]),
             angle: over(&|frame| visible(coordinate, frame.angles[i])),
             external: over(&|frame| frame.external[i]),
