@@ -100,7 +100,8 @@ fn the_tables_name_what_differs_and_bodies_may_differ() {
     let (ready, relaxed) = (short("stand-ready.toml", folder.path()), short("stand-relaxed.toml", folder.path()));
     let run = compare(&[&ready, &relaxed], folder.path(), &[]);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    for words in ["A: Standing ready", "weight on right foot", "right hip abduction", "left hip adduction", "compare.svg"]
+    for words in
+        ["A: Standing ready", "weight on right foot", "right hip abduction", "left hip adduction", "compare.svg"]
     {
         assert!(run.stdout.contains(words), "{words}\n{}", run.stdout);
     }

@@ -222,7 +222,8 @@ fn a_body_that_leans_too_far_says_how_far_and_where() {
     let feet = "[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n";
     let text = format!(
         "format = 1\ntitle = \"A board\"\n[posture]\narm_flex_r_deg = 90\narm_flex_l_deg = 90\n\
-        [coordinates]\nfree = [\"wrist_flex_r\"]\n{hands}{feet}"
+        [coordinates]\nfree = [\"wrist_flex_r\", \"pelvis_tx\", \"pelvis_ty\", \"pelvis_tz\", \"pelvis_tilt\", \"pelvis_list\", \"pelvis_rotation\"]\n\
+        {hands}{feet}"
     );
     let run = relax(&written(folder.path(), &text), &[]);
     assert_eq!((run.code, run.stdout.as_str()), (1, ""), "{}", run.stderr);
