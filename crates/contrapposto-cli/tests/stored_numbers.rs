@@ -42,7 +42,7 @@ fn figure_8_ends_at_the_stored_angle_with_the_stored_torques() {
     assert_eq!((&summary["stopped"], &summary["samples"]), (&Value::from("settled"), &Value::from(40)));
     let elbow = [93.52416741952305, 0.1782013447127355, -0.21786712499697966, 0.03966578028424417];
     assert_coordinate(&summary, "elbow_flex_r", elbow);
-    assert_coordinate(&summary, "arm_flex_r", [90.0, -7.476028258746449, -1.0472017745696274, 8.523230033316075]);
+    assert_coordinate(&summary, "arm_flex_r", [90.0, -7.476028258746449, -1.1201846133245268, 8.596212872070975]);
     assert_eq!(summary["coordinates"]["elbow_flex_r"]["cases"], serde_json::json!(["3.1", "3.3", "2.1"]));
 }
 

@@ -16,8 +16,8 @@ use serde::Serialize;
 use super::joint::{JointText, joint_word, three_rotations};
 use super::plain_table;
 use super::sources::{Known, Seen, Source};
-use group_strength::StrengthText;
 use crate::view::moment::MomentJoint;
+use group_strength::StrengthText;
 
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
