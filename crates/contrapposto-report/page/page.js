@@ -111,7 +111,8 @@ function fillTable() {
 
 // The text below the heading of the torque balance.
 function balanceHint(joint) {
-  const axis = joint && joint.about_axis ? " Angle and torques are those about the axis of the joint that stands for this coordinate." : "";
+  const about = " Angle and torques are those about the axis of the joint that stands for this coordinate.";
+  const axis = joint && joint.about_axis ? about : "";
   const end = axis + (MOVES || SEVERAL ? " Large dots: now." : "");
   if (joint && joint.balance.some((balance) => balance.external.length)) {
     return "Where the external torque equals minus the passive torque, ligaments carry the joint; muscles hold the difference." + end;
