@@ -96,11 +96,14 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Locks a rate, besides those of locked coordinates. A locked rate of the root is held by its lock, not by supports.
+    /// Locks a rate, besides those of locked coordinates. On supports a body stays in equilibrium with a locked root; without
+    /// supports the lock holds it.
     pub fn lock(&mut self, rate: usize) {
         self.settings.lock(rate);
-        self.iterate.hold_root(rate);
-        self.slope.hold_root(rate);
+        if self.iterate.contact.supports().is_empty() {
+            self.iterate.hold_root(rate);
+            self.slope.hold_root(rate);
+        }
     }
 
     /// The levels, to move targets between steps. A changed level must still fit the model; effort must stay where it
