@@ -93,7 +93,7 @@ fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
     let scenario = write(folder.path(), "hold-tool.toml", &short);
     let summary = result("simulate", Path::new(&scenario), "summary.json");
     let effort = summary["standing"]["effort_at_start"].as_f64().unwrap();
-    assert!(effort > 0.0 && effort < 0.06171443874930224 * (1.0 + TOLERANCE), "{effort}");
+    assert!(effort > 0.0 && effort < 0.06953115643322762 * (1.0 + TOLERANCE), "{effort}");
 }
 
 #[test]
