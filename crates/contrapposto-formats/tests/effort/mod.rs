@@ -58,7 +58,8 @@ impl Problem {
         let text = std::fs::read(shared("vectors/ik_targets_human48.json")).unwrap();
         let root = if standing { RootAttachment::Free } else { RootAttachment::Fixed };
         let options = urdf::Options { root, ..urdf::Options::default() };
-        let mut model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
+        // The peer minimises the torques of the coordinates.
+        let mut model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model.by_coordinates();
         let file: Value = serde_json::from_slice(&text).unwrap();
         let rest = rest(&model, &file);
         let mut locked = vec![];

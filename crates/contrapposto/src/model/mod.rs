@@ -192,8 +192,20 @@ impl Model {
     /// judged by its coordinates.
     #[must_use]
     pub fn with_passive_law(mut self, coordinate: usize, law: Option<PassiveLaw>) -> Self {
+        let of_file = matches!(law, Some(PassiveLaw::Sum(_)));
         self.coordinates[coordinate].passive = law;
-        self.find_three_axis_joints();
+        if of_file && self.three_axis_joint_of(coordinate).is_some() {
+            self.three_axis.retain(|joint| joint.place(coordinate).is_none());
+            self.build_by_axes();
+        }
+        self
+    }
+
+    /// The same body with all joints judged by their coordinates: a robot with a motor at each hinge.
+    #[must_use]
+    pub fn by_coordinates(mut self) -> Self {
+        self.three_axis.clear();
+        self.build_by_axes();
         self
     }
 
