@@ -36,7 +36,7 @@ impl AboutAxes {
     ///
     /// # Errors
     /// [`JointTorquesError`] when posture or loads do not fit the model.
-    pub(crate) fn update(
+    pub fn update(
         &mut self,
         model: &Model,
         posture: &Posture,
