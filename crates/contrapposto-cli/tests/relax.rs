@@ -40,7 +40,7 @@ fn one_leg_rests_by_a_slouch_or_level() {
         postures.iter().map(|p| p["coordinates"]["hip_adduction_r"].as_f64().unwrap().to_degrees()).collect();
     let efforts: Vec<f64> = postures.iter().map(|p| p["effort"].as_f64().unwrap()).collect();
     println!("hips {hips:?} deg, efforts {efforts:?}");
-    assert!(hips[0] > 18.0 && hips[1] < 8.0 && efforts[0] < 0.8 * efforts[1]);
+    assert!(hips[0] > 18.0 && hips[1] < 8.0 && efforts[0] < 0.7 * efforts[1]);
     // Stored efforts, which a better search may lower.
     assert!(efforts[0] < 0.042464646160173675 * (1.0 + 1e-6) && efforts[1] < 0.0633462634930972 * (1.0 + 1e-6));
     // The page shows both, as they stand in relax.json, to choose between.

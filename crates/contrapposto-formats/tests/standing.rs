@@ -106,8 +106,8 @@ fn the_slouch_comes_out_of_the_passive_strategy_alone() {
     let [external, by_ligaments, by_muscles] = passive.torques("hip_adduction_r");
     assert!(by_ligaments.abs() > 0.9 * external.abs() && by_muscles.abs() < 0.1 * external.abs());
     assert!(passive.share(0) > 0.8);
-    assert!(passive.effort() < 0.8 * passive.summary.effort_at_start.unwrap());
-    assert!(passive.effort() < 0.8 * active.effort());
+    assert!(passive.effort() < 0.7 * passive.summary.effort_at_start.unwrap());
+    assert!(passive.effort() < 0.7 * active.effort());
     // Active: no slouch.
     assert!(active.right_hip_above_left().abs() < 0.01);
     assert!(active.degrees("hip_adduction_r") < 10.0);

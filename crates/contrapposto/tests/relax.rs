@@ -125,7 +125,7 @@ fn one_leg_rests_in_two_ways() {
     let degrees =
         |posture: &contrapposto::equilibria::RelaxedPosture, i: usize| posture.relaxed.posture.values()[i].to_degrees();
     // The hip that carries hangs on its ligaments, its side of the pelvis is the higher one, the other knee is bent.
-    assert!(slouch.relaxed.effort < 0.8 * level.relaxed.effort);
+    assert!(slouch.relaxed.effort < 0.7 * level.relaxed.effort);
     assert!(degrees(slouch, hip) > 15.0 && degrees(level, hip) < 8.0);
     assert!(degrees(slouch, at("pelvis_list")).abs() > 10.0 && degrees(level, at("pelvis_list")).abs() < 5.0);
     assert!(degrees(slouch, at("knee_angle_l")) > 25.0 && degrees(slouch, at("knee_angle_r")) < 5.0);
