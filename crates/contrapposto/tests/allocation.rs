@@ -3,14 +3,19 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
+use contrapposto::contact::{ContactForces, Support};
 use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture;
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
-use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal as Place, Distance, LookAt, Placement, Point, Posture, Task};
+use contrapposto::tasks::{
+    CenterOfMass, CenterOfMassGoal as Place, Distance, Effort, LookAt, Placement, Point, Posture, Task,
+};
+use hierarchical_least_squares::Level;
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -81,6 +86,29 @@ fn statics_allocate_nothing() {
         folded.copy_from_slice(external.torques());
     });
     assert!(folded.iter().any(|&torque| torque != 0.0) && gradient.row(0).len() == folded.len());
+}
+
+/// Torques about the axes of three-axis joints, passive ones included, with derivatives, on supports, and the rows of effort.
+#[test]
+fn torques_about_axes_allocate_nothing() {
+    let (model, postures) = body();
+    let loads = loads(&model);
+    let supports = ["calcn_r", "calcn_l"].map(|name| {
+        let segment = model.segment(name).unwrap();
+        let corners = model.segments()[segment].patch.clone();
+        Support { segment, corners, normal: V::y(), friction: 0.6, share_max: 1.0 }
+    });
+    let mut contact = ContactForces::new(&model, supports.to_vec()).unwrap();
+    let (mut body, mut level) = (JointTorques::new(&model), Level::default());
+    let (effort, mut sum) = (Task::Effort(Effort::whole(&model)), 0.0);
+    assert_eq!(model.three_axis_joints().len(), 7);
+    assert_silent("torques about axes and rows of effort", CALLS, |i| {
+        body.update_with_contact(&model, &postures[i], &loads, &mut contact, Quantities::ALL).unwrap();
+        level.clear();
+        effort.evaluate(&model, &body, &mut level);
+        sum += level.lower.iter().sum::<f64>() + body.gradient_about_axes().get(7, 8);
+    });
+    assert!(sum != 0.0);
 }
 
 #[test]
