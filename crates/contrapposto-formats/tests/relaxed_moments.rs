@@ -84,6 +84,10 @@ fn load_of_the_shoulders_is_that_of_their_moment_in_every_posture_found() {
         let mut contact = ContactForces::new(model, supports.clone()).unwrap();
         for posture in &found.postures {
             let values = posture.relaxed.posture.values();
+            for (coordinate, value) in model.coordinates().iter().zip(values) {
+                let (low, high) = coordinate.range;
+                assert!((low..=high).contains(value), "{} at {value} outside {low}..{high}", coordinate.name);
+            }
             contact.forget();
             body.update_with_contact(model, &posture.relaxed.posture, loads, &mut contact, Quantities::TORQUES)
                 .unwrap();

@@ -357,13 +357,32 @@ impl Sqp {
     }
 }
 
-/// Moves posture and forces by `length` times the step.
+/// Moves posture and forces by `length` times the step. A coordinate does not leave its range: corrections do not know of it.
 fn displace(iterate: &mut Iterate, problem: &EffortProblem<'_>, step: &[f64], length: f64, by_rate: &mut [f64]) {
     by_rate.fill(0.0);
     for (rate, d) in problem.free.iter().zip(step) {
         by_rate[*rate] = length * d;
     }
+    let outside = |posture: &Posture, rate: usize, change: f64| {
+        let c = problem.model.rates()[rate].coordinate?;
+        let ((lower, upper), after) = (problem.model.coordinates()[c].range, posture.values()[c]);
+        let before = after - change;
+        let kept = after.clamp(lower.min(before), upper.max(before));
+        (kept != after).then_some((c, kept))
+    };
     iterate.posture.displace(problem.model, by_rate);
+    let mut left = false;
+    for rate in problem.free {
+        if let Some((c, kept)) = outside(&iterate.posture, *rate, by_rate[*rate]) {
+            iterate.posture.values_mut()[c] = kept;
+            left = true;
+        }
+    }
+    if left {
+        // Coordinates that follow others are set anew.
+        by_rate.fill(0.0);
+        iterate.posture.displace(problem.model, by_rate);
+    }
     for (force, d) in iterate.forces.iter_mut().zip(&step[problem.free.len()..]) {
         *force += length * d;
     }
