@@ -2,9 +2,9 @@
 //! `cargo run --release -p contrapposto-formats --example fatigue_sets -- scenarios/crouch.toml scenarios/overhead.toml`.
 //!
 //! Each scenario runs three times: with the knee's fit for hips, with the fits of joints, and with those of muscle groups and the sex of
-//! the body.
+//! the body. A scenario that needs a model file is left out, and standard error says so.
 
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use contrapposto::model::{Side, data};
 use contrapposto::simulation::{Scenario, Summary, run};
@@ -17,7 +17,13 @@ fn main() -> Fallible<()> {
     for path in std::env::args().skip(1) {
         let text = std::fs::read_to_string(&path)?;
         let given = |text: &str| read_scenario(&path, text.as_bytes(), None);
-        let (joint, by_group) = (given(&text)?, given(&with_muscle_groups(&text))?);
+        let (joint, by_group) = match (given(&text), given(&with_muscle_groups(&text))) {
+            (Ok(joint), Ok(by_group)) => (joint, by_group),
+            (Err(error), _) | (_, Err(error)) => {
+                eprintln!("{path} is left out: {error}");
+                continue;
+            }
+        };
         let mut cells = vec![];
         for scenario in [hips_like_the_knee(joint.clone()), joint, by_group] {
             cells.push(in_words(&scenario, &run(&scenario, |_| {})?));

@@ -130,6 +130,16 @@ fn a_search_is_finite_or_refused_by_name() {
 }
 
 #[test]
+fn a_law_that_has_a_torque_but_no_slope_gives_its_torque() {
+    let [_, (law, operations), ..] = laws();
+    let model = model(law, operations); // q^0.5 at q = 0: the torque is 0, its slope infinite
+    let mut torques = JointTorques::new(&model);
+    torques.update(&model, &model.default_posture(), &[], Quantities::TORQUES).unwrap();
+    let bending = model.coordinates()[model.coordinate("lumbar_bending").unwrap()].rate.unwrap();
+    assert_eq!(torques.passive_torque().torques()[bending], 0.0);
+}
+
+#[test]
 fn contact_forces_of_no_torques_hold_nothing() {
     let model = adult(&Adult::default()).unwrap();
     let mut torques = JointTorques::new(&model);

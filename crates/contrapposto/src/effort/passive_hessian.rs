@@ -17,6 +17,7 @@ use super::tolerances::{DIFFERENCE_STEP, PASSIVE_DIFFERENCE_STEP};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::passive::PassiveLaw;
+use crate::tasks::for_each_angle_slope;
 
 /// Adds the second derivative of `sum_i w_i tau_p,i`, `weights` by rate; without that of coupled laws by their angles unless `coupled`.
 pub(super) fn add_passive(model: &Model, body: &JointTorques, weights: &[f64], coupled: bool, to: &mut SecondByAxes) {
@@ -80,14 +81,9 @@ fn add_products(model: &Model, body: &JointTorques, (a, b): (usize, usize), shar
     if share == 0.0 {
         return;
     }
-    for_each_slope(model, body, a, |m, by_a| {
-        for_each_slope(model, body, b, |l, by_b| to.add(m, l, share * by_a * by_b))
+    for_each_angle_slope(model, body, a, |m, by_a| {
+        for_each_angle_slope(model, body, b, |l, by_b| to.add(m, l, share * by_a * by_b))
     });
-}
-
-/// Calls `visit` with the rates that change the angle of a coordinate, and the slopes.
-fn for_each_slope(model: &Model, body: &JointTorques, coordinate: usize, visit: impl FnMut(usize, f64)) {
-    crate::tasks::for_each_angle_slope(model, body, coordinate, visit);
 }
 
 fn add_block(model: &Model, joint: usize, block: &Matrix3<f64>, to: &mut SecondByAxes) {
@@ -116,7 +112,7 @@ fn add_joint(model: &Model, body: &JointTorques, joint: usize, weights: &[f64], 
         let second = &angles.second[j];
         let by_weight = second * w;
         let torque = passive.law(model, own, |by, slope| {
-            for_each_slope(model, body, by, |l, by_l| {
+            for_each_angle_slope(model, body, by, |l, by_l| {
                 (0..3).for_each(|m| to.add_pair(rates[m], l, by_weight[m] * slope * by_l));
             });
         });

@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use nalgebra::UnitQuaternion;
 
 use super::PassiveTorque;
+use super::passive_torque::extended;
 use crate::kinematics::Kinematics;
 use crate::math::Angles;
 use crate::model::{Model, ThreeAxisJoint};
@@ -156,11 +157,8 @@ impl PassiveTorque {
         }
         let places = joint.coordinates.into_iter().enumerate();
         places.fold(0.0, |sum, (j, i)| {
-            let Some(law) = &model.coordinates()[i].passive else { return sum };
-            let beyond = if self.is_held(i) { 0.0 } else { angles.values[j] - values[i] };
-            let mut own = 0.0;
-            let torque = law.torque_and_slopes(i, values, |by, slope| own += if by == i { slope } else { 0.0 });
-            sum + angles.first[(j, axis)] * (torque + own * beyond)
+            let beyond = self.beyond(i, angles.values[j], values[i]);
+            sum + angles.first[(j, axis)] * extended(model, i, values, beyond, |_, _| {})
         })
     }
 }

@@ -25,9 +25,9 @@ pub struct PassiveTorqueError {
 /// Passive torque of every rate, N m, in the posture that `kinematics` holds. Torques of a dependent coordinate are folded into its
 /// independent one, as with external torque. Filled by [`PassiveTorque::update`].
 ///
-/// The laws of a three-axis joint are those of the angles `x_j` about its axes ([`crate::model::ThreeAxisJoint`]): its passive moment has the
-/// components `m_k = sum_j tau_j(x) E_k x_j`, minus the derivative of an energy where the laws have one, and gives its coordinates
-/// the torques `A^T m`. Beyond the coordinate's range a law goes on along its tangent there.
+/// The laws of a three-axis joint are those of the angles `x_j` about its axes ([`crate::model::ThreeAxisJoint`]): its passive moment
+/// has the components `m_k = sum_j tau_j(x) E_k x_j`, minus the derivative of an energy where the laws have one, and gives its
+/// coordinates the torques `A^T m`. Beyond the coordinate's range a law goes on along its tangent there.
 #[derive(Clone, Debug)]
 pub struct PassiveTorque {
     /// By coordinate; empty for none.
@@ -114,7 +114,7 @@ impl PassiveTorque {
         for (joint, orientation) in model.three_axis_joints().iter().zip(&mut self.orientations) {
             *orientation = joint.orientation(kinematics.values());
             for (&i, angle) in joint.coordinates.iter().zip(orientation.angles.values) {
-                let (min, max) = self.ranges.get(i).copied().flatten().unwrap_or(model.coordinates()[i].range);
+                let (min, max) = range(&self.ranges, model, i);
                 (self.angles[i], self.values[i]) = (angle, angle.max(min).min(max));
             }
         }
@@ -122,12 +122,12 @@ impl PassiveTorque {
 
     /// Range of the law of a coordinate, rad.
     pub(super) fn range(&self, model: &Model, coordinate: usize) -> (f64, f64) {
-        self.ranges.get(coordinate).copied().flatten().unwrap_or(model.coordinates()[coordinate].range)
+        range(&self.ranges, model, coordinate)
     }
 
     /// Whether the law of a coordinate keeps its torque beyond its range. Without a range of its own the law of an angle of a
     /// three-axis joint goes on along its tangent.
-    pub(super) fn is_held(&self, coordinate: usize) -> bool {
+    fn is_held(&self, coordinate: usize) -> bool {
         self.ranges.get(coordinate).is_some_and(Option::is_some)
     }
 
@@ -138,18 +138,18 @@ impl PassiveTorque {
 
     /// Torque of the law of a coordinate, N m, and through `visit` its derivatives by the angles of coordinates; 0 without a law.
     pub(crate) fn law(&self, model: &Model, coordinate: usize, mut visit: impl FnMut(usize, f64)) -> f64 {
-        let Some(law) = &model.coordinates()[coordinate].passive else { return 0.0 };
-        let beyond = |i: usize| if self.is_held(i) { 0.0 } else { self.angles[i] - self.values[i] };
-        let mut own = 0.0;
-        let torque = law.torque_and_slopes(coordinate, &self.values, |by, slope| {
-            if by == coordinate {
-                own += slope;
-            }
+        let beyond = |i: usize| self.beyond(i, self.angles[i], self.values[i]);
+        extended(model, coordinate, &self.values, beyond(coordinate), |by, slope| {
             if by == coordinate || beyond(by) == 0.0 {
                 visit(by, slope);
             }
-        });
-        torque + own * beyond(coordinate)
+        })
+    }
+
+    /// How far the law of a coordinate goes on along its tangent from `value`, the end of its range, to `angle`, rad.
+    pub(super) fn beyond(&self, coordinate: usize, angle: f64, value: f64) -> f64 {
+        // A law that keeps its torque beyond its range does not go on.
+        if self.is_held(coordinate) { 0.0 } else { angle - value }
     }
 
     /// Torque of the law of a coordinate about its axis, N m, nothing coupled.
@@ -186,4 +186,28 @@ impl PassiveTorque {
     pub fn uncoupled_torques(&self) -> &[f64] {
         &self.raw
     }
+}
+
+/// Range of the law of a coordinate, rad: its own among `ranges`, or that of the coordinate.
+fn range(ranges: &[Option<(f64, f64)>], model: &Model, coordinate: usize) -> (f64, f64) {
+    ranges.get(coordinate).copied().flatten().unwrap_or(model.coordinates()[coordinate].range)
+}
+
+/// Torque of the law of a coordinate at the angles `values`, N m, continued along its tangent by `beyond` (rad), and through `visit`
+/// its derivatives by angles; 0 without a law.
+pub(super) fn extended(
+    model: &Model,
+    coordinate: usize,
+    values: &[f64],
+    beyond: f64,
+    mut visit: impl FnMut(usize, f64),
+) -> f64 {
+    let Some(law) = &model.coordinates()[coordinate].passive else { return 0.0 };
+    let mut own = 0.0;
+    let torque = law.torque_and_slopes(coordinate, values, |by, slope| {
+        own += if by == coordinate { slope } else { 0.0 };
+        visit(by, slope);
+    });
+    // A formula may have a torque where it has no finite slope.
+    if beyond == 0.0 { torque } else { torque + own * beyond }
 }

@@ -149,7 +149,7 @@ fn by_coordinates(model: &Model, s: usize) -> Option<String> {
     })
 }
 
-/// What forbids a coordinate to be one of a three-axis joint.
+/// The reason for which a coordinate can belong to no three-axis joint.
 fn of_coordinate(model: &Model, i: usize) -> Option<String> {
     let coordinate = &model.coordinates()[i];
     let name = &coordinate.name;
