@@ -168,7 +168,14 @@ fn ground_reaction_and_supports_give_the_same_torques() {
     let supports = ["calcn_r", "calcn_l"].map(|name| {
         let segment = model.segment(name).unwrap();
         let corners = model.segments()[segment].patch.clone();
-        Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+        Support {
+            segment,
+            corners,
+            normal: Vector3::y(),
+            friction: 0.6,
+            share_max: 1.0,
+            place: contrapposto::contact::Place::Fixed,
+        }
     });
     let (motion, ground) = standing(&model, &supports);
     let motion = write(folder.path(), "motion.csv", &motion);

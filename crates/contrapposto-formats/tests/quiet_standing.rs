@@ -70,6 +70,7 @@ fn most_tired(text: &str, model: Option<Model>) -> Tired {
         model: &scenario.model,
         start: &scenario.start,
         supports: &scenario.supports,
+        limits: &scenario.limits,
         goals: &scenario.goals,
         loads: &scenario.loads,
         locked: &scenario.locked,

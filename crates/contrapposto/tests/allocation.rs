@@ -96,7 +96,14 @@ fn torques_about_axes_allocate_nothing() {
     let supports = ["calcn_r", "calcn_l"].map(|name| {
         let segment = model.segment(name).unwrap();
         let corners = model.segments()[segment].patch.clone();
-        Support { segment, corners, normal: V::y(), friction: 0.6, share_max: 1.0 }
+        Support {
+            segment,
+            corners,
+            normal: V::y(),
+            friction: 0.6,
+            share_max: 1.0,
+            place: contrapposto::contact::Place::Fixed,
+        }
     });
     let mut contact = ContactForces::new(&model, supports.to_vec()).unwrap();
     let (mut body, mut level) = (JointTorques::new(&model), Level::default());

@@ -106,7 +106,14 @@ fn the_root_lacks_the_whole_weight_without_supports_and_nothing_on_two_feet() {
     let support = |name: &str| {
         let segment = model.segment(name).unwrap();
         let corners = model.segments()[segment].patch.clone();
-        Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+        Support {
+            segment,
+            corners,
+            normal: Vector3::y(),
+            friction: 0.6,
+            share_max: 1.0,
+            place: contrapposto::contact::Place::Fixed,
+        }
     };
     let settings =
         AssessSettings { supports: vec![support("calcn_r"), support("calcn_l")], ..AssessSettings::default() };

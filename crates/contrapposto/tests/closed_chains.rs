@@ -89,7 +89,14 @@ fn the_slope_is_that_of_the_motion_which_feet_and_goals_allow() {
         .map(|name| {
             let segment = model.segment(name).unwrap();
             let corners = model.segments()[segment].patch.clone();
-            Support { segment, corners, normal: Vector3::y(), friction: f64::INFINITY, share_max: 1.0 }
+            Support {
+                segment,
+                corners,
+                normal: Vector3::y(),
+                friction: f64::INFINITY,
+                share_max: 1.0,
+                place: contrapposto::contact::Place::Fixed,
+            }
         })
         .to_vec();
     let (mut compared, mut worst, mut alone) = (0, 0f64, 0f64);

@@ -48,7 +48,14 @@ impl Stand {
         let support = |name: &str, share_max: f64| {
             let segment = model.segment(name).unwrap();
             let corners = model.segments()[segment].patch.clone();
-            Support { segment, corners, normal: V::y(), friction, share_max }
+            Support {
+                segment,
+                corners,
+                normal: V::y(),
+                friction,
+                share_max,
+                place: contrapposto::contact::Place::Fixed,
+            }
         };
         let supports = vec![support("calcn_r", 1.0), support("calcn_l", share_max)];
         let loads = vec![Load::weight(&model, model.segment("hand_r").unwrap(), 3.0)];
@@ -336,7 +343,14 @@ fn block_on(motions: Vec<Motion>, in_parent: Placement, center: V, corners: Vec<
             coordinates,
         })
         .unwrap();
-    let support = Support { segment: 0, corners, normal: normal.normalize(), friction, share_max: 1.0 };
+    let support = Support {
+        segment: 0,
+        corners,
+        normal: normal.normalize(),
+        friction,
+        share_max: 1.0,
+        place: contrapposto::contact::Place::Fixed,
+    };
     Stand::new(builder.build(), vec![support], vec![])
 }
 
@@ -551,7 +565,14 @@ fn the_same_posture_gives_the_same_forces() {
 #[test]
 fn numbers_without_meaning_are_refused() {
     let model = adult(&Adult::default()).unwrap();
-    let good = Support { segment: 0, corners: vec![V::zeros()], normal: V::y(), friction: 0.5, share_max: 1.0 };
+    let good = Support {
+        segment: 0,
+        corners: vec![V::zeros()],
+        normal: V::y(),
+        friction: 0.5,
+        share_max: 1.0,
+        place: contrapposto::contact::Place::Fixed,
+    };
     assert!(good.check(&model).is_ok());
     let refused = |change: &dyn Fn(&mut Support)| {
         let mut support = good.clone();

@@ -52,7 +52,14 @@ fn feet(model: &Model) -> Vec<Support> {
     let foot = |name: &str| {
         let segment = model.segment(name).unwrap();
         let corners = model.segments()[segment].patch.clone();
-        Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+        Support {
+            segment,
+            corners,
+            normal: Vector3::y(),
+            friction: 0.6,
+            share_max: 1.0,
+            place: contrapposto::contact::Place::Fixed,
+        }
     };
     vec![foot("calcn_r"), foot("calcn_l")]
 }
@@ -70,6 +77,7 @@ fn scenario(model: Model, on_its_feet: bool) -> Scenario {
         free: vec![on_its_feet; n],
         loads: vec![],
         supports: if on_its_feet { feet(&model) } else { vec![] },
+        limits: vec![],
         tasks: if on_its_feet { vec![TaskSettings { goal: effort(&model), above_relief: false }] } else { vec![] },
         events: vec![],
         strategies: vec![],
@@ -115,8 +123,15 @@ fn a_search_is_finite_or_refused_by_name() {
         println!("{law}");
         let model = model(law, operations);
         let (start, supports, goals) = (model.default_posture(), feet(&model), [effort(&model)]);
-        let search =
-            Search { model: &model, start: &start, supports: &supports, goals: &goals, loads: &[], locked: &[] };
+        let search = Search {
+            model: &model,
+            start: &start,
+            supports: &supports,
+            limits: &[],
+            goals: &goals,
+            loads: &[],
+            locked: &[],
+        };
         match equilibria(&search, Options { max_steps: 60, ..Options::least_effort() }) {
             Ok(found) => {
                 let best = &found.postures[0];

@@ -41,7 +41,14 @@ impl Setting {
         let foot = |name: &str| {
             let segment = model.segment(name).unwrap();
             let corners = model.segments()[segment].patch.clone();
-            Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+            Support {
+                segment,
+                corners,
+                normal: Vector3::y(),
+                friction: 0.6,
+                share_max: 1.0,
+                place: contrapposto::contact::Place::Fixed,
+            }
         };
         let hand = model.segment("hand_r").unwrap();
         let mut kinematics = Kinematics::new(&model);
@@ -70,6 +77,7 @@ impl Setting {
             free: vec![true; n],
             loads: self.loads.clone(),
             supports: self.supports.clone(),
+            limits: vec![],
             tasks: self.goals.iter().map(task).collect(),
             events: vec![],
             strategies: vec![],
@@ -183,7 +191,7 @@ impl Setting {
     fn search(&self) -> Stage<'_> {
         Box::new(move |posture| {
             let (model, supports, goals, loads) = (&self.model, &self.supports, &self.goals, &self.loads);
-            let search = Search { model, start: posture, supports, goals, loads, locked: &[] };
+            let search = Search { model, start: posture, supports, limits: &[], goals, loads, locked: &[] };
             format!(
                 "{:?}",
                 equilibria(

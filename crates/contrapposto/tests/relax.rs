@@ -47,7 +47,14 @@ impl Standing {
             let segment = model.segment(&format!("calcn_{side}")).unwrap();
             let corners = model.segments()[segment].patch.clone();
             let share_max = if resting == Some(side) { 0.15 } else { 1.0 };
-            Support { segment, corners, normal: V::y(), friction: 0.6, share_max }
+            Support {
+                segment,
+                corners,
+                normal: V::y(),
+                friction: 0.6,
+                share_max,
+                place: contrapposto::contact::Place::Fixed,
+            }
         };
         // In the order of right and left in either case.
         let supports = vec![support("r"), support("l")];
@@ -79,6 +86,7 @@ impl Standing {
             model: &self.model,
             start: &self.start,
             supports: &self.supports,
+            limits: &[],
             goals: &self.goals,
             loads: &self.loads,
             locked: &[],

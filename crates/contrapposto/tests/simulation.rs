@@ -30,6 +30,7 @@ fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
         start,
         free,
         supports: vec![],
+        limits: vec![],
         tasks: vec![],
         events: vec![],
         strategies: vec![],

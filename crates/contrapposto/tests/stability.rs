@@ -209,7 +209,14 @@ fn crouched(bend: f64) -> (Model, Posture, Vec<Support>) {
     let support = |name: &str| {
         let segment = model.segment(name).unwrap();
         let corners = model.segments()[segment].patch.clone();
-        Support { segment, corners, normal: V::y(), friction: 0.6, share_max: 1.0 }
+        Support {
+            segment,
+            corners,
+            normal: V::y(),
+            friction: 0.6,
+            share_max: 1.0,
+            place: contrapposto::contact::Place::Fixed,
+        }
     };
     let supports = vec![support("calcn_r"), support("calcn_l")];
     (model, posture, supports)

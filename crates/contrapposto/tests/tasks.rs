@@ -14,8 +14,8 @@ use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::tasks::{
-    CenterOfMass, CenterOfMassGoal, Distance, Effort, HalfPlane, LookAt, Orientation, Placement, Point, Posture, Task,
-    half_planes,
+    Bounds, Carried, CenterOfMass, CenterOfMassGoal, Component, Distance, Effort, HalfPlane, LookAt, Orientation,
+    Placement, Point, Posture, Task, half_planes,
 };
 use hierarchical_least_squares::Level;
 use nalgebra::{Isometry3, Unit, UnitQuaternion};
@@ -98,6 +98,19 @@ fn tasks(rng: &mut Pcg64, model: &Model) -> Vec<Task> {
     if posture.weights.iter().any(|w| *w > 0.0) {
         tasks.push(Task::Posture(posture));
     }
+    let mut component = |of| {
+        let along = Unit::new_normalize(vector(rng, 1.0));
+        Component {
+            of,
+            along,
+            limits: [(0.2, 0.2), (-0.1, f64::INFINITY), (f64::NEG_INFINITY, 0.3)][rng.random_range(0..3)],
+        }
+    };
+    let components = vec![
+        component(Carried::Point(V::new(0.1, -0.2, 0.3))),
+        component(Carried::Direction(Unit::new_normalize(V::new(-0.3, 0.2, 0.9)))),
+    ];
+    tasks.push(Task::Bounds(Bounds { segment: rng.random_range(0..model.segments().len()), components }));
     if model.mass() > 0.0 {
         let goal = CenterOfMassGoal::At { target: vector(rng, 1.0), axes: some_axes(rng) };
         tasks.push(Task::CenterOfMass(CenterOfMass { goal }));
@@ -217,7 +230,7 @@ impl Difference for [&[f64]; 2] {
 }
 
 fn report(worst: &BTreeMap<&'static str, (f64, f64, f64)>) {
-    assert_eq!(worst.len(), 8, "{worst:?}");
+    assert_eq!(worst.len(), 9, "{worst:?}");
     for (kind, (error, low, high)) in worst {
         println!("{kind}: worst relative difference {error:.1e}; halved step: error falls by {low:.3}..{high:.3}");
     }

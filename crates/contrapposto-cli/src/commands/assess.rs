@@ -145,7 +145,14 @@ fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
         let Some(normal) = (-model.gravity()).try_normalize(1e-9) else {
             return Err(refuse("without gravity there is no ground".to_owned()));
         };
-        supports.push(Support { segment, corners, normal, friction: FRICTION, share_max: 1.0 });
+        supports.push(Support {
+            segment,
+            corners,
+            normal,
+            friction: FRICTION,
+            share_max: 1.0,
+            place: contrapposto::contact::Place::Fixed,
+        });
     }
     if let Some((segment, _)) = patches.iter().find(|(of, _)| !supports.iter().any(|support| support.segment == *of)) {
         let name = &model.segments()[*segment].name;

@@ -47,6 +47,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         model: &scenario.model,
         start: &scenario.start,
         supports: &scenario.supports,
+        limits: &scenario.limits,
         goals: &scenario.goals,
         loads: &scenario.loads,
         locked: &scenario.locked,

@@ -55,6 +55,8 @@ fn part_path(part: TaskPart) -> &'static [&'static str] {
         TaskPart::Weight | TaskPart::WeightedCoordinate => &["weights"],
         TaskPart::LeastStrength | TaskPart::Coordinate => &["coordinates"],
         TaskPart::Axis => &["axes"],
+        // No file writes limits of its own.
+        TaskPart::Limit => &["kind"],
     }
 }
 

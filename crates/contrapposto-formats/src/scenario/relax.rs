@@ -27,6 +27,8 @@ pub struct RelaxScenario {
     pub loads: Vec<Load>,
     /// The supports that carry it.
     pub supports: Vec<Support>,
+    /// Inequalities above all tasks.
+    pub limits: Vec<Task>,
     /// Tasks, the most important first; one of them is effort.
     pub goals: Vec<PriorityLevel>,
     /// A name for every task of every goal.
@@ -79,6 +81,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
         locked,
         loads,
         supports,
+        limits: vec![],
         goals,
         labels,
         effort_added,

@@ -54,6 +54,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Sc
         free,
         loads,
         supports,
+        limits: vec![],
         tasks,
         events,
         strategies,

@@ -1,6 +1,6 @@
 //! Reads what carries the body: segments with their patches, planes and friction.
 
-use contrapposto::contact::Support;
+use contrapposto::contact::{Place, Support};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{LARGEST, Model};
 use nalgebra::Vector3;
@@ -68,7 +68,7 @@ pub(super) fn supports(
             reader.check_gap(&corners, normal, point.into())?;
         }
         let (friction, share_max) = (text.friction.unwrap_or(FRICTION), text.share_max.unwrap_or(1.0));
-        Ok(Support { segment, corners, normal, friction, share_max })
+        Ok(Support { segment, corners, normal, friction, share_max, place: Place::Fixed })
     };
     texts.iter().zip(segments).enumerate().map(support).collect()
 }

@@ -92,6 +92,7 @@ impl Problem {
                 normal: Vector3::z(),
                 friction: f64::INFINITY,
                 share_max: 1.0,
+                place: contrapposto::contact::Place::Fixed,
             }
         };
         let supports = if standing { ["LeftFoot", "RightFoot"].map(support).to_vec() } else { vec![] };

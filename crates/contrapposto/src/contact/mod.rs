@@ -11,4 +11,4 @@ mod support;
 pub use forces::{Balance, ContactForces};
 pub use missing::{Condition, Missing};
 pub(crate) use rows::{Unknowns, bounds, friction_rows, share_row};
-pub use support::{FACES, Support, SupportError, root_rates};
+pub use support::{FACES, Place, Region, Support, SupportError, root_rates};

@@ -1,5 +1,7 @@
 //! Defines a support: a patch of a segment that rests on a plane.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::Vector3;
 
 use crate::model::{LARGEST, Model, Motion};
@@ -21,6 +23,26 @@ pub struct Support {
     pub friction: f64,
     /// Greatest share of the whole weight, loads included, that the normal force should carry; 1 or more for no limit.
     pub share_max: f64,
+    /// Whether the patch stays where it is at the start.
+    pub place: Place,
+}
+
+/// Whether a patch stays where it is at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// It stays.
+    Fixed,
+    /// It lies flat on the plane of its start, and may shift and turn on it.
+    Free(Region),
+}
+
+/// The places that a free support may take on its plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Corners of a convex polygon in which the middle of the patch stays, ground, m; seen along the normal. Empty for no limit.
+    pub corners: Vec<Vector3<f64>>,
+    /// Least and greatest turn about the normal from the start, rad, within a quarter turn.
+    pub turn: (f64, f64),
 }
 
 /// Why a support was refused.
@@ -71,11 +93,22 @@ impl Support {
         let length = self.normal.norm();
         check((length - 1.0).abs() <= 1e-6, "length of the normal", length, "1")?;
         check(self.friction >= 0.0, "friction", self.friction, "not negative")?;
-        check(self.share_max >= 0.0, "greatest share of weight", self.share_max, "not negative")
+        check(self.share_max >= 0.0, "greatest share of weight", self.share_max, "not negative")?;
+        let Place::Free(Region { corners, turn: (least, greatest) }) = &self.place else { return Ok(()) };
+        for &value in corners.iter().flatten() {
+            check(value.abs() <= LARGEST, "a corner of the region (m)", value, "finite and at most 1e9 in size")?;
+        }
+        check((-FRAC_PI_2..=0.0).contains(least), "least turn (rad)", *least, "from a quarter turn back to 0")?;
+        check((0.0..=FRAC_PI_2).contains(greatest), "greatest turn (rad)", *greatest, "from 0 to a quarter turn")
+    }
+
+    /// The middle of the patch, segment frame, m.
+    pub fn middle(&self) -> Vector3<f64> {
+        self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64
     }
 
     /// Normal, and two axes of the plane.
-    pub(super) fn axes(&self) -> [Vector3<f64>; 3] {
+    pub(crate) fn axes(&self) -> [Vector3<f64>; 3] {
         let across = self.normal.cross(&Vector3::ith(self.normal.iamin(), 1.0)).normalize();
         [self.normal, across, self.normal.cross(&across)]
     }

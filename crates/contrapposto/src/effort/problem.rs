@@ -18,6 +18,8 @@ pub(crate) struct EffortProblem<'b> {
     pub(crate) model: &'b Model,
     /// Placements of the supports.
     pub(crate) places: &'b PriorityLevel,
+    /// Inequalities above all levels.
+    pub(crate) limits: &'b PriorityLevel,
     /// Levels above effort.
     pub(crate) above: &'b [PriorityLevel],
     /// The level of effort.
@@ -30,9 +32,9 @@ pub(crate) struct EffortProblem<'b> {
 }
 
 impl EffortProblem<'_> {
-    /// Levels of constraints on the posture: placements of supports, then the levels above effort.
+    /// Levels of constraints on the posture: placements of supports, limits, then the levels above effort.
     pub(crate) fn constraint_levels(&self) -> impl Iterator<Item = &PriorityLevel> {
-        std::iter::once(self.places).chain(self.above)
+        [self.places, self.limits].into_iter().chain(self.above)
     }
 
     /// Coordinates whose relative loads count as effort, in the order of the residual.

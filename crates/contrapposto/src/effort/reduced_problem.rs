@@ -20,6 +20,7 @@ pub(crate) struct ReducedProblem {
     effort: PriorityLevel,
     /// No supports: an empty level.
     places: PriorityLevel,
+    limits: PriorityLevel,
     above: Vec<PriorityLevel>,
     contact: ContactForces,
 }
@@ -46,6 +47,9 @@ impl ReducedProblem {
         let mut kinematics = Kinematics::new(model);
         kinematics.update(model, posture)?;
         let (reduced, places) = reduced(model, &kinematics.rotations, &kinematics.origins, &moves);
+        // The regions of free supports: nothing here moves a support.
+        let moves = |task: &&Task| !matches!(task, Task::Bounds(_));
+        let limits = problem.limits.tasks.iter().filter(moves).cloned().collect();
         let mut above = problem.above.to_vec();
         for task in above.iter_mut().flat_map(|level| &mut level.tasks) {
             if let Task::Posture(task) = task {
@@ -63,6 +67,7 @@ impl ReducedProblem {
             model: reduced,
             effort: Task::Effort(Effort { coordinates }).into(),
             places: PriorityLevel::default(),
+            limits: PriorityLevel { tasks: limits, ..PriorityLevel::default() },
             above,
         }))
     }
@@ -72,6 +77,7 @@ impl ReducedProblem {
         EffortProblem {
             model: &self.model,
             places: &self.places,
+            limits: &self.limits,
             above: &self.above,
             effort: &self.effort,
             free: &self.free,

@@ -32,7 +32,14 @@ impl StandingAdult {
         let support = |name: &str| {
             let segment = model.segment(name).unwrap();
             let corners = model.segments()[segment].patch.clone();
-            Support { segment, corners, normal: Vector3::y(), friction: 0.6, share_max: 1.0 }
+            Support {
+                segment,
+                corners,
+                normal: Vector3::y(),
+                friction: 0.6,
+                share_max: 1.0,
+                place: crate::contact::Place::Fixed,
+            }
         };
         let contact = ContactForces::new(&model, vec![support("calcn_r"), support("calcn_l")]).unwrap();
         let hand = model.segment("hand_r").unwrap();
@@ -71,6 +78,7 @@ impl StandingAdult {
             let problem = EffortProblem {
                 model: &self.model,
                 places: &places,
+                limits: &PriorityLevel::default(),
                 above: std::slice::from_ref(&self.above),
                 effort: &self.effort,
                 loads: &self.loads,

@@ -128,6 +128,7 @@ impl<'a> Finder<'a> {
             let mut engine =
                 Engine::with_supports(search.model, search.start, supports, levels, search.loads, options)?;
             search.locked.iter().for_each(|&rate| engine.lock(rate));
+            search.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
             Ok::<_, SearchError>(engine)
         };
         let exploratory = EXPLORATORY_STEPS.min(options.max_steps);

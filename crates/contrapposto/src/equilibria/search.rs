@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::EngineError;
 use crate::statics::Load;
-use crate::tasks::PriorityLevel;
+use crate::tasks::{PriorityLevel, Task};
 
 /// Body, supports and tasks.
 #[derive(Clone, Debug)]
@@ -18,6 +18,8 @@ pub struct Search<'a> {
     pub supports: &'a [Support],
     /// Tasks, the most important first. Effort of all muscles comes last where no level asks for effort.
     pub goals: &'a [PriorityLevel],
+    /// Inequalities above all goals.
+    pub limits: &'a [Task],
     /// Loads on the body besides its weight.
     pub loads: &'a [Load],
     /// Rates that do not move, besides those of locked coordinates.

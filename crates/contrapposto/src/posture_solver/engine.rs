@@ -27,7 +27,7 @@ use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::Load;
-use crate::tasks::PriorityLevel;
+use crate::tasks::{PriorityLevel, Task};
 use hierarchical_least_squares::Solver;
 
 /// Brings a body toward priority levels. Nothing is allocated after the first step.
@@ -104,6 +104,17 @@ impl<'a> Engine<'a> {
             self.iterate.hold_root(rate);
             self.slope.hold_root(rate);
         }
+    }
+
+    /// Adds an inequality, of a body on supports: below the places of the supports, above all levels.
+    ///
+    /// # Errors
+    /// [`EngineError::Limit`] for a task that does not fit the model.
+    pub fn limit(&mut self, task: Task) -> Result<(), EngineError> {
+        self.settings.limit(task)?;
+        self.linearisation = Linearisation::new(&self.settings, self.iterate.contact.forces().len());
+        self.solver = self.linearisation.new_solver();
+        Ok(())
     }
 
     /// The levels, to move targets between steps. A changed level must still fit the model; effort must stay where it

@@ -17,6 +17,9 @@ pub enum EngineError {
         /// Why.
         error: TaskError,
     },
+    /// A limit does not fit the model.
+    #[error("limit: {0}")]
+    Limit(TaskError),
     /// A half-space does not fit the model.
     #[error("priority {}: a half-space {problem}", level + 1)]
     HalfSpace {

@@ -1,7 +1,7 @@
 //! Writes the problem of one step: rows of all levels, and bounds of the step.
 //!
 //! Unknown are the changes of all rates and, on supports, of all contact forces. In strict order of priority: friction
-//! and equilibrium of the root, places of the supports, greatest shares of the supports, then the caller's levels. A
+//! and equilibrium of the root, places of the supports, limits, greatest shares of the supports, then the caller's levels. A
 //! row is `lower - value <= J step <= upper - value` ([`crate::tasks`]).
 
 use super::iterate::Iterate;
@@ -54,6 +54,7 @@ impl Linearisation {
         if let Some(placements) = &settings.placements {
             self.write_contact_rows(settings, iterate);
             self.write_level(settings, iterate, placements, 1);
+            self.write_level(settings, iterate, &settings.limits, 2);
         }
         for (k, level) in settings.levels[..count].iter().enumerate() {
             self.write_level(settings, iterate, level, first + k);
@@ -93,7 +94,7 @@ impl Linearisation {
         for (i, support) in contact.supports().iter().enumerate() {
             let corners = contact.corners(i);
             friction_rows(&mut self.problem.levels[0], &mut self.row, support, corners.clone(), unknowns);
-            share_row(&mut self.problem.levels[2], &mut self.row, support, corners, unknowns);
+            share_row(&mut self.problem.levels[3], &mut self.row, support, corners, unknowns);
         }
         let weight = contact.weight();
         for &rate in contact.root() {

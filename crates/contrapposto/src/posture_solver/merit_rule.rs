@@ -241,7 +241,7 @@ fn limit_feasibility_step(level: &mut Level) {
 }
 
 /// The multipliers of rows with a second derivative: of the root's equilibrium (the last rows of the first level), of
-/// the supports' places, and of the tasks above effort.
+/// the supports' places, of the limits, and of the tasks above effort.
 fn gather(effort: &EffortProblem<'_>, above: &[Level], first: usize, all: &[f64], gathered: &mut Vec<f64>) {
     gathered.clear();
     let mut rest = all;
@@ -251,7 +251,7 @@ fn gather(effort: &EffortProblem<'_>, above: &[Level], first: usize, all: &[f64]
         let tasks = |level: &PriorityLevel| ..level.tasks.iter().map(Task::rows).sum();
         match k {
             0 => gathered.extend_from_slice(&own[own.len() - effort.contact.root().len()..]),
-            1 => gathered.extend_from_slice(own),
+            1 | 2 => gathered.extend_from_slice(own),
             _ if k < first => {}
             _ => gathered.extend_from_slice(&own[tasks(&effort.above[k - first])]),
         }

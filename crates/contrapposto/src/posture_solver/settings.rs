@@ -1,8 +1,6 @@
 //! The problem as it is given: model, priority levels, supports, loads, locked coordinates and options. A step changes
 //! nothing here.
 
-use nalgebra::Vector3;
-
 use super::error::EngineError;
 use super::options::Options;
 use super::tolerances::RANGE_ROUNDING;
@@ -14,11 +12,11 @@ use crate::kinematics::Kinematics;
 use crate::model::{LARGEST, Model};
 use crate::posture::Posture;
 use crate::statics::Load;
-use crate::tasks::{Placement, PriorityLevel, Task};
+use crate::tasks::{PriorityLevel, Task, free_place, held_place};
 
-/// Levels of a problem on supports before those of the caller: friction and equilibrium, places of the supports,
+/// Levels of a problem on supports before those of the caller: friction and equilibrium, places of the supports, limits,
 /// shares.
-const CONTACT_LEVELS: usize = 3;
+const CONTACT_LEVELS: usize = 4;
 
 /// See the module's text.
 #[derive(Clone, Debug)]
@@ -28,6 +26,8 @@ pub(super) struct Settings<'a> {
     pub(super) levels: Vec<PriorityLevel>,
     /// Placements that the supported segments keep; `None` without equilibrium.
     pub(super) placements: Option<PriorityLevel>,
+    /// Inequalities below the placements and above the caller's levels.
+    pub(super) limits: PriorityLevel,
     pub(super) loads: Vec<Load>,
     pub(super) options: Options,
     /// By rate: it does not change.
@@ -71,6 +71,7 @@ impl<'a> Settings<'a> {
             effort_level: levels.iter().position(|level| level.tasks.iter().any(effort)),
             levels,
             placements: None,
+            limits: PriorityLevel::default(),
             loads: vec![],
             options,
             locked: locked.collect(),
@@ -83,20 +84,27 @@ impl<'a> Settings<'a> {
         Ok(settings)
     }
 
-    /// Supported segments keep the placements that they have in `start`.
+    /// Supported segments keep the placements that they have in `start`, free ones lie flat within their regions.
     pub(super) fn place_supports(&mut self, start: &Posture, supports: &[Support]) -> Result<(), EngineError> {
         let mut kinematics = Kinematics::new(self.model);
         kinematics.update(self.model, start).map_err(JointTorquesError::from)?;
         let mut placements = PriorityLevel { hard: true, ..PriorityLevel::default() };
-        for Support { segment, .. } in supports {
-            let known = |task: &Task| matches!(task, Task::Placement(placement) if placement.segment == *segment);
-            if !placements.tasks.iter().any(known) {
-                let target = kinematics.placement(self.model, *segment);
-                let placement = Placement { segment: *segment, point: Vector3::zeros(), target };
-                placements.tasks.push(Task::Placement(placement));
+        for support in supports {
+            let place = held_place(support, self.model, &kinematics);
+            if !placements.tasks.contains(&place) {
+                placements.tasks.push(place);
+                self.limits.tasks.extend(free_place(support, self.model, &kinematics));
             }
         }
         self.placements = Some(placements);
+        Ok(())
+    }
+
+    /// Adds an inequality above the caller's levels.
+    pub(super) fn limit(&mut self, task: Task) -> Result<(), EngineError> {
+        task.check(self.model).map_err(EngineError::Limit)?;
+        self.quantities = self.quantities.with(task.quantities());
+        self.limits.tasks.push(task);
         Ok(())
     }
 
@@ -139,6 +147,7 @@ impl<'a> Settings<'a> {
         Some(EffortProblem {
             model: self.model,
             places,
+            limits: &self.limits,
             above: &self.levels[..level],
             effort: &self.levels[level],
             loads: &self.loads,

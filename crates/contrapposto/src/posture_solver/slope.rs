@@ -93,7 +93,8 @@ impl SlopeAlongMotion {
     fn write_constraints(&mut self, settings: &Settings<'_>, iterate: &Iterate, above: usize) {
         let level = &mut self.problem.levels[0];
         level.clear();
-        for task in settings.placements.iter().chain(&settings.levels[..above]).flat_map(|level| &level.tasks) {
+        let levels = settings.placements.iter().chain([&settings.limits]).chain(&settings.levels[..above]);
+        for task in levels.flat_map(|level| &level.tasks) {
             if !matches!(task, Task::Effort(_)) {
                 task.evaluate(settings.model, &iterate.torques, level);
             }

@@ -294,5 +294,6 @@ fn engine<'a>(
             engine.lock(i);
         }
     }
+    scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
     Ok(engine)
 }

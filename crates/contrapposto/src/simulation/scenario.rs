@@ -103,6 +103,8 @@ pub struct Scenario {
     pub loads: Vec<Load>,
     /// Supports of the body. Without supports the root is held as if by hand.
     pub supports: Vec<Support>,
+    /// Inequalities above all tasks.
+    pub limits: Vec<Task>,
     /// Tasks, the most important first.
     pub tasks: Vec<TaskSettings>,
     /// Changes during the run, the earliest first.

@@ -36,6 +36,8 @@ pub enum TaskPart {
     Weight,
     /// Least strength of a muscle group over all angles.
     LeastStrength,
+    /// Limited components.
+    Limit,
     /// Ground axes asked for.
     Axis,
     /// Edges of the polygon.
@@ -61,6 +63,7 @@ impl std::fmt::Display for TaskPart {
             Self::EdgeNormal => "length of an edge's normal",
             Self::Weight => "weight",
             Self::LeastStrength => "least strength (N m)",
+            Self::Limit => "limit",
             Self::Axis => "axis",
             Self::Edge => "edge of a polygon",
             Self::Coordinate => "coordinate",

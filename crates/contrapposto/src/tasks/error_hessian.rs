@@ -5,6 +5,7 @@
 
 use nalgebra::Vector3;
 
+use super::bounds::Carried;
 use super::center_of_mass::CenterOfMassGoal;
 use super::task::Task;
 use crate::kinematics::Kinematics;
@@ -60,6 +61,18 @@ fn add_gradient_loads(task: &Task, model: &Model, weights: &[f64], loads: &mut V
         Task::Placement(task) => {
             loads.push(world(task.segment, task.point, vector(weights)));
             loads.push(couple(task.segment, vector(&weights[3..])));
+        }
+        Task::Bounds(task) => {
+            for (component, w) in task.components.iter().zip(weights) {
+                let force = *w * component.along.into_inner();
+                match component.of {
+                    Carried::Point(point) => loads.push(world(task.segment, point, force)),
+                    Carried::Direction(direction) => {
+                        loads.push(world(task.segment, direction.into_inner(), force));
+                        loads.push(world(task.segment, Vector3::zeros(), -force));
+                    }
+                }
+            }
         }
         Task::CenterOfMass(task) => {
             let force = match &task.goal {
@@ -125,6 +138,16 @@ mod tests {
                 }),
                 Task::CenterOfMass(tasks::CenterOfMass {
                     goal: tasks::CenterOfMassGoal::At { target: Vector3::zeros(), axes: [true, false, true] },
+                }),
+                Task::Bounds(tasks::Bounds {
+                    segment: foot,
+                    components: [
+                        Carried::Point(Vector3::new(0.1, 0.02, -0.03)),
+                        Carried::Direction(Vector3::x_axis()),
+                        Carried::Direction(Vector3::y_axis()),
+                    ]
+                    .map(|of| tasks::Component { of, along: Vector3::z_axis(), limits: (0.0, 0.0) })
+                    .to_vec(),
                 }),
                 Task::Orientation(tasks::Orientation {
                     segment: hand,

@@ -4,6 +4,7 @@
 //! are `J step = -error`. An inequality allows a range: `lower - value <= J step <= upper - value`. To first order a
 //! step that satisfies the rows reaches the target; rows keep the scale of their unit (1 m counts as much as 1 rad).
 
+mod bounds;
 mod center_of_mass;
 mod check;
 mod distance;
@@ -11,6 +12,7 @@ mod effort;
 mod error_hessian;
 mod look_at;
 mod orientation;
+mod place;
 mod placement;
 mod point;
 mod polygon;
@@ -20,6 +22,7 @@ mod rows;
 mod task;
 mod unit;
 
+pub use bounds::{Bounds, Carried, Component};
 pub use center_of_mass::{CenterOfMass, CenterOfMassGoal};
 pub use check::{TaskError, TaskPart};
 pub use distance::Distance;
@@ -28,6 +31,7 @@ pub(crate) use effort::{for_each_angle_slope, share_of_strength};
 pub(crate) use error_hessian::ErrorHessian;
 pub use look_at::LookAt;
 pub use orientation::Orientation;
+pub use place::{free_place, held_place};
 pub use placement::Placement;
 pub use point::Point;
 pub use polygon::{HalfPlane, half_planes};

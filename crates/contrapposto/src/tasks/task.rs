@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::bounds::{Bounds, Carried};
 use super::center_of_mass::{CenterOfMass, CenterOfMassGoal};
 use super::check::{Check, TaskError};
 use super::distance::Distance;
@@ -32,6 +33,8 @@ pub enum Task {
     Distance(Distance),
     /// The centre of mass at a place, or over a polygon.
     CenterOfMass(CenterOfMass),
+    /// Components of points and directions of a segment within limits.
+    Bounds(Bounds),
     /// Coordinates at wanted values.
     Posture(Posture),
     /// Little muscle torque for strength.
@@ -57,6 +60,7 @@ impl Task {
             Self::LookAt(_) => 2,
             Self::Distance(_) => 1,
             Self::CenterOfMass(task) => task.rows(),
+            Self::Bounds(task) => task.components.len(),
             Self::Posture(task) => task.weights.iter().filter(|weight| **weight > 0.0).count(),
             Self::Effort(task) => task.coordinates.len(),
         }
@@ -71,6 +75,7 @@ impl Task {
             Self::LookAt(_) => "look_at",
             Self::Distance(_) => "distance",
             Self::CenterOfMass(_) => "center_of_mass",
+            Self::Bounds(_) => "bounds",
             Self::Posture(_) => "posture",
             Self::Effort(_) => "effort",
         }
@@ -96,7 +101,8 @@ impl Task {
             Self::Point(Point { segment, .. })
             | Self::Orientation(Orientation { segment, .. })
             | Self::Placement(Placement { segment, .. })
-            | Self::LookAt(LookAt { segment, .. }) => format!("{kind} {}", name(*segment)),
+            | Self::LookAt(LookAt { segment, .. })
+            | Self::Bounds(Bounds { segment, .. }) => format!("{kind} {}", name(*segment)),
             Self::Distance(task) => format!("{kind} {} {}", name(task.a.0), name(task.b.0)),
             Self::CenterOfMass(_) | Self::Posture(_) | Self::Effort(_) => kind.to_owned(),
         }
@@ -112,6 +118,10 @@ impl Task {
             Self::Point(_) | Self::Distance(_) | Self::CenterOfMass(_) => Unit::Metre,
             Self::Orientation(_) | Self::LookAt(_) => Unit::Radian,
             Self::Placement(_) => [Unit::Metre, Unit::Radian][row / 3],
+            Self::Bounds(task) => match task.components[row].of {
+                Carried::Point(_) => Unit::Metre,
+                Carried::Direction(_) => Unit::Radian,
+            },
             Self::Posture(task) => task.unit(model, row),
             Self::Effort(_) => Unit::ShareOfStrength,
         }
@@ -129,6 +139,7 @@ impl Task {
             Self::Placement(task) => task.evaluate(model, body, level),
             Self::LookAt(task) => task.evaluate(model, body, level),
             Self::Distance(task) => task.evaluate(model, body, level),
+            Self::Bounds(task) => task.evaluate(model, body, level),
             Self::CenterOfMass(task) => task.evaluate(model, body, level),
             Self::Posture(task) => task.evaluate(model, body, level),
             Self::Effort(task) => task.evaluate(model, body, level),
@@ -147,6 +158,7 @@ impl Task {
             Self::Placement(task) => out.extend(task.error(model, body)),
             Self::LookAt(task) => out.extend(task.error(model, body)),
             Self::Distance(task) => out.push(task.error(model, body)),
+            Self::Bounds(task) => task.residual(model, body, out),
             Self::CenterOfMass(task) => task.residual(body, out),
             Self::Posture(task) => task.residual(model, body, out),
             Self::Effort(task) => task.residual(model, body, out),
@@ -165,6 +177,7 @@ impl Task {
             Self::Placement(task) => task.check(&check),
             Self::LookAt(task) => task.check(&check),
             Self::Distance(task) => task.check(&check),
+            Self::Bounds(task) => task.check(&check),
             Self::CenterOfMass(task) => task.check(&check),
             Self::Posture(task) => task.check(&check),
             Self::Effort(task) => task.check(&check),
