@@ -37,8 +37,8 @@ pub use numbers::NumberError;
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
-    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, read_pose, read_relax, read_scenario, scenario_model,
-    scenario_runs, scenario_schema,
+    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, read_pose, read_relax, read_scenario, read_scenario_with_notes,
+    scenario_model, scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use trajectory_csv::{TableRow, csv_header, csv_row};

@@ -78,7 +78,9 @@ pub struct StandingText {
     pub center_of_mass_m: [f64; 3],
     /// The supports, in the order of the scenario.
     pub supports: Vec<SupportText>,
-    /// Length of the error of each task, in the order of the scenario, in its units.
+    /// The tasks of each priority, in the order of the scenario.
+    pub tasks: Vec<String>,
+    /// Length of the error of each of `tasks`, in its units.
     pub task_errors: Vec<f64>,
     /// How far supports are off their places, m and rad together.
     pub slip: f64,
@@ -213,6 +215,7 @@ impl StandingText {
             effort: standing.effort,
             center_of_mass_m: standing.center_of_mass.into(),
             supports: scenario.supports.iter().zip(&standing.contacts).map(support).collect(),
+            tasks: scenario.tasks.iter().map(|task| task.label(&scenario.model)).collect(),
             task_errors: standing.errors.clone(),
             slip: standing.slip,
         }

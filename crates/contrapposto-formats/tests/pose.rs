@@ -12,7 +12,7 @@ use common::toml::hammer_toml;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture_solver::{Engine, Options};
-use contrapposto::tasks::{CenterOfMassGoal, Task};
+use contrapposto::tasks::{CenterOfMassGoal, LookAtGoal, Task};
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{InputError, PoseScenario, read_pose, read_scenario, scenario_model, scenario_schema};
 
@@ -132,7 +132,7 @@ fn everything_is_read() {
     assert_eq!(point.axes, [true, true, false]);
     assert_eq!((point.point.y, point.target.z), (-0.07, 0.2));
     let Task::LookAt(look) = &scenario.goals[2].tasks[1] else { panic!() };
-    assert_eq!((look.direction.x, look.eye.x, look.target.x), (1.0, 0.1, 2.0));
+    assert_eq!((look.direction.x, look.eye.x, look.goal), (1.0, 0.1, LookAtGoal::Place([2.0, 1.4, 0.0].into())));
     let Task::Orientation(turn) = &scenario.goals[3].tasks[0] else { panic!() };
     assert!((turn.target.scaled_axis().y.to_degrees() - 30.0).abs() < 1e-9);
     let Task::Distance(distance) = &scenario.goals[5].tasks[0] else { panic!() };

@@ -11,7 +11,7 @@ use common::complaint;
 use common::toml::{ODD, hammer_toml, numbers};
 use contrapposto::hybrid::Strategy;
 use contrapposto::simulation::{Sample, Scenario, ScenarioError, run};
-use contrapposto::tasks::Task;
+use contrapposto::tasks::{LookAtGoal, Task};
 use contrapposto_formats::{InputError, TableRow, csv_header, csv_row, read_scenario};
 
 /// Every scenario of the repository that moves single joints over time, and one with every table such a scenario may have.
@@ -300,7 +300,7 @@ fn events_follow_one_another() {
     let scenario = read_whole(&WHOLE.replace("[run]", move_gaze)).unwrap();
     let goal = &scenario.events[2].tasks[0].1;
     let (Task::LookAt(look), Task::Point(point)) = (&goal.tasks[0], &goal.tasks[1]) else { panic!("{goal:?}") };
-    assert_eq!((look.target.x, point.target.x), (1.0, 0.3));
+    assert_eq!((look.goal, point.target.x), (LookAtGoal::Place([1.0; 3].into()), 0.3));
 }
 
 /// An event at the very end happens; one after the last whole step does not, and is refused.

@@ -13,7 +13,7 @@ use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{
-    CenterOfMass, CenterOfMassGoal as Place, Distance, Effort, LookAt, Placement, Point, Posture, Task,
+    CenterOfMass, CenterOfMassGoal as Place, Distance, Effort, LookAt, LookAtGoal, Placement, Point, Posture, Task,
 };
 use hierarchical_least_squares::Level;
 use nalgebra::Vector3;
@@ -166,7 +166,7 @@ fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> V
             segment: head,
             eye: V::zeros(),
             direction: V::x_axis(),
-            target: at.station(model, head, 3.0 * V::x()),
+            goal: LookAtGoal::Place(at.station(model, head, 3.0 * V::x())),
         })
         .into(),
         Task::Distance(Distance { a: (right, point), b: (left, V::zeros()), lower: 0.0, upper: (a - b).norm() }).into(),

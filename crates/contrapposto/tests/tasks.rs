@@ -14,8 +14,8 @@ use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto::tasks::{
-    Bounds, Carried, CenterOfMass, CenterOfMassGoal, Component, Distance, Effort, HalfPlane, LookAt, Orientation,
-    Placement, Point, Posture, Task, half_planes,
+    Bounds, Carried, CenterOfMass, CenterOfMassGoal, Component, Distance, Effort, HalfPlane, LookAt, LookAtGoal,
+    Orientation, Placement, Point, Posture, Task, half_planes,
 };
 use hierarchical_least_squares::Level;
 use nalgebra::{Isometry3, Unit, UnitQuaternion};
@@ -82,7 +82,13 @@ fn tasks(rng: &mut Pcg64, model: &Model) -> Vec<Task> {
             segment: segment(rng),
             eye: vector(rng, 0.2),
             direction: unit(rng),
-            target: vector(rng, 3.0),
+            goal: LookAtGoal::Place(vector(rng, 3.0)),
+        }),
+        Task::LookAt(LookAt {
+            segment: segment(rng),
+            eye: vector(rng, 0.2),
+            direction: unit(rng),
+            goal: LookAtGoal::Direction(unit(rng)),
         }),
     ];
     let distance = |rng: &mut Pcg64, lower: f64, upper: f64| {
@@ -316,7 +322,7 @@ fn turns_of_any_size() {
             let across = Unit::new_normalize(gaze.cross(&unit(&mut rng).into_inner()));
             let line = UnitQuaternion::from_axis_angle(&across, away) * gaze;
             let target = kinematics.station(&model, hand, eye) + rng.random_range(0.3..3.0) * line;
-            let task = Task::LookAt(LookAt { segment: hand, eye, direction, target });
+            let task = Task::LookAt(LookAt { segment: hand, eye, direction, goal: LookAtGoal::Place(target) });
             let residual = evaluate(&task, &model, &posture, &[]).2;
             assert!((norm(&residual) - away).abs() < 1e-12, "{away}: {residual:?}");
             errors[1] = errors[1].max(error_of(&task, &model, &posture, h));
@@ -361,7 +367,7 @@ fn look_at_turns_the_gaze_onto_the_target() {
         let mut kinematics = Kinematics::new(&model);
         kinematics.update(&model, &posture).unwrap();
         let target = kinematics.station(&model, 0, eye) + vector(&mut rng, 2.0);
-        let task = Task::LookAt(LookAt { segment: 0, eye, direction, target });
+        let task = Task::LookAt(LookAt { segment: 0, eye, direction, goal: LookAtGoal::Place(target) });
         let (rows, values, residual) = evaluate(&task, &model, &posture, &[]);
         if norm(&residual) > 3.1 {
             continue;
@@ -382,7 +388,7 @@ fn look_at_turns_the_gaze_onto_the_target() {
     let gaze = kinematics.direction(&model, 0, direction.into_inner());
     for (along, expected) in [(-1.0, std::f64::consts::PI), (0.0, 0.0), (1.0, 0.0)] {
         let target = kinematics.station(&model, 0, eye) + along * gaze;
-        let task = Task::LookAt(LookAt { segment: 0, eye, direction, target });
+        let task = Task::LookAt(LookAt { segment: 0, eye, direction, goal: LookAtGoal::Place(target) });
         let (rows, values, residual) = evaluate(&task, &model, &posture, &[]);
         assert!(rows.iter().chain(&values).all(|x| x.is_finite()) && largest(rows) < 1e7);
         assert!((norm(&residual) - expected).abs() < 1e-5, "{residual:?}");
@@ -581,7 +587,7 @@ fn wrong_tasks_are_refused_by_name() {
     assert!(text(Task::Placement(Placement { segment: hand, point: o, target })).starts_with("placement task: length"));
     let direction = Unit::new_unchecked(o);
     assert_eq!(
-        text(Task::LookAt(LookAt { segment: hand, eye: o, direction, target: o })),
+        text(Task::LookAt(LookAt { segment: hand, eye: o, direction, goal: LookAtGoal::Place(o) })),
         "look_at task: length of the direction is 0; it must be 1"
     );
     let between = |lower, upper| Task::Distance(Distance { a: (hand, o), b: (0, o), lower, upper });

@@ -25,6 +25,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
         print_note("note", &format!("{} is ignored by `pose`; it is for `simulate`", list.join(", ")));
     }
+    scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
     let mut engine =

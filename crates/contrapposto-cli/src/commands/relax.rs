@@ -42,6 +42,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     if scenario.effort_added {
         print_note("note", "no task is of kind `effort`; the effort of all muscles was added as the last task");
     }
+    scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     let search = Search {
         model: &scenario.model,

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Run, Scenario, StopReason, Summary};
 use contrapposto_formats::tissue::fatigue_notes;
-use contrapposto_formats::{SummaryText, decisions_csv, read_scenario};
+use contrapposto_formats::{SummaryText, decisions_csv, read_scenario, read_scenario_with_notes};
 
 use self::snapshot::{SNAPSHOT, go_on, save};
 use crate::args::{DemoArgs, SimulateArgs};
@@ -33,7 +33,8 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
-    let scenario = read_scenario(&name, &bytes, model)?;
+    let (scenario, notes) = read_scenario_with_notes(&name, &bytes, model)?;
+    notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     carry_out(&scenario, &args.out, args.resume, args.figures, args.json)
 }

@@ -2,7 +2,7 @@
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture_solver::SolvedPosture;
-use contrapposto::tasks::{CenterOfMassGoal, Task};
+use contrapposto::tasks::{CenterOfMassGoal, LookAtGoal, Task};
 use contrapposto_formats::PoseScenario;
 use contrapposto_plot::{BodyFigure, BodyPosture};
 use nalgebra::Vector3;
@@ -67,8 +67,9 @@ fn marks(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<Marks, Fail> {
                 .push(unasked(task.axes, task.target, || kinematics.station(model, task.segment, task.point))),
             Task::Placement(task) => marks.targets.push(task.target.translation.vector),
             Task::LookAt(task) => {
-                marks.targets.push(task.target);
-                marks.gazes.push([kinematics.station(model, task.segment, task.eye), task.target]);
+                let LookAtGoal::Place(target) = task.goal else { continue };
+                marks.targets.push(target);
+                marks.gazes.push([kinematics.station(model, task.segment, task.eye), target]);
             }
             Task::CenterOfMass(task) => {
                 if let CenterOfMassGoal::At { target, axes } = &task.goal {

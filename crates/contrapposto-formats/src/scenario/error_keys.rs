@@ -45,7 +45,7 @@ fn part_path(part: TaskPart) -> &'static [&'static str] {
         TaskPart::Point => &["at_m"],
         TaskPart::PointA => &["a", "at_m"],
         TaskPart::PointB => &["b", "at_m"],
-        TaskPart::Target => &["target_m"],
+        TaskPart::Target | TaskPart::TargetDirection => &["target_m"],
         TaskPart::TargetQuaternion => &["target_quaternion"],
         TaskPart::Eye => &["eye_m"],
         TaskPart::Direction => &["direction"],

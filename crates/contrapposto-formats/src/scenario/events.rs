@@ -10,7 +10,6 @@ use contrapposto::tasks::PriorityLevel;
 use nalgebra::Vector3;
 
 use super::load::load;
-use super::task_text::TaskText;
 use super::text::{EventText, ScenarioText, StrategyKindText};
 use crate::input_error::{InputError, suggestion};
 use crate::toml_file::{Located, shown};
@@ -49,12 +48,13 @@ pub(super) fn change_strategies(
 }
 
 /// The events, the earliest first. `levels` and `strategies` are those of the start; each event changes what the earlier events
-/// left.
+/// left. `places`: level and place in it of each task of the file.
 pub(super) fn events(
     at: &Located,
     model: &Model,
     text: &ScenarioText,
     mut levels: Vec<PriorityLevel>,
+    places: &[(usize, usize)],
     mut strategies: Vec<Strategy>,
 ) -> Result<Vec<Event>, InputError> {
     let mut order: Vec<(usize, &EventText)> = text.event.iter().enumerate().collect();
@@ -73,7 +73,7 @@ pub(super) fn events(
             event.strategies = Some(strategies.clone());
         }
         event.loads = reader.loads()?;
-        event.tasks.extend(reader.task(&text.task, &mut levels)?);
+        event.tasks.extend(reader.task(places, &mut levels)?);
         if event.strategies.is_none() && event.loads.is_none() && event.tasks.is_empty() {
             let help = Some("give it `strategy`, `strategy_of`, `load`, or `task` and `target_m`".to_owned());
             return Err(at.error(&["event", &number], "nothing changes at this event", help));
@@ -124,7 +124,7 @@ impl Reader<'_> {
     /// The level whose task gets a new target, with its place among `levels`, in which the target is changed.
     fn task(
         &self,
-        texts: &[TaskText],
+        places: &[(usize, usize)],
         levels: &mut [PriorityLevel],
     ) -> Result<Option<(usize, PriorityLevel)>, InputError> {
         let (task, target) = match (self.text.task, self.text.target_m) {
@@ -135,9 +135,9 @@ impl Reader<'_> {
                 return Err(self.error("target_m", "which task is meant? `task = 1` is the first", None));
             }
         };
-        let place = task.checked_sub(1).and_then(|i| places(texts).get(i).copied());
+        let place = task.checked_sub(1).and_then(|i| places.get(i).copied());
         let Some((priority, place)) = place else {
-            let message = format!("there is no task {task}; the scenario has {} of them", texts.len());
+            let message = format!("there is no task {task}; the scenario has {} of them", places.len());
             return Err(self.error("task", message, Some("1 is the first".to_owned())));
         };
         let moved = &mut levels[priority].tasks[place];
@@ -152,17 +152,4 @@ impl Reader<'_> {
     fn error(&self, key: &str, message: impl Into<String>, help: Option<String>) -> InputError {
         self.at.error(&["event", self.number, key], message, help)
     }
-}
-
-/// Where each task of the file stands: its level, and its place within the level.
-fn places(texts: &[TaskText]) -> Vec<(usize, usize)> {
-    let mut places: Vec<(usize, usize)> = vec![];
-    for text in texts {
-        places.push(match places.last() {
-            Some(&(priority, place)) if text.same_priority => (priority, place + 1),
-            Some(&(priority, _)) => (priority + 1, 0),
-            None => (0, 0),
-        });
-    }
-    places
 }

@@ -21,11 +21,12 @@ mod support;
 mod task;
 mod task_text;
 mod text;
+mod upright;
 
 pub use model::{ModelFile, scenario_model};
 pub use pose::{PoseScenario, read_pose};
 pub use relax::{RelaxScenario, read_relax};
-pub use simulate::{read_scenario, scenario_runs};
+pub use simulate::{read_scenario, read_scenario_with_notes, scenario_runs};
 pub(crate) use text::StrategyKindText;
 pub use text::scenario_schema;
 

@@ -37,6 +37,8 @@ pub struct PoseScenario {
     pub options: Options,
     /// Tables of the file that have no part in a pose.
     pub unused: Vec<&'static str>,
+    /// What was changed or added, a sentence each.
+    pub notes: Vec<String>,
 }
 
 /// Reads a scenario for a pose. `name` is the file's name for messages; `model` is the model of the file that
@@ -80,6 +82,7 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
         labels,
         options: options(at, text)?,
         unused,
+        notes: setup.notes,
         start: setup.start,
         model: setup.model,
     })

@@ -37,6 +37,8 @@ pub struct RelaxScenario {
     pub effort_added: bool,
     /// Tables of the file that have no part in it.
     pub unused: Vec<&'static str>,
+    /// What was changed or added, a sentence each.
+    pub notes: Vec<String>,
 }
 
 /// Reads a scenario for `relax`. `name` is the file's name for messages; `model` is the model of the file that
@@ -52,7 +54,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
     let setup = Setup::read(at, text, file)?;
     setup.check_ranges(at)?;
     let locked = setup.locked(at, text)?;
-    let Setup { model, start, loads, supports, levels, .. } = setup;
+    let Setup { model, start, loads, supports, levels, notes, .. } = setup;
     let supports = supports?;
     let (mut goals, mut labels) = (vec![], vec![]);
     for level in levels {
@@ -86,6 +88,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
         labels,
         effort_added,
         unused,
+        notes,
         start,
         model,
     })

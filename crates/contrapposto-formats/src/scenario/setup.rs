@@ -17,6 +17,7 @@ use super::support;
 use super::task::task;
 use super::task_text::TaskText;
 use super::text::ScenarioText;
+use super::upright::add_upright;
 use crate::input_error::InputError;
 use crate::toml_file::{Located, shown};
 
@@ -34,6 +35,8 @@ pub(super) struct Setup {
     pub(super) supports: Result<Vec<Support>, InputError>,
     /// The tasks by priority, the most important first.
     pub(super) levels: Vec<Level>,
+    /// What was changed or added, a sentence each, for the reader of the results.
+    pub(super) notes: Vec<String>,
 }
 
 /// Tasks of one priority.
@@ -43,6 +46,8 @@ pub(super) struct Level {
     pub(super) labels: Vec<String>,
     /// More important than the relief of tired muscles.
     pub(super) above_relief: bool,
+    /// Not of the file, but added by default.
+    pub(super) added: bool,
 }
 
 impl Setup {
@@ -60,8 +65,16 @@ impl Setup {
         let standing = support::segments(at, &model, &text.support)?;
         let supports = support::supports(at, &model, &text.support, &standing, &kinematics);
         let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing };
-        let levels = levels(&stage, &text.task)?;
-        Ok(Self { loads, standing, supports, levels, kinematics, start, model })
+        let mut levels = levels(&stage, &text.task)?;
+        let notes = add_upright(&stage, text, &mut levels)?.map(str::to_owned);
+        let notes = notes.into_iter().collect();
+        Ok(Self { loads, standing, supports, levels, notes, kinematics, start, model })
+    }
+
+    /// Where each task of the file stands: its level, and its place within the level.
+    pub(super) fn places(&self) -> Vec<(usize, usize)> {
+        let of_file = self.levels.iter().enumerate().filter(|(_, level)| !level.added);
+        of_file.flat_map(|(i, level)| (0..level.tasks.tasks.len()).map(move |place| (i, place))).collect()
     }
 
     /// Checks that the start lies inside all ranges; dependent coordinates may leave theirs.
@@ -137,7 +150,12 @@ fn levels(stage: &Stage<'_>, texts: &[TaskText]) -> Result<Vec<Level>, InputErro
                 let help = Some("leave it out".to_owned());
                 return Err(stage.at.key_error(&path, "no task stands before the first one", help));
             }
-            _ => levels.push(Level { tasks: task.into(), labels: vec![label], above_relief: text.above_relief }),
+            _ => levels.push(Level {
+                tasks: task.into(),
+                labels: vec![label],
+                above_relief: text.above_relief,
+                added: false,
+            }),
         }
     }
     Ok(levels)

@@ -20,6 +20,18 @@ use crate::toml_file::{Located, read_toml, shown};
 /// # Errors
 /// [`InputError`] says what is wrong, where, and what would be right.
 pub fn read_scenario(name: &str, bytes: &[u8], model: Option<Model>) -> Result<Scenario, InputError> {
+    Ok(read_scenario_with_notes(name, bytes, model)?.0)
+}
+
+/// As [`read_scenario`]; with what was changed or added, a sentence each.
+///
+/// # Errors
+/// [`InputError`] says what is wrong, where, and what would be right.
+pub fn read_scenario_with_notes(
+    name: &str,
+    bytes: &[u8],
+    model: Option<Model>,
+) -> Result<(Scenario, Vec<String>), InputError> {
     read_toml(name, bytes, |at, text| scenario(at, text, model))
 }
 
@@ -31,11 +43,12 @@ pub fn scenario_runs(name: &str, bytes: &[u8]) -> Result<bool, InputError> {
     read_toml(name, bytes, |_, text: &ScenarioText| Ok(text.run.is_some()))
 }
 
-fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Scenario, InputError> {
+fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<(Scenario, Vec<String>), InputError> {
     let setup = Setup::read(at, text, file)?;
     let (strategy, run) = tables_of_a_run(at, text)?;
     setup.check_ranges(at)?;
-    let Setup { model, start, loads, supports, levels, .. } = setup;
+    let places = setup.places();
+    let Setup { model, start, loads, supports, levels, notes, .. } = setup;
     let supports = supports?;
     let tasks: Vec<TaskSettings> =
         levels.into_iter().map(|level| TaskSettings { goal: level.tasks, above_relief: level.above_relief }).collect();
@@ -44,7 +57,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Sc
     let strategies = vec![strategy.kind.into(); model.coordinates().len()];
     let strategies = change_strategies(at, &model, &["strategy", "of"], strategies, &strategy.of)?;
     let goals = tasks.iter().map(|task| task.goal.clone()).collect();
-    let events = events(at, &model, text, goals, strategies.clone())?;
+    let events = events(at, &model, text, goals, &places, strategies.clone())?;
     let FatigueText { critical_level, recovery_level, .. } = text.fatigue;
     let scenario = Scenario {
         title: text.title.clone(),
@@ -68,7 +81,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Sc
     };
     scenario.check().map_err(|error| at.error(scenario_path(&error), in_units_of_file(&error, text, run), None))?;
     check_events_happen(at, text, &scenario.run)?;
-    Ok(scenario)
+    Ok((scenario, notes))
 }
 
 /// The tables that a run needs; a table that only a pose takes is refused.

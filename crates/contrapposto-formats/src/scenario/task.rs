@@ -2,7 +2,8 @@
 
 use contrapposto::model::{LARGEST, Placement as Pose};
 use contrapposto::tasks::{
-    CenterOfMass, CenterOfMassGoal, Distance, Effort, LookAt, Orientation, Placement, Point, Posture, Task, TaskError,
+    CenterOfMass, CenterOfMassGoal, Distance, Effort, LookAt, LookAtGoal, Orientation, Placement, Point, Posture, Task,
+    TaskError,
 };
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 
@@ -94,7 +95,7 @@ impl Reader<'_> {
         let Some(direction) = Unit::try_new(direction, 1e-9) else {
             return Err(self.error("direction", "the direction has no length", None));
         };
-        Ok(Task::LookAt(LookAt { segment, eye, direction, target: target.into() }))
+        Ok(Task::LookAt(LookAt { segment, eye, direction, goal: LookAtGoal::Place(target.into()) }))
     }
 
     fn distance(&self) -> Result<Task, InputError> {

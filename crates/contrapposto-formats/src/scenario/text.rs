@@ -40,6 +40,9 @@ pub(crate) struct ScenarioText {
     /// The tasks of the body, in order of priority.
     #[serde(default)]
     pub(crate) task: Vec<TaskText>,
+    /// The head's up axis points up, just above effort. When left out: `true` for the built-in adult on supports, where no task names
+    /// head or trunk.
+    pub(crate) upright: Option<bool>,
     /// How a pose is solved (`pose`).
     pub(crate) solver: Option<SolverText>,
     /// The kind of relief that is wanted; `simulate` needs it.

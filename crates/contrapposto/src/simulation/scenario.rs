@@ -75,6 +75,13 @@ pub struct TaskSettings {
     pub above_relief: bool,
 }
 
+impl TaskSettings {
+    /// The kinds and segments of its tasks, e.g. `point hand_r + look_at head`. The tasks must have passed [`Task::check`].
+    pub fn label(&self, model: &Model) -> String {
+        self.goal.tasks.iter().map(|task| task.label(model)).collect::<Vec<_>>().join(" + ")
+    }
+}
+
 /// A change during a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Event {

@@ -22,6 +22,8 @@ pub enum TaskPart {
     Eye,
     /// Length of a vector or quaternion; must be 1.
     Direction,
+    /// Length of a wanted direction; must be 1.
+    TargetDirection,
     /// Least distance.
     LowerLimit,
     /// Greatest distance.
@@ -56,6 +58,7 @@ impl std::fmt::Display for TaskPart {
             Self::TargetQuaternion => "length of the target's quaternion",
             Self::Eye => "eye (m)",
             Self::Direction => "length of the direction",
+            Self::TargetDirection => "length of the wanted direction",
             Self::LowerLimit => "lower limit (m)",
             Self::UpperLimit => "upper limit (m)",
             Self::Margin => "margin (m)",

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::bounds::Carried;
 use super::center_of_mass::CenterOfMassGoal;
+use super::look_at::LookAtGoal;
 use super::task::Task;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -49,8 +50,8 @@ impl ErrorHessian {
     }
 }
 
-/// Adds the loads whose generalised forces are `sum weights_i grad r_i` of its rows. Tasks of directions, distances,
-/// postures and effort are left out: their second derivatives are not known here.
+/// Adds the loads whose generalised forces are `sum weights_i grad r_i` of its rows, exact where the errors of rotations are zero.
+/// Tasks of directions toward a place, distances, postures and effort are left out: their second derivatives are not known here.
 fn add_gradient_loads(task: &Task, model: &Model, weights: &[f64], loads: &mut Vec<Load>) {
     let world = |segment, point, force| Load { segment, point, kind: LoadKind::Force(force, FixedIn::World) };
     let couple = |segment, v| Load { segment, point: Vector3::zeros(), kind: LoadKind::Couple(v, FixedIn::World) };
@@ -86,7 +87,20 @@ fn add_gradient_loads(task: &Task, model: &Model, weights: &[f64], loads: &mut V
                 loads.push(world(i, segment.center_of_mass, force * (segment.mass / mass)));
             }
         }
-        Task::LookAt(_) | Task::Distance(_) | Task::Posture(_) | Task::Effort(_) => {}
+        Task::LookAt(task) => {
+            // At error zero the rows are `-d . v` and `d . u`, with `d` fixed in ground and `u`, `v` in the segment: the distance
+            // along `d` of one point of the segment from another.
+            let LookAtGoal::Direction(wanted) = task.goal else { return };
+            let [u, v, _] = task.axes();
+            let span = u * weights[1] - v * weights[0];
+            let size = span.norm();
+            if size > 0.0 {
+                let force = wanted.into_inner() * size;
+                loads.push(world(task.segment, span / size, force));
+                loads.push(world(task.segment, Vector3::zeros(), -force));
+            }
+        }
+        Task::Distance(_) | Task::Posture(_) | Task::Effort(_) => {}
     }
 }
 
@@ -98,7 +112,7 @@ fn spread(axes: [bool; 3], weights: &[f64]) -> Vector3<f64> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{UnitQuaternion, Vector3};
+    use nalgebra::{Unit, UnitQuaternion, Vector3};
     use rand::RngExt;
     use rand_pcg::Pcg64Mcg;
 
@@ -123,6 +137,7 @@ mod tests {
             let needs = Quantities { center_of_mass: true, ..Quantities::default() };
             body.update(&model, &posture, &[], needs).unwrap();
             let hand = model.segment("hand_r").unwrap();
+            let head = model.segment("head").unwrap();
             let foot = model.segment("calcn_l").or_else(|| model.segment("foot_l")).unwrap();
             let tasks = [
                 Task::Point(tasks::Point {
@@ -152,6 +167,16 @@ mod tests {
                 Task::Orientation(tasks::Orientation {
                     segment: hand,
                     target: UnitQuaternion::from(body.kinematics().placement(&model, hand).rotation),
+                }),
+                Task::LookAt(tasks::LookAt {
+                    segment: head,
+                    eye: Vector3::zeros(),
+                    direction: Vector3::y_axis(),
+                    goal: LookAtGoal::Direction(Unit::new_normalize(body.kinematics().direction(
+                        &model,
+                        head,
+                        Vector3::y(),
+                    ))),
                 }),
             ];
             let weights: Vec<f64> =

@@ -1,12 +1,13 @@
-//! Error and Jacobian of a direction of a segment toward a place in ground.
+//! Error and Jacobian of a direction of a segment toward a place in ground, or along a direction of ground.
 //!
-//! `g` is the gaze, `d` the unit line from the eye to the target, both in ground. The error is the rotation vector that
+//! `g` is the gaze, `d` the unit line from the eye to the target or the wanted direction, both in ground. The error is the rotation vector that
 //! would turn the gaze onto the target, `a (g x d) / |g x d|` with `a` the angle between them; it has no part along the
 //! gaze, so two rows, along `u` and `v`, say it all: axes of the segment with `u, v, g` right-handed. With `d = x u + y
 //! v + z g`, `s = sqrt(x^2 + y^2)` and `f = a / s` it is `f (-y, x)`, rad.
 //!
 //! Turning the segment by `w` and moving the eye by `e` change `d`, seen from the segment, by
-//! `d x w - (e - d (d . e)) / L`, `L` the distance; `df = h (x dx + y dy) - dz`, `h = (z s - a) / s^3`.
+//! `d x w - (e - d (d . e)) / L`, `L` the distance, infinite for a direction; `df = h (x dx + y dy) - dz`,
+//! `h = (z s - a) / s^3`.
 
 use nalgebra::{UnitVector3, Vector3};
 
@@ -16,17 +17,26 @@ use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use hierarchical_least_squares::Level;
 
-/// A direction of a segment toward a place in ground.
+/// The wanted end of the gaze.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LookAtGoal {
+    /// A point that the gaze should meet, in ground, m.
+    Place(Vector3<f64>),
+    /// A direction along which the gaze should point, in ground.
+    Direction(UnitVector3<f64>),
+}
+
+/// A direction of a segment toward a place, or along a direction of ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LookAt {
     /// Index of the segment.
     pub segment: usize,
-    /// Where the gaze starts, in the segment's frame, m.
+    /// Where the gaze starts, in the segment's frame, m; for a direction any point.
     pub eye: Vector3<f64>,
     /// The gaze, in the segment's frame.
     pub direction: UnitVector3<f64>,
-    /// The point that the gaze should meet, in ground, m.
-    pub target: Vector3<f64>,
+    /// Where the gaze should end.
+    pub goal: LookAtGoal,
 }
 
 /// m. An eye nearer to its target than this meets the target with any gaze.
@@ -41,7 +51,8 @@ struct Sight {
     axes: [Vector3<f64>; 3],
     /// The line to the target in ground, of unit length.
     line: Vector3<f64>,
-    distance: f64,
+    /// Distance of the target, m; `None` for a direction.
+    distance: Option<f64>,
     /// `x`, `y` and `z` of the line in these axes, and `s`.
     across: [f64; 2],
     along: f64,
@@ -77,17 +88,19 @@ impl LookAt {
     /// `None` when the eye is at the target.
     fn sight(&self, model: &Model, body: &JointTorques) -> Option<Sight> {
         let kinematics = body.kinematics();
-        let line = self.target - kinematics.station(model, self.segment, self.eye);
-        let distance = line.norm();
-        if distance < TOUCHING {
-            return None;
-        }
-        let line = line / distance;
+        let (line, distance) = match self.goal {
+            LookAtGoal::Direction(line) => (line.into_inner(), None),
+            LookAtGoal::Place(target) => {
+                let line = target - kinematics.station(model, self.segment, self.eye);
+                let distance = line.norm();
+                if distance < TOUCHING {
+                    return None;
+                }
+                (line / distance, Some(distance))
+            }
+        };
         // Fixed in the segment, so that the rows change smoothly.
-        let direction = self.direction.into_inner();
-        let first = direction.cross(&Vector3::ith(direction.iamin(), 1.0)).normalize();
-        let axes =
-            [first, direction.cross(&first), direction].map(|axis| kinematics.direction(model, self.segment, axis));
+        let axes = self.axes().map(|axis| kinematics.direction(model, self.segment, axis));
         let [mut x, mut y, along] = axes.map(|axis| axis.dot(&line));
         let mut sine = x.hypot(y);
         if sine < BEHIND && along < 0.0 {
@@ -113,7 +126,9 @@ impl LookAt {
             body.kinematics().rotation_jacobian(model, self.segment, turn);
             let (first, second) = rows.split_at_mut(n);
             for (row, w) in [first, second].into_iter().zip(sight.slopes()) {
-                add_along(row, &((sight.line * sight.line.dot(&w) - w) / sight.distance), eye);
+                if let Some(distance) = sight.distance {
+                    add_along(row, &((sight.line * sight.line.dot(&w) - w) / distance), eye);
+                }
                 add_along(row, &w.cross(&sight.line), turn);
             }
         }
@@ -121,10 +136,20 @@ impl LookAt {
         error.into_iter().for_each(|error| equation(level, error));
     }
 
+    /// Axes `u` and `v` of the segment's frame across the gaze, and the gaze, right-handed.
+    pub(super) fn axes(&self) -> [Vector3<f64>; 3] {
+        let direction = self.direction.into_inner();
+        let first = direction.cross(&Vector3::ith(direction.iamin(), 1.0)).normalize();
+        [first, direction.cross(&first), direction]
+    }
+
     pub(super) fn check(&self, check: &Check<'_>) -> Result<(), TaskError> {
         check.segment(self.segment)?;
         check.vector(TaskPart::Eye, &self.eye)?;
         check.unit(TaskPart::Direction, self.direction.norm())?;
-        check.vector(TaskPart::Target, &self.target)
+        match self.goal {
+            LookAtGoal::Place(target) => check.vector(TaskPart::Target, &target),
+            LookAtGoal::Direction(wanted) => check.unit(TaskPart::TargetDirection, wanted.norm()),
+        }
     }
 }

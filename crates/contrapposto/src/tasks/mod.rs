@@ -29,7 +29,7 @@ pub use distance::Distance;
 pub use effort::Effort;
 pub(crate) use effort::{for_each_angle_slope, share_of_strength};
 pub(crate) use error_hessian::ErrorHessian;
-pub use look_at::LookAt;
+pub use look_at::{LookAt, LookAtGoal};
 pub use orientation::Orientation;
 pub use place::{free_place, held_place};
 pub use placement::Placement;

@@ -7,7 +7,7 @@ use super::center_of_mass::{CenterOfMass, CenterOfMassGoal};
 use super::check::{Check, TaskError};
 use super::distance::Distance;
 use super::effort::Effort;
-use super::look_at::LookAt;
+use super::look_at::{LookAt, LookAtGoal};
 use super::orientation::Orientation;
 use super::placement::Placement;
 use super::point::Point;
@@ -18,6 +18,9 @@ use crate::joint_torques::{JointTorques, Quantities};
 use crate::model::Model;
 use hierarchical_least_squares::Level;
 
+/// rad. A direction this near to straight up is called upright.
+const UPRIGHT: f64 = 1e-6;
+
 /// A task of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Task {
@@ -27,7 +30,7 @@ pub enum Task {
     Orientation(Orientation),
     /// A point and the rotation of a segment, both as wanted.
     Placement(Placement),
-    /// A direction of a segment toward a place in ground.
+    /// A direction of a segment toward a place, or along a direction of ground.
     LookAt(LookAt),
     /// Two points within a range of distances.
     Distance(Distance),
@@ -86,18 +89,23 @@ impl Task {
         match self {
             Self::Point(task) => task.target = to,
             Self::Placement(task) => task.target.translation.vector = to,
-            Self::LookAt(task) => task.target = to,
+            Self::LookAt(LookAt { goal: LookAtGoal::Place(target), .. }) => *target = to,
             Self::CenterOfMass(CenterOfMass { goal: CenterOfMassGoal::At { target, .. } }) => *target = to,
             _ => return false,
         }
         true
     }
 
-    /// The kind and the segments that it moves, e.g. `point hand_r`. The task must have passed [`Task::check`].
+    /// The kind and the segments that it moves, e.g. `point hand_r`; `head upright` for a direction of the head against gravity. The
+    /// task must have passed [`Task::check`].
     pub fn label(&self, model: &Model) -> String {
         let name = |segment: usize| &model.segments()[segment].name;
         let kind = self.kind();
         match self {
+            Self::LookAt(LookAt { segment, goal: LookAtGoal::Direction(wanted), .. }) => {
+                let upright = (wanted.into_inner() + model.gravity().normalize()).norm() < UPRIGHT;
+                if upright { format!("{} upright", name(*segment)) } else { format!("direction {}", name(*segment)) }
+            }
             Self::Point(Point { segment, .. })
             | Self::Orientation(Orientation { segment, .. })
             | Self::Placement(Placement { segment, .. })

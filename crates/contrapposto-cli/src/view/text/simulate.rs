@@ -3,10 +3,14 @@
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
-use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, StopReason, Summary};
+use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, StopReason, Summary, TaskSettings};
+use contrapposto::tasks::Task;
 
 use super::plain_table;
 use crate::output::Folder;
+
+/// m or rad. A task whose error is smaller counts as kept in the table of a run.
+const REACHED: f64 = 1e-3;
 
 /// `active, R_min 0.2: cases 3.1 x6, 3.3 x33, 2.1 x1`.
 pub(crate) fn strategy_and_cases(scenario: &Scenario, summary: &CoordinateSummary) -> String {
@@ -77,7 +81,8 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) ->
     )
 }
 
-/// `calcn_r carries 85.0 %, calcn_l 15.0 %; effort 0.097 at the start, 0.059 at the end`.
+/// `calcn_r carries 85.0 %, calcn_l 15.0 %; effort 0.097 at the start, 0.059 at the end`, and below it
+/// `tasks: point hand_r (above relief), head upright, effort`, with the error of those that are off at the end.
 fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) -> String {
     let segments = scenario.model.segments();
     let share = |(support, contact): (&Support, &Contact)| {
@@ -86,5 +91,16 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
     let mut parts: Vec<String> = scenario.supports.iter().zip(&standing.contacts).map(share).collect();
     let start = summary.effort_at_start.unwrap_or(standing.effort);
     parts.push(format!("effort {start:.4} at the start, {:.4} at the end", standing.effort));
-    parts.join(", ") + "\n"
+    let mut text = parts.join(", ") + "\n";
+    if !scenario.tasks.is_empty() {
+        let task = |(task, error): (&TaskSettings, &f64)| {
+            let place = if task.above_relief { " (above relief)" } else { "" };
+            let effort = task.goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
+            let off = if effort || *error < REACHED { String::new() } else { format!(" (off by {error:.4} m or rad)") };
+            task.label(&scenario.model) + place + &off
+        };
+        let tasks: Vec<String> = scenario.tasks.iter().zip(&standing.errors).map(task).collect();
+        text += &format!("tasks: {}\n", tasks.join(", "));
+    }
+    text
 }
