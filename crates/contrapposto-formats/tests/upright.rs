@@ -101,7 +101,7 @@ fn wrong_values_are_refused_where_they_stand() {
         &contrapposto_formats::urdf::Options::default(),
     );
     let text = "format = 1\nupright = true\n[model]\nfile = \"arm.urdf\"\n";
-    let error = read_relax("a.toml", text.as_bytes(), Some(robot.unwrap().model().unwrap())).map(|_| ());
+    let error = read_relax("a.toml", text.as_bytes(), Some(robot.unwrap().model().unwrap().model)).map(|_| ());
     let text = complaint(&error.unwrap_err());
     assert!(text.contains("label at line 2, columns 11") && text.contains("no segment `head`"), "{text}");
     assert!(text.contains("leave it out"), "{text}");
