@@ -7,6 +7,7 @@ mod error_keys;
 mod events;
 mod fatigue_choice;
 mod head;
+mod levels;
 mod load;
 mod model;
 mod names;

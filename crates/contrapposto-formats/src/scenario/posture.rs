@@ -1,10 +1,12 @@
-//! Reads values of coordinates: keys `NAME_deg`, `NAME_m` and the bare names of quaternions.
+//! Reads values of coordinates (keys `NAME_deg`, `NAME_m` and the bare names of quaternions), and which of them may move.
 
 use std::collections::BTreeMap;
 
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 
+use super::names::coordinate;
+use super::text::ScenarioText;
 use crate::input_error::{InputError, suggestion};
 use crate::toml_file::{Located, shown};
 
@@ -118,4 +120,27 @@ fn keys(model: &Model) -> Vec<String> {
         CoordinateKind::Quaternion => c.name.clone(),
     };
     model.coordinates().iter().map(key).collect()
+}
+
+/// One flag a coordinate: the coordinate may move. `otherwise` decides where the file has neither list.
+pub(super) fn free(
+    at: &Located,
+    model: &Model,
+    text: &ScenarioText,
+    otherwise: impl Fn(&Coordinate) -> bool,
+) -> Result<Vec<bool>, InputError> {
+    let (list, key, listed) = match (&text.coordinates.free, &text.coordinates.locked) {
+        (Some(_), Some(_)) => {
+            let help = Some("keep one of the two lists".to_owned());
+            return Err(at.key_error(&["coordinates", "locked"], "both `free` and `locked` are given", help));
+        }
+        (Some(list), None) => (list, "free", true),
+        (None, Some(list)) => (list, "locked", false),
+        (None, None) => return Ok(model.coordinates().iter().map(otherwise).collect()),
+    };
+    let mut flags = vec![!listed; model.coordinates().len()];
+    for (i, name) in list.iter().enumerate() {
+        flags[coordinate(at, model, &["coordinates", key, &i.to_string()], name)?] = listed;
+    }
+    Ok(flags)
 }

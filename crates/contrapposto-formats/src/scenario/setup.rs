@@ -2,20 +2,17 @@
 
 use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{Coordinate, Model};
+use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
-use contrapposto::tasks::PriorityLevel;
 
 use super::head::check_head;
+use super::levels::{Level, levels};
 use super::load::load;
 use super::model::body;
-use super::names::coordinate;
-use super::posture::{balls, rates, set};
+use super::posture::{balls, free, rates, set};
 use super::stage::Stage;
 use super::support;
-use super::task::task;
-use super::task_text::TaskText;
 use super::text::ScenarioText;
 use super::upright::add_upright;
 use crate::input_error::InputError;
@@ -37,17 +34,6 @@ pub(super) struct Setup {
     pub(super) levels: Vec<Level>,
     /// What was changed or added, a sentence each, for the reader of the results.
     pub(super) notes: Vec<String>,
-}
-
-/// Tasks of one priority.
-pub(super) struct Level {
-    pub(super) tasks: PriorityLevel,
-    /// A name for each task.
-    pub(super) labels: Vec<String>,
-    /// More important than the relief of tired muscles.
-    pub(super) above_relief: bool,
-    /// Not of the file, but added by default.
-    pub(super) added: bool,
 }
 
 impl Setup {
@@ -108,57 +94,6 @@ impl Setup {
         locked.dedup();
         Ok(locked)
     }
-}
-
-/// One flag a coordinate: the coordinate may move. `otherwise` decides where the file has neither list.
-pub(super) fn free(
-    at: &Located,
-    model: &Model,
-    text: &ScenarioText,
-    otherwise: impl Fn(&Coordinate) -> bool,
-) -> Result<Vec<bool>, InputError> {
-    let (list, key, listed) = match (&text.coordinates.free, &text.coordinates.locked) {
-        (Some(_), Some(_)) => {
-            let help = Some("keep one of the two lists".to_owned());
-            return Err(at.key_error(&["coordinates", "locked"], "both `free` and `locked` are given", help));
-        }
-        (Some(list), None) => (list, "free", true),
-        (None, Some(list)) => (list, "locked", false),
-        (None, None) => return Ok(model.coordinates().iter().map(otherwise).collect()),
-    };
-    let mut flags = vec![!listed; model.coordinates().len()];
-    for (i, name) in list.iter().enumerate() {
-        flags[coordinate(at, model, &["coordinates", key, &i.to_string()], name)?] = listed;
-    }
-    Ok(flags)
-}
-
-/// The tasks by priority.
-fn levels(stage: &Stage<'_>, texts: &[TaskText]) -> Result<Vec<Level>, InputError> {
-    let mut levels: Vec<Level> = vec![];
-    for (i, text) in texts.iter().enumerate() {
-        let task = task(stage, i, text)?;
-        let label = task.label(stage.model);
-        match levels.last_mut() {
-            Some(before) if text.same_priority => {
-                before.tasks.tasks.push(task);
-                before.labels.push(label);
-                before.above_relief |= text.above_relief;
-            }
-            None if text.same_priority => {
-                let path = ["task", &i.to_string(), "same_priority"];
-                let help = Some("leave it out".to_owned());
-                return Err(stage.at.key_error(&path, "no task stands before the first one", help));
-            }
-            _ => levels.push(Level {
-                tasks: task.into(),
-                labels: vec![label],
-                above_relief: text.above_relief,
-                added: false,
-            }),
-        }
-    }
-    Ok(levels)
 }
 
 /// Names of the tables, among these, that the file has.

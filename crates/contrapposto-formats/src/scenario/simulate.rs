@@ -9,7 +9,8 @@ use contrapposto::simulation::{
 use super::error_keys::scenario_path;
 use super::events::{change_strategies, check_events_happen, events};
 use super::names::coordinate;
-use super::setup::{Setup, free};
+use super::posture::free;
+use super::setup::Setup;
 use super::text::{FatigueText, ReliefText, RunText, ScenarioText, StrategyText, TablesText};
 use crate::input_error::InputError;
 use crate::toml_file::{Located, read_toml, shown};

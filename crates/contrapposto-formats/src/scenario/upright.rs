@@ -9,7 +9,8 @@ use contrapposto::model::Model;
 use contrapposto::tasks::{LookAt, LookAtGoal, Task};
 use nalgebra::{Unit, UnitVector3, Vector3};
 
-use super::setup::{Level, free};
+use super::levels::Level;
+use super::posture::free;
 use super::stage::Stage;
 use super::text::ScenarioText;
 use crate::input_error::InputError;
