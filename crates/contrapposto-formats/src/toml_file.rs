@@ -106,8 +106,8 @@ fn reworded(source: &Source, error: &toml::de::Error) -> InputError {
             ("not a way to reshape".to_owned(), Some(help))
         }
         _ if message.ends_with("untagged enum OnText") => {
-            let help = Some("write \"ground\", or { normal = [x, y, z], point_m = [x, y, z] }".to_owned());
-            ("neither the ground nor a plane".to_owned(), help)
+            let help = Some("write \"floor\", \"ground\", or { normal = [x, y, z], point_m = [x, y, z] }".to_owned());
+            ("neither the floor nor the ground nor a plane".to_owned(), help)
         }
         _ => {
             let plain =

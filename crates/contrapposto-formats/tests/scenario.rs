@@ -330,13 +330,13 @@ fn an_event_is_not_passed_over() {
 fn mistakes_are_refused_where_they_stand() {
     let cases: &[(&str, &str, &str, &str)] = &[
         ("segment = \"calcn_r\"", "segment = \"calcn\"", "column 11", "did you mean `calcn_"),
-        ("segment = \"calcn_l\"", "segment = \"femur_l\"", "column 6", "m off this plane"),
+        ("segment = \"calcn_l\"", "segment = \"femur_l\"", "column 6", "m above its plane and tilted by 180 degrees"),
         ("segment = \"calcn_r\"", "segment = \"head\"", "column 11", "add `corners_m = [[x, y, z], ...]`"),
         ("segment = \"calcn_l\"", "segment = \"calcn_r\"", "column 11", "a support already"),
         ("friction = 0.8", "friction = -1", "column 12", "it must lie in 0..10"),
         ("friction = 0.8", "fricton = 1", "column 1", "did you mean `friction`"),
         ("share_max = 0.4", "share_max = 1.1", "column 13", "it must lie in 0..1"),
-        ("on = \"ground\"", "on = \"floor\"", "column 6", "neither the ground nor a plane"),
+        ("on = \"ground\"", "on = \"flor\"", "column 6", "neither the floor nor the ground nor a plane"),
         (
             "on = { normal = [0, 2, 0], point_m = [0.1, 0.01, 0] }",
             "on = { normal = [0, 0, 0] }",

@@ -6,6 +6,7 @@
 mod error_keys;
 mod events;
 mod fatigue_choice;
+mod flat;
 mod head;
 mod levels;
 mod load;
@@ -19,6 +20,7 @@ mod setup;
 mod simulate;
 mod stage;
 mod support;
+mod surface;
 mod task;
 mod task_text;
 mod text;

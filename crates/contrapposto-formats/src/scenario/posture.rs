@@ -144,3 +144,13 @@ pub(super) fn free(
     }
     Ok(flags)
 }
+
+/// One flag a rate: its coordinate may move.
+pub(super) fn free_rates(at: &Located, model: &Model, text: &ScenarioText) -> Result<Vec<bool>, InputError> {
+    let free = free(at, model, text, |_| true)?;
+    let mut flags = vec![true; model.rates().len()];
+    for coordinate in (0..free.len()).filter(|&coordinate| !free[coordinate]) {
+        rates(model, coordinate).into_iter().for_each(|rate| flags[rate] = false);
+    }
+    Ok(flags)
+}

@@ -6,12 +6,13 @@ use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 
+use super::flat::lay_flat;
 use super::head::check_head;
 use super::levels::{Level, levels};
 use super::load::load;
 use super::model::body;
-use super::posture::{balls, free, rates, set};
-use super::stage::Stage;
+use super::posture::{balls, free, free_rates, rates, set};
+use super::stage::{Stage, Start};
 use super::support;
 use super::text::ScenarioText;
 use super::upright::add_upright;
@@ -44,16 +45,19 @@ impl Setup {
         let mut start = model.default_posture();
         set(at, &model, &["posture"], &text.posture, &mut start)?;
         start.displace(&model, &vec![0.0; model.rates().len()]);
-        let mut kinematics = Kinematics::new(&model);
-        kinematics.update(&model, &start).map_err(|error| at.error(&["posture"], error.to_string(), None))?;
+        let mut start = Start::new(at, &model, start)?;
         let load = |(i, text): (usize, _)| load(at, &model, &["load", &i.to_string()], text);
         let loads = text.load.iter().enumerate().map(load).collect::<Result<_, _>>()?;
         let standing = support::segments(at, &model, &text.support)?;
-        let supports = support::supports(at, &model, &text.support, &standing, &kinematics);
+        let mut notes = vec![];
+        let supports = match support::resting(at, text, &model, &standing) {
+            Ok(resting) => Ok(lay_flat(at, &model, &free_rates(at, &model, text)?, &mut start, resting, &mut notes)?),
+            Err(error) => Err(error),
+        };
+        let Start { posture: start, kinematics } = start;
         let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing };
         let mut levels = levels(&stage, &text.task)?;
-        let notes = add_upright(&stage, text, &mut levels)?.map(str::to_owned);
-        let notes = notes.into_iter().collect();
+        notes.extend(add_upright(&stage, text, &mut levels)?.map(str::to_owned));
         Ok(Self { loads, standing, supports, levels, notes, kinematics, start, model })
     }
 

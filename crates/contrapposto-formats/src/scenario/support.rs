@@ -1,19 +1,24 @@
 //! Reads what carries the body: segments with their patches, planes and friction.
 
 use contrapposto::contact::{Place, Support};
-use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{LARGEST, Model};
 use nalgebra::Vector3;
 
 use super::names;
-use super::task_text::{OnText, PlaneText, SupportText};
+use super::surface::Resting;
+use super::task_text::{GroundText, OnText, SupportText};
+use super::text::ScenarioText;
 use crate::input_error::InputError;
 use crate::toml_file::{Located, shown};
 
 /// Friction of a support that names none: shoe on floor.
 const FRICTION: f64 = 0.6;
-/// How far the middle of a patch may be from the plane it stands on, m.
-const LARGEST_GAP: f64 = 0.05;
+/// Highest step, m.
+const HIGHEST_STEP: f64 = 2.0;
+/// Segments of the built-in adult that stand on the floor unless the file says otherwise.
+const FEET: [&str; 6] = ["calcn_r", "calcn_l", "toes_r", "toes_l", "talus_r", "talus_l"];
+/// Segments whose patch is flesh: it takes the shape of its surface (assumed).
+const SOFT: [&str; 5] = ["pelvis", "abdomen", "torso", "femur_r", "femur_l"];
 
 /// The segments of all supports, each named once; and checks their numbers.
 pub(super) fn segments(at: &Located, model: &Model, texts: &[SupportText]) -> Result<Vec<usize>, InputError> {
@@ -44,7 +49,13 @@ fn check_numbers(at: &Located, i: usize, text: &SupportText) -> Result<(), Input
     {
         return error("corners_m", "a patch has 1 to 64 corners, none farther than 1e9 m".to_owned());
     }
-    if let OnText::Plane(plane) = &text.on
+    if let Some(step) = text.step_m.filter(|step| !(0.0..=HIGHEST_STEP).contains(step)) {
+        return error(
+            "step_m",
+            format!("step_m is {} m; it must lie in 0..{HIGHEST_STEP}, above the floor", shown(step)),
+        );
+    }
+    if let Some(OnText::Plane(plane)) = &text.on
         && plane.normal.iter().chain(plane.point_m.iter().flatten()).any(|value| value.abs() > LARGEST)
     {
         return error("on", "a number of the plane is too large; 1e9 at most".to_owned());
@@ -52,32 +63,36 @@ fn check_numbers(at: &Located, i: usize, text: &SupportText) -> Result<(), Input
     Ok(())
 }
 
-/// All supports of a scenario, in its start. `segments`: those of [`segments`].
-pub(super) fn supports(
+/// All supports of a scenario with their planes. `segments`: those of [`segments`].
+pub(super) fn resting(
     at: &Located,
+    text: &ScenarioText,
     model: &Model,
-    texts: &[SupportText],
     segments: &[usize],
-    kinematics: &Kinematics,
-) -> Result<Vec<Support>, InputError> {
-    let support = |(i, (text, &segment)): (usize, (&SupportText, &usize))| {
-        let reader = Reader { at, model, kinematics, text, segment, number: i.to_string() };
+) -> Result<Vec<Resting>, InputError> {
+    let built_in = text.model.file.is_none();
+    let resting = |(i, (text, &segment)): (usize, (&SupportText, &usize))| {
+        let name = model.segments()[segment].name.as_str();
+        let reader = Reader { at, model, text, segment, number: i.to_string() };
         let corners = reader.corners()?;
-        let normal = reader.normal()?;
-        if let OnText::Plane(PlaneText { point_m: Some(point), .. }) = text.on {
-            reader.check_gap(&corners, normal, point.into())?;
-        }
+        let on = reader.on(built_in && FEET.contains(&name))?;
+        let normal = reader.normal(on)?;
+        let (height, on_floor) = match on {
+            OnText::Named(GroundText::Ground) => (None, false),
+            OnText::Named(GroundText::Floor) => (Some(text.step_m.unwrap_or(0.0)), true),
+            OnText::Plane(plane) => (plane.point_m.map(|point| normal.dot(&Vector3::from(point))), false),
+        };
         let (friction, share_max) = (text.friction.unwrap_or(FRICTION), text.share_max.unwrap_or(1.0));
-        Ok(Support { segment, corners, normal, friction, share_max, place: Place::Fixed })
+        let support = Support { segment, corners, normal, friction, share_max, place: Place::Fixed };
+        Ok(Resting { support, height, on_floor, soft: SOFT.contains(&name) })
     };
-    texts.iter().zip(segments).enumerate().map(support).collect()
+    text.support.iter().zip(segments).enumerate().map(resting).collect()
 }
 
 /// Reads one support.
 struct Reader<'a> {
     at: &'a Located<'a>,
     model: &'a Model,
-    kinematics: &'a Kinematics,
     text: &'a SupportText,
     segment: usize,
     number: String,
@@ -98,32 +113,29 @@ impl Reader<'_> {
         Ok(corners)
     }
 
+    /// The surface: that of the file, else the floor for a foot and under a step, else level ground.
+    fn on(&self, foot: bool) -> Result<OnText, InputError> {
+        let floor = OnText::Named(GroundText::Floor);
+        let otherwise = if foot || self.text.step_m.is_some() { floor } else { OnText::Named(GroundText::Ground) };
+        let on = self.text.on.unwrap_or(otherwise);
+        if self.text.step_m.is_some() && !matches!(on, OnText::Named(GroundText::Floor)) {
+            let help = Some("leave out one of the two; a plane has its height in `point_m`".to_owned());
+            let path = ["support", &self.number, "step_m"];
+            return Err(self.at.key_error(&path, "`step_m` goes with `on = \"floor\"`", help));
+        }
+        Ok(on)
+    }
+
     /// The direction in which the support pushes.
-    fn normal(&self) -> Result<Vector3<f64>, InputError> {
-        let (normal, message) = match &self.text.on {
-            OnText::Named(_) => {
-                (-self.model.gravity(), "without gravity there is no ground; give a plane with its normal")
-            }
+    fn normal(&self, on: OnText) -> Result<Vector3<f64>, InputError> {
+        let (normal, message) = match on {
+            OnText::Named(_) => (
+                -self.model.gravity(),
+                "without gravity there is neither floor nor ground; give a plane with its normal",
+            ),
             OnText::Plane(plane) => (Vector3::from(plane.normal), "the normal of the plane has no length"),
         };
         normal.try_normalize(1e-9).ok_or_else(|| self.error("on", message.to_owned(), None))
-    }
-
-    /// Checks that at the start the middle of the patch lies near the plane through `point`.
-    fn check_gap(&self, corners: &[Vector3<f64>], normal: Vector3<f64>, point: Vector3<f64>) -> Result<(), InputError> {
-        let stations = corners.iter().map(|corner| self.kinematics.station(self.model, self.segment, *corner));
-        let middle = stations.sum::<Vector3<f64>>() / corners.len() as f64;
-        let gap = normal.dot(&(middle - point));
-        if gap.abs() <= LARGEST_GAP {
-            return Ok(());
-        }
-        let message = format!(
-            "at the start the patch of `{}` is {} m off this plane; {LARGEST_GAP} m at most",
-            self.text.segment,
-            shown((gap * 1e4).round() / 1e4)
-        );
-        let help = "change [posture], or the plane; a support stays where it is at the start".to_owned();
-        Err(self.error("on", message, Some(help)))
     }
 
     fn error(&self, key: &str, message: String, help: Option<String>) -> InputError {

@@ -14,9 +14,10 @@ use crate::toml_file::{numbers, rows};
 pub(crate) struct SupportText {
     /// Which segment.
     pub(crate) segment: String,
-    /// The surface that it stands on.
-    #[serde(default)]
-    pub(crate) on: OnText,
+    /// The surface that it stands on. When left out: the floor for feet of the built-in adult and with `step_m`, else `ground`.
+    pub(crate) on: Option<OnText>,
+    /// Height above the floor of a step under it, m, 0 to 2; 0 when left out.
+    pub(crate) step_m: Option<f64>,
     /// Coefficient of friction, 0 to 10; 0.6 when left out. Has no part in a pose.
     pub(crate) friction: Option<f64>,
     /// Greatest share of body weight that it should carry, 0 to 1: "rest this leg". Has no part in a pose.
@@ -27,7 +28,7 @@ pub(crate) struct SupportText {
     pub(crate) corners_m: Option<Vec<[f64; 3]>>,
 }
 
-/// The surface under a support: `"ground"`, or a plane.
+/// The surface under a support: `"floor"`, `"ground"`, or a plane.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum OnText {
@@ -37,17 +38,13 @@ pub(crate) enum OnText {
     Plane(PlaneText),
 }
 
-impl Default for OnText {
-    fn default() -> Self {
-        Self::Named(GroundText::Ground)
-    }
-}
-
 /// A plane with a name.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum GroundText {
-    /// Horizontal, where the support is at the start.
+    /// Horizontal, at y = 0, or at the height of a step on it.
+    Floor,
+    /// Horizontal, where the middle of the patch is at the start.
     Ground,
 }
 
@@ -57,7 +54,7 @@ pub(crate) enum GroundText {
 pub(crate) struct PlaneText {
     /// The direction in which it pushes, ground axes; its length does not matter.
     pub(crate) normal: [f64; 3],
-    /// A point of it, ground, m: checked against where the support is at the start.
+    /// A point of it, ground, m; the middle of the patch at the start when left out.
     pub(crate) point_m: Option<[f64; 3]>,
 }
 
