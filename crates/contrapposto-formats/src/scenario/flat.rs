@@ -33,8 +33,8 @@ const STEEPEST_HAND: f64 = 100.0 * std::f64::consts::PI / 180.0;
 const HEAVY: f64 = 0.25;
 /// Weight of such a coordinate beside 1 for all others: limbs move before the trunk does.
 const HEAVY_WEIGHT: f64 = 10.0;
-/// Segments of hands.
-const HANDS: [&str; 2] = ["hand_r", "hand_l"];
+/// Segments of palms.
+const PALMS: [&str; 2] = ["hand_r", "hand_l"];
 
 /// Lays all patches flat, and returns the supports. `free`: one flag a rate; other rates stay. What was moved goes to `notes`.
 pub(super) fn lay_flat(
@@ -113,7 +113,7 @@ fn move_to_floor(
 /// Refuses a patch that is too far off its surface, or too tilted.
 fn check(at: &Located, model: &Model, i: usize, resting: &Resting, fit: &Fit) -> Result<(), InputError> {
     let name = &model.segments()[resting.support.segment].name;
-    let steepest = if HANDS.contains(&name.as_str()) { STEEPEST_HAND } else { STEEPEST };
+    let steepest = if PALMS.contains(&name.as_str()) { STEEPEST_HAND } else { STEEPEST };
     if fit.gap.abs() <= FARTHEST && fit.tilt <= steepest {
         return Ok(());
     }
