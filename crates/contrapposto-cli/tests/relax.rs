@@ -199,11 +199,11 @@ fn what_is_wrong_is_shown_where_it_stands() {
     assert_eq!(relax(Path::new("no-such-file.toml"), &[]).code, 2);
 }
 
-/// On ice that slopes by 45 degrees nobody stands: the reason is a number, exit code 1, and nothing is written.
+/// On ice that slopes by 24 degrees nobody stands: the reason is a number, exit code 1, and nothing is written.
 #[test]
 fn a_body_that_cannot_stand_says_by_how_much() {
     let folder = tempfile::tempdir().unwrap();
-    let ice = "on = { normal = [1, 1, 0] }\nfriction = 0\n";
+    let ice = "on = { normal = [0.45, 1, 0] }\nfriction = 0\n";
     let text = format!(
         "format = 1\ntitle = \"Ice\"\n[[support]]\nsegment = \"calcn_r\"\n{ice}[[support]]\nsegment = \"calcn_l\"\n{ice}"
     );
