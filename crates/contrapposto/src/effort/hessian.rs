@@ -70,7 +70,7 @@ impl Hessian {
     pub(crate) fn new(model: &Model) -> Self {
         let n = model.rates().len();
         Self {
-            errors: ErrorHessian::new(model, 0),
+            errors: ErrorHessian::new(model, std::iter::empty()),
             moved: AboutAxes::new(model),
             weights: vec![0.0; n],
             step: vec![0.0; n],
@@ -126,7 +126,7 @@ impl Hessian {
         self.errors.clear();
         for task in problem.constraint_levels().flat_map(|level| &level.tasks) {
             let Some((own, rest)) = multipliers.split_at_checked(task.rows()) else { return };
-            self.errors.add(problem.model, task, own);
+            self.errors.add(problem.model, at.body.kinematics(), task, own);
             multipliers = rest;
         }
         if let Some(hessian) = self.errors.evaluate(problem.model, at.body.kinematics()) {

@@ -1,5 +1,7 @@
-//! Numerical ground floor: root finding, monotone curves, functions of one variable, angles of a rotation. Knows nothing of bodies.
+//! Numerical ground floor: root finding, monotone curves, functions of one variable, angles of a rotation, closest
+//! points. Knows nothing of bodies.
 
+mod closest_points;
 mod dichotomy;
 pub mod expression;
 mod function;
@@ -7,6 +9,7 @@ mod jet;
 mod monotone_cubic;
 mod swing_twist;
 
+pub use closest_points::{closest_on_segments, closest_to_block};
 pub use dichotomy::{dichotomy, dichotomy_between};
 pub use function::{Function, Spline, SplineError};
 pub use monotone_cubic::{MonotoneCubic, Piece};

@@ -114,11 +114,11 @@ pub fn adult(size: &Adult) -> Result<Model, AdultError> {
     for (segment, patch) in patches.into_iter().enumerate() {
         model = model.with_patch(segment, patch);
     }
-    Ok(model)
+    recipe.with_shapes(model)
 }
 
 /// `hand_r` on the right, `hand_l` on the left.
-fn sided(name: &str, left: bool) -> String {
+pub(super) fn sided(name: &str, left: bool) -> String {
     match name.strip_suffix("_r") {
         Some(stem) if left => format!("{stem}_l"),
         _ => name.to_owned(),
@@ -126,9 +126,9 @@ fn sided(name: &str, left: bool) -> String {
 }
 
 /// The data, and whom to make of them.
-struct Recipe<'a> {
-    library: &'static Library,
-    size: &'a Adult,
+pub(super) struct Recipe<'a> {
+    pub(super) library: &'static Library,
+    pub(super) size: &'a Adult,
 }
 
 impl Recipe<'_> {
@@ -161,7 +161,7 @@ impl Recipe<'_> {
         Ok(found.ok_or_else(|| AdultError::Data(id.to_owned()))?.of(self.size.sex).length * self.size.stature)
     }
 
-    fn length_of(&self, row: &SegmentRow) -> Result<f64, AdultError> {
+    pub(super) fn length_of(&self, row: &SegmentRow) -> Result<f64, AdultError> {
         row.length_of.as_ref().or(row.anthropometry.as_ref()).map_or(Ok(0.0), |id| self.length(id))
     }
 
@@ -295,7 +295,7 @@ impl Recipe<'_> {
     }
 }
 
-fn direction(row: &SegmentRow) -> Vector3<f64> {
+pub(super) fn direction(row: &SegmentRow) -> Vector3<f64> {
     match row.along {
         Along::Up => Vector3::y(),
         Along::Down => -Vector3::y(),

@@ -36,6 +36,8 @@ impl ModelBuilder {
             ancestor_starts: vec![0],
             fixed: (0.0, Vector3::zeros()),
             three_axis: vec![],
+            shapes: vec![],
+            meeting: vec![],
             by_axes: None,
             has_balls: false,
             direct: true,

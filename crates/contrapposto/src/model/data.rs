@@ -8,6 +8,7 @@ mod fatigue_parameters;
 mod fatigue_rows;
 mod passive_rows;
 mod reference;
+mod shape_rows;
 mod strength_rows;
 
 use std::sync::LazyLock;
@@ -21,6 +22,8 @@ use fatigue_rows::FatigueFile;
 use passive_rows::PassiveFile;
 pub use passive_rows::{CurveRow, reshaped};
 pub use reference::{Reference, Status};
+use shape_rows::ShapeFile;
+pub(super) use shape_rows::ShapeRow;
 pub(super) use strength_rows::GRAVITY;
 use strength_rows::StrengthFile;
 pub use strength_rows::StrengthSources;
@@ -33,6 +36,7 @@ pub struct Library {
     pub(super) fatigue: FatigueFile,
     pub(super) anthropometry: AnthropometryFile,
     pub(super) adult: AdultFile,
+    pub(super) shapes: ShapeFile,
 }
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
@@ -46,6 +50,7 @@ static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
         fatigue: parse("fatigue", include_str!("../../data/fatigue.toml")),
         anthropometry: parse("anthropometry", include_str!("../../data/anthropometry.toml")),
         adult: parse("adult", include_str!("../../data/adult.toml")),
+        shapes: parse("shapes", include_str!("../../data/shapes.toml")),
     }
 });
 

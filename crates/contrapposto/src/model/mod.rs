@@ -4,6 +4,7 @@
 //! with a [`ModelBuilder`] and never changes; everything computed lives elsewhere.
 
 mod adult;
+mod adult_shapes;
 mod adult_size;
 mod builder;
 mod coordinate;
@@ -13,6 +14,7 @@ mod error;
 mod joint;
 mod reduced;
 mod segment_spec;
+mod shape;
 mod three_axis;
 
 pub use adult::{AdultError, AdultMeasure, CoordinateSources, adult};
@@ -23,6 +25,7 @@ pub use error::ModelError;
 pub use joint::{Drive, JointKind, Motion};
 pub(crate) use reduced::reduced;
 pub use segment_spec::SegmentSpec;
+pub use shape::{Capsule, Shape};
 pub use three_axis::{Orientation, ThreeAxisJoint};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -128,6 +131,9 @@ pub struct Model {
     pub(crate) three_axis: Vec<ThreeAxisJoint>,
     /// The same body with a ball for each of them; `None` without such joints, and in that body itself.
     pub(crate) by_axes: Option<Box<Self>>,
+    /// Shapes of its parts, and the pairs of them that may meet, by index.
+    pub(crate) shapes: Vec<Shape>,
+    pub(crate) meeting: Vec<(usize, usize)>,
     /// Some mobility is a ball: its axes turn with it.
     pub(crate) has_balls: bool,
     /// Every motion is a coordinate of its own and nothing is coupled: torques need no folding.
@@ -243,6 +249,23 @@ impl Model {
     pub(crate) fn with_patch(mut self, segment: usize, corners: Vec<Vector3<f64>>) -> Self {
         self.segments[segment].patch = corners;
         self
+    }
+
+    /// The same body with shapes of its parts, and the pairs of them that may meet.
+    #[must_use]
+    pub(crate) fn with_shapes(mut self, shapes: Vec<Shape>, meeting: Vec<(usize, usize)>) -> Self {
+        (self.shapes, self.meeting) = (shapes, meeting);
+        self
+    }
+
+    /// Shapes of its parts; empty where none are known.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// Pairs of shapes that may meet, by index in [`Model::shapes`].
+    pub fn meeting_shapes(&self) -> &[(usize, usize)] {
+        &self.meeting
     }
 
     /// The same body with another fatigue law in both groups of one coordinate, if it has groups.

@@ -73,7 +73,7 @@ impl PriorityRule {
             steps: 0,
             largest: [f64::INFINITY; 2],
             newton_level: NewtonLevel::new(n, most, settings.levels.iter().map(rows).sum()),
-            hessian: ErrorHessian::new(settings.model, settings.levels.iter().map(|level| level.tasks.len()).sum()),
+            hessian: ErrorHessian::new(settings.model, settings.levels.iter().flat_map(|level| &level.tasks)),
             restoration_solver: restoration.new_solver(),
             restoration,
         };
@@ -239,10 +239,10 @@ impl PriorityRule {
         self.hessian.clear();
         let mut multipliers = newton.estimate.multipliers();
         for level in &settings.levels[..k] {
-            multipliers = add_tasks(&mut self.hessian, settings, level, multipliers);
+            multipliers = add_tasks(&mut self.hessian, settings, iterate, level, multipliers);
             multipliers = multipliers.split_at_checked(level.half_spaces.len()).map_or(&[], |(_, rest)| rest);
         }
-        add_tasks(&mut self.hessian, settings, &settings.levels[k], &newton.residual);
+        add_tasks(&mut self.hessian, settings, iterate, &settings.levels[k], &newton.residual);
         if let Some(hessian) = self.hessian.evaluate(settings.model, iterate.torques.kinematics()) {
             let n = hessian.size();
             for (e, entry) in newton.matrix.iter_mut().enumerate() {
@@ -283,12 +283,13 @@ impl PriorityRule {
 fn add_tasks<'w>(
     hessian: &mut ErrorHessian,
     settings: &Settings<'_>,
+    iterate: &Iterate,
     level: &PriorityLevel,
     mut weights: &'w [f64],
 ) -> &'w [f64] {
     for task in &level.tasks {
         let (own, rest) = weights.split_at(Task::rows(task).min(weights.len()));
-        hessian.add(settings.model, task, own);
+        hessian.add(settings.model, iterate.torques.kinematics(), task, own);
         weights = rest;
     }
     weights

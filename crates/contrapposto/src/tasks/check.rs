@@ -48,6 +48,22 @@ pub enum TaskPart {
     Coordinate,
     /// Coordinates with a weight above 0.
     WeightedCoordinate,
+    /// Pairs that are kept apart.
+    Pair,
+    /// Distance from which on a pair has no row.
+    Activation,
+    /// End of a capsule's line.
+    CapsuleEnd,
+    /// Radius of a capsule.
+    Radius,
+    /// Length of a vector or quaternion; must be 1.
+    SurfaceNormal,
+    /// Offset of a half-space.
+    SurfaceOffset,
+    /// Middle of a block.
+    BlockMiddle,
+    /// Half the length of a block.
+    BlockLength,
 }
 
 impl std::fmt::Display for TaskPart {
@@ -71,6 +87,14 @@ impl std::fmt::Display for TaskPart {
             Self::Edge => "edge of a polygon",
             Self::Coordinate => "coordinate",
             Self::WeightedCoordinate => "coordinate (all weights are 0)",
+            Self::Pair => "pair",
+            Self::Activation => "activation distance (m)",
+            Self::CapsuleEnd => "end of a capsule (m)",
+            Self::Radius => "radius of a capsule (m)",
+            Self::SurfaceNormal => "length of the normal of a surface",
+            Self::SurfaceOffset => "offset of a surface (m)",
+            Self::BlockMiddle => "middle of a block (m)",
+            Self::BlockLength => "half length of a block (m)",
         })
     }
 }

@@ -22,10 +22,15 @@ pub(crate) struct ErrorHessian {
 }
 
 impl ErrorHessian {
-    /// Space for so many `tasks`: the loads of each act at two places at most, or at all segments.
-    pub(crate) fn new(model: &Model, tasks: usize) -> Self {
+    /// Space for `tasks`: the loads of each act at two places a pair at most, or at all segments.
+    pub(crate) fn new<'t>(model: &Model, tasks: impl Iterator<Item = &'t Task>) -> Self {
+        let loads = tasks.map(|task| match task {
+            Task::Clearance(task) => 2 * task.pairs.len(),
+            Task::Bounds(task) => 2 * task.components.len(),
+            _ => 2 + model.segments().len(),
+        });
         Self {
-            loads: Vec::with_capacity(tasks * (2 + model.segments().len())),
+            loads: Vec::with_capacity(loads.sum()),
             torque: ExternalTorque::new(model),
             gradient: Gradient::new(model),
         }
@@ -36,9 +41,9 @@ impl ErrorHessian {
         self.loads.clear();
     }
 
-    /// Adds the errors of a task, one weight each.
-    pub(crate) fn add(&mut self, model: &Model, task: &Task, weights: &[f64]) {
-        add_gradient_loads(task, model, weights, &mut self.loads);
+    /// Adds the errors of a task, one weight each, in the posture of `kinematics`.
+    pub(crate) fn add(&mut self, model: &Model, kinematics: &Kinematics, task: &Task, weights: &[f64]) {
+        add_gradient_loads(task, model, kinematics, weights, &mut self.loads);
     }
 
     /// The sum in the posture of `kinematics`; its symmetric part counts. `None` for weights beyond the loads that a
@@ -52,7 +57,9 @@ impl ErrorHessian {
 
 /// Adds the loads whose generalised forces are `sum weights_i grad r_i` of its rows, exact where the errors of rotations are zero.
 /// Tasks of directions toward a place, distances, postures and effort are left out: their second derivatives are not known here.
-fn add_gradient_loads(task: &Task, model: &Model, weights: &[f64], loads: &mut Vec<Load>) {
+/// Of a clearance the loads stay at the points that are closest now, along the line between them: the turning of that line, and the
+/// motion of the closest points in their segments, are left out.
+fn add_gradient_loads(task: &Task, model: &Model, kinematics: &Kinematics, weights: &[f64], loads: &mut Vec<Load>) {
     let world = |segment, point, force| Load { segment, point, kind: LoadKind::Force(force, FixedIn::World) };
     let couple = |segment, v| Load { segment, point: Vector3::zeros(), kind: LoadKind::Couple(v, FixedIn::World) };
     let vector = |v: &[f64]| Vector3::new(v[0], v[1], v[2]);
@@ -85,6 +92,14 @@ fn add_gradient_loads(task: &Task, model: &Model, weights: &[f64], loads: &mut V
             let mass = model.mass();
             for (i, segment) in model.segments().iter().enumerate().filter(|(_, segment)| segment.mass > 0.0) {
                 loads.push(world(i, segment.center_of_mass, force * (segment.mass / mass)));
+            }
+        }
+        Task::Clearance(task) => {
+            for (pair, weight) in task.pairs.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+                if let Some(nearest) = pair.nearest(model, kinematics, task.activation) {
+                    let stations = nearest.stations(pair);
+                    loads.extend(stations.map(|(segment, point, along)| world(segment, point, *weight * along)));
+                }
             }
         }
         Task::LookAt(task) => {
@@ -193,11 +208,11 @@ mod tests {
             let h = 1e-3;
             let (a, c, b) = (along(-h), along(h), along(0.0));
             let numeric = (a - 2.0 * b + c) / (h * h);
-            let mut hessian = ErrorHessian::new(&model, tasks.len());
+            let mut hessian = ErrorHessian::new(&model, tasks.iter());
             let mut rest = &weights[..];
             for task in &tasks {
                 let (own, others) = rest.split_at(task.rows());
-                hessian.add(&model, task, own);
+                hessian.add(&model, body.kinematics(), task, own);
                 rest = others;
             }
             body.update(&model, &posture, &[], needs).unwrap();

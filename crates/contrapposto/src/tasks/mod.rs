@@ -7,6 +7,8 @@
 mod bounds;
 mod center_of_mass;
 mod check;
+mod clearance;
+mod clearance_pairs;
 mod distance;
 mod effort;
 mod error_hessian;
@@ -20,11 +22,13 @@ mod posture;
 mod priority_level;
 mod rows;
 mod task;
+mod thing;
 mod unit;
 
 pub use bounds::{Bounds, Carried, Component};
 pub use center_of_mass::{CenterOfMass, CenterOfMassGoal};
 pub use check::{TaskError, TaskPart};
+pub use clearance::{Clearance, ClearancePair, Obstacle};
 pub use distance::Distance;
 pub use effort::Effort;
 pub(crate) use effort::{for_each_angle_slope, share_of_strength};
@@ -38,4 +42,5 @@ pub use polygon::{HalfPlane, half_planes};
 pub use posture::Posture;
 pub use priority_level::PriorityLevel;
 pub use task::Task;
+pub use thing::Thing;
 pub use unit::Unit;

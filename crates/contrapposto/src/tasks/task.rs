@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::bounds::{Bounds, Carried};
 use super::center_of_mass::{CenterOfMass, CenterOfMassGoal};
 use super::check::{Check, TaskError};
+use super::clearance::Clearance;
 use super::distance::Distance;
 use super::effort::Effort;
 use super::look_at::{LookAt, LookAtGoal};
@@ -34,6 +35,8 @@ pub enum Task {
     LookAt(LookAt),
     /// Two points within a range of distances.
     Distance(Distance),
+    /// Parts of the body apart from each other and from things.
+    Clearance(Clearance),
     /// The centre of mass at a place, or over a polygon.
     CenterOfMass(CenterOfMass),
     /// Components of points and directions of a segment within limits.
@@ -62,6 +65,7 @@ impl Task {
             Self::Placement(_) => 6,
             Self::LookAt(_) => 2,
             Self::Distance(_) => 1,
+            Self::Clearance(task) => task.pairs.len(),
             Self::CenterOfMass(task) => task.rows(),
             Self::Bounds(task) => task.components.len(),
             Self::Posture(task) => task.weights.iter().filter(|weight| **weight > 0.0).count(),
@@ -77,6 +81,7 @@ impl Task {
             Self::Placement(_) => "placement",
             Self::LookAt(_) => "look_at",
             Self::Distance(_) => "distance",
+            Self::Clearance(_) => "clearance",
             Self::CenterOfMass(_) => "center_of_mass",
             Self::Bounds(_) => "bounds",
             Self::Posture(_) => "posture",
@@ -112,7 +117,7 @@ impl Task {
             | Self::LookAt(LookAt { segment, .. })
             | Self::Bounds(Bounds { segment, .. }) => format!("{kind} {}", name(*segment)),
             Self::Distance(task) => format!("{kind} {} {}", name(task.a.0), name(task.b.0)),
-            Self::CenterOfMass(_) | Self::Posture(_) | Self::Effort(_) => kind.to_owned(),
+            Self::Clearance(_) | Self::CenterOfMass(_) | Self::Posture(_) | Self::Effort(_) => kind.to_owned(),
         }
     }
 
@@ -123,7 +128,7 @@ impl Task {
     pub fn unit(&self, model: &Model, row: usize) -> Unit {
         assert!(row < self.rows(), "row {row} of {}", self.rows());
         match self {
-            Self::Point(_) | Self::Distance(_) | Self::CenterOfMass(_) => Unit::Metre,
+            Self::Point(_) | Self::Distance(_) | Self::Clearance(_) | Self::CenterOfMass(_) => Unit::Metre,
             Self::Orientation(_) | Self::LookAt(_) => Unit::Radian,
             Self::Placement(_) => [Unit::Metre, Unit::Radian][row / 3],
             Self::Bounds(task) => match task.components[row].of {
@@ -148,6 +153,7 @@ impl Task {
             Self::LookAt(task) => task.evaluate(model, body, level),
             Self::Distance(task) => task.evaluate(model, body, level),
             Self::Bounds(task) => task.evaluate(model, body, level),
+            Self::Clearance(task) => task.evaluate(model, body, level),
             Self::CenterOfMass(task) => task.evaluate(model, body, level),
             Self::Posture(task) => task.evaluate(model, body, level),
             Self::Effort(task) => task.evaluate(model, body, level),
@@ -167,6 +173,7 @@ impl Task {
             Self::LookAt(task) => out.extend(task.error(model, body)),
             Self::Distance(task) => out.push(task.error(model, body)),
             Self::Bounds(task) => task.residual(model, body, out),
+            Self::Clearance(task) => task.residual(model, body, out),
             Self::CenterOfMass(task) => task.residual(body, out),
             Self::Posture(task) => task.residual(model, body, out),
             Self::Effort(task) => task.residual(model, body, out),
@@ -186,6 +193,7 @@ impl Task {
             Self::LookAt(task) => task.check(&check),
             Self::Distance(task) => task.check(&check),
             Self::Bounds(task) => task.check(&check),
+            Self::Clearance(task) => task.check(&check),
             Self::CenterOfMass(task) => task.check(&check),
             Self::Posture(task) => task.check(&check),
             Self::Effort(task) => task.check(&check),
