@@ -13,7 +13,8 @@ use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{
-    CenterOfMass, CenterOfMassGoal as Place, Distance, Effort, LookAt, LookAtGoal, Placement, Point, Posture, Task,
+    CenterOfMass, CenterOfMassGoal as Place, Clearance, Distance, Effort, LookAt, LookAtGoal, Placement, Point, Posture, Task,
+    Thing,
 };
 use hierarchical_least_squares::Level;
 use nalgebra::Vector3;
@@ -170,6 +171,7 @@ fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> V
         })
         .into(),
         Task::Distance(Distance { a: (right, point), b: (left, V::zeros()), lower: 0.0, upper: (a - b).norm() }).into(),
+        Task::Clearance(Clearance::of_body(model, &[Thing::floor(0.0)], &[]).unwrap()).into(),
         Task::Posture(Posture::whole(model, start.clone())).into(),
     ]
 }

@@ -11,7 +11,7 @@
 use nalgebra::Vector3;
 
 /// Line segments whose directions differ by less than this, in the sine of the angle, count as parallel.
-const PARALLEL_SINE: f64 = 1e-6;
+const PARALLEL_SEGMENTS: f64 = 1e-6;
 
 /// Parameters `s` and `t` of closest points of the line segments between two pairs of ends.
 pub fn closest_on_segments(p: [Vector3<f64>; 2], q: [Vector3<f64>; 2]) -> (f64, f64) {
@@ -20,7 +20,7 @@ pub fn closest_on_segments(p: [Vector3<f64>; 2], q: [Vector3<f64>; 2]) -> (f64, 
     let on_p = |t: f64| ratio(t * uv - uw, uu);
     let on_q = |s: f64| ratio(s * uv + vw, vv);
     let determinant = uu * vv - uv * uv;
-    if determinant <= PARALLEL_SINE * PARALLEL_SINE * uu * vv {
+    if determinant <= PARALLEL_SEGMENTS * PARALLEL_SEGMENTS * uu * vv {
         let s = 0.5 * (on_p(0.0) + on_p(1.0));
         return (s, on_q(s));
     }

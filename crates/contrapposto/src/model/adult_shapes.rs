@@ -22,7 +22,7 @@ impl Recipe<'_> {
                 let Some(segment) = model.segment(&sided(&row.segment, left)) else { continue };
                 let name = sided(&row.name, left);
                 names.extend(row.meets.iter().map(|other| [name.clone(), other_side(other, left)]));
-                shapes.push(Shape { name, capsule: self.capsule(row, &model, segment)? });
+                shapes.push(Shape { name, capsule: self.capsule(row, &model, segment)?, sole: row.sole });
             }
         }
         let index = |name: &String| shapes.iter().position(|shape| &shape.name == name);

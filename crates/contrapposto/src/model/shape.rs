@@ -20,4 +20,6 @@ pub struct Shape {
     pub name: String,
     /// Where it is, and how large.
     pub capsule: Capsule,
+    /// Its sole stands on things.
+    pub sole: bool,
 }

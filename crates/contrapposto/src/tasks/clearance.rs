@@ -105,7 +105,7 @@ impl ClearancePair {
         let (u, v) = (p[1] - p[0], q[1] - q[0]);
         // Half of the lines' lengths and the radii lie between the middles at most.
         let middles = 0.5 * (p[0] + p[1] - q[0] - q[1]).norm();
-        if 2.0 * middles - 0.5 * (u.norm() + v.norm()) - radii > within {
+        if middles - 0.5 * (u.norm() + v.norm()) - radii > within {
             return None;
         }
         let (s, t) = closest_on_segments(p, q);

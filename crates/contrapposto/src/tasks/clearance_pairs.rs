@@ -1,7 +1,8 @@
 //! Lists the pairs that a body keeps apart: its own parts, and parts and things.
 //!
 //! Of the parts that may meet ([`Model::meeting_shapes`]) those pairs are left out that overlap in the default posture: of a heavy
-//! body the upper arms and the abdomen, say. A part that carries the body is left out with all things, since it touches them.
+//! body the upper arms and the abdomen, say. A part that carries the body,
+//! and a part with a sole, is left out with all things, since it touches them.
 //! Against a half-space both ends of a part count, each as a sphere, so that a part that lies flat has two rows; ends of two parts
 //! in one place count once.
 
@@ -33,7 +34,7 @@ impl Clearance {
             }
         }
         for thing in things {
-            let free = model.shapes().iter().map(|shape| shape.capsule);
+            let free = model.shapes().iter().filter(|shape| !shape.sole).map(|shape| shape.capsule);
             let free: Vec<Capsule> = free.filter(|capsule| !carrying.contains(&capsule.segment)).collect();
             let parts = match thing {
                 Thing::HalfSpace { .. } => ends(model, &kinematics, &free),

@@ -193,6 +193,15 @@ mod tests {
                         Vector3::y(),
                     ))),
                 }),
+                // Of spheres above a floor nothing is left out.
+                Task::Clearance(tasks::Clearance {
+                    activation: 10.0,
+                    pairs: (tasks::Clearance::of_body(&model, &[tasks::Thing::floor(3.0)], &[]).unwrap().pairs)
+                        .into_iter()
+                        .filter(|pair| matches!(pair.other, tasks::Obstacle::Thing(_)))
+                        .collect(),
+                    margin: 0.0,
+                }),
             ];
             let weights: Vec<f64> =
                 (0..tasks.iter().map(Task::rows).sum()).map(|_| random.random_range(-1.0..1.0)).collect();

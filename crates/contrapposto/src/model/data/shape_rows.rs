@@ -31,6 +31,8 @@ pub(crate) struct ShapeRow {
     #[serde(default)]
     pub(crate) inset: [bool; 2],
     #[serde(default)]
+    pub(crate) sole: bool,
+    #[serde(default)]
     pub(crate) meets: Vec<String>,
     #[expect(dead_code, reason = "stands in the file for its readers")]
     reference: Reference,
