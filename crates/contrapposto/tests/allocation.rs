@@ -13,8 +13,8 @@ use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{
-    CenterOfMass, CenterOfMassGoal as Place, Clearance, Distance, Effort, LookAt, LookAtGoal, Placement, Point, Posture, Task,
-    Thing,
+    CenterOfMass, CenterOfMassGoal as Place, Clearance, Distance, Effort, LookAt, LookAtGoal, Placement, Point,
+    Posture, Task, Thing,
 };
 use hierarchical_least_squares::Level;
 use nalgebra::Vector3;

@@ -28,10 +28,12 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
-    let mut engine =
-        Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
+    let (levels, limits) = scenario.levels();
+    let mut engine = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));
-    let pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
+    let mut pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
+    // The limits are not among the goals that are reported.
+    limits.map(|place| pose.levels.remove(place));
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let text = PoseText::new(&scenario, &pose, names.collect());

@@ -55,8 +55,16 @@ fn part_path(part: TaskPart) -> &'static [&'static str] {
         TaskPart::Weight | TaskPart::WeightedCoordinate => &["weights"],
         TaskPart::LeastStrength | TaskPart::Coordinate => &["coordinates"],
         TaskPart::Axis => &["axes"],
-        // No file writes limits of its own.
-        TaskPart::Limit => &["kind"],
+        // No file writes limits or shapes of its own.
+        TaskPart::Limit
+        | TaskPart::Pair
+        | TaskPart::Activation
+        | TaskPart::CapsuleEnd
+        | TaskPart::Radius
+        | TaskPart::SurfaceNormal
+        | TaskPart::SurfaceOffset
+        | TaskPart::BlockMiddle
+        | TaskPart::BlockLength => &["kind"],
     }
 }
 

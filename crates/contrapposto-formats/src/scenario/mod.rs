@@ -12,6 +12,7 @@ mod levels;
 mod load;
 mod model;
 mod names;
+mod obstacle;
 mod polygon;
 mod pose;
 mod posture;

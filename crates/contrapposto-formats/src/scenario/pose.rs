@@ -27,6 +27,8 @@ pub struct PoseScenario {
     pub locked: Vec<usize>,
     /// The loads besides the body's weight.
     pub loads: Vec<Load>,
+    /// Inequalities above all tasks and below the supports.
+    pub limits: Vec<Task>,
     /// The most important first; supports, if any, are the first one, and hard.
     pub goals: Vec<PriorityLevel>,
     /// A name for every task of every goal.
@@ -39,6 +41,19 @@ pub struct PoseScenario {
     pub unused: Vec<&'static str>,
     /// What was changed or added, a sentence each.
     pub notes: Vec<String>,
+}
+
+impl PoseScenario {
+    /// The levels to be solved for: supports, limits, the other goals; and the place of the limits, if there are any.
+    pub fn levels(&self) -> (Vec<PriorityLevel>, Option<usize>) {
+        let mut levels = self.goals.clone();
+        if self.limits.is_empty() {
+            return (levels, None);
+        }
+        let place = levels.iter().position(|level| !level.hard).unwrap_or(levels.len());
+        levels.insert(place, PriorityLevel { tasks: self.limits.clone(), ..PriorityLevel::default() });
+        (levels, Some(place))
+    }
 }
 
 /// Reads a scenario for a pose. `name` is the file's name for messages; `model` is the model of the file that
@@ -77,6 +92,7 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
         // Friction, planes and shares have no part in the goals: an error of one of them is none here.
         supports: setup.supports.unwrap_or_default(),
         locked,
+        limits: setup.limits,
         loads: setup.loads,
         goals,
         labels,

@@ -54,7 +54,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
     let setup = Setup::read(at, text, file)?;
     setup.check_ranges(at)?;
     let locked = setup.locked(at, text)?;
-    let Setup { model, start, loads, supports, levels, notes, .. } = setup;
+    let Setup { model, start, loads, supports, limits, levels, notes, .. } = setup;
     let supports = supports?;
     let (mut goals, mut labels) = (vec![], vec![]);
     for level in levels {
@@ -83,7 +83,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
         locked,
         loads,
         supports,
-        limits: vec![],
+        limits,
         goals,
         labels,
         effort_added,

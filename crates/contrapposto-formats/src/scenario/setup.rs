@@ -5,12 +5,14 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
+use contrapposto::tasks::Task;
 
 use super::flat::lay_flat;
 use super::head::check_head;
 use super::levels::{Level, levels};
 use super::load::load;
 use super::model::body;
+use super::obstacle::limits;
 use super::posture::{balls, free, free_rates, rates, set};
 use super::stage::{Stage, Start};
 use super::support;
@@ -31,6 +33,8 @@ pub(super) struct Setup {
     pub(super) kinematics: Kinematics,
     /// Supports with their patches. A pose needs only their segments: for it, an error of a patch is none.
     pub(super) supports: Result<Vec<Support>, InputError>,
+    /// Inequalities above all tasks.
+    pub(super) limits: Vec<Task>,
     /// The tasks by priority, the most important first.
     pub(super) levels: Vec<Level>,
     /// What was changed or added, a sentence each, for the reader of the results.
@@ -58,7 +62,8 @@ impl Setup {
         let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing };
         let mut levels = levels(&stage, &text.task)?;
         notes.extend(add_upright(&stage, text, &mut levels)?.map(str::to_owned));
-        Ok(Self { loads, standing, supports, levels, notes, kinematics, start, model })
+        let limits = limits(at, text, &model, &standing, &kinematics)?;
+        Ok(Self { loads, standing, supports, limits, levels, notes, kinematics, start, model })
     }
 
     /// Where each task of the file stands: its level, and its place within the level.

@@ -49,7 +49,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<(S
     let (strategy, run) = tables_of_a_run(at, text)?;
     setup.check_ranges(at)?;
     let places = setup.places();
-    let Setup { model, start, loads, supports, levels, notes, .. } = setup;
+    let Setup { model, start, loads, supports, limits, levels, notes, .. } = setup;
     let supports = supports?;
     let tasks: Vec<TaskSettings> =
         levels.into_iter().map(|level| TaskSettings { goal: level.tasks, above_relief: level.above_relief }).collect();
@@ -68,7 +68,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<(S
         free,
         loads,
         supports,
-        limits: vec![],
+        limits,
         tasks,
         events,
         strategies,

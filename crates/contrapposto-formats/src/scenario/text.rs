@@ -6,6 +6,7 @@ use contrapposto::hybrid::Strategy;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::obstacle::ObstacleText;
 use super::task_text::{SolverText, SupportText, TaskText};
 use crate::passive_law::PassiveText;
 use crate::toml_file::numbers;
@@ -37,6 +38,9 @@ pub(crate) struct ScenarioText {
     /// The supports, which carry weight.
     #[serde(default)]
     pub(crate) support: Vec<SupportText>,
+    /// Things that no part of the body passes through.
+    #[serde(default)]
+    pub(crate) obstacle: Vec<ObstacleText>,
     /// The tasks of the body, in order of priority.
     #[serde(default)]
     pub(crate) task: Vec<TaskText>,
@@ -86,6 +90,8 @@ pub(crate) struct EventText {
 pub(crate) struct ModelText {
     /// The built-in adult.
     pub(crate) adult: Option<AdultText>,
+    /// Whether the parts of the built-in adult keep off each other, the floor and obstacles; true when left out.
+    pub(crate) clearance: Option<bool>,
     /// Model file (.osim, .urdf, MJCF .xml), its path as seen from the scenario's folder.
     pub(crate) file: Option<String>,
     /// Ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the file; its path as that of `file`.

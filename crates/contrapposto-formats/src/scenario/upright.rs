@@ -75,7 +75,7 @@ fn is_default(stage: &Stage<'_>, text: &ScenarioText, levels: &[Level]) -> Resul
         Task::Posture(task) => {
             neck.iter().any(|&i| model.coordinates()[i].rate.is_some_and(|rate| task.weights[rate] > 0.0))
         }
-        Task::CenterOfMass(_) | Task::Effort(_) => false,
+        Task::CenterOfMass(_) | Task::Clearance(_) | Task::Effort(_) => false,
     };
     let lies = supports.iter().any(|&segment| model.segments()[segment].name == HEAD);
     let mut tasks = levels.iter().flat_map(|level| &level.tasks.tasks);
