@@ -1,0 +1,197 @@
+//! No part of a body is in another one, or in the floor, from the start to the end of any scenario of the repository, nor in the
+//! postures of least effort; distances by dense sampling of the parts' lines.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+use std::path::Path;
+
+use contrapposto::equilibria::{Search, equilibria};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Capsule, Model};
+use contrapposto::posture::Posture;
+use contrapposto::posture_solver::Options;
+use contrapposto::simulation::run;
+use contrapposto::tasks::{Clearance, Task};
+use contrapposto_formats::{read_pose, read_relax, read_scenario, scenario_model};
+use nalgebra::Vector3;
+
+/// Deepest overlap that counts as none, m.
+const DEEPEST: f64 = 1e-3;
+
+/// Texts of the scenarios of the built-in adult in a folder of `scenarios/`, by name.
+fn texts(folder: &str) -> Vec<(String, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(folder);
+    let mut paths: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|end| end == "toml"));
+    paths.sort();
+    let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
+    let texts = paths.iter().map(|path| (name(path), std::fs::read(path).unwrap()));
+    texts.filter(|(name, bytes)| scenario_model(name, bytes).unwrap().is_none()).collect()
+}
+
+fn points(model: &Model, kinematics: &Kinematics, capsule: &Capsule) -> Vec<Vector3<f64>> {
+    let [a, b] = capsule.ends.map(|end| kinematics.station(model, capsule.segment, end));
+    (0..=100).map(|i| a + 0.01 * f64::from(i) * (b - a)).collect()
+}
+
+/// The deepest overlap of two parts, or of a part and the floor, m, and its names. Parts that carry the body, and soles, are left
+/// out with the floor.
+fn deepest(model: &Model, posture: &[f64], carrying: &[usize]) -> (f64, String) {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(posture.to_vec())).unwrap();
+    let shapes = model.shapes();
+    let lines: Vec<_> = shapes.iter().map(|shape| points(model, &kinematics, &shape.capsule)).collect();
+    let mut deepest = (f64::NEG_INFINITY, String::new());
+    let mut see = |distance: f64, names: [&str; 2]| {
+        if -distance > deepest.0 {
+            deepest = (-distance, names.join(" in "));
+        }
+    };
+    for &(a, b) in model.meeting_shapes() {
+        let all = lines[a].iter().flat_map(|p| lines[b].iter().map(move |q| (p - q).norm()));
+        let radii = shapes[a].capsule.radius + shapes[b].capsule.radius;
+        see(all.fold(f64::INFINITY, f64::min) - radii, [&shapes[a].name, &shapes[b].name]);
+    }
+    for (shape, line) in shapes.iter().zip(&lines) {
+        if !shape.sole && !carrying.contains(&shape.capsule.segment) {
+            let lowest = line.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+            see(lowest - shape.capsule.radius, [&shape.name, "floor"]);
+        }
+    }
+    deepest
+}
+
+fn assert_apart(what: &str, model: &Model, posture: &[f64], carrying: &[usize]) {
+    let (depth, names) = deepest(model, posture, carrying);
+    println!("{what}: {:.2} mm ({names})", 1e3 * depth);
+    assert!(depth < DEEPEST, "{what}: {names} by {:.1} mm", 1e3 * depth);
+}
+
+/// Whether the body moves as a whole: a single joint moves by the tables alone.
+fn is_whole(supports: usize, tasks: usize) -> bool {
+    supports > 0 || tasks > 0
+}
+
+#[test]
+fn every_second_of_every_run_has_no_part_in_another_or_in_the_floor() {
+    let mut runs = 0;
+    for (name, bytes) in texts("") {
+        let Ok(scenario) = read_scenario(&name, &bytes, None) else { panic!("{name}") };
+        if !is_whole(scenario.supports.len(), scenario.tasks.len()) {
+            continue;
+        }
+        assert!(matches!(&scenario.limits[..], [Task::Clearance(_)]), "{name}");
+        let carrying: Vec<usize> = scenario.supports.iter().map(|support| support.segment).collect();
+        let (mut worst, mut last, mut samples) = ((f64::NEG_INFINITY, String::new()), vec![], 0);
+        run(&scenario, |sample| {
+            if samples % 30 == 0 {
+                let now = deepest(&scenario.model, sample.posture, &carrying);
+                worst = if now.0 > worst.0 { now } else { worst.clone() };
+            }
+            samples += 1;
+            last = sample.posture.to_vec();
+        })
+        .unwrap();
+        println!("{name}, {samples} samples: {:.2} mm ({})", 1e3 * worst.0, worst.1);
+        assert!(worst.0 < DEEPEST, "{name}: {} by {:.1} mm", worst.1, 1e3 * worst.0);
+        assert_apart(&format!("{name}, end"), &scenario.model, &last, &carrying);
+        runs += 1;
+    }
+    assert!(runs >= 9, "{runs}");
+}
+
+#[test]
+fn postures_of_least_effort_have_no_part_in_another_or_in_the_floor() {
+    let mut searches = 0;
+    for (name, bytes) in texts("") {
+        let Ok(scenario) = read_relax(&name, &bytes, None) else { continue };
+        if scenario.supports.is_empty() {
+            continue;
+        }
+        let search = Search {
+            model: &scenario.model,
+            start: &scenario.start,
+            supports: &scenario.supports,
+            limits: &scenario.limits,
+            goals: &scenario.goals,
+            loads: &scenario.loads,
+            locked: &scenario.locked,
+        };
+        let found = equilibria(&search, Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() }).unwrap();
+        let carrying: Vec<usize> = scenario.supports.iter().map(|support| support.segment).collect();
+        for (i, posture) in found.postures.iter().enumerate() {
+            let values = posture.relaxed.posture.values();
+            assert_apart(&format!("{name}, posture {}", i + 1), &scenario.model, values, &carrying);
+        }
+        searches += 1;
+    }
+    assert!(searches >= 9, "{searches}");
+}
+
+/// The hand of a pose is wanted inside the trunk: it stays outside, and comes as near as it can.
+#[test]
+fn pose_with_the_hand_wanted_in_the_abdomen_keeps_the_hand_outside() {
+    let text = "format = 1\n[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n\
+        [[task]]\nkind = \"point\"\nsegment = \"hand_r\"\nat_m = [0, -0.1, 0]\ntarget_m = [0.05, 1.1, 0.05]\n\
+        [posture]\nelbow_flex_r_deg = 90\narm_rot_r_deg = 30\n[coordinates]\nfree = [\"arm_flex_r\", \"arm_add_r\", \"arm_rot_r\", \"elbow_flex_r\", \"wrist_flex_r\"]\n";
+    let solve = |text: &str| {
+        let scenario = read_pose("in the abdomen", text.as_bytes(), None).unwrap();
+        let (levels, limits) = scenario.levels();
+        let mut engine =
+            contrapposto::posture_solver::Engine::new(&scenario.model, levels, &[], scenario.options).unwrap();
+        scenario.locked.iter().for_each(|&rate| engine.lock(rate));
+        let solved = engine.solve(&scenario.start).unwrap();
+        let left = solved.levels.last().unwrap().length;
+        (deepest(&scenario.model, solved.posture.values(), &[]), left, limits)
+    };
+    let (apart, left, limits) = solve(text);
+    let (through, reached, none) = solve(&format!("{text}[model]\nclearance = false\n"));
+    println!("{apart:?}, {left} m from the target; without clearance {through:?}, {reached} m");
+    assert!(apart.0 < DEEPEST && (0.01..0.3).contains(&left) && limits == Some(1));
+    assert!(through.0 > 0.02 && reached < 1e-6 && none.is_none());
+}
+
+/// A start with the forearm in the thigh is no error: the run begins by moving it out.
+#[test]
+fn run_from_an_overlap_moves_the_parts_apart() {
+    let text = "format = 1\n[posture]\narm_add_r_deg = 8\narm_flex_r_deg = 5\n[[support]]\nsegment = \"calcn_r\"\n\
+        [[support]]\nsegment = \"calcn_l\"\n[[task]]\nkind = \"effort\"\n[strategy]\nkind = \"passive\"\n\
+        [run]\nduration_s = 10\n";
+    let scenario = read_scenario("overlap", text.as_bytes(), None).unwrap();
+    let start = deepest(&scenario.model, scenario.start.values(), &[]);
+    let mut last = vec![];
+    run(&scenario, |sample| last = sample.posture.to_vec()).unwrap();
+    let end = deepest(&scenario.model, &last, &[]);
+    println!("start {start:?}, end {end:?}");
+    assert!(start.0 > 0.01 && end.0 < DEEPEST);
+}
+
+/// Walls and blocks of a file become pairs; what is neither is refused with its place.
+#[test]
+fn obstacles_of_a_file_become_pairs() {
+    let head = "format = 1\n[[support]]\nsegment = \"calcn_r\"\n[[task]]\nkind = \"effort\"\n";
+    let pairs = |text: &str| {
+        let scenario = read_relax("obstacle", format!("{head}{text}").as_bytes(), None);
+        scenario.map(|scenario| match &scenario.limits[..] {
+            [Task::Clearance(Clearance { pairs, .. })] => pairs.len(),
+            _ => 0,
+        })
+    };
+    let none = pairs("").unwrap();
+    let block = "[[obstacle]]\nname = \"table\"\nmiddle_m = [0.6, 0.7, 0]\nsize_m = [0.6, 0.04, 1.2]\nturn_deg = 10\n";
+    let wall = "[[obstacle]]\nname = \"wall\"\nnormal = [1, 0, 0]\npoint_m = [-0.4, 0, 0]\n";
+    assert!(pairs(block).unwrap() > none && pairs(wall).unwrap() > pairs(block).unwrap());
+    assert_eq!(pairs("[model]\nclearance = false\n").unwrap(), 0);
+    for (wrong, message) in [
+        ("[[obstacle]]\nname = \"table\"\nmiddle_m = [0.6, 0.7, 0]\n", "neither a block nor a wall"),
+        ("[[obstacle]]\nname = \"t\"\nmiddle_m = [0, 0, 0]\nsize_m = [1, 0, 1]\n", "greater than 0"),
+        ("[[obstacle]]\nname = \"w\"\nnormal = [0, 0, 0]\npoint_m = [0, 0, 0]\n", "has no length"),
+        (
+            "[model]\nclearance = false\n[[obstacle]]\nname = \"w\"\nnormal = [0, 1, 0]\npoint_m = [0, 0, 0]\n",
+            "passes through",
+        ),
+    ] {
+        let error = format!("{:?}", miette::Report::new(pairs(wrong).unwrap_err()));
+        assert!(error.contains(message), "{error}");
+    }
+}
