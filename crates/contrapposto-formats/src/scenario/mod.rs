@@ -1,7 +1,7 @@
 //! Reads scenario files: text becomes a checked experiment, or an error with file, line and column.
 //!
-//! `text` and `task_text` hold the file as it is written; `setup` reads what all experiments share; `simulate`, `pose` and
-//! `relax` complete it for one command each.
+//! `text`, `task_text` and `obstacle_text` hold the file as it is written; `setup` reads what all experiments share; `simulate`,
+//! `pose` and `relax` complete it for one command each.
 
 mod error_keys;
 mod events;
@@ -13,6 +13,7 @@ mod load;
 mod model;
 mod names;
 mod obstacle;
+mod obstacle_text;
 mod polygon;
 mod pose;
 mod posture;

@@ -4,34 +4,11 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{LARGEST, Model};
 use contrapposto::tasks::{Clearance, Task, Thing};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use schemars::JsonSchema;
-use serde::Deserialize;
 
+use super::obstacle_text::ObstacleText;
 use super::text::ScenarioText;
 use crate::input_error::InputError;
-use crate::toml_file::{Located, numbers, shown};
-
-/// A thing that no part of the body passes through: a block, or a wall.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ObstacleText {
-    /// Its name.
-    pub(crate) name: String,
-    /// Middle of a block, ground, m.
-    #[serde(default, deserialize_with = "numbers")]
-    pub(crate) middle_m: Option<[f64; 3]>,
-    /// Lengths of a block along x, y and z, m.
-    #[serde(default, deserialize_with = "numbers")]
-    pub(crate) size_m: Option<[f64; 3]>,
-    /// How far a block is turned to the left about its vertical axis, deg.
-    pub(crate) turn_deg: Option<f64>,
-    /// Direction out of a wall, ground.
-    #[serde(default, deserialize_with = "numbers")]
-    pub(crate) normal: Option<[f64; 3]>,
-    /// A point of a wall's surface, ground, m.
-    #[serde(default, deserialize_with = "numbers")]
-    pub(crate) point_m: Option<[f64; 3]>,
-}
+use crate::toml_file::{Located, shown};
 
 /// The inequalities above all tasks: none for a body without shapes, or where the file turns them off. `standing`: the segments of
 /// the supports, in the posture of `kinematics`.

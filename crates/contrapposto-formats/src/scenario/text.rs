@@ -6,7 +6,7 @@ use contrapposto::hybrid::Strategy;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::obstacle::ObstacleText;
+use super::obstacle_text::ObstacleText;
 use super::task_text::{SolverText, SupportText, TaskText};
 use crate::passive_law::PassiveText;
 use crate::toml_file::numbers;
