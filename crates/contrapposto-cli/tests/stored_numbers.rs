@@ -83,7 +83,8 @@ fn a_locked_arm_with_five_kilograms_fails_first_at_the_shoulder_after_141_second
     assert_coordinate(&summary, "wrist_dev_r", [0.0, 3.6375071893387116, 0.02264330552219259, -3.660150494860904]);
 }
 
-/// The start of a run is a minimum of effort that a search found: a better search may lower it.
+/// The start of a run is a minimum of effort that a search found: a better search may lower it. Before parts kept off each other it
+/// was 0.0695, with the upper arm 22 mm inside the abdomen.
 #[test]
 fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
     let text = std::fs::read_to_string(scenarios().join("hold-tool.toml")).unwrap();
@@ -93,7 +94,7 @@ fn holding_a_tool_starts_with_no_more_than_the_stored_effort() {
     let scenario = write(folder.path(), "hold-tool.toml", &short);
     let summary = result("simulate", Path::new(&scenario), "summary.json");
     let effort = summary["standing"]["effort_at_start"].as_f64().unwrap();
-    assert!(effort > 0.0 && effort < 0.06953115643322762 * (1.0 + TOLERANCE), "{effort}");
+    assert!(effort > 0.0 && effort < 0.07688831977833804 * (1.0 + TOLERANCE), "{effort}");
 }
 
 #[test]
