@@ -11,7 +11,7 @@ use contrapposto::model::{Capsule, Model};
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::Options;
 use contrapposto::simulation::run;
-use contrapposto::tasks::{Clearance, Task};
+use contrapposto::tasks::{Clearance, ClearancePair, Obstacle, Task, Thing};
 use contrapposto_formats::{read_pose, read_relax, read_scenario, scenario_model};
 use nalgebra::Vector3;
 
@@ -61,7 +61,30 @@ fn deepest(model: &Model, posture: &[f64], carrying: &[usize]) -> (f64, String) 
     deepest
 }
 
-fn assert_apart(what: &str, model: &Model, posture: &[f64], carrying: &[usize]) {
+/// The deepest point of a part in a block, m, below the block's nearest face; only of parts that may not touch it.
+fn deepest_in_blocks(model: &Model, posture: &[f64], limits: &[Task]) -> f64 {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &Posture::new(posture.to_vec())).unwrap();
+    let pairs = limits.iter().flat_map(|task| match task {
+        Task::Clearance(clearance) => &clearance.pairs[..],
+        _ => &[],
+    });
+    let depth = |pair: &ClearancePair| {
+        let Obstacle::Thing(Thing::Block { placement, half }) = pair.other else { return f64::NEG_INFINITY };
+        let line = points(model, &kinematics, &pair.part).into_iter();
+        let distance = |point: Vector3<f64>| {
+            let beyond = placement.inverse_transform_point(&point.into()).coords.abs() - half;
+            let out = beyond.map(|x| x.max(0.0)).norm();
+            if out > 0.0 { out } else { beyond.max() }
+        };
+        pair.part.radius - line.map(distance).fold(f64::INFINITY, f64::min)
+    };
+    pairs.map(depth).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn assert_apart(what: &str, model: &Model, posture: &[f64], carrying: &[usize], limits: &[Task]) {
+    let in_blocks = deepest_in_blocks(model, posture, limits);
+    assert!(in_blocks < DEEPEST, "{what}: in a block by {:.1} mm", 1e3 * in_blocks);
     let (depth, names) = deepest(model, posture, carrying);
     println!("{what}: {:.2} mm ({names})", 1e3 * depth);
     assert!(depth < DEEPEST, "{what}: {names} by {:.1} mm", 1e3 * depth);
@@ -83,18 +106,21 @@ fn every_second_of_every_run_has_no_part_in_another_or_in_the_floor() {
         assert!(matches!(&scenario.limits[..], [Task::Clearance(_)]), "{name}");
         let carrying: Vec<usize> = scenario.supports.iter().map(|support| support.segment).collect();
         let (mut worst, mut last, mut samples) = ((f64::NEG_INFINITY, String::new()), vec![], 0);
+        let mut blocks = f64::NEG_INFINITY;
         run(&scenario, |sample| {
             if samples % 30 == 0 {
                 let now = deepest(&scenario.model, sample.posture, &carrying);
+                blocks = blocks.max(deepest_in_blocks(&scenario.model, sample.posture, &scenario.limits));
                 worst = if now.0 > worst.0 { now } else { worst.clone() };
             }
             samples += 1;
             last = sample.posture.to_vec();
         })
         .unwrap();
-        println!("{name}, {samples} samples: {:.2} mm ({})", 1e3 * worst.0, worst.1);
+        println!("{name}, {samples} samples: {:.2} mm ({}), in a block {:.2} mm", 1e3 * worst.0, worst.1, 1e3 * blocks);
+        assert!(blocks < DEEPEST, "{name}: in a block by {:.1} mm", 1e3 * blocks);
         assert!(worst.0 < DEEPEST, "{name}: {} by {:.1} mm", worst.1, 1e3 * worst.0);
-        assert_apart(&format!("{name}, end"), &scenario.model, &last, &carrying);
+        assert_apart(&format!("{name}, end"), &scenario.model, &last, &carrying, &scenario.limits);
         runs += 1;
     }
     assert!(runs >= 9, "{runs}");
@@ -121,7 +147,8 @@ fn postures_of_least_effort_have_no_part_in_another_or_in_the_floor() {
         let carrying: Vec<usize> = scenario.supports.iter().map(|support| support.segment).collect();
         for (i, posture) in found.postures.iter().enumerate() {
             let values = posture.relaxed.posture.values();
-            assert_apart(&format!("{name}, posture {}", i + 1), &scenario.model, values, &carrying);
+            let what = format!("{name}, posture {}", i + 1);
+            assert_apart(&what, &scenario.model, values, &carrying, &scenario.limits);
         }
         searches += 1;
     }
@@ -149,6 +176,22 @@ fn pose_with_the_hand_wanted_in_the_abdomen_keeps_the_hand_outside() {
     println!("{apart:?}, {left} m from the target; without clearance {through:?}, {reached} m");
     assert!(apart.0 < DEEPEST && (0.01..0.3).contains(&left) && limits == Some(1));
     assert!(through.0 > 0.02 && reached < 1e-6 && none.is_none());
+}
+
+/// A hand wanted inside the top of a table, from above: it stops on the table.
+#[test]
+fn pose_with_the_hand_wanted_inside_a_table_stops_on_it() {
+    let text = "format = 1\n[posture]\nelbow_flex_r_deg = 90\n[[support]]\nsegment = \"calcn_r\"\n[[support]]\n\
+        segment = \"calcn_l\"\n[[task]]\nkind = \"point\"\nsegment = \"hand_r\"\nat_m = [0, -0.1, 0]\n\
+        target_m = [0.45, 0.9, 0.2]\n[[obstacle]]\nname = \"table\"\nmiddle_m = [0.6, 0.9, 0]\nsize_m = [0.6, 0.1, 1.4]\n";
+    let scenario = read_pose("on the table", text.as_bytes(), None).unwrap();
+    let (levels, _) = scenario.levels();
+    let mut engine = contrapposto::posture_solver::Engine::new(&scenario.model, levels, &[], scenario.options).unwrap();
+    let solved = engine.solve(&scenario.start).unwrap();
+    let depth = deepest_in_blocks(&scenario.model, solved.posture.values(), &scenario.limits);
+    let left = solved.levels.iter().map(|level| level.length).fold(0.0, f64::max);
+    println!("{:.2} mm in the table, {left} m from the target after {} steps", 1e3 * depth, solved.steps);
+    assert!(depth.abs() < DEEPEST && (0.02..0.2).contains(&left));
 }
 
 /// A start with the forearm in the thigh is no error: the run begins by moving it out.
