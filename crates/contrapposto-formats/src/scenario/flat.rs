@@ -33,6 +33,8 @@ const STEEPEST_HAND: f64 = 100.0 * std::f64::consts::PI / 180.0;
 const HEAVY: f64 = 0.25;
 /// Weight of such a coordinate beside 1 for all others: limbs move before the trunk does.
 const HEAVY_WEIGHT: f64 = 10.0;
+/// rad, 60 degrees: the same for soft patches; a slumped pelvis is tilted back by 40 degrees.
+const STEEPEST_SOFT: f64 = std::f64::consts::FRAC_PI_3;
 /// Segments of palms.
 const PALMS: [&str; 2] = ["hand_r", "hand_l"];
 
@@ -113,7 +115,11 @@ fn move_to_floor(
 /// Refuses a patch that is too far off its surface, or too tilted.
 fn check(at: &Located, model: &Model, i: usize, resting: &Resting, fit: &Fit) -> Result<(), InputError> {
     let name = &model.segments()[resting.support.segment].name;
-    let steepest = if PALMS.contains(&name.as_str()) { STEEPEST_HAND } else { STEEPEST };
+    let steepest = match resting.soft {
+        true => STEEPEST_SOFT,
+        false if PALMS.contains(&name.as_str()) => STEEPEST_HAND,
+        false => STEEPEST,
+    };
     if fit.gap.abs() <= FARTHEST && fit.tilt <= steepest {
         return Ok(());
     }
