@@ -14,6 +14,7 @@ mod model;
 mod names;
 mod obstacle;
 mod obstacle_text;
+mod place;
 mod polygon;
 mod pose;
 mod posture;

@@ -5,7 +5,7 @@ use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::Options;
 use contrapposto::statics::Load;
-use contrapposto::tasks::{Placement, PriorityLevel, Task};
+use contrapposto::tasks::{Placement, PriorityLevel, Task, free_place, held_place};
 use nalgebra::Vector3;
 
 use super::fatigue_choice::LAW_KEYS;
@@ -68,7 +68,7 @@ pub fn read_pose(name: &str, bytes: &[u8], model: Option<Model>) -> Result<PoseS
 fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseScenario, InputError> {
     let setup = Setup::read(at, text, file)?;
     let (mut goals, mut labels) = (vec![], vec![]);
-    if let Some((level, names)) = supports_hold(&setup) {
+    for (level, names) in supports_hold(&setup) {
         goals.push(level);
         labels.push(names);
     }
@@ -104,16 +104,26 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
     })
 }
 
-/// The first level, on which all supports stay where they are at the start, with a name for each.
-fn supports_hold(setup: &Setup) -> Option<(PriorityLevel, Vec<String>)> {
+/// The first levels, with a name for each task: supports stay where they are at the start or, where their place is free, flat on
+/// their planes and, on the second level, in their regions.
+fn supports_hold(setup: &Setup) -> Vec<(PriorityLevel, Vec<String>)> {
     let (model, segments) = (&setup.model, &setup.standing);
-    let stays = |&segment: &usize| {
+    let name = |segment: usize| model.segments()[segment].name.as_str();
+    let supports = setup.supports.as_deref().unwrap_or_default();
+    let (mut held, mut regions) = ((PriorityLevel::default(), vec![]), (PriorityLevel::default(), vec![]));
+    held.0.hard = true;
+    for &segment in segments {
+        let support = supports.iter().find(|support| support.segment == segment);
         let target = setup.kinematics.placement(model, segment);
-        Task::Placement(Placement { segment, point: Vector3::zeros(), target })
-    };
-    let name = |&segment: &usize| format!("support {}", model.segments()[segment].name);
-    let level = PriorityLevel { tasks: segments.iter().map(stays).collect(), hard: true, ..PriorityLevel::default() };
-    (!segments.is_empty()).then(|| (level, segments.iter().map(name).collect()))
+        let stays = Task::Placement(Placement { segment, point: Vector3::zeros(), target });
+        held.0.tasks.push(support.map_or(stays, |support| held_place(support, model, &setup.kinematics)));
+        held.1.push(format!("support {}", name(segment)));
+        if let Some(region) = support.and_then(|support| free_place(support, model, &setup.kinematics)) {
+            regions.0.tasks.push(region);
+            regions.1.push(format!("place of {}", name(segment)));
+        }
+    }
+    [held, regions].into_iter().filter(|(level, _)| !level.tasks.is_empty()).collect()
 }
 
 fn options(at: &Located, text: &ScenarioText) -> Result<Options, InputError> {

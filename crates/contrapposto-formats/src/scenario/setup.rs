@@ -13,6 +13,7 @@ use super::levels::{Level, levels};
 use super::load::load;
 use super::model::body;
 use super::obstacle::limits;
+use super::place::set_places;
 use super::posture::{balls, free, free_rates, rates, set};
 use super::stage::{Stage, Start};
 use super::support;
@@ -54,11 +55,14 @@ impl Setup {
         let loads = text.load.iter().enumerate().map(load).collect::<Result<_, _>>()?;
         let standing = support::segments(at, &model, &text.support)?;
         let mut notes = vec![];
-        let supports = match support::resting(at, text, &model, &standing) {
+        let mut supports = match support::resting(at, text, &model, &standing) {
             Ok(resting) => Ok(lay_flat(at, &model, &free_rates(at, &model, text)?, &mut start, resting, &mut notes)?),
             Err(error) => Err(error),
         };
         let Start { posture: start, kinematics } = start;
+        if let Ok(supports) = &mut supports {
+            set_places(at, (&model, &kinematics), &text.support, supports)?;
+        }
         let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing };
         let mut levels = levels(&stage, &text.task)?;
         notes.extend(add_upright(&stage, text, &mut levels)?.map(str::to_owned));

@@ -26,6 +26,48 @@ pub(crate) struct SupportText {
     /// built-in adult). Has no part in a pose.
     #[serde(default, deserialize_with = "rows")]
     pub(crate) corners_m: Option<Vec<[f64; 3]>>,
+    /// Whether the patch may be put elsewhere on its plane: `"start"` (the default): it stays where it is at the start; `"free"`: the
+    /// program chooses place and turn, a foot beside the other one without crossing it; or a region.
+    #[serde(default)]
+    pub(crate) place: PlaceText,
+}
+
+/// Where a support may be.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum PlaceText {
+    /// In a word.
+    Named(NamedPlaceText),
+    /// Within limits of the file.
+    Region(RegionText),
+}
+
+impl Default for PlaceText {
+    fn default() -> Self {
+        Self::Named(NamedPlaceText::Start)
+    }
+}
+
+/// A place in a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum NamedPlaceText {
+    /// Where it is at the start.
+    Start,
+    /// On its plane, where least effort puts it.
+    Free,
+}
+
+/// The region of a free support.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct RegionText {
+    /// Corners of the region of the patch's middle, ground, m, three or more; seen along the normal of the plane.
+    #[serde(deserialize_with = "rows")]
+    pub(crate) corners_m: Option<Vec<[f64; 3]>>,
+    /// Least and greatest turn about the normal from the start, deg, -90 to 0 and 0 to 90.
+    #[serde(deserialize_with = "numbers")]
+    pub(crate) turn_deg: Option<[f64; 2]>,
 }
 
 /// The surface under a support: `"floor"`, `"ground"`, or a plane.

@@ -11,4 +11,5 @@ mod support;
 pub use forces::{Balance, ContactForces};
 pub use missing::{Condition, Missing};
 pub(crate) use rows::{Unknowns, bounds, friction_rows, share_row};
+pub(crate) use support::rates_that_move;
 pub use support::{FACES, Place, Region, Support, SupportError, root_rates};

@@ -114,6 +114,25 @@ impl Support {
     }
 }
 
+/// By rate: it moves a support, or is the independent rate of a coupling whose dependent one does.
+pub(crate) fn rates_that_move(model: &Model, supports: &[Support]) -> Vec<bool> {
+    let mut moves = vec![false; model.rates().len()];
+    for support in supports {
+        let mut carrier = model.segments()[support.segment].mobility;
+        while let Some(mobility) = carrier {
+            model.rates_of(mobility).for_each(|rate| moves[rate] = true);
+            carrier = model.mobilities[mobility].parent;
+        }
+    }
+    let rate = |coordinate: usize| model.coordinates()[coordinate].rate;
+    for coupling in model.couplings().iter().rev() {
+        if let (Some(independent), Some(dependent)) = (rate(coupling.independent), rate(coupling.dependent)) {
+            moves[independent] |= moves[dependent];
+        }
+    }
+    moves
+}
+
 /// The rates at which the body as a whole moves against ground, moved by no muscle: those of joints to ground that slide along
 /// two axes at least (or turn and slide freely) and have no muscle groups. Their torques must come from supports.
 pub fn root_rates(model: &Model) -> Vec<usize> {

@@ -4,7 +4,7 @@
 //! can be searched for in a smaller problem, on the reduced model in which all other joints are fixed.
 
 use super::problem::EffortProblem;
-use crate::contact::ContactForces;
+use crate::contact::{ContactForces, rates_that_move};
 use crate::joint_torques::JointTorquesError;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, reduced};
@@ -33,7 +33,7 @@ impl ReducedProblem {
     /// [`JointTorquesError`] when the posture does not fit the model.
     pub(crate) fn of(problem: &EffortProblem<'_>, posture: &Posture) -> Result<Option<Self>, JointTorquesError> {
         let model = problem.model;
-        let fixed = rates_that_move_supports(problem);
+        let fixed = rates_that_move(model, problem.contact.supports());
         let rate = |c: &usize| model.coordinates()[*c].rate;
         let coordinates = problem.effort_coordinates();
         let coordinates: Vec<usize> = coordinates.filter(|c| rate(c).is_some_and(|rate| !fixed[rate])).collect();
@@ -85,26 +85,6 @@ impl ReducedProblem {
             ..*problem
         }
     }
-}
-
-/// Whether each rate moves a support, or is the independent rate of a coupling whose dependent one does.
-fn rates_that_move_supports(problem: &EffortProblem<'_>) -> Vec<bool> {
-    let model = problem.model;
-    let mut fixed = vec![false; model.rates().len()];
-    for support in problem.contact.supports() {
-        let mut carrier = model.segments()[support.segment].mobility;
-        while let Some(mobility) = carrier {
-            model.rates_of(mobility).for_each(|rate| fixed[rate] = true);
-            carrier = model.mobilities[mobility].parent;
-        }
-    }
-    let rate = |coordinate: usize| model.coordinates()[coordinate].rate;
-    for coupling in model.couplings().iter().rev() {
-        if let (Some(independent), Some(dependent)) = (rate(coupling.independent), rate(coupling.dependent)) {
-            fixed[independent] |= fixed[dependent];
-        }
-    }
-    fixed
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! Provides problems of least effort to the tests: the adult on both feet with a load in a hand that reaches, in random postures
-//! with random contact forces, some joints locked.
+//! with random contact forces, some joints locked, the left foot free to shift and turn.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -9,13 +9,13 @@ use rand_pcg::Pcg64Mcg;
 
 use super::iterate::Iterate;
 use super::problem::EffortProblem;
-use crate::contact::{ContactForces, Support};
+use crate::contact::{ContactForces, Place, Region, Support};
 use crate::joint_torques::{JointTorques, Quantities};
 use crate::model::{Adult, Model, adult};
 use crate::posture::Posture;
 use crate::statics::{FixedIn, Load, LoadKind};
 use crate::tasks::PriorityLevel;
-use crate::tasks::{Effort, Placement, Point, Task};
+use crate::tasks::{Effort, Point, Task, held_place};
 
 pub(crate) struct StandingAdult {
     pub(crate) model: Model,
@@ -29,6 +29,7 @@ pub(crate) struct StandingAdult {
 impl StandingAdult {
     pub(crate) fn new() -> Self {
         let model = adult(&Adult::default()).unwrap();
+        let free = Place::Free(Region { corners: vec![], turn: (-0.5, 0.5) });
         let support = |name: &str| {
             let segment = model.segment(name).unwrap();
             let corners = model.segments()[segment].patch.clone();
@@ -38,7 +39,7 @@ impl StandingAdult {
                 normal: Vector3::y(),
                 friction: 0.6,
                 share_max: 1.0,
-                place: crate::contact::Place::Fixed,
+                place: if name == "calcn_l" { free.clone() } else { Place::Fixed },
             }
         };
         let contact = ContactForces::new(&model, vec![support("calcn_r"), support("calcn_l")]).unwrap();
@@ -71,9 +72,7 @@ impl StandingAdult {
             body.update(&self.model, &posture, &[], Quantities::default()).unwrap();
             let mut places = PriorityLevel::default();
             for support in self.contact.supports() {
-                let target = body.kinematics().placement(&self.model, support.segment);
-                let task = Placement { segment: support.segment, point: Vector3::zeros(), target };
-                places.tasks.push(Task::Placement(task));
+                places.tasks.push(held_place(support, &self.model, body.kinematics()));
             }
             let problem = EffortProblem {
                 model: &self.model,

@@ -2,8 +2,10 @@
 
 use super::description::{describe, relative_torques, work_of};
 use super::mirror::Mirror;
+use super::other_places::other_places;
 use super::outcome::Equilibria;
 use super::search::{Search, SearchError};
+use super::ways_to_stand::DifferentWays;
 use crate::constraint::HalfSpace;
 use crate::contact::{Condition, Missing};
 use crate::effort::hessian::HessianModel;
@@ -135,13 +137,14 @@ impl<'a> Finder<'a> {
         let (most, minima) = (options.max_steps, options.local_minima);
         let mut engines = [engine(exploratory, 0, &levels)?, engine(most, 0, &levels)?, engine(most, minima, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
-        let approach = engine(EXPLORATORY_STEPS, 0, &levels[..slot])?;
+        let approach = engine(EXPLORATORY_STEPS, 0, &levels[..=slot])?;
         Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], refused: None, starts: 0, steps: 0 })
     }
 
     /// Solves from all starts, a few steps each.
     fn explore(&mut self) -> Result<(), SearchError> {
         self.solve_from_tasks(self.search.start, "the start".to_owned());
+        self.explore_places();
         let mut explored: Vec<Candidate> = vec![];
         for _ in 0..ROUNDS {
             let Some(best) = self.best() else { break };
@@ -236,6 +239,15 @@ impl<'a> Finder<'a> {
             *known = new;
         }
         known.starts = starts;
+    }
+
+    /// Solves from other places of each free support.
+    fn explore_places(&mut self) {
+        for (task, label) in other_places(self.search.model, self.search.supports) {
+            self.approach.levels_mut()[self.slot].tasks = vec![task];
+            self.solve_from_tasks(self.search.start, label);
+            self.approach.levels_mut()[self.slot].tasks.clear();
+        }
     }
 
     /// Moves to the tasks without regard to effort first: from afar the two would obstruct each other.
@@ -384,11 +396,13 @@ impl<'a> Finder<'a> {
         }
         selected.sort_by(|&a, &b| self.found[a].relaxed.effort.total_cmp(&self.found[b].relaxed.effort));
         let yielded = self.found.len() - selected.len();
-        let mut postures = vec![];
+        let (mut answers, engine) = (DifferentWays::default(), &mut self.engines[Stage::Converged as usize]);
         for i in selected {
             let Candidate { relaxed, starts, .. } = self.found[i].clone();
-            postures.push(describe(self.search, &mut self.engines[Stage::Converged as usize], relaxed, starts)?);
+            let posture = describe(self.search, engine, relaxed, starts)?;
+            answers.take(self.search.model, engine.torques().kinematics(), posture);
         }
-        Ok(Equilibria { postures, starts: self.starts, fell: self.fell.len(), yielded, steps: self.steps })
+        let DifferentWays { postures, alike, .. } = answers;
+        Ok(Equilibria { postures, starts: self.starts, fell: self.fell.len(), yielded, alike, steps: self.steps })
     }
 }

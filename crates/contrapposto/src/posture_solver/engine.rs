@@ -117,6 +117,16 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
+    /// The levels.
+    pub fn levels(&self) -> &[PriorityLevel] {
+        &self.settings.levels
+    }
+
+    /// The loads besides weight and contact forces.
+    pub fn loads(&self) -> &[Load] {
+        &self.settings.loads
+    }
+
     /// The levels, to move targets between steps. A changed level must still fit the model; effort must stay where it
     /// is.
     pub fn levels_mut(&mut self) -> &mut [PriorityLevel] {

@@ -6,14 +6,16 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::{Balance, ContactForces, Missing};
+use crate::contact::{Balance, ContactForces, Missing, Place, Support};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, Options};
 use crate::statics::{Load, LoadKind};
-use crate::tasks::PriorityLevel;
+use crate::tasks::{PriorityLevel, Task};
 
+use super::easiest::{Now, easiest};
+use super::path::{Path, Planner};
 use super::sample::{Contact, Standing};
 use super::state::Request;
 use super::{Scenario, ScenarioError};
@@ -42,7 +44,12 @@ const HALF_SPACE_TOLERANCE: f64 = 1e-6;
 /// A body with supports or tasks under way.
 #[derive(Clone, Debug)]
 pub(super) struct BodyMotion<'a> {
+    scenario: &'a Scenario,
+    /// Where the body stands: no support is free.
+    supports: Vec<Support>,
     engine: Engine<'a>,
+    /// The support that is in the air, and an engine without it.
+    lifted: Option<(usize, Engine<'a>)>,
     model: &'a Model,
     /// Number of levels above the reliefs.
     above: usize,
@@ -67,42 +74,138 @@ struct Slope {
 }
 
 impl<'a> BodyMotion<'a> {
-    /// The body at the posture nearest to the scenario's start in which its supports hold it and its tasks are done.
-    pub(super) fn new(scenario: &'a Scenario) -> Result<(Self, Posture), ScenarioError> {
+    /// The body on its supports as they are in the posture `placed_at`.
+    pub(super) fn new(scenario: &'a Scenario, placed_at: &Posture) -> Result<Self, ScenarioError> {
         let model = &scenario.model;
+        // A foot that carries does not slide.
+        let stays = |support: &Support| Support { place: Place::Fixed, ..support.clone() };
+        let supports: Vec<Support> = scenario.supports.iter().map(stays).collect();
         let (above, below): (Vec<_>, Vec<_>) = (0..scenario.tasks.len()).partition(|&i| scenario.tasks[i].above_relief);
         let level = |i: &usize| scenario.tasks[*i].goal.clone();
-        let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
-        let start =
-            engine(scenario, above.iter().chain(&below).map(level).collect(), options)?.solve(&scenario.start)?;
         let reliefs = std::iter::repeat_n(PriorityLevel::default(), MOST_RELIEFS);
         let levels = above.iter().map(level).chain(reliefs).chain(below.iter().map(level)).collect();
         let mut task_levels = vec![0; scenario.tasks.len()];
         above.iter().enumerate().for_each(|(level, &i)| task_levels[i] = level);
         below.iter().enumerate().for_each(|(level, &i)| task_levels[i] = above.len() + MOST_RELIEFS + level);
         let max_step = FOLLOWING_STEPS * scenario.relief.max_step;
-        let options = Options { reject_steps: false, max_step, ..options };
-        // Supports stay where they were at the scenario's start, not where the first solution left them.
-        let mut body = Self {
-            engine: engine(scenario, levels, options)?,
+        let options = Options { reject_steps: false, max_step, local_minima: 0, ..Options::least_effort() };
+        Ok(Self {
+            scenario,
+            engine: engine(scenario, placed_at, &supports, levels, options)?,
+            supports,
+            lifted: None,
             model,
             above: above.len(),
             task_levels,
             slopes: vec![None; model.coordinates().len()],
-            before: start.posture.clone(),
+            before: placed_at.clone(),
             convergence_count: 0,
             requested: vec![],
             deferred: vec![],
-        };
+        })
+    }
+
+    /// The posture nearest to the scenario's start in which the supports hold the body and its tasks are done; what carries nothing
+    /// takes the posture of least effort that a search finds. Gives the number of steps of the search, too.
+    pub(super) fn start(&mut self) -> Result<(Posture, usize), ScenarioError> {
+        let scenario = self.scenario;
+        let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
+        let levels = self.levels().cloned().collect();
+        let mut nearest = engine(scenario, &scenario.start, &self.supports, levels, options)?;
+        let mut posture = nearest.solve(&scenario.start)?.posture;
         // A body whose weight acts at the very edge of its supports may be off balance by rounding.
-        let mut posture = start.posture;
-        match body.recover_balance(&mut posture)? {
-            Some(missing) => Err(ScenarioError::CannotStand(missing)),
-            None => {
-                body.forget();
-                Ok((body, posture))
-            }
+        if let Some(missing) = self.recover_balance(&mut posture)? {
+            return Err(ScenarioError::CannotStand(missing));
         }
+        let (better, steps) = self.easiest(&posture)?;
+        self.forget();
+        Ok((better.unwrap_or(posture), steps))
+    }
+
+    /// The levels that ask for something.
+    pub(super) fn levels(&self) -> impl Iterator<Item = &PriorityLevel> {
+        self.engine.levels().iter().filter(|level| !level.tasks.is_empty() || !level.half_spaces.is_empty())
+    }
+
+    pub(super) fn scenario(&self) -> &'a Scenario {
+        self.scenario
+    }
+
+    /// The supports where they are now: none is free.
+    pub(super) fn supports(&self) -> &[Support] {
+        &self.supports
+    }
+
+    pub(super) fn loads(&self) -> &[Load] {
+        self.engine.loads()
+    }
+
+    /// Effort that the effort level counts, in the posture of the last update.
+    pub(super) fn effort(&self) -> f64 {
+        let level = self.engine.levels().iter().position(is_effort);
+        level.map_or(0.0, |level| self.engine.error(level).powi(2))
+    }
+
+    /// A posture of less effort that the body can take without moving a support, if there is one worth a motion, and the number of
+    /// steps of the search.
+    pub(super) fn easiest(&mut self, posture: &Posture) -> Result<(Option<Posture>, usize), ScenarioError> {
+        if !self.engine.levels().iter().any(is_effort) {
+            return Ok((None, 0));
+        }
+        self.engine.evaluate(posture)?;
+        let effort = self.effort();
+        let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
+        let now = Now { posture, levels: &levels, loads: self.engine.loads(), effort };
+        // A search that finds nothing leaves the body as it is.
+        Ok(easiest(self.scenario, now, &self.supports).unwrap_or((None, 0)))
+    }
+
+    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none.
+    pub(super) fn way(
+        &self,
+        from: &Posture,
+        to: &Posture,
+        lifted: Option<usize>,
+    ) -> Result<Option<Path>, ScenarioError> {
+        let levels: Vec<PriorityLevel> = self.levels().take_while(|level| !is_effort(level)).cloned().collect();
+        // A step may leave what reliefs ask for at the old place.
+        let keeps = |level: &&PriorityLevel| lifted.is_none() || level.half_spaces.is_empty();
+        let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
+        let (supports, loads) = (&self.supports[..], self.engine.loads());
+        let planner = Planner { scenario: self.scenario, supports, levels: &levels, loads };
+        Ok(match lifted {
+            Some(support) => planner.step(from, to, support)?,
+            None => planner.way(from, to)?,
+        })
+    }
+
+    /// The support that is in the air from now on.
+    pub(super) fn lift(&mut self, support: Option<usize>) -> Result<(), ScenarioError> {
+        let Some(lifted) = support else {
+            self.lifted = None;
+            return Ok(());
+        };
+        if self.lifted.as_ref().is_none_or(|(known, _)| *known != lifted) {
+            let others = self.supports.iter().enumerate().filter(|(i, _)| *i != lifted);
+            let others: Vec<Support> = others.map(|(_, support)| support.clone()).collect();
+            let levels = self.engine.levels().to_vec();
+            let options = Options::least_effort();
+            let mut engine = engine(self.scenario, &self.before, &others, levels, options)?;
+            engine.set_loads(self.engine.loads())?;
+            self.lifted = Some((lifted, engine));
+        }
+        Ok(())
+    }
+
+    /// Stands on the supports as they are in `posture`: one has been put elsewhere.
+    pub(super) fn place_again(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
+        let (levels, loads) = (self.engine.levels().to_vec(), self.engine.loads().to_vec());
+        *self = Self::new(self.scenario, posture)?;
+        self.engine.levels_mut().clone_from_slice(&levels);
+        self.engine.set_loads(&loads)?;
+        self.requested.clear();
+        self.write_relief_levels(&[]);
+        Ok(())
     }
 
     /// Moves by one step toward the half-spaces of the `requested` coordinates, the most fatigued first, and the tasks.
@@ -171,6 +274,9 @@ impl<'a> BodyMotion<'a> {
 
     /// Computes all torques in a posture.
     pub(super) fn update(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
+        if let Some((_, engine)) = &mut self.lifted {
+            engine.evaluate(posture)?;
+        }
         Ok(self.engine.evaluate(posture)?)
     }
 
@@ -247,19 +353,23 @@ impl<'a> BodyMotion<'a> {
     }
 
     pub(super) fn contact(&self) -> &ContactForces {
-        self.engine.contact()
+        self.lifted.as_ref().map_or(&self.engine, |(_, engine)| engine).contact()
     }
 
     /// Torques of the last update, contact included.
     pub(super) fn torques(&self) -> &JointTorques {
-        self.engine.torques()
+        self.lifted.as_ref().map_or(&self.engine, |(_, engine)| engine).torques()
     }
 
     /// Writes how the body stands in the posture of the last update; `effort` stays.
     pub(super) fn write_standing(&self, standing: &mut Standing) {
         let contact = self.contact();
         standing.contacts.clear();
+        let lifted = self.lifted.as_ref().map(|(support, _)| *support);
         standing.contacts.extend((0..contact.supports().len()).map(|support| self.contact_of(support)));
+        if let Some(support) = lifted {
+            standing.contacts.insert(support, Contact::default());
+        }
         standing.errors.clear();
         standing.errors.extend(self.task_levels.iter().map(|&level| self.engine.error(level)));
         standing.slip = self.engine.slip();
@@ -281,14 +391,21 @@ impl<'a> BodyMotion<'a> {
     }
 }
 
+/// Whether effort is asked for.
+fn is_effort(level: &PriorityLevel) -> bool {
+    level.tasks.iter().any(|task| matches!(task, Task::Effort(_)))
+}
+
 /// An engine for a scenario's body that moves its free coordinates.
 fn engine<'a>(
     scenario: &'a Scenario,
+    placed_at: &Posture,
+    supports: &[Support],
     levels: Vec<PriorityLevel>,
     options: Options,
 ) -> Result<Engine<'a>, ScenarioError> {
-    let (model, supports) = (&scenario.model, scenario.supports.clone());
-    let mut engine = Engine::with_supports(model, &scenario.start, supports, levels, &scenario.loads, options)?;
+    let model = &scenario.model;
+    let mut engine = Engine::with_supports(model, placed_at, supports.to_vec(), levels, &scenario.loads, options)?;
     for (i, rate) in model.rates().iter().enumerate() {
         if rate.coordinate.is_some_and(|c| !scenario.free[c]) {
             engine.lock(i);

@@ -5,9 +5,12 @@
 //! and a [`Run`] can be interrupted and resumed. The same scenario and the same build give the same bits.
 
 mod body_motion;
+mod easiest;
+mod foot_step;
 mod group_state;
 mod joint_motion;
 mod motion;
+mod path;
 mod prediction;
 mod relief_log;
 mod run;
@@ -16,7 +19,9 @@ mod scenario;
 mod state;
 mod step;
 mod summary;
+mod under_way;
 
+pub use foot_step::FootStep;
 pub use relief_log::{ReliefLog, ReliefRecord};
 pub use run::{Run, Snapshot, run};
 pub use sample::{Contact, Relief, Sample, Standing};

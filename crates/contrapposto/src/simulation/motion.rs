@@ -16,13 +16,12 @@ pub(super) enum Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    /// The motion of a scenario, and the posture that it starts in.
-    pub(super) fn new(scenario: &'a Scenario) -> Result<(Self, Posture), ScenarioError> {
+    /// The motion of a scenario whose supports are as in the posture `placed_at`.
+    pub(super) fn new(scenario: &'a Scenario, placed_at: &Posture) -> Result<Self, ScenarioError> {
         if scenario.has_supports_or_tasks() {
-            let (body, start) = BodyMotion::new(scenario)?;
-            return Ok((Self::Body(Box::new(body)), start));
+            return Ok(Self::Body(Box::new(BodyMotion::new(scenario, placed_at)?)));
         }
-        Ok((Self::Joints(Box::new(JointMotion::new(scenario))), scenario.start.clone()))
+        Ok(Self::Joints(Box::new(JointMotion::new(scenario))))
     }
 
     pub(super) fn body(&self) -> Option<&BodyMotion<'a>> {

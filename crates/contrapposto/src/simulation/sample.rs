@@ -100,7 +100,7 @@ pub struct Standing {
 }
 
 /// The force at a support.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
     /// Force on the body, ground axes, N.
     pub force: Vector3<f64>,

@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::Event;
+use super::foot_step::FootStep;
 use super::group_state::GroupState;
+use super::path::Path;
 use crate::constraint::HalfSpace;
 use crate::hybrid::{Decision, Strategy};
 use crate::model::Side;
@@ -29,6 +31,18 @@ pub(super) struct State {
     pub(super) requests: Vec<Request>,
     /// Some relief asks for motion, not only for a half-space to be kept.
     pub(super) reliefs_move: bool,
+    /// Where the supports stand, once one of them has been put elsewhere.
+    pub(super) placed_at: Option<Posture>,
+    /// The way that the body follows.
+    pub(super) path: Option<Path>,
+    /// Supports put elsewhere so far; the way follows the last one until it has an end.
+    pub(super) foot_steps: Vec<FootStep>,
+    /// By coordinate: a step was looked for in its present recovery.
+    pub(super) step_tried: Vec<bool>,
+    /// Solver steps of all searches so far.
+    pub(super) searched: usize,
+    /// The body has not moved since the last search.
+    pub(super) searched_here: bool,
 }
 
 /// The constraint that the relief of one coordinate puts on the posture, and what its decision predicts.
@@ -72,11 +86,17 @@ impl State {
             decisions: vec![None; n],
             requests: vec![request; n],
             reliefs_move: false,
+            placed_at: None,
+            path: None,
+            foot_steps: vec![],
+            step_tried: vec![false; n],
+            searched: 0,
+            searched_here: true,
         }
     }
 
     /// Whether there is one entry a coordinate, and every number is finite.
-    pub(super) fn fits(&self, n: usize, events: usize) -> bool {
+    pub(super) fn fits(&self, n: usize, supports: usize, events: usize) -> bool {
         let counts = [
             self.groups.len(),
             self.strategies.len(),
@@ -84,6 +104,7 @@ impl State {
             self.fatigue.len(),
             self.decisions.len(),
             self.requests.len(),
+            self.step_tried.len(),
         ];
         let sizes = self.requests.iter().map(|request| request.half_space.normal.len());
         counts.into_iter().chain(sizes).all(|count| count == n)
@@ -91,6 +112,7 @@ impl State {
             && self.effort.is_finite()
             && self.active.iter().chain(self.fatigue.iter().flatten()).all(|v| v.is_finite())
             && self.requests.iter().all(Request::is_finite)
+            && self.path.as_ref().is_none_or(|path| path.fits(n, supports))
     }
 
     /// Applies what an event changes of the strategies, and ends the recoveries that it makes obsolete.

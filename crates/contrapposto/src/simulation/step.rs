@@ -26,10 +26,10 @@ const REJECTIONS_BEFORE_END: u32 = 6;
 /// A scenario under way.
 #[derive(Debug)]
 pub struct Simulation<'a> {
-    scenario: &'a Scenario,
-    state: State,
-    motion: Motion<'a>,
-    record: Record,
+    pub(super) scenario: &'a Scenario,
+    pub(super) state: State,
+    pub(super) motion: Motion<'a>,
+    pub(super) record: Record,
     /// Values of the posture and active torque before the last motion.
     values_before: Vec<f64>,
     active_before: Vec<f64>,
@@ -44,12 +44,16 @@ impl<'a> Simulation<'a> {
     /// [`ScenarioError`] when the scenario is not in order.
     pub fn new(scenario: &'a Scenario) -> Result<Self, ScenarioError> {
         scenario.check()?;
-        let (motion, start) = Motion::new(scenario)?;
+        let (mut motion, mut start) = (Motion::new(scenario, &scenario.start)?, scenario.start.clone());
+        let mut searched = 0;
+        if let Some(body) = motion.body_mut() {
+            (start, searched) = body.start()?;
+        }
         let strategies = match scenario.strategies.is_empty() {
             true => vec![scenario.strategy.kind; scenario.model.coordinates().len()],
             false => scenario.strategies.clone(),
         };
-        let mut simulation = Self::with(scenario, motion, State::new(start, strategies));
+        let mut simulation = Self::with(scenario, motion, State { searched, ..State::new(start, strategies) });
         simulation.carry_out_reliefs()?;
         for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
             let Some(groups) = &coordinate.groups else { continue };
@@ -69,11 +73,13 @@ impl<'a> Simulation<'a> {
     /// [`ScenarioError::Snapshot`] if the state is that of another body or run.
     pub(super) fn resume(scenario: &'a Scenario, state: State) -> Result<Self, ScenarioError> {
         scenario.check()?;
-        let (motion, _) = Motion::new(scenario)?;
         let n = scenario.model.coordinates().len();
-        if !state.fits(n, scenario.events.len()) || state.posture.check(&scenario.model).is_err() {
+        let postures = [Some(&state.posture), state.placed_at.as_ref()];
+        let fit = postures.iter().flatten().all(|posture| posture.check(&scenario.model).is_ok());
+        if !fit || !state.fits(n, scenario.supports.len(), scenario.events.len()) {
             return Err(ScenarioError::Snapshot);
         }
+        let motion = Motion::new(scenario, state.placed_at.as_ref().unwrap_or(&scenario.start))?;
         let events = state.next_event;
         let mut simulation = Self::with(scenario, motion, state.clone());
         for event in &scenario.events[..events] {
@@ -156,6 +162,9 @@ impl<'a> Simulation<'a> {
             self.state.next_event += 1;
             self.apply(event)?;
         }
+        if self.state.next_event > first {
+            self.end_path_at_once()?;
+        }
         let Some(body) = self.motion.body_mut().filter(|_| self.state.next_event > first) else { return Ok(()) };
         let missing = body.recover_balance(&mut self.state.posture)?;
         missing.map_or(Ok(()), |missing| Err(ScenarioError::Falls(Fall { time, missing })))
@@ -186,6 +195,9 @@ impl<'a> Simulation<'a> {
     /// Moves the body by its priorities. A motion after which the supports do not hold the body, or that makes relief cost more
     /// than predicted, is taken back.
     fn move_body(&mut self) -> Result<(), ScenarioError> {
+        if self.follow_path()? {
+            return Ok(());
+        }
         let requested = self.state.requested();
         let effort_before = self.state.effort;
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
@@ -243,7 +255,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Computes torques and relative loads in the present posture; gives the effort.
-    fn evaluate(&mut self) -> Result<f64, ScenarioError> {
+    pub(super) fn evaluate(&mut self) -> Result<f64, ScenarioError> {
         self.motion.update(&self.state.posture)?;
         let torques = self.motion.torques();
         for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
@@ -287,6 +299,10 @@ impl<'a> Simulation<'a> {
             self.record.asking[i] = None;
             if !self.state.groups[i].iter().any(|group| group.recovering) {
                 self.state.requests[i].end();
+                self.state.step_tried[i] = false;
+            }
+            if self.state.path.is_some() {
+                continue;
             }
             let coordinate = &self.scenario.model.coordinates()[i];
             if coordinate.passive.is_none() || coordinate.rate.is_none() || !self.scenario.free[i] {
@@ -298,9 +314,15 @@ impl<'a> Simulation<'a> {
                 decided = true;
                 moves |= step.abs() > SMALLEST_STEP;
             }
+            if let Some(decision) = self.state.decisions[i] {
+                self.look_for_step(i, side, &decision)?;
+            }
         }
         self.state.reliefs_move = moves;
-        self.record.settled = decided && !moves && self.motion.is_at_rest();
+        self.state.searched_here &= !moves;
+        self.look_for_ease()?;
+        let still = self.state.path.is_none() && self.motion.is_at_rest();
+        self.record.settled = decided && !moves && still;
         Ok(())
     }
 

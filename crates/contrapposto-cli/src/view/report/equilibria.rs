@@ -67,9 +67,11 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
     };
     report.reasons.push(verdict(model, best));
     let mut searched = format!("{} starts were tried", found.starts);
-    for (count, what) in
-        [(found.fell, "fell"), (found.yielded, "were left out because tasks or supports were kept less well")]
-    {
+    for (count, what) in [
+        (found.fell, "fell"),
+        (found.yielded, "were left out because tasks or supports were kept less well"),
+        (found.alike, "were left out as the same way to stand as a better one, or too heavy"),
+    ] {
         if count > 0 {
             searched += &format!(", {count} {what}");
         }

@@ -28,6 +28,8 @@ pub(crate) struct RelaxText {
     fell: usize,
     /// Different postures left out: their tasks were left farther away, or their supports slipped.
     left_out: usize,
+    /// Postures left out that a person would call the same way to stand, or could not hold.
+    alike: usize,
     steps: usize,
     coordinate_order: Vec<String>,
     /// The one of least effort first.
@@ -125,6 +127,7 @@ impl RelaxText {
             starts: found.starts,
             fell: found.fell,
             left_out: found.yielded,
+            alike: found.alike,
             steps: found.steps,
             coordinate_order: names.collect(),
             postures: found.postures.iter().map(|posture| RelaxedPostureText::new(scenario, posture)).collect(),
@@ -230,9 +233,11 @@ pub(crate) fn report(text: &RelaxText) -> String {
         let _ = write!(out, "\nposture {}:\n{}", i + 1, posture.words());
     }
     let _ = write!(out, "\n{} start{}", text.starts, if text.starts == 1 { "" } else { "s" });
-    for (count, what) in
-        [(text.fell, "fell"), (text.left_out, "left out because tasks or supports were kept less well")]
-    {
+    for (count, what) in [
+        (text.fell, "fell"),
+        (text.left_out, "left out because tasks or supports were kept less well"),
+        (text.alike, "left out as another way of the same, or too heavy"),
+    ] {
         if count > 0 {
             let _ = write!(out, ", {count} {what}");
         }

@@ -1,0 +1,70 @@
+//! Finds the posture of least effort that a body under way can take without a step: what carries it stays as it is.
+//!
+//! The search is that of [`crate::equilibria`], with every joint locked that moves a support. Its steps count against a budget of
+//! the run, so that every machine finds the same.
+
+use crate::contact::{Support, rates_that_move};
+use crate::equilibria::{RelaxedPosture, Search, SearchError, equilibria};
+use crate::posture::Posture;
+use crate::posture_solver::Options;
+use crate::statics::Load;
+use crate::tasks::PriorityLevel;
+
+use super::Scenario;
+
+/// Largest change of a rate in a step of the search, rad or m, and most steps of a solve.
+const SEARCH_STEP: f64 = 0.1;
+const SEARCH_STEPS: usize = 300;
+/// Solver steps that all searches of a run may take together, about three seconds.
+pub(super) const SEARCH_BUDGET: usize = 20_000;
+/// A posture is worth a motion if its effort is less than this share of the present one.
+const WORTH_A_MOTION: f64 = 0.98;
+
+/// What a search during a run begins from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Now<'a> {
+    pub(super) posture: &'a Posture,
+    /// All levels, tasks and reliefs.
+    pub(super) levels: &'a [PriorityLevel],
+    pub(super) loads: &'a [Load],
+    pub(super) effort: f64,
+}
+
+/// A better posture, if there is one, and the number of steps that the search took.
+pub(super) fn easiest(
+    scenario: &Scenario,
+    now: Now<'_>,
+    supports: &[Support],
+) -> Result<(Option<Posture>, usize), SearchError> {
+    let mut locked = rates_that_move(&scenario.model, supports);
+    for (locked, rate) in locked.iter_mut().zip(scenario.model.rates()) {
+        *locked |= rate.coordinate.is_some_and(|c| !scenario.free[c]);
+    }
+    let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
+    let (found, steps) = search(scenario, now, supports, &locked)?;
+    let better = found.into_iter().next().filter(|best| best.relaxed.effort < WORTH_A_MOTION * now.effort);
+    Ok((better.map(|best| best.relaxed.posture), steps))
+}
+
+/// The postures that a search finds, that of least effort first: none that leaves a task above effort farther away than `now`.
+pub(super) fn search(
+    scenario: &Scenario,
+    now: Now<'_>,
+    supports: &[Support],
+    locked: &[usize],
+) -> Result<(Vec<RelaxedPosture>, usize), SearchError> {
+    let asks = |level: &&PriorityLevel| !level.tasks.is_empty() || !level.half_spaces.is_empty();
+    let goals: Vec<PriorityLevel> = now.levels.iter().filter(asks).cloned().collect();
+    let search = Search {
+        model: &scenario.model,
+        start: now.posture,
+        supports,
+        limits: &scenario.limits,
+        goals: &goals,
+        loads: now.loads,
+        locked,
+    };
+    let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_STEPS, ..Options::least_effort() };
+    let found = equilibria(&search, options)?;
+    Ok((found.postures, found.steps))
+}

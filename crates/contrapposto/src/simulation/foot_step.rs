@@ -1,0 +1,118 @@
+//! Decides whether a support that carries little is put elsewhere to relieve a tired muscle group.
+//!
+//! A step is a relief like the others: its goal is the one of the tables. The search of [`crate::equilibria`] chooses place and posture
+//! together. A posture counts where the tired joint is nearer to its goal, its group works less, and the whole body needs clearly less
+//! effort than now; of these the body takes the one of least effort to which there is a way in balance.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::ScenarioError;
+use super::body_motion::BodyMotion;
+use super::easiest::{Now, search};
+use super::path::Path;
+use crate::contact::{Place, Support};
+use crate::equilibria::RelaxedPosture;
+use crate::kinematics::Kinematics;
+use crate::model::Side;
+use crate::posture::Posture;
+use crate::tasks::PriorityLevel;
+
+/// A support that carries a greater share of the weight is not lifted (assumed).
+const LITTLE_WEIGHT: f64 = 0.25;
+/// A step must bring effort, and the load of the tired group, below this share of what they are (assumed).
+const WORTH_A_STEP: f64 = 0.8;
+/// A support that would be shifted by less is left where it is, m (assumed).
+const LEAST_SHIFT: f64 = 0.02;
+
+/// The relief that asks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tired {
+    pub(super) coordinate: usize,
+    pub(super) side: Side,
+    /// Relative load of the group.
+    pub(super) load: f64,
+    /// From the present angle to the goal, rad.
+    pub(super) toward: f64,
+}
+
+/// A support that was put elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FootStep {
+    /// Index of the support.
+    pub support: usize,
+    /// The coordinate whose relief asked for it, and its tired group.
+    pub coordinate: usize,
+    /// See `coordinate`.
+    pub side: Side,
+    /// When the body began to shift its weight, and when it had taken the new posture, s.
+    pub time: (f64, f64),
+    /// Middle of the patch before and after, ground, m.
+    pub place: ([f64; 3], [f64; 3]),
+    /// Effort before and after.
+    pub effort: (f64, f64),
+}
+
+/// A step that will be taken.
+#[derive(Debug)]
+pub(super) struct PlannedStep {
+    pub(super) path: Path,
+    pub(super) step: FootStep,
+}
+
+/// The step that relieves `tired` most, if there is one, and the number of solver steps that the search took.
+pub(super) fn plan_step(
+    body: &mut BodyMotion<'_>,
+    posture: &Posture,
+    tired: Tired,
+) -> Result<(Option<PlannedStep>, usize), ScenarioError> {
+    let scenario = body.scenario();
+    let mut all = 0;
+    for (i, support) in scenario.supports.iter().enumerate() {
+        if support.place == Place::Fixed || body.contact().share(i) > LITTLE_WEIGHT {
+            continue;
+        }
+        let mut supports = body.supports().to_vec();
+        supports[i].place = support.place.clone();
+        let effort = body.effort();
+        let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
+        let now = Now { posture, levels: &levels, loads: body.loads(), effort };
+        let locked: Vec<usize> = (0..scenario.model.rates().len())
+            .filter(|&rate| scenario.model.rates()[rate].coordinate.is_some_and(|c| !scenario.free[c]))
+            .collect();
+        let Ok((found, steps)) = search(scenario, now, &supports, &locked) else { continue };
+        all += steps;
+        let before = middle(body, posture, support)?;
+        for candidate in found {
+            let to = &candidate.relaxed.posture;
+            let after = middle(body, to, support)?;
+            let worth = candidate.relaxed.effort < WORTH_A_STEP * effort && relieves(&candidate, posture, tired);
+            if !worth || (after - before).norm() < LEAST_SHIFT {
+                continue;
+            }
+            if let Some(path) = body.way(posture, to, Some(i))? {
+                let (coordinate, side) = (tired.coordinate, tired.side);
+                let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
+                let step = FootStep { support: i, coordinate, side, time: (0.0, 0.0), place, effort };
+                return Ok((Some(PlannedStep { path, step }), all));
+            }
+        }
+    }
+    Ok((None, all))
+}
+
+/// Whether the tired joint is nearer to its goal in a posture, and its group works clearly less.
+fn relieves(candidate: &RelaxedPosture, now: &Posture, tired: Tired) -> bool {
+    let i = tired.coordinate;
+    let change = candidate.relaxed.posture.values()[i] - now.values()[i];
+    let work = candidate.work.iter().find(|work| work.coordinate == i && work.side == tired.side);
+    change * tired.toward > 0.0 && work.map_or(0.0, |work| work.relative_load()) < WORTH_A_STEP * tired.load
+}
+
+/// Middle of a support's patch in a posture, ground, m.
+fn middle(body: &BodyMotion<'_>, posture: &Posture, support: &Support) -> Result<Vector3<f64>, ScenarioError> {
+    let model = &body.scenario().model;
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, posture).map_err(crate::joint_torques::JointTorquesError::from)?;
+    Ok(kinematics.station(model, support.segment, support.middle()))
+}

@@ -1,0 +1,100 @@
+//! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, or an easier posture at rest.
+
+use super::easiest::SEARCH_BUDGET;
+use super::foot_step::{PlannedStep, Tired, plan_step};
+use super::{ScenarioError, Simulation};
+use crate::hybrid::Decision;
+use crate::model::Side;
+
+impl Simulation<'_> {
+    /// Takes the next posture of the way, if there is one, and computes all torques in it; returns whether it did.
+    pub(super) fn follow_path(&mut self) -> Result<bool, ScenarioError> {
+        let Some(path) = &mut self.state.path else { return Ok(false) };
+        if let Some((posture, _)) = path.take() {
+            self.state.posture.values_mut().copy_from_slice(posture.values());
+        }
+        let (lifted, is_over, has_step) = (path.lifted(), path.is_over(), path.has_step());
+        let Some(body) = self.motion.body_mut() else { return Ok(false) };
+        if is_over {
+            body.lift(None)?;
+            if has_step {
+                body.place_again(&self.state.posture)?;
+            }
+            body.restart_convergence();
+        } else {
+            body.lift(lifted)?;
+        }
+        let effort = self.evaluate()?;
+        if is_over {
+            self.end_path(effort, has_step);
+        }
+        (self.record.standing.effort, self.state.effort) = (effort, effort);
+        if let Some(body) = self.motion.body() {
+            body.write_standing(&mut self.record.standing);
+        }
+        Ok(true)
+    }
+
+    /// Ends the way before an event: a support in the air is put down at its new place within the same time step, any other motion
+    /// stops where it is.
+    pub(super) fn end_path_at_once(&mut self) -> Result<(), ScenarioError> {
+        self.state.searched_here = false;
+        self.state.step_tried.fill(false);
+        let Some(path) = &mut self.state.path else { return Ok(()) };
+        if path.has_step() {
+            path.skip_to_end();
+            self.follow_path()?;
+        } else {
+            self.state.path = None;
+        }
+        Ok(())
+    }
+
+    /// Ends the way: reliefs of an old place are asked for anew.
+    fn end_path(&mut self, effort: f64, has_step: bool) {
+        self.state.path = None;
+        let time = self.state.steps as f64 * self.scenario.run.step;
+        if let (Some(step), true) = (self.state.foot_steps.last_mut(), has_step) {
+            (step.time.1, step.effort.1) = (time, effort);
+            self.state.placed_at = Some(self.state.posture.clone());
+            self.state.requests.iter_mut().for_each(super::state::Request::end);
+        }
+    }
+
+    /// Looks for a step that relieves the tired group of coordinate `i`, once in a recovery.
+    pub(super) fn look_for_step(&mut self, i: usize, side: Side, decision: &Decision) -> Result<(), ScenarioError> {
+        let Some(goal) = decision.goal else { return Ok(()) };
+        let toward = goal - self.motion.torques().angles()[i];
+        if self.state.step_tried[i] || self.state.path.is_some() || self.state.searched >= SEARCH_BUDGET {
+            return Ok(());
+        }
+        let Some(body) = self.motion.body_mut() else { return Ok(()) };
+        self.state.step_tried[i] = true;
+        let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
+        let (planned, searched) = plan_step(body, &self.state.posture, tired)?;
+        self.state.searched += searched;
+        if let Some(PlannedStep { path, mut step }) = planned {
+            step.time.0 = self.state.steps as f64 * self.scenario.run.step;
+            self.state.foot_steps.push(step);
+            self.state.path = Some(path);
+        }
+        Ok(())
+    }
+
+    /// Looks for an easier posture once the body has come to rest.
+    pub(super) fn look_for_ease(&mut self) -> Result<(), ScenarioError> {
+        if !self.motion.is_at_rest() || self.state.searched >= SEARCH_BUDGET {
+            return Ok(());
+        }
+        let Some(body) = self.motion.body_mut() else { return Ok(()) };
+        if std::mem::replace(&mut self.state.searched_here, true) {
+            return Ok(());
+        }
+        let (better, searched) = body.easiest(&self.state.posture)?;
+        self.state.searched += searched;
+        if let Some(better) = better {
+            self.state.path = body.way(&self.state.posture, &better, None)?;
+        }
+        Ok(())
+    }
+}
