@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::{CoordinateKind, Side};
-use contrapposto::simulation::{Contact, Scenario, Standing, StopReason, Summary};
+use contrapposto::simulation::{Contact, FootStep, Scenario, Standing, StopReason, Summary};
 use serde::Serialize;
 
 use crate::tissue::FatigueParametersText;
@@ -31,6 +31,9 @@ pub struct SummaryText {
     /// How a body with supports or tasks stood at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standing: Option<StandingText>,
+    /// Supports that were put elsewhere, to relieve a muscle group.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<StepText>,
     /// The muscle group that first could no longer hold its load; `null`: none gave up.
     pub failed_first: Option<FailureText>,
     /// How many reliefs there were; `decisions.csv` lists the first ten thousand.
@@ -84,6 +87,27 @@ pub struct StandingText {
     pub task_errors: Vec<f64>,
     /// How far supports are off their places, m and rad together.
     pub slip: f64,
+}
+
+/// A support that was put elsewhere.
+#[derive(Clone, Debug, Serialize)]
+pub struct StepText {
+    /// Segment.
+    pub segment: String,
+    /// The coordinate whose tired group asked for relief.
+    pub relieves: String,
+    /// When the body began to shift its weight, s.
+    pub begin_s: f64,
+    /// When the body had taken the new posture, s.
+    pub end_s: f64,
+    /// Middle of the patch before, ground, m.
+    pub from_m: [f64; 3],
+    /// Middle of the patch after, ground, m.
+    pub to_m: [f64; 3],
+    /// Effort before.
+    pub effort_before: f64,
+    /// Effort after.
+    pub effort_after: f64,
 }
 
 /// The load of a support.
@@ -193,10 +217,27 @@ impl SummaryText {
             end_s: summary.end_time,
             samples: summary.samples,
             standing: summary.standing.as_ref().map(|standing| StandingText::new(scenario, summary, standing)),
+            steps: summary.foot_steps.iter().map(|step| StepText::new(scenario, step)).collect(),
             reliefs: summary.reliefs.count,
             coordinate_order: names.collect(),
             coordinates: coordinates.collect(),
             files,
+        }
+    }
+}
+
+impl StepText {
+    fn new(scenario: &Scenario, step: &FootStep) -> Self {
+        let model = &scenario.model;
+        Self {
+            segment: model.segments()[scenario.supports[step.support].segment].name.clone(),
+            relieves: model.coordinates()[step.coordinate].name.clone(),
+            begin_s: step.time.0,
+            end_s: step.time.1,
+            from_m: step.place.0,
+            to_m: step.place.1,
+            effort_before: step.effort.0,
+            effort_after: step.effort.1,
         }
     }
 }

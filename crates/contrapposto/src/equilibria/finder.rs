@@ -1,6 +1,8 @@
 //! Makes the starts of a search, solves from each of them, and selects the different postures of least effort.
 
+use super::candidate::{Candidate, places};
 use super::description::{describe, relative_torques, work_of};
+use super::hanging_limbs::hanging_limbs;
 use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
@@ -12,7 +14,7 @@ use crate::effort::hessian::HessianModel;
 use crate::hybrid::{Problem, Strategy, minimise};
 use crate::model::CoordinateKind;
 use crate::posture::Posture;
-use crate::posture_solver::{Engine, EngineError, Options, SolvedPosture};
+use crate::posture_solver::{Engine, EngineError, Options};
 use crate::tasks::PriorityLevel;
 use crate::tasks::{Effort, Task};
 
@@ -24,8 +26,6 @@ const ROUNDS: usize = 2;
 const SEARCHED_FOR_LOWER: usize = 3;
 /// Steps of an exploratory solve.
 const EXPLORATORY_STEPS: usize = 40;
-/// Postures count as one if at no joint the external or the passive torque differs by more than this share of strength.
-const SAME_TORQUE: f64 = 0.05;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
 /// exploratory and to converged postures.
 const ALLOWED_ERROR: [f64; 3] = [0.02, 1e-5, 1e-5];
@@ -69,31 +69,6 @@ struct Goal {
     angle: f64,
     /// The least step of all coordinates that turns the joint so far.
     step: Vec<f64>,
-}
-
-/// A posture that a solve has reached.
-#[derive(Clone, Debug)]
-struct Candidate {
-    relaxed: SolvedPosture,
-    /// Load of supports beyond their greatest shares, shares of body weight.
-    excess: f64,
-    /// External and passive torque of every coordinate with muscles, as shares of strength.
-    relative_torques: Vec<[f64; 2]>,
-    /// Starts that led here, in words.
-    starts: Vec<String>,
-}
-
-impl Candidate {
-    /// Whether at no joint the torques differ by more than [`SAME_TORQUE`].
-    fn is_same(&self, other: &Self) -> bool {
-        let pairs = self.relative_torques.iter().flatten().zip(other.relative_torques.iter().flatten());
-        pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_TORQUE)
-    }
-
-    /// Distance of the levels above `slot` and of the supports from their targets.
-    fn distance(&self, slot: usize) -> f64 {
-        self.excess + self.relaxed.slip + self.relaxed.levels[..slot].iter().map(|level| level.length).sum::<f64>()
-    }
 }
 
 /// Engines and what they have found.
@@ -145,6 +120,7 @@ impl<'a> Finder<'a> {
     fn explore(&mut self) -> Result<(), SearchError> {
         self.solve_from_tasks(self.search.start, "the start".to_owned());
         self.explore_places();
+        self.explore_hanging();
         let mut explored: Vec<Candidate> = vec![];
         for _ in 0..ROUNDS {
             let Some(best) = self.best() else { break };
@@ -156,14 +132,10 @@ impl<'a> Finder<'a> {
         }
         let Some(mirror) = Mirror::of(self.search.model) else { return Ok(()) };
         for i in 0..self.found.len() {
-            let mut image = self.found[i].clone();
-            for (c, shares) in self.found[i].relative_torques.iter().enumerate() {
-                let (partner, sign) = mirror.coordinate(c);
-                image.relative_torques[partner] = shares.map(|share| sign * share);
-            }
+            let Some(image) = self.found[i].image(self.search.model, &mirror) else { continue };
             if !self.found.iter().any(|known| known.is_same(&image)) {
                 let label = format!("mirror image of: {}", image.starts[0]);
-                self.solve_from_tasks(&mirror.posture(&image.relaxed.posture), label);
+                self.solve_from_tasks(&image.relaxed.posture, label);
             }
         }
         Ok(())
@@ -226,7 +198,9 @@ impl<'a> Finder<'a> {
         let contact = engine.contact();
         let supports = self.search.supports.iter().enumerate();
         let excess = supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum();
-        let new = Candidate { relaxed, excess, starts, relative_torques: relative_torques(model, engine) };
+        let (relative_torques, places) =
+            (relative_torques(model, engine), places(model, engine.torques().kinematics()));
+        let new = Candidate { relaxed, excess, starts, relative_torques, places };
         let Some(known) = self.found.iter_mut().find(|known| known.is_same(&new)) else {
             self.found.push(new);
             return;
@@ -244,10 +218,25 @@ impl<'a> Finder<'a> {
     /// Solves from other places of each free support.
     fn explore_places(&mut self) {
         for (task, label) in other_places(self.search.model, self.search.supports) {
-            self.approach.levels_mut()[self.slot].tasks = vec![task];
-            self.solve_from_tasks(self.search.start, label);
-            self.approach.levels_mut()[self.slot].tasks.clear();
+            self.solve_with(&self.search.start.clone(), vec![task], label);
         }
+    }
+
+    /// Solves from the posture of least effort so far with limbs that hang.
+    fn explore_hanging(&mut self) {
+        let Some(best) = self.best() else { return };
+        let (model, from) = (self.search.model, best.relaxed.posture);
+        let Ok(tasks) = hanging_limbs(model, self.search.supports, &from) else { return };
+        if !tasks.is_empty() {
+            self.solve_with(&from, tasks, "limbs that carry nothing hang".to_owned());
+        }
+    }
+
+    /// Solves from `from`, moved to the tasks and below them to `more`.
+    fn solve_with(&mut self, from: &Posture, more: Vec<Task>, label: String) {
+        self.approach.levels_mut()[self.slot].tasks = more;
+        self.solve_from_tasks(from, label);
+        self.approach.levels_mut()[self.slot].tasks.clear();
     }
 
     /// Moves to the tasks without regard to effort first: from afar the two would obstruct each other.

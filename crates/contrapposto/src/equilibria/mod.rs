@@ -4,7 +4,7 @@
 //! given by the body and the tables of the paper (`finder.rs`), none by chance:
 //!
 //! 1. the start of the scenario, moved to its tasks first,
-//!    and the same with each free support put elsewhere in its region;
+//!    the same with the limbs that carry nothing hanging, and with each free support put elsewhere in its region;
 //! 2. from the posture found there: [`minimise`](crate::hybrid::minimise) gives every coordinate its active and its passive goal
 //!    angle, with the slope along the motion that supports and tasks leave it. All active goals together, all passive goals
 //!    together, and those of the coordinates with the largest relative loads one by one, are half-spaces below the tasks and above
@@ -14,12 +14,14 @@
 //! 4. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise.
 //!
 //! From every different posture the engine then converges. Two postures count as one if at no joint the torque of loads or of
-//! passive tissue differs by more than a twentieth of the strength there: minima can be flat, a forearm may rotate without load on
-//! a muscle. Of those the one of least effort is kept. Postures whose tasks are farther away than in the best one, that slipped or
+//! passive tissue differs by more than a twentieth of the strength there and no segment is elsewhere: minima can be flat, a forearm
+//! may rotate without load on a muscle. Of those the one of least effort is kept. Postures whose tasks are farther away than in the best one, that slipped or
 //! fell, are counted and left out, and so are those that are the same way to stand as a better one (`ways_to_stand.rs`).
 
+mod candidate;
 mod description;
 mod finder;
+mod hanging_limbs;
 mod mirror;
 mod other_places;
 mod outcome;

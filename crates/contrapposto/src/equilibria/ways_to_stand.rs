@@ -1,6 +1,6 @@
 //! Decides which postures are different ways to stand.
 //!
-//! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than a hand's breadth,
+//! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than 5 cm,
 //! and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. A posture in
 //! which a group would need more than its strength is no way to stand where another posture needs less.
 
@@ -11,7 +11,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 
 /// Distance between the places of a joint in two postures up to which both are one way to stand, m.
-const SAME_JOINT: f64 = 0.1;
+const SAME_JOINT: f64 = 0.05;
 /// Difference between the shares of the weight on a support up to which two postures are one way to stand.
 const SAME_SHARE: f64 = 0.1;
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ReliefLog, Sample, Standing};
+use super::{FootStep, ReliefLog, Sample, Standing};
 use crate::contact::Missing;
 use crate::hybrid::{Case, Decision};
 use crate::model::Side;
@@ -96,6 +96,8 @@ pub struct Summary {
     pub reliefs: ReliefLog,
     /// Effort of a body with supports or tasks in the first sample.
     pub effort_at_start: Option<f64>,
+    /// Supports that were put elsewhere.
+    pub foot_steps: Vec<FootStep>,
     /// How it stood in the last sample.
     pub standing: Option<Standing>,
 }

@@ -1,12 +1,19 @@
 //! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, or an easier posture at rest.
 
 use super::easiest::SEARCH_BUDGET;
-use super::foot_step::{PlannedStep, Tired, plan_step};
+use super::foot_step::{FootStep, PlannedStep, Tired, plan_step};
 use super::{ScenarioError, Simulation};
 use crate::hybrid::Decision;
 use crate::model::Side;
 
 impl Simulation<'_> {
+    /// The steps that have been taken, without one that is under way.
+    pub(super) fn foot_steps(&self) -> &[FootStep] {
+        let stepping = self.state.path.as_ref().is_some_and(|path| path.has_step());
+        let steps = &self.state.foot_steps;
+        &steps[..steps.len() - usize::from(stepping)]
+    }
+
     /// Takes the next posture of the way, if there is one, and computes all torques in it; returns whether it did.
     pub(super) fn follow_path(&mut self) -> Result<bool, ScenarioError> {
         let Some(path) = &mut self.state.path else { return Ok(false) };

@@ -1,6 +1,6 @@
 //! The words of a run's page: a headline, the reasons, and the few numbers that say most.
 
-use contrapposto::simulation::{Scenario, StopReason, Summary};
+use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
 use contrapposto_report::{Figure, Report};
 
 use crate::view::axes::pelvis_list;
@@ -39,6 +39,7 @@ pub(super) fn write(
         None => narrative.of_joint(),
     };
     report.reasons = narrative.reasons(standing.is_some());
+    report.reasons.extend(summary.foot_steps.iter().map(|step| narrative.of_step(step)));
     report.reasons.push(narrative.end(excerpt, summary));
     report.figures = narrative.figures(standing);
 }
@@ -132,6 +133,21 @@ impl Narrative<'_> {
             reasons.push(format!("Ligaments carry {part} of the external torque of {whole:.1} N m at {name}{before}."));
         }
         reasons
+    }
+
+    /// A support that was put elsewhere.
+    fn of_step(&self, step: &FootStep) -> String {
+        let model = &self.scenario.model;
+        let support = plain(&model.segments()[self.scenario.supports[step.support].segment].name);
+        let ([from_x, _, from_z], [x, _, z]) = step.place;
+        format!(
+            "At {:.0} s {support} was put elsewhere, {:.0} cm away, to relieve {}: effort {:.4} before, {:.4} after.",
+            step.time.0,
+            100.0 * (x - from_x).hypot(z - from_z),
+            plain(&model.coordinates()[step.coordinate].name),
+            step.effort.0,
+            step.effort.1
+        )
     }
 
     fn end(&self, excerpt: &RunExcerpt, summary: &Summary) -> String {

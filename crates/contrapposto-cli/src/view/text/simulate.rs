@@ -102,5 +102,15 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
         let tasks: Vec<String> = scenario.tasks.iter().zip(&standing.errors).map(task).collect();
         text += &format!("tasks: {}\n", tasks.join(", "));
     }
+    for step in &summary.foot_steps {
+        let segment = &segments[scenario.supports[step.support].segment].name;
+        let relieved = &scenario.model.coordinates()[step.coordinate].name;
+        let ([x, y, z], [to_x, to_y, to_z]) = step.place;
+        text += &format!(
+            "{segment} was put elsewhere from {:.1} s to {:.1} s, from ({x:.2}, {y:.2}, {z:.2}) to ({to_x:.2}, {to_y:.2}, {to_z:.2}) m, \
+             to relieve {relieved}: effort {:.4} before, {:.4} after\n",
+            step.time.0, step.time.1, step.effort.0, step.effort.1
+        );
+    }
     text
 }

@@ -1,0 +1,62 @@
+//! Holds a posture that a solve of a search has reached, and decides which of them count as one.
+
+use nalgebra::Vector3;
+
+use super::mirror::Mirror;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::posture_solver::SolvedPosture;
+
+/// Postures count as one if at no joint the external or the passive torque differs by more than this share of strength.
+const SAME_TORQUE: f64 = 0.05;
+/// Postures count as two where a segment is farther away in one than in the other, m.
+const SAME_PLACE: f64 = 0.3;
+
+/// A posture that a solve has reached.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    pub(super) relaxed: SolvedPosture,
+    /// Load of supports beyond their greatest shares, shares of body weight.
+    pub(super) excess: f64,
+    /// External and passive torque of every coordinate with muscles, as shares of strength.
+    pub(super) relative_torques: Vec<[f64; 2]>,
+    /// Centre of mass of every segment, ground, m.
+    pub(super) places: Vec<Vector3<f64>>,
+    /// Starts that led here, in words.
+    pub(super) starts: Vec<String>,
+}
+
+impl Candidate {
+    /// Whether at no joint the torques differ by more than [`SAME_TORQUE`], and no segment is farther away than [`SAME_PLACE`]: an arm
+    /// that points up needs as little torque as one that hangs.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let pairs = self.relative_torques.iter().flatten().zip(other.relative_torques.iter().flatten());
+        let far = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b).norm() > SAME_PLACE;
+        pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_TORQUE) && !self.places.iter().zip(&other.places).any(far)
+    }
+
+    /// The mirror image, where its posture fits the model; its other numbers are those of this posture.
+    pub(super) fn image(&self, model: &Model, mirror: &Mirror) -> Option<Self> {
+        let mut image = self.clone();
+        for (c, shares) in self.relative_torques.iter().enumerate() {
+            let (partner, sign) = mirror.coordinate(c);
+            image.relative_torques[partner] = shares.map(|share| sign * share);
+        }
+        image.relaxed.posture = mirror.posture(&self.relaxed.posture);
+        let mut kinematics = Kinematics::new(model);
+        kinematics.update(model, &image.relaxed.posture).ok()?;
+        image.places = places(model, &kinematics);
+        Some(image)
+    }
+
+    /// Distance of the levels above `slot` and of the supports from their targets.
+    pub(super) fn distance(&self, slot: usize) -> f64 {
+        self.excess + self.relaxed.slip + self.relaxed.levels[..slot].iter().map(|level| level.length).sum::<f64>()
+    }
+}
+
+/// Centre of mass of every segment, ground, m.
+pub(super) fn places(model: &Model, kinematics: &Kinematics) -> Vec<Vector3<f64>> {
+    let segments = model.segments().iter().enumerate();
+    segments.map(|(i, segment)| kinematics.station(model, i, segment.center_of_mass)).collect()
+}
