@@ -120,7 +120,6 @@ impl<'a> Finder<'a> {
     fn explore(&mut self) -> Result<(), SearchError> {
         self.solve_from_tasks(self.search.start, "the start".to_owned());
         self.explore_places();
-        self.explore_hanging();
         let mut explored: Vec<Candidate> = vec![];
         for _ in 0..ROUNDS {
             let Some(best) = self.best() else { break };
@@ -150,6 +149,7 @@ impl<'a> Finder<'a> {
             let Candidate { relaxed, starts, .. } = explored[i].clone();
             self.solve(Stage::Converged, &relaxed.posture, starts);
         }
+        self.hang();
         self.lower();
         if self.found.is_empty() {
             self.found.append(&mut explored);
@@ -218,29 +218,31 @@ impl<'a> Finder<'a> {
     /// Solves from other places of each free support.
     fn explore_places(&mut self) {
         for (task, label) in other_places(self.search.model, self.search.supports) {
-            self.solve_with(&self.search.start.clone(), vec![task], label);
+            self.approach.levels_mut()[self.slot].tasks = vec![task];
+            let from = self.approached(self.search.start);
+            self.solve(Stage::Exploratory, &from, vec![label]);
         }
     }
 
-    /// Solves from the posture of least effort so far with limbs that hang.
-    fn explore_hanging(&mut self) {
-        let Some(best) = self.best() else { return };
-        let (model, from) = (self.search.model, best.relaxed.posture);
-        let Ok(tasks) = hanging_limbs(model, self.search.supports, &from) else { return };
-        if !tasks.is_empty() {
-            self.solve_with(&from, tasks, "limbs that carry nothing hang".to_owned());
-        }
-    }
-
-    /// Solves from `from`, moved to the tasks and below them to `more`.
-    fn solve_with(&mut self, from: &Posture, more: Vec<Task>, label: String) {
-        self.approach.levels_mut()[self.slot].tasks = more;
-        self.solve_from_tasks(from, label);
-        self.approach.levels_mut()[self.slot].tasks.clear();
+    /// Converges from the posture of least effort so far with limbs that hang: exploratory steps would leave it again.
+    fn hang(&mut self) {
+        let converged = self.selected(Stage::Converged).into_iter().map(|i| &self.found[i].relaxed);
+        let Some(best) = converged.min_by(|a, b| a.effort.total_cmp(&b.effort)) else { return };
+        let from = best.posture.clone();
+        let Ok(tasks) = hanging_limbs(self.search.model, self.search.supports, &from) else { return };
+        self.approach.levels_mut()[self.slot].tasks = tasks;
+        let from = self.approached(&from);
+        self.solve(Stage::Converged, &from, vec!["limbs that carry nothing hang".to_owned()]);
     }
 
     /// Moves to the tasks without regard to effort first: from afar the two would obstruct each other.
     fn solve_from_tasks(&mut self, from: &Posture, start: String) {
+        let posture = self.approached(from);
+        self.solve(Stage::Exploratory, &posture, vec![start]);
+    }
+
+    /// The posture moved to the tasks, and below them to those of the approach's last level, which are removed.
+    fn approached(&mut self, from: &Posture) -> Posture {
         let mut posture = from.clone();
         self.approach.restart();
         for _ in 0..EXPLORATORY_STEPS {
@@ -250,7 +252,8 @@ impl<'a> Finder<'a> {
                 _ => break,
             }
         }
-        self.solve(Stage::Exploratory, &posture, vec![start]);
+        self.approach.levels_mut()[self.slot].tasks.clear();
+        posture
     }
 
     /// Solves with goal angles as half-spaces, and then without them.
