@@ -15,7 +15,7 @@ fn relax(scenario: &Path, more: &[&str]) -> Run {
 }
 
 fn standing() -> PathBuf {
-    scenarios().join("stand-relaxed.toml")
+    scenarios().join("stand-relaxed-feet-fixed.toml")
 }
 
 fn written(folder: &Path, text: &str) -> PathBuf {

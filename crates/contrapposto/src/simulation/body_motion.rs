@@ -14,16 +14,12 @@ use crate::posture_solver::{Engine, Options};
 use crate::statics::{Load, LoadKind};
 use crate::tasks::{PriorityLevel, Task};
 
-use super::easiest::{Now, easiest};
-use super::path::{Path, Planner};
 use super::sample::{Contact, Standing};
 use super::state::Request;
 use super::{Scenario, ScenarioError};
 
 /// Levels for reliefs; requests of less fatigued groups beyond them wait.
 const MOST_RELIEFS: usize = 16;
-/// Greatest change of a joint in the search for the start, rad or m.
-const START_MAX_STEP: f64 = 0.1;
 /// Greatest change of a joint in one time step, in greatest steps of relief: the rest of the body must be able to follow.
 const FOLLOWING_STEPS: f64 = 2.0;
 /// A time step in which no rate changes by more is slow, rad or m.
@@ -44,12 +40,12 @@ const HALF_SPACE_TOLERANCE: f64 = 1e-6;
 /// A body with supports or tasks under way.
 #[derive(Clone, Debug)]
 pub(super) struct BodyMotion<'a> {
-    scenario: &'a Scenario,
+    pub(super) scenario: &'a Scenario,
     /// Where the body stands: no support is free.
-    supports: Vec<Support>,
-    engine: Engine<'a>,
+    pub(super) supports: Vec<Support>,
+    pub(super) engine: Engine<'a>,
     /// The support that is in the air, and an engine without it.
-    lifted: Option<(usize, Engine<'a>)>,
+    pub(super) lifted: Option<(usize, Engine<'a>)>,
     model: &'a Model,
     /// Number of levels above the reliefs.
     above: usize,
@@ -58,11 +54,11 @@ pub(super) struct BodyMotion<'a> {
     /// By coordinate.
     slopes: Vec<Option<Slope>>,
     /// The posture before the last step.
-    before: Posture,
+    pub(super) before: Posture,
     /// Slow steps in a row, [`RESTING`] at rest.
     convergence_count: u32,
     /// Coordinates whose half-spaces the last step was to keep, and those of them that it did not keep.
-    requested: Vec<usize>,
+    pub(super) requested: Vec<usize>,
     deferred: Vec<usize>,
 }
 
@@ -105,23 +101,6 @@ impl<'a> BodyMotion<'a> {
         })
     }
 
-    /// The posture nearest to the scenario's start in which the supports hold the body and its tasks are done; what carries nothing
-    /// takes the posture of least effort that a search finds. Gives the number of steps of the search, too.
-    pub(super) fn start(&mut self) -> Result<(Posture, usize), ScenarioError> {
-        let scenario = self.scenario;
-        let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
-        let levels = self.levels().cloned().collect();
-        let mut nearest = engine(scenario, &scenario.start, &self.supports, levels, options)?;
-        let mut posture = nearest.solve(&scenario.start)?.posture;
-        // A body whose weight acts at the very edge of its supports may be off balance by rounding.
-        if let Some(missing) = self.recover_balance(&mut posture)? {
-            return Err(ScenarioError::CannotStand(missing));
-        }
-        let (better, steps) = self.easiest(&posture)?;
-        self.forget();
-        Ok((better.unwrap_or(posture), steps))
-    }
-
     /// The levels that ask for something.
     pub(super) fn levels(&self) -> impl Iterator<Item = &PriorityLevel> {
         self.engine.levels().iter().filter(|level| !level.tasks.is_empty() || !level.half_spaces.is_empty())
@@ -144,68 +123,6 @@ impl<'a> BodyMotion<'a> {
     pub(super) fn effort(&self) -> f64 {
         let level = self.engine.levels().iter().position(is_effort);
         level.map_or(0.0, |level| self.engine.error(level).powi(2))
-    }
-
-    /// A posture of less effort that the body can take without moving a support, if there is one worth a motion, and the number of
-    /// steps of the search.
-    pub(super) fn easiest(&mut self, posture: &Posture) -> Result<(Option<Posture>, usize), ScenarioError> {
-        if !self.engine.levels().iter().any(is_effort) {
-            return Ok((None, 0));
-        }
-        self.engine.evaluate(posture)?;
-        let effort = self.effort();
-        let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
-        let now = Now { posture, levels: &levels, loads: self.engine.loads(), effort };
-        // A search that finds nothing leaves the body as it is.
-        Ok(easiest(self.scenario, now, &self.supports).unwrap_or((None, 0)))
-    }
-
-    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none.
-    pub(super) fn way(
-        &self,
-        from: &Posture,
-        to: &Posture,
-        lifted: Option<usize>,
-    ) -> Result<Option<Path>, ScenarioError> {
-        let levels: Vec<PriorityLevel> = self.levels().take_while(|level| !is_effort(level)).cloned().collect();
-        // A step may leave what reliefs ask for at the old place.
-        let keeps = |level: &&PriorityLevel| lifted.is_none() || level.half_spaces.is_empty();
-        let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
-        let (supports, loads) = (&self.supports[..], self.engine.loads());
-        let planner = Planner { scenario: self.scenario, supports, levels: &levels, loads };
-        Ok(match lifted {
-            Some(support) => planner.step(from, to, support)?,
-            None => planner.way(from, to)?,
-        })
-    }
-
-    /// The support that is in the air from now on.
-    pub(super) fn lift(&mut self, support: Option<usize>) -> Result<(), ScenarioError> {
-        let Some(lifted) = support else {
-            self.lifted = None;
-            return Ok(());
-        };
-        if self.lifted.as_ref().is_none_or(|(known, _)| *known != lifted) {
-            let others = self.supports.iter().enumerate().filter(|(i, _)| *i != lifted);
-            let others: Vec<Support> = others.map(|(_, support)| support.clone()).collect();
-            let levels = self.engine.levels().to_vec();
-            let options = Options::least_effort();
-            let mut engine = engine(self.scenario, &self.before, &others, levels, options)?;
-            engine.set_loads(self.engine.loads())?;
-            self.lifted = Some((lifted, engine));
-        }
-        Ok(())
-    }
-
-    /// Stands on the supports as they are in `posture`: one has been put elsewhere.
-    pub(super) fn place_again(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
-        let (levels, loads) = (self.engine.levels().to_vec(), self.engine.loads().to_vec());
-        *self = Self::new(self.scenario, posture)?;
-        self.engine.levels_mut().clone_from_slice(&levels);
-        self.engine.set_loads(&loads)?;
-        self.requested.clear();
-        self.write_relief_levels(&[]);
-        Ok(())
     }
 
     /// Moves by one step toward the half-spaces of the `requested` coordinates, the most fatigued first, and the tasks.
@@ -242,7 +159,7 @@ impl<'a> BodyMotion<'a> {
         &self.deferred
     }
 
-    fn write_relief_levels(&mut self, requests: &[Request]) {
+    pub(super) fn write_relief_levels(&mut self, requests: &[Request]) {
         let levels = &mut self.engine.levels_mut()[self.above..self.above + MOST_RELIEFS];
         for (slot, level) in levels.iter_mut().enumerate() {
             level.half_spaces.truncate(usize::from(slot < self.requested.len()));
@@ -392,12 +309,12 @@ impl<'a> BodyMotion<'a> {
 }
 
 /// Whether effort is asked for.
-fn is_effort(level: &PriorityLevel) -> bool {
+pub(super) fn is_effort(level: &PriorityLevel) -> bool {
     level.tasks.iter().any(|task| matches!(task, Task::Effort(_)))
 }
 
 /// An engine for a scenario's body that moves its free coordinates.
-fn engine<'a>(
+pub(super) fn engine<'a>(
     scenario: &'a Scenario,
     placed_at: &Posture,
     supports: &[Support],

@@ -14,7 +14,7 @@ use super::Scenario;
 
 /// Largest change of a rate in a step of the search, rad or m, and most steps of a solve.
 const SEARCH_STEP: f64 = 0.1;
-const SEARCH_STEPS: usize = 300;
+const SEARCH_SOLVE_STEPS: usize = 300;
 /// Solver steps that all searches of a run may take together, about three seconds.
 pub(super) const SEARCH_BUDGET: usize = 20_000;
 /// A posture is worth a motion if its effort is less than this share of the present one.
@@ -64,7 +64,7 @@ pub(super) fn search(
         loads: now.loads,
         locked,
     };
-    let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_STEPS, ..Options::least_effort() };
+    let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };
     let found = equilibria(&search, options)?;
     Ok((found.postures, found.steps))
 }

@@ -5,12 +5,12 @@
 //! effort than now; of these the body takes the one of least effort to which there is a way in balance.
 
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 
 use super::ScenarioError;
 use super::body_motion::BodyMotion;
 use super::easiest::{Now, search};
 use super::path::Path;
+use super::sample::FootStep;
 use crate::contact::{Place, Support};
 use crate::equilibria::RelaxedPosture;
 use crate::kinematics::Kinematics;
@@ -34,23 +34,6 @@ pub(super) struct Tired {
     pub(super) load: f64,
     /// From the present angle to the goal, rad.
     pub(super) toward: f64,
-}
-
-/// A support that was put elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FootStep {
-    /// Index of the support.
-    pub support: usize,
-    /// The coordinate whose relief asked for it, and its tired group.
-    pub coordinate: usize,
-    /// See `coordinate`.
-    pub side: Side,
-    /// When the body began to shift its weight, and when it had taken the new posture, s.
-    pub time: (f64, f64),
-    /// Middle of the patch before and after, ground, m.
-    pub place: ([f64; 3], [f64; 3]),
-    /// Effort before and after.
-    pub effort: (f64, f64),
 }
 
 /// A step that will be taken.

@@ -5,6 +5,7 @@
 //! and a [`Run`] can be interrupted and resumed. The same scenario and the same build give the same bits.
 
 mod body_motion;
+mod body_ways;
 mod easiest;
 mod foot_step;
 mod group_state;
@@ -21,10 +22,9 @@ mod step;
 mod summary;
 mod under_way;
 
-pub use foot_step::FootStep;
 pub use relief_log::{ReliefLog, ReliefRecord};
 pub use run::{Run, Snapshot, run};
-pub use sample::{Contact, Relief, Sample, Standing};
+pub use sample::{Contact, FootStep, Relief, Sample, Standing};
 pub use scenario::{
     Event, ReliefSettings, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
 };

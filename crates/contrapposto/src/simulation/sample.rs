@@ -1,6 +1,7 @@
 //! Holds what a run shows of one instant.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use crate::hybrid::{Decision, Strategy};
 use crate::model::Side;
@@ -110,4 +111,21 @@ pub struct Contact {
     pub center_of_pressure: Option<Vector3<f64>>,
     /// The couple about that point (about the ground's origin where nothing is carried), ground axes, N m.
     pub couple: Vector3<f64>,
+}
+
+/// A support that was put elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FootStep {
+    /// Index of the support.
+    pub support: usize,
+    /// The coordinate whose relief asked for it, and its tired group.
+    pub coordinate: usize,
+    /// See `coordinate`.
+    pub side: Side,
+    /// When the body began to shift its weight, and when it had taken the new posture, s.
+    pub time: (f64, f64),
+    /// Middle of the patch before and after, ground, m.
+    pub place: ([f64; 3], [f64; 3]),
+    /// Effort before and after.
+    pub effort: (f64, f64),
 }

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::Event;
-use super::foot_step::FootStep;
 use super::group_state::GroupState;
 use super::path::Path;
+use super::sample::FootStep;
 use crate::constraint::HalfSpace;
 use crate::hybrid::{Decision, Strategy};
 use crate::model::Side;

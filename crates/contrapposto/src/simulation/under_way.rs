@@ -1,8 +1,8 @@
 //! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, or an easier posture at rest.
 
 use super::easiest::SEARCH_BUDGET;
-use super::foot_step::{FootStep, PlannedStep, Tired, plan_step};
-use super::{ScenarioError, Simulation};
+use super::foot_step::{PlannedStep, Tired, plan_step};
+use super::{FootStep, ScenarioError, Simulation};
 use crate::hybrid::Decision;
 use crate::model::Side;
 

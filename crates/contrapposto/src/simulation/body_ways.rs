@@ -1,0 +1,94 @@
+//! Finds where a body begins and where it may go: the start, easier postures, ways to them, and supports put elsewhere.
+
+use super::ScenarioError;
+use super::body_motion::{BodyMotion, engine, is_effort};
+use super::easiest::{Now, easiest};
+use super::path::{Path, Planner};
+use crate::contact::Support;
+use crate::posture::Posture;
+use crate::posture_solver::Options;
+use crate::tasks::PriorityLevel;
+
+/// Greatest change of a joint in the search for the start, rad or m.
+const START_MAX_STEP: f64 = 0.1;
+
+impl BodyMotion<'_> {
+    /// The posture nearest to the scenario's start in which the supports hold the body and its tasks are done; what carries nothing
+    /// takes the posture of least effort that a search finds. Gives the number of steps of the search, too.
+    pub(super) fn start(&mut self) -> Result<(Posture, usize), ScenarioError> {
+        let scenario = self.scenario;
+        let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
+        let levels = self.levels().cloned().collect();
+        let mut nearest = engine(scenario, &scenario.start, &self.supports, levels, options)?;
+        let mut posture = nearest.solve(&scenario.start)?.posture;
+        // A body whose weight acts at the very edge of its supports may be off balance by rounding.
+        if let Some(missing) = self.recover_balance(&mut posture)? {
+            return Err(ScenarioError::CannotStand(missing));
+        }
+        let (better, steps) = self.easiest(&posture)?;
+        self.forget();
+        Ok((better.unwrap_or(posture), steps))
+    }
+
+    /// A posture of less effort that the body can take without moving a support, if there is one worth a motion, and the number of
+    /// steps of the search.
+    pub(super) fn easiest(&mut self, posture: &Posture) -> Result<(Option<Posture>, usize), ScenarioError> {
+        if !self.engine.levels().iter().any(is_effort) {
+            return Ok((None, 0));
+        }
+        self.engine.evaluate(posture)?;
+        let effort = self.effort();
+        let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
+        let now = Now { posture, levels: &levels, loads: self.engine.loads(), effort };
+        // A search that finds nothing leaves the body as it is.
+        Ok(easiest(self.scenario, now, &self.supports).unwrap_or((None, 0)))
+    }
+
+    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none.
+    pub(super) fn way(
+        &self,
+        from: &Posture,
+        to: &Posture,
+        lifted: Option<usize>,
+    ) -> Result<Option<Path>, ScenarioError> {
+        let levels: Vec<PriorityLevel> = self.levels().take_while(|level| !is_effort(level)).cloned().collect();
+        // A step may leave what reliefs ask for at the old place.
+        let keeps = |level: &&PriorityLevel| lifted.is_none() || level.half_spaces.is_empty();
+        let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
+        let (supports, loads) = (&self.supports[..], self.engine.loads());
+        let planner = Planner { scenario: self.scenario, supports, levels: &levels, loads };
+        Ok(match lifted {
+            Some(support) => planner.step(from, to, support)?,
+            None => planner.way(from, to)?,
+        })
+    }
+
+    /// The support that is in the air from now on.
+    pub(super) fn lift(&mut self, support: Option<usize>) -> Result<(), ScenarioError> {
+        let Some(lifted) = support else {
+            self.lifted = None;
+            return Ok(());
+        };
+        if self.lifted.as_ref().is_none_or(|(known, _)| *known != lifted) {
+            let others = self.supports.iter().enumerate().filter(|(i, _)| *i != lifted);
+            let others: Vec<Support> = others.map(|(_, support)| support.clone()).collect();
+            let levels = self.engine.levels().to_vec();
+            let options = Options::least_effort();
+            let mut engine = engine(self.scenario, &self.before, &others, levels, options)?;
+            engine.set_loads(self.engine.loads())?;
+            self.lifted = Some((lifted, engine));
+        }
+        Ok(())
+    }
+
+    /// Stands on the supports as they are in `posture`: one has been put elsewhere.
+    pub(super) fn place_again(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
+        let (levels, loads) = (self.engine.levels().to_vec(), self.engine.loads().to_vec());
+        *self = Self::new(self.scenario, posture)?;
+        self.engine.levels_mut().clone_from_slice(&levels);
+        self.engine.set_loads(&loads)?;
+        self.requested.clear();
+        self.write_relief_levels(&[]);
+        Ok(())
+    }
+}
