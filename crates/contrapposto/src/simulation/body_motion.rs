@@ -289,7 +289,7 @@ impl<'a> BodyMotion<'a> {
         }
         standing.errors.clear();
         standing.errors.extend(self.task_levels.iter().map(|&level| self.engine.error(level)));
-        standing.slip = self.engine.slip();
+        standing.slip = self.lifted.as_ref().map_or(&self.engine, |(_, engine)| engine).slip();
         standing.center_of_mass = self.torques().kinematics().center_of_mass(self.model).unwrap_or_default();
     }
 
