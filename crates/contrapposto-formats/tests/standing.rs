@@ -267,3 +267,65 @@ fn who_would_lean_too_far_stands_at_the_edge() {
         assert!(if target == "1" { center > 0.05 } else { center < -0.03 }, "{target}: {center}");
     }
 }
+
+/// The resting foot goes elsewhere once, is in the air for a second without carrying anything, and the body needs a fraction of the effort.
+#[test]
+fn a_free_resting_foot_is_put_elsewhere_when_the_hip_that_carries_is_tired() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/stand-relaxed.toml"));
+    let text = text.unwrap().replace("duration_s = 120", "duration_s = 15");
+    let scenario = scenario(&text);
+    let foot = scenario.supports[1].segment;
+    let mut kinematics = Kinematics::new(&scenario.model);
+    let (mut aloft, mut highest, mut floor) = (0, 0.0f64, None);
+    let summary = run(&scenario, |sample| {
+        let contacts = &sample.standing.unwrap().contacts;
+        kinematics.update(&scenario.model, &Posture::new(sample.posture.to_vec())).unwrap();
+        let corners = scenario.supports[1].corners.iter();
+        let lowest = corners.map(|at| kinematics.station(&scenario.model, foot, *at).y).fold(f64::INFINITY, f64::min);
+        let floor = *floor.get_or_insert(lowest);
+        if lowest > floor + 1e-3 {
+            aloft += 1;
+            assert_eq!(contacts[1].share, 0.0, "at {} s the foot is in the air and carries", sample.time);
+        }
+        highest = highest.max(lowest - floor);
+        assert!(lowest > floor - 1e-3, "at {} s the foot is {} m below the floor", sample.time, floor - lowest);
+    })
+    .unwrap();
+    let [step] = &summary.foot_steps[..] else { panic!("{:?}", summary.foot_steps) };
+    println!("{step:?}, {aloft} samples in the air, {highest:.3} m high at most");
+    assert_eq!(step.support, 1);
+    assert_eq!(scenario.model.coordinates()[step.coordinate].name, "hip_adduction_r");
+    assert!(step.effort.1 < 0.3 * step.effort.0, "{:?}", step.effort);
+    assert!((20..=45).contains(&aloft) && (0.02..0.05).contains(&highest), "{aloft} samples, {highest} m");
+    let end = summary.standing.unwrap();
+    assert!(end.effort < 0.01 && end.contacts[1].share > 0.0 && end.contacts[1].share <= 0.15 + 1e-9);
+}
+
+/// With the active strategy the level posture is the goal: the foot stays.
+#[test]
+fn a_free_resting_foot_stays_with_the_active_strategy() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/stand-relaxed.toml"));
+    let text = text.unwrap().replace("duration_s = 120", "duration_s = 15").replace("\"passive\"", "\"active\"");
+    let summary = run(&scenario(&text), |_| {}).unwrap();
+    assert!(summary.foot_steps.is_empty(), "{:?}", summary.foot_steps);
+}
+
+#[test]
+fn a_place_that_no_support_can_take_is_refused_where_it_stands_with_its_limits() {
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/stand-relaxed.toml")).unwrap();
+    for (place, message) in [
+        ("{ turn_deg = [10, 40] }", "turn_deg is 10..40; it must hold 0 and lie in -90..90"),
+        ("{ corners_m = [[0, 0, 0], [1, 0, 0]] }", "corners_m has 2 corners; a region has three or more"),
+        (
+            "{ corners_m = [[0, 0, 0], [1e12, 0, 0], [0, 0, 1]] }",
+            "a corner of the region is at 1000000000000 m; 1e9 at most",
+        ),
+    ] {
+        let text = text.replace("place = \"free\"", &format!("place = {place}"));
+        let error = read_scenario("job.toml", text.as_bytes(), None).unwrap_err();
+        let shown = format!("{:?}", miette::Report::new(error));
+        let at = format!("SourceOffset({})", text.find(place).unwrap());
+        assert!(shown.contains(message) && shown.contains(&at), "{shown}");
+    }
+}

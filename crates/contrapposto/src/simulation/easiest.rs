@@ -12,8 +12,9 @@ use crate::tasks::PriorityLevel;
 
 use super::Scenario;
 
-/// Largest change of a rate in a step of the search, rad or m, and most steps of a solve.
+/// Largest change of a rate in a step of the search, rad or m.
 const SEARCH_STEP: f64 = 0.1;
+/// Most steps of a solve.
 const SEARCH_SOLVE_STEPS: usize = 300;
 /// Solver steps that all searches of a run may take together, about three seconds.
 pub(super) const SEARCH_BUDGET: usize = 20_000;
