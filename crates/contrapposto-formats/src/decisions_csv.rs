@@ -3,32 +3,35 @@
 use std::fmt::Write;
 
 use contrapposto::hybrid::{Outcome, Strategy, goal_in_words};
-use contrapposto::model::{Coordinate, CoordinateKind, Model};
-use contrapposto::simulation::{ReliefLog, ReliefRecord};
+use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
+use contrapposto::simulation::{Attempt, ReliefLog, ReliefRecord};
 
 /// Nearer to its goal than this it has got there, rad or m.
 const REACHED: f64 = 0.01;
 
 /// The whole file. Angles in degrees (slides in m), torques in N m (N), time in s.
 pub fn decisions_csv(model: &Model, log: &ReliefLog) -> String {
-    let mut text = "time_s,end_s,coordinate,group,fatigue,strategy,case,outcome,start_deg,goal_deg,end_deg,active_nm,\
+    let mut text =
+        "time_s,end_s,coordinate,group,fatigue,strategy,attempt,case,outcome,start_deg,goal_deg,end_deg,active_nm,\
         active_end_nm,predicted_nm,real_nm,steps_done,steps_deferred,steps_taken_back,steps_idle,sentence\n"
-        .to_owned();
+            .to_owned();
     for record in &log.records {
         let coordinate = &model.coordinates()[record.coordinate];
         let shown = |x: f64| if coordinate.kind == CoordinateKind::Rotation { x.to_degrees() } else { x };
+        let idle = if matches!(record.attempt, Attempt::OtherJoint { .. }) { "other_joint" } else { "idle" };
         let (case, outcome) =
-            record.decision.map_or(("", "idle"), |decision| (decision.case.number(), decision.outcome.word()));
+            record.decision.map_or(("", idle), |decision| (decision.case.number(), decision.outcome.word()));
         let goal = record.decision.and_then(|decision| decision.goal).map_or(String::new(), |g| shown(g).to_string());
         let _ = writeln!(
             text,
-            "{},{},{},{},{},{},{case},{outcome},{},{goal},{},{},{},{},{},{},{},{},{},{}",
+            "{},{},{},{},{},{},{},{case},{outcome},{},{goal},{},{},{},{},{},{},{},{},{},{}",
             record.time.0,
             record.time.1,
             quoted(&coordinate.name),
             quoted(group(coordinate, record)),
             record.fatigue,
             strategy(record.strategy),
+            quoted(&attempt(model, record.attempt)),
             shown(record.value.0),
             shown(record.value.1),
             record.active.0,
@@ -56,13 +59,25 @@ pub fn relief_sentence(model: &Model, record: &ReliefRecord) -> String {
     let unit = if coordinate.kind == CoordinateKind::Translation { "N" } else { "N m" };
     let tired = format!("{}, {}, tired to {:.2}", coordinate.name, group(coordinate, record), record.fatigue);
     let Some(decision) = record.decision else {
-        return format!(
-            "{tired}: supports, tasks or a more tired group prevent its relief, or its relief cost more than it gained; it waits"
-        );
+        let (from, to) = (record.active.0, record.active.1);
+        return match record.attempt {
+            Attempt::OtherJoint { coordinate, direction } => {
+                let way = if direction == Side::Positive { "up" } else { "down" };
+                let joint = &model.coordinates()[coordinate].name;
+                format!(
+                    "{tired}, is unloaded by {joint}, which moves {way}: active torque from {from:.1} to {to:.1} {unit}"
+                )
+            }
+            Attempt::GivenUp => format!(
+                "{tired}: neither strategy nor another joint lets it rest, or its relief cost more than it gained; it waits"
+            ),
+            _ => format!("{tired}: supports, tasks or a more tired group prevent its relief; it waits"),
+        };
     };
     let goal = decision.goal.unwrap_or(record.value.0);
     let verb = if matches!(decision.outcome, Outcome::Stay | Outcome::None) { "stays at" } else { "goes to" };
-    let answer = format!("{verb} {}, {}", shown(goal), goal_in_words(&decision));
+    let other = if record.attempt == Attempt::OtherStrategy { ", by the other strategy" } else { "" };
+    let answer = format!("{verb} {}, {}{other}", shown(goal), goal_in_words(&decision));
     let (from, to) = (shown(record.value.0), shown(record.value.1));
     let way = if from == to { format!("at {to} throughout") } else { format!("from {from} to {to}") };
     let mut sentence =
@@ -102,6 +117,16 @@ fn strategy(strategy: Strategy) -> &'static str {
     }
 }
 
+/// The word of `decisions.csv`; with the name of the joint that moves for another one.
+fn attempt(model: &Model, attempt: Attempt) -> String {
+    match attempt {
+        Attempt::Strategy => "strategy".to_owned(),
+        Attempt::OtherStrategy => "other_strategy".to_owned(),
+        Attempt::OtherJoint { coordinate, .. } => format!("other_joint {}", model.coordinates()[coordinate].name),
+        Attempt::GivenUp => "given_up".to_owned(),
+    }
+}
+
 /// A text as one field of the table.
 fn quoted(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
@@ -113,7 +138,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use contrapposto::hybrid::{Carrier, Case, Decision, Equilibrium};
-    use contrapposto::model::{Adult, Side, adult};
+    use contrapposto::model::{Adult, adult};
     use contrapposto::passive::SlopeAngles;
 
     use super::*;
@@ -139,6 +164,7 @@ mod tests {
             side: Side::Negative,
             fatigue: 0.6,
             strategy: Strategy::Passive,
+            attempt: Attempt::Strategy,
             decision: Some(decision),
             time: (0.0, 4.0),
             value: (10f64.to_radians(), end.to_radians()),

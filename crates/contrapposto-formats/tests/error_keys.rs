@@ -32,6 +32,10 @@ fn refused_numbers_of_a_run_point_at_their_keys() {
         (format!("{active}{run}[relief]\nstep_gain = ^1\n"), "step_gain is 1; it must be above 0 and below 1"),
         (format!("{active}{run}[relief]\nmax_step_deg = ^0\n"), "max_step_deg is 0; it must be positive"),
         (format!("{active}{run}[relief]\ntorque_tolerance_nm = ^-1\n"), "torque_tolerance_nm is -1"),
+        (
+            format!("{active}{run}[relief]\neffort_factor = ^0.9\n"),
+            "effort_factor is 0.9; it must be finite, at least 1",
+        ),
         (format!("{active}{run}[fatigue]\ncritical_level = ^0\n"), "critical_level is 0; it must be above 0"),
         (format!("{active}{run}[fatigue]\nrecovery_level = ^0.7\n"), "recovery_level is 0.7"),
         (format!("{active}[run]\nduration_s = ^-1\n"), "duration_s is -1"),

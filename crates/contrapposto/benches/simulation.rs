@@ -36,6 +36,7 @@ fn ten_minutes() -> Scenario {
             step_gain: 0.3,
             max_step: 2f64.to_radians(),
             torque_tolerance: 0.05,
+            effort_factor: 1.25,
             tables: Tables::Total,
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },

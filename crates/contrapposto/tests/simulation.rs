@@ -39,6 +39,7 @@ fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
             step_gain: 0.3,
             max_step: 2f64.to_radians(),
             torque_tolerance: 0.05,
+            effort_factor: 1.25,
             tables: Tables::Total,
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },

@@ -85,6 +85,7 @@ fn setting_path(setting: Setting) -> &'static [&'static str] {
         Setting::StepGain => &["relief", "step_gain"],
         Setting::MaxStep => &["relief", "max_step_deg"],
         Setting::TorqueTolerance => &["relief", "torque_tolerance_nm"],
+        Setting::EffortFactor => &["relief", "effort_factor"],
         Setting::CriticalLevel => &["fatigue", "critical_level"],
         Setting::RecoveryLevel => &["fatigue", "recovery_level"],
         Setting::StartFatigue => &["fatigue", "start"],

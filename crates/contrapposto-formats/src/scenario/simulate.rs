@@ -122,6 +122,7 @@ fn relief(text: &ReliefText, whole: bool) -> ReliefSettings {
         step_gain: text.step_gain,
         max_step: text.max_step_deg.unwrap_or(max_step_deg).to_radians(),
         torque_tolerance: text.torque_tolerance_nm.unwrap_or(torque_tolerance),
+        effort_factor: text.effort_factor,
         tables: match text.tables {
             TablesText::Total => Tables::Total,
             TablesText::Literal => Tables::Literal,

@@ -270,13 +270,22 @@ pub(crate) struct ReliefText {
     pub(crate) max_step_deg: Option<f64>,
     /// Active torque that counts as none (eps), N m; 0.05 when left out, 0.5 for a body with supports or tasks.
     pub(crate) torque_tolerance_nm: Option<f64>,
+    /// Relief may raise the effort of a body with supports or tasks to so many times the effort before all present reliefs, at
+    /// least 1.
+    pub(crate) effort_factor: f64,
     /// `total`, or `literal` for the paper's tables as printed.
     pub(crate) tables: TablesText,
 }
 
 impl Default for ReliefText {
     fn default() -> Self {
-        Self { step_gain: 0.3, max_step_deg: None, torque_tolerance_nm: None, tables: TablesText::Total }
+        Self {
+            step_gain: 0.3,
+            max_step_deg: None,
+            torque_tolerance_nm: None,
+            effort_factor: 1.25,
+            tables: TablesText::Total,
+        }
     }
 }
 

@@ -34,6 +34,11 @@ impl HalfSpace {
         true
     }
 
+    /// Puts the boundary through `posture`.
+    pub(crate) fn hold(&mut self, posture: &[f64]) {
+        self.offset += self.violation(posture);
+    }
+
     /// How far `posture` lies outside; not positive inside.
     pub(crate) fn violation(&self, posture: &[f64]) -> f64 {
         self.normal.iter().zip(posture).map(|(a, q)| a * q).sum::<f64>() - self.offset

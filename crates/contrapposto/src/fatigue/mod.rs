@@ -81,6 +81,15 @@ impl FatigueLaw {
             Self::Endurance(_) => 0.0,
         }
     }
+
+    /// Whether a group under constant relative load `load` rests to the fatigue `level` (0..=1) in the end, with its fatigue judged at
+    /// relative load `judged`.
+    pub fn rests(&self, level: f64, load: f64, judged: f64) -> bool {
+        match self {
+            Self::ThreeCompartment(law) => law.steady_fatigue(load) <= level * (1.0 - judged.clamp(0.0, 1.0)),
+            Self::Endurance(_) => load <= REST_LOAD,
+        }
+    }
 }
 
 impl FatigueState {

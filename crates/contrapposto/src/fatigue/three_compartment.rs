@@ -93,6 +93,14 @@ impl ThreeCompartment {
         (drive - self.fatigue_rate * active, self.fatigue_rate * active - recovery * fatigued)
     }
 
+    /// The share `MF` under constant relative load `load` in the end: `MF' = 0` with `MA = TL`, or all of the group where the load
+    /// fails before.
+    pub(crate) fn steady_fatigue(&self, load: f64) -> f64 {
+        let load = load.clamp(0.0, 1.0);
+        let recovery = if load <= REST_LOAD { self.rest_multiplier * self.recovery_rate } else { self.recovery_rate };
+        (self.fatigue_rate * load / recovery).min(1.0)
+    }
+
     /// Time a rested group holds a constant load, s, the controller's ramp ignored:
     /// `T = -ln(1 - R (1 - TL) / (F TL)) / R`, infinite if `TL <= R / (F + R)` (data sheet B3, our algebra).
     pub fn endurance_time(&self, load: f64) -> f64 {

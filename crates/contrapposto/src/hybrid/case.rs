@@ -144,7 +144,7 @@ pub struct Decision {
 
 impl Decision {
     /// The case that applies at `active_torque` (N m), before a goal is sought.
-    pub(super) fn without_goal(case: Case, active_torque: f64, slope_angles: SlopeAngles) -> Self {
+    pub(crate) fn without_goal(case: Case, active_torque: f64, slope_angles: SlopeAngles) -> Self {
         Self {
             case,
             outcome: Outcome::None,
@@ -156,6 +156,17 @@ impl Decision {
             interval: None,
             equilibrium: None,
             beyond_tables: false,
+        }
+    }
+
+    /// The same case with the present angle `angle` (rad) for its goal.
+    pub(crate) fn staying(self, angle: f64) -> Self {
+        Self {
+            outcome: Outcome::Stay,
+            goal: Some(angle),
+            active_torque_at_goal: Some(self.active_torque),
+            equilibrium: None,
+            ..self
         }
     }
 }

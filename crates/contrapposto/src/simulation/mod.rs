@@ -6,8 +6,10 @@
 
 mod body_motion;
 mod body_ways;
+mod decide;
 mod easiest;
 mod foot_step;
+mod goal;
 mod group_state;
 mod joint_motion;
 mod motion;
@@ -24,7 +26,7 @@ mod under_way;
 
 pub use relief_log::{ReliefLog, ReliefRecord};
 pub use run::{Run, Snapshot, run};
-pub use sample::{Contact, FootStep, Relief, Sample, Standing};
+pub use sample::{Attempt, Contact, FootStep, Relief, Sample, Standing};
 pub use scenario::{
     Event, ReliefSettings, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
 };

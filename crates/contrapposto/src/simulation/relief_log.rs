@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::sample::{Relief, Sample};
+use super::sample::{Attempt, Relief, Sample};
 use crate::hybrid::{Case, Decision, Outcome, Strategy};
 use crate::model::Side;
 
@@ -20,7 +20,9 @@ pub struct ReliefRecord {
     pub fatigue: f64,
     /// The strategy of its coordinate.
     pub strategy: Strategy,
-    /// The first decision; `None` where the joint could not move or the relief waited for the next recovery.
+    /// How its relief was sought.
+    pub attempt: Attempt,
+    /// The first decision; `None` where the joint could not move, another joint moved or nothing was left to try.
     pub decision: Option<Decision>,
     /// Begin and end, s.
     pub time: (f64, f64),
@@ -38,7 +40,7 @@ pub struct ReliefRecord {
     pub deferred: u64,
     /// Steps that were taken back.
     pub taken_back: u64,
-    /// Steps in which the joint could not move or the relief waited.
+    /// Steps in which the joint could not move or nothing was left to try.
     pub idle: u64,
 }
 
@@ -71,13 +73,13 @@ impl ReliefLog {
             if let Some(record) = self.open[i].and_then(|place| self.records.get_mut(place)) {
                 record.add(sample);
             }
-            let Some(side) = sample.asking[i] else {
+            let (Some(side), Some(attempt)) = (sample.asking[i], sample.attempts[i]) else {
                 self.open[i] = None;
                 continue;
             };
             let goes_on = self.open[i].is_some_and(|place| {
                 let record = &self.records[place];
-                record.side == side && record.kind() == sample.decisions[i].map(kind)
+                (record.side, record.attempt) == (side, attempt) && record.kind() == sample.decisions[i].map(kind)
             });
             if goes_on {
                 continue;
@@ -86,20 +88,21 @@ impl ReliefLog {
             self.open[i] = None;
             if self.records.len() < MOST_RECORDS {
                 self.open[i] = Some(self.records.len());
-                self.records.push(ReliefRecord::new(i, side, sample));
+                self.records.push(ReliefRecord::new(i, side, attempt, sample));
             }
         }
     }
 }
 
 impl ReliefRecord {
-    fn new(coordinate: usize, side: Side, sample: &Sample) -> Self {
+    fn new(coordinate: usize, side: Side, attempt: Attempt, sample: &Sample) -> Self {
         let (value, active) = (sample.posture[coordinate], sample.active[coordinate]);
         let mut record = Self {
             coordinate,
             side,
             fatigue: sample.fatigue[coordinate][side.index()],
             strategy: sample.strategies[coordinate],
+            attempt,
             decision: sample.decisions[coordinate],
             time: (sample.time, sample.time),
             value: (value, value),
@@ -111,7 +114,7 @@ impl ReliefRecord {
             taken_back: 0,
             idle: 0,
         };
-        record.idle = u64::from(record.decision.is_none());
+        record.idle = u64::from(record.is_idle());
         record
     }
 
@@ -129,9 +132,13 @@ impl ReliefRecord {
             }
             Some(Relief::Deferred) => self.deferred += 1,
             Some(Relief::TakenBack) => self.taken_back += 1,
-            Some(Relief::Blocked | Relief::GivenUp) => self.idle += 1,
             None => {}
         }
+        self.idle += u64::from(self.is_idle());
+    }
+
+    fn is_idle(&self) -> bool {
+        self.decision.is_none() && !matches!(self.attempt, Attempt::OtherJoint { .. })
     }
 
     fn kind(&self) -> Option<(Case, Outcome)> {

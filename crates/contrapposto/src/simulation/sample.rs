@@ -27,8 +27,9 @@ pub struct Sample<'a> {
     pub decisions: &'a [Option<Decision>],
     /// The muscle group of every coordinate that requests relief.
     pub asking: &'a [Option<Side>],
-    /// The outcome of the relief of every coordinate, in the step that led here; [`Relief::Blocked`] and [`Relief::GivenUp`]
-    /// tell of the posture shown, and stand in place of that outcome.
+    /// How relief is sought for these groups.
+    pub attempts: &'a [Option<Attempt>],
+    /// The outcome of the relief of every coordinate, in the step that led here.
     pub reliefs: &'a [Option<Relief>],
     /// Contact forces, task errors and effort of a body with supports or tasks.
     pub standing: Option<&'a Standing>,
@@ -45,6 +46,7 @@ pub(super) struct Record {
     pub(super) passive: Vec<f64>,
     pub(super) load: Vec<f64>,
     pub(super) asking: Vec<Option<Side>>,
+    pub(super) attempts: Vec<Option<Attempt>>,
     pub(super) reliefs: Vec<Option<Relief>>,
     pub(super) standing: Standing,
     pub(super) settled: bool,
@@ -58,6 +60,7 @@ impl Record {
             passive: vec![0.0; n],
             load: vec![0.0; n],
             asking: vec![None; n],
+            attempts: vec![None; n],
             reliefs: vec![None; n],
             standing: Standing::default(),
             settled: false,
@@ -79,9 +82,24 @@ pub enum Relief {
     Deferred,
     /// The motion raised the joint's own torque above its predicted peak, or cost too much effort, and was taken back.
     TakenBack,
-    /// The joint cannot move without violating what stands above relief.
-    Blocked,
-    /// The motion was taken back so often that the relief waits for the next recovery.
+}
+
+/// How relief is sought for a tired muscle group. Each attempt follows on the one above it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Attempt {
+    /// Its joint moves to a goal of the strategy that the scenario gives.
+    #[default]
+    Strategy,
+    /// Its joint moves to a goal of the other strategy.
+    OtherStrategy,
+    /// Another joint moves, by which the torque of its joint falls.
+    OtherJoint {
+        /// The coordinate that moves.
+        coordinate: usize,
+        /// Positive: upward.
+        direction: Side,
+    },
+    /// Nothing is left to try in the present recovery.
     GivenUp,
 }
 

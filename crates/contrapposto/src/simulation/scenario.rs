@@ -39,6 +39,8 @@ pub struct ReliefSettings {
     pub max_step: f64,
     /// `eps`, N m, not negative.
     pub torque_tolerance: f64,
+    /// Relief of a body may raise its effort to so many times the effort before all present reliefs, at least 1.
+    pub effort_factor: f64,
     /// Which reading of the tables.
     pub tables: Tables,
 }
@@ -153,6 +155,8 @@ pub enum Setting {
     MaxStep,
     /// Torque tolerance `eps`.
     TorqueTolerance,
+    /// Greatest effort of the body, by the effort before all present reliefs.
+    EffortFactor,
     /// Fatigue at which relief begins.
     CriticalLevel,
     /// Fatigue at which relief ends.
@@ -178,6 +182,7 @@ impl std::fmt::Display for Setting {
             Self::StepGain => "step gain",
             Self::MaxStep => "greatest step (rad)",
             Self::TorqueTolerance => "torque tolerance (N m)",
+            Self::EffortFactor => "effort factor",
             Self::CriticalLevel => "critical level",
             Self::RecoveryLevel => "recovery level",
             Self::Duration => "duration (s)",
@@ -328,11 +333,13 @@ impl Scenario {
         }
         let ratio = self.strategy.minimum_decrease_ratio;
         check_setting((0.0..=1.0).contains(&ratio), Setting::MinimumDecreaseRatio, ratio, "in 0..1")?;
-        let ReliefSettings { step_gain, max_step, torque_tolerance, .. } = self.relief;
+        let ReliefSettings { step_gain, max_step, torque_tolerance, effort_factor, .. } = self.relief;
         check_setting(step_gain > 0.0 && step_gain < 1.0, Setting::StepGain, step_gain, "above 0 and below 1")?;
         check_setting(max_step > 0.0 && max_step.is_finite(), Setting::MaxStep, max_step, "positive")?;
         let tolerable = torque_tolerance >= 0.0 && torque_tolerance.is_finite();
         check_setting(tolerable, Setting::TorqueTolerance, torque_tolerance, "finite and not negative")?;
+        let rises = effort_factor >= 1.0 && effort_factor.is_finite();
+        check_setting(rises, Setting::EffortFactor, effort_factor, "finite, at least 1")?;
         let Hysteresis { critical_level, recovery_level } = self.hysteresis;
         let rising = 0.0 < critical_level && critical_level <= 1.0;
         check_setting(rising, Setting::CriticalLevel, critical_level, "above 0, at most 1")?;

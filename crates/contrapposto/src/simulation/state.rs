@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Event;
+use super::goal::Goal;
 use super::group_state::GroupState;
 use super::path::Path;
 use super::sample::FootStep;
@@ -26,6 +27,8 @@ pub(super) struct State {
     pub(super) active: Vec<f64>,
     pub(super) fatigue: Vec<[f64; 2]>,
     pub(super) effort: f64,
+    /// Effort of the body when the first of the present recoveries requested relief.
+    pub(super) effort_at_start: f64,
     pub(super) decisions: Vec<Option<Decision>>,
     /// By coordinate.
     pub(super) requests: Vec<Request>,
@@ -52,15 +55,34 @@ pub(super) struct Request {
     pub(super) half_space: HalfSpace,
     /// The half-space is kept for as long as the recovery lasts.
     pub(super) in_force: bool,
-    /// The decision that is followed.
+    /// The muscle group that requested relief last in the present recovery.
+    pub(super) side: Option<Side>,
+    /// The decision that is followed, the goal that was taken up last, and decisions in a row for another one.
     pub(super) followed: Option<Decision>,
+    pub(super) goal: Option<Goal>,
+    pub(super) contrary: u32,
+    /// The step that the last decision requested, rad; `None` where it requested no relief.
+    pub(super) step: Option<f64>,
     /// Change of active torque predicted for the next step, N m.
     pub(super) predicted_change: f64,
     /// Greatest size of active torque predicted on the way to the goal, N m.
     pub(super) predicted_peak: f64,
-    /// Effort when the present recovery first requested relief.
-    pub(super) effort_at_start: f64,
 }
+
+/// How a new decision is followed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Following {
+    /// A goal that is no farther away counts as reached, rad.
+    pub(super) reach: f64,
+    /// A goal that has been left is not taken up again.
+    pub(super) remember: bool,
+    /// Another goal is taken up only when its decision is repeated.
+    pub(super) confirm: bool,
+}
+
+/// Another goal is taken up after more than so many contrary decisions in a row. The slope that a decision extrapolates jumps where
+/// an edge of a foot begins or ends to carry weight.
+const CONTRARY_DECISIONS: u32 = 30;
 
 impl State {
     /// `n` coordinates at the start.
@@ -69,10 +91,13 @@ impl State {
         let request = Request {
             half_space: HalfSpace::new(n),
             in_force: false,
+            side: None,
             followed: None,
+            goal: None,
+            contrary: 0,
+            step: None,
             predicted_change: 0.0,
             predicted_peak: 0.0,
-            effort_at_start: 0.0,
         };
         Self {
             steps: 0,
@@ -83,6 +108,7 @@ impl State {
             active: vec![0.0; n],
             fatigue: vec![[0.0; 2]; n],
             effort: 0.0,
+            effort_at_start: 0.0,
             decisions: vec![None; n],
             requests: vec![request; n],
             reliefs_move: false,
@@ -110,6 +136,7 @@ impl State {
         counts.into_iter().chain(sizes).all(|count| count == n)
             && self.next_event <= events
             && self.effort.is_finite()
+            && self.effort_at_start.is_finite()
             && self.active.iter().chain(self.fatigue.iter().flatten()).all(|v| v.is_finite())
             && self.requests.iter().all(Request::is_finite)
             && self.path.as_ref().is_none_or(|path| path.fits(n, supports))
@@ -121,17 +148,10 @@ impl State {
         let strategies = event.strategies.as_ref().unwrap_or(&self.strategies).clone();
         for (i, &strategy) in strategies.iter().enumerate() {
             let changed = strategy != self.strategies[i];
-            // Another strategy begins a new recovery; with another load or target a relief that cost too much may pay.
-            for group in &mut self.groups[i] {
-                if changed {
-                    group.forget_strategy();
-                }
-                if changed || elsewhere {
-                    group.rejections = 0;
-                }
-            }
+            // Another strategy, load or target begins a new search for relief: what was left or cost too much may pay now.
             if changed || elsewhere {
-                self.requests[i].followed = None;
+                self.groups[i].iter_mut().for_each(GroupState::restart);
+                self.requests[i].restart();
             }
         }
         self.strategies = strategies;
@@ -159,33 +179,160 @@ impl State {
         [working, Side::BOTH[1 - working.index()]].into_iter().find(requests)
     }
 
-    /// The decision that coordinate `i` follows: the new one, or with `hysteresis` the last one until the new one is confirmed.
-    pub(super) fn follow(&mut self, i: usize, side: Side, decision: Decision, hysteresis: bool) -> Decision {
-        let (request, group) = (&mut self.requests[i], &mut self.groups[i][side.index()]);
-        let mut followed = decision;
-        if let (Some(last), true) = (request.followed, hysteresis) {
-            group.count(decision.outcome);
-            if !group.is_confirmed() {
-                followed = last;
+    /// The decision that coordinate `i` follows: the new one if it goes to the goal that was taken up last or to one that may be
+    /// taken up now, else the last one as long as its goal lies ahead, else none: the coordinate stays.
+    pub(super) fn follow(&mut self, i: usize, side: Side, decision: Decision, angle: f64, how: Following) -> Decision {
+        let goal = Goal::of(&decision, angle, how.reach);
+        let request = &mut self.requests[i];
+        let followed = match goal {
+            Some(goal) if how.remember && request.goal != Some(goal) => {
+                let may = !self.groups[i].iter().any(|group| group.left.contains(goal));
+                request.contrary = if may { request.contrary + 1 } else { 0 };
+                let confirmed = request.goal.is_none() || !how.confirm || request.contrary > CONTRARY_DECISIONS;
+                let last = request.followed.filter(|last| may && Goal::of(last, angle, how.reach) == request.goal);
+                if may && confirmed {
+                    self.take_up(i, goal);
+                    decision
+                } else {
+                    last.unwrap_or(decision.staying(angle))
+                }
             }
-        }
-        if request.followed.is_none() {
-            request.effort_at_start = self.effort;
-        }
-        request.followed = Some(followed);
-        group.accept(followed.outcome);
+            _ => {
+                request.contrary = 0;
+                decision
+            }
+        };
+        self.requests[i].followed = Some(followed);
+        self.groups[i][side.index()].accept(followed.outcome);
         followed
+    }
+
+    /// Coordinate `i` leaves its goal for another one.
+    pub(super) fn take_up(&mut self, i: usize, goal: Goal) {
+        self.leave_goal(i);
+        self.requests[i].goal = Some(goal);
+    }
+
+    /// Coordinate `i` leaves its goal, for as long as its groups recover.
+    pub(super) fn leave_goal(&mut self, i: usize) {
+        let request = &mut self.requests[i];
+        request.contrary = 0;
+        let Some(left) = request.goal.take() else { return };
+        self.groups[i].iter_mut().filter(|group| group.recovering).for_each(|group| group.left.insert(left));
+    }
+
+    /// Whether coordinate `i` may take up a goal that is not its present one.
+    pub(super) fn is_new(&self, i: usize, goal: Goal) -> bool {
+        self.requests[i].goal != Some(goal) && !self.groups[i].iter().any(|group| group.left.contains(goal))
     }
 }
 
 impl Request {
     /// Ends the request when no group of its coordinate recovers.
     pub(super) fn end(&mut self) {
-        (self.in_force, self.followed) = (false, None);
+        self.restart();
+        self.in_force = false;
+    }
+
+    /// Forgets what was decided; the half-space stays until the next decision.
+    fn restart(&mut self) {
+        (self.side, self.followed, self.goal, self.contrary) = (None, None, None, 0);
     }
 
     fn is_finite(&self) -> bool {
-        let numbers = [self.half_space.offset, self.predicted_change, self.predicted_peak, self.effort_at_start];
-        numbers.iter().chain(&self.half_space.normal).all(|v| v.is_finite())
+        let numbers = [self.half_space.offset, self.predicted_change, self.predicted_peak];
+        let step = self.step.as_slice();
+        numbers.iter().chain(step).chain(&self.half_space.normal).all(|v| v.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use crate::hybrid::{Case, Outcome};
+    use crate::passive::SlopeAngles;
+
+    const BODY: Following = Following { reach: 0.01, remember: true, confirm: true };
+
+    /// One coordinate at 0 whose groups both recover.
+    fn state() -> State {
+        let mut state = State::new(Posture::new(vec![0.0]), vec![Strategy::Passive]);
+        state.groups[0].iter_mut().for_each(|group| group.recovering = true);
+        state
+    }
+
+    fn decision(outcome: Outcome, goal: f64) -> Decision {
+        let slope_angles = SlopeAngles { lower: None, upper: None };
+        Decision { outcome, goal: Some(goal), ..Decision::without_goal(Case::C34, 1.0, slope_angles) }
+    }
+
+    /// The goal that is followed after `count` decisions for `outcome` at `goal`.
+    fn after(state: &mut State, count: u32, outcome: Outcome, goal: f64) -> (Outcome, f64) {
+        let mut followed = None;
+        for _ in 0..count {
+            followed = Some(state.follow(0, Side::Positive, decision(outcome, goal), 0.0, BODY));
+        }
+        followed.map(|followed| (followed.outcome, followed.goal.unwrap())).unwrap()
+    }
+
+    #[test]
+    fn the_31st_contrary_decision_in_a_row_is_followed() {
+        let mut state = state();
+        assert_eq!(after(&mut state, 1, Outcome::Passive, 0.5), (Outcome::Passive, 0.5));
+        assert_eq!(after(&mut state, 30, Outcome::Passive, -0.5), (Outcome::Passive, 0.5));
+        assert_eq!(after(&mut state, 1, Outcome::Passive, -0.5), (Outcome::Passive, -0.5));
+    }
+
+    #[test]
+    fn a_decision_for_the_present_goal_ends_the_count_of_contrary_ones() {
+        let mut state = state();
+        after(&mut state, 1, Outcome::Passive, 0.5);
+        after(&mut state, 30, Outcome::Passive, -0.5);
+        assert_eq!(after(&mut state, 1, Outcome::AtLimit, 0.6), (Outcome::AtLimit, 0.6), "the same kind and side");
+        assert_eq!(after(&mut state, 30, Outcome::Passive, -0.5), (Outcome::AtLimit, 0.6));
+    }
+
+    #[test]
+    fn a_goal_that_was_left_is_not_taken_up_again_until_its_group_has_rested() {
+        let mut state = state();
+        after(&mut state, 1, Outcome::Passive, 0.5);
+        after(&mut state, 31, Outcome::Passive, -0.5);
+        assert_eq!(after(&mut state, 100, Outcome::Passive, 0.5), (Outcome::Stay, 0.0));
+        assert_eq!(after(&mut state, 1, Outcome::Passive, -0.4), (Outcome::Passive, -0.4), "the present goal");
+        state.groups[0][0].set_recovering(false, 0.0);
+        assert_eq!(
+            after(&mut state, 100, Outcome::Passive, 0.5),
+            (Outcome::Stay, 0.0),
+            "the other group has not rested"
+        );
+        state.groups[0][1].set_recovering(false, 0.0);
+        assert_eq!(after(&mut state, 31, Outcome::Passive, 0.5), (Outcome::Passive, 0.5));
+    }
+
+    #[test]
+    fn another_load_allows_every_goal() {
+        let mut state = state();
+        after(&mut state, 1, Outcome::Passive, 0.5);
+        after(&mut state, 31, Outcome::Passive, -0.5);
+        state.apply(&Event { loads: Some(vec![]), ..Event::default() });
+        assert_eq!(after(&mut state, 1, Outcome::Passive, 0.5), (Outcome::Passive, 0.5));
+    }
+
+    #[test]
+    fn a_goal_within_reach_is_followed_on_either_side() {
+        let mut state = state();
+        after(&mut state, 1, Outcome::Passive, 0.5);
+        assert_eq!(after(&mut state, 1, Outcome::Passive, -0.009), (Outcome::Passive, -0.009));
+        assert_eq!(after(&mut state, 1, Outcome::Passive, 0.5), (Outcome::Passive, 0.5));
+    }
+
+    #[test]
+    fn a_joint_that_others_moved_past_its_goal_stays_until_another_goal_is_confirmed() {
+        let mut state = state();
+        after(&mut state, 1, Outcome::Passive, 0.5);
+        let followed = state.follow(0, Side::Positive, decision(Outcome::Active, 0.2), 0.8, BODY);
+        assert_eq!((followed.outcome, followed.goal), (Outcome::Stay, Some(0.8)));
     }
 }

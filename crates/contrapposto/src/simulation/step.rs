@@ -1,28 +1,19 @@
 //! Advances a scenario by one time step (Rodriguez & Boulic 2007, section 3).
 
 use super::motion::Motion;
-use super::prediction::Prediction;
-use super::sample::{Record, Relief, Sample};
+use super::sample::{Attempt, Record, Relief, Sample};
 use super::state::State;
-use super::{Event, Fall, Scenario, ScenarioError, Tables};
+use super::{Event, Fall, Scenario, ScenarioError};
 use crate::contact::Balance;
-use crate::hybrid::{Problem, Strategy, minimise, minimise_literal};
 use crate::joint_torques::{active_torque, effort, relative_load};
 use crate::model::Side;
 
 /// A step of relief below this size, rad, counts as none.
-const SMALLEST_STEP: f64 = 1e-6;
+pub(super) const SMALLEST_STEP: f64 = 1e-6;
 /// An event is due when it is no later than this after the step's time, s.
 pub(super) const TIME_TOLERANCE: f64 = 1e-9;
-/// A motion for relief may raise effort to so many times the effort at the start of the recovery.
-const EFFORT_LIMIT: f64 = 2.0;
 /// A motion for relief may raise active torque to so many times its predicted peak.
 const PEAK_LIMIT: f64 = 1.5;
-/// After so many rejected motions a relief follows the passive strategy,
-const REJECTIONS_BEFORE_PASSIVE: u32 = 3;
-/// and after so many it waits for the next recovery.
-const REJECTIONS_BEFORE_END: u32 = 6;
-
 /// A scenario under way.
 #[derive(Debug)]
 pub struct Simulation<'a> {
@@ -32,9 +23,9 @@ pub struct Simulation<'a> {
     pub(super) record: Record,
     /// Values of the posture and active torque before the last motion.
     values_before: Vec<f64>,
-    active_before: Vec<f64>,
+    pub(super) active_before: Vec<f64>,
     /// The step that relief requests of one coordinate, one entry a coordinate, rad.
-    relief_step: Vec<f64>,
+    pub(super) relief_step: Vec<f64>,
 }
 
 impl<'a> Simulation<'a> {
@@ -136,6 +127,7 @@ impl<'a> Simulation<'a> {
             fatigue: &self.state.fatigue,
             decisions: &self.state.decisions,
             asking: &self.record.asking,
+            attempts: &self.record.attempts,
             reliefs: &self.record.reliefs,
             standing: self.motion.body().map(|_| &self.record.standing),
             strategies: &self.state.strategies,
@@ -199,25 +191,29 @@ impl<'a> Simulation<'a> {
             return Ok(());
         }
         let requested = self.state.requested();
-        let effort_before = self.state.effort;
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         body.step(&mut self.state.posture, &requested, &self.state.requests, self.state.reliefs_move)?;
         let deferred = body.deferred().to_vec();
         let mut effort = self.evaluate()?;
         let falls = self.motion.body().is_some_and(|body| body.contact().balance() != Balance::Held);
-        let decided: Vec<usize> = requested.into_iter().filter(|&i| self.state.decisions[i].is_some()).collect();
-        let rejected = |i: &&usize| falls || (effort > effort_before && self.costs_too_much(**i, effort));
-        let rejected: Vec<usize> = decided.iter().filter(rejected).copied().collect();
+        let rejected = self.rejected(&requested, falls, effort);
         if falls || !rejected.is_empty() {
             if let Some(body) = self.motion.body() {
                 body.take_back(&mut self.state.posture);
             }
             effort = self.evaluate()?;
         }
-        for i in decided {
+        for i in requested {
+            let request = &mut self.state.requests[i];
+            let (side, is_kept) = (request.side, request.step.is_none());
+            if is_kept {
+                request.in_force &= !rejected.contains(&i);
+                continue;
+            }
             self.record.reliefs[i] = Some(if rejected.contains(&i) {
-                let side = self.tired_side(i);
-                self.state.groups[i][side.index()].rejections += 1;
+                if let Some(side) = side {
+                    self.state.groups[i][side.index()].rejections += 1;
+                }
                 Relief::TakenBack
             } else if deferred.contains(&i) || !rejected.is_empty() {
                 Relief::Deferred
@@ -232,26 +228,33 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Whether the torque of a coordinate is far above its predicted peak (a passive goal may lie beyond a rise, which is
-    /// predicted), or the effort far above that at the start of its recovery.
-    fn costs_too_much(&self, i: usize, effort: f64) -> bool {
+    /// The reliefs for which the last motion is taken back, of the `requested` ones. Where the supports do not hold the body, or where
+    /// effort has risen and is far above that before all present reliefs, these are the reliefs that move, or all if none moves.
+    fn rejected(&self, requested: &[usize], falls: bool, effort: f64) -> Vec<usize> {
+        let moves = |i: usize| self.state.requests[i].step.is_some_and(|step| step.abs() > SMALLEST_STEP);
+        let some_move = requested.iter().any(|&i| moves(i));
+        let rises = effort > self.state.effort;
+        let too_high = effort > self.scenario.relief.effort_factor * self.state.effort_at_start;
+        let costs = |i: usize| {
+            ((falls || (rises && too_high)) && (moves(i) || !some_move)) || (moves(i) && self.is_in_vain(i, rises))
+        };
+        requested.iter().copied().filter(|&i| costs(i)).collect()
+    }
+
+    /// Whether a motion has made the torque of a coordinate far greater than its predicted peak while effort `rises` (a passive goal
+    /// may lie beyond a rise, which is predicted), or, as a motion of another joint, has not lowered it.
+    fn is_in_vain(&self, i: usize, rises: bool) -> bool {
         let request = &self.state.requests[i];
-        let tolerance = self.scenario.relief.torque_tolerance;
-        self.state.active[i].abs() > PEAK_LIMIT * request.predicted_peak + tolerance
-            || effort > EFFORT_LIMIT * request.effort_at_start
+        let (torque, before) = (self.state.active[i].abs(), self.active_before[i].abs());
+        let peak = PEAK_LIMIT * request.predicted_peak + self.scenario.relief.torque_tolerance;
+        let attempt = request.side.map(|side| self.state.groups[i][side.index()].attempt);
+        (rises && torque > peak) || (torque >= before && matches!(attempt, Some(Attempt::OtherJoint { .. })))
     }
 
     /// The relief of a coordinate, carried out.
     fn done(&self, i: usize) -> Relief {
         let actual = self.state.active[i] - self.active_before[i];
         Relief::Done { predicted: self.state.requests[i].predicted_change, actual }
-    }
-
-    /// The group that requested the last motion of a coordinate: the working one if it recovers, else the other one.
-    fn tired_side(&self, coordinate: usize) -> Side {
-        let working = Side::of(self.active_before[coordinate]);
-        let recovers = self.state.groups[coordinate][working.index()].recovering;
-        if recovers { working } else { Side::BOTH[1 - working.index()] }
     }
 
     /// Computes torques and relative loads in the present posture; gives the effort.
@@ -269,7 +272,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Relative load of one group; 0 for the one that does not work.
-    fn group_load(&self, coordinate: usize, side: Side) -> f64 {
+    pub(super) fn group_load(&self, coordinate: usize, side: Side) -> f64 {
         if side == Side::of(self.state.active[coordinate]) { self.record.load[coordinate] } else { 0.0 }
     }
 
@@ -287,101 +290,6 @@ impl<'a> Simulation<'a> {
                 self.state.fatigue[i][side.index()] = level;
                 group.set_recovering(self.scenario.hysteresis.recovering(group.recovering, level), load);
             }
-        }
-    }
-
-    /// Decides anew for every free coordinate whose working group recovers ([`State::requesting_side`]), and notes whether any
-    /// relief still moves. The others have no decision; a request ends only when no group of its coordinate recovers.
-    fn decide(&mut self) -> Result<(), ScenarioError> {
-        let (mut decided, mut moves) = (false, false);
-        for i in 0..self.state.decisions.len() {
-            self.state.decisions[i] = None;
-            self.record.asking[i] = None;
-            if !self.state.groups[i].iter().any(|group| group.recovering) {
-                self.state.requests[i].end();
-                self.state.step_tried[i] = false;
-            }
-            if self.state.path.is_some() {
-                continue;
-            }
-            let coordinate = &self.scenario.model.coordinates()[i];
-            if coordinate.passive.is_none() || coordinate.rate.is_none() || !self.scenario.free[i] {
-                continue;
-            }
-            let Some(side) = self.state.requesting_side(i, self.scenario.relief.torque_tolerance) else { continue };
-            self.record.asking[i] = Some(side);
-            if let Some(step) = self.decide_for(i, side)? {
-                decided = true;
-                moves |= step.abs() > SMALLEST_STEP;
-            }
-            if let Some(decision) = self.state.decisions[i] {
-                self.look_for_step(i, side, &decision)?;
-            }
-        }
-        self.state.reliefs_move = moves;
-        self.state.searched_here &= !moves;
-        self.look_for_ease()?;
-        let still = self.state.path.is_none() && self.motion.is_at_rest();
-        self.record.settled = decided && !moves && still;
-        Ok(())
-    }
-
-    /// Stores the decision that one group follows (on a body the last one until a new one is confirmed) and requests its step,
-    /// which the next time step carries out. Gives that step, rad, zero without a goal; `None` without a decision: given up,
-    /// which lets the half-space go, blocked, which keeps it (both replace the recorded outcome of the last motion), or a
-    /// passive law without a falling curve.
-    fn decide_for(&mut self, i: usize, side: Side) -> Result<Option<f64>, ScenarioError> {
-        let Scenario { model, strategy, relief, .. } = self.scenario;
-        let coordinate = &model.coordinates()[i];
-        let Some(rate) = coordinate.rate else { return Ok(None) };
-        let group = self.state.groups[i][side.index()];
-        if group.rejections >= REJECTIONS_BEFORE_END {
-            self.record.reliefs[i] = Some(Relief::GivenUp);
-            self.state.requests[i].in_force = false;
-            return Ok(None);
-        }
-        let Some(external_slope) = self.motion.external_slope(&self.state.posture, i, rate)? else {
-            self.record.reliefs[i] = Some(Relief::Blocked);
-            return Ok(None);
-        };
-        let (passive_torque, kinematics) = (self.motion.torques().passive_torque(), self.motion.torques().kinematics());
-        let Some(curve) = passive_torque.curve_about_axis(model, kinematics, i, coordinate.range) else {
-            return Ok(None);
-        };
-        let passive = group.rejections >= REJECTIONS_BEFORE_PASSIVE;
-        let problem = Problem {
-            curve: &curve,
-            angle: passive_torque.angles()[i],
-            external_torque: self.record.external[i],
-            external_slope,
-            strategy: if passive { Strategy::Passive } else { self.state.strategies[i] },
-            minimum_decrease_ratio: strategy.minimum_decrease_ratio,
-            torque_tolerance: relief.torque_tolerance,
-            accepted: group.accepted,
-        };
-        let decision = match relief.tables {
-            Tables::Total => minimise(&problem),
-            Tables::Literal => minimise_literal(&problem),
-        };
-        // Every number was checked with the scenario, and the posture is clamped to its ranges.
-        let Ok(decision) = decision else { return Ok(None) };
-        let is_body = self.motion.body().is_some();
-        let decision = self.state.follow(i, side, decision, is_body);
-        let prediction = Prediction::new(&problem, &decision, self.state.active[i], relief, group.rejections);
-        self.request(i, &prediction, is_body);
-        self.state.decisions[i] = Some(decision);
-        Ok(Some(prediction.step))
-    }
-
-    /// Requests the step of a prediction of coordinate `i`.
-    fn request(&mut self, i: usize, prediction: &Prediction, is_body: bool) {
-        let request = &mut self.state.requests[i];
-        (request.predicted_change, request.predicted_peak) = (prediction.change, prediction.peak);
-        // On a body a half-space stays as long as its group recovers, whatever less important tasks ask for.
-        if !is_body || !request.in_force || prediction.step.abs() > SMALLEST_STEP {
-            let model = &self.scenario.model;
-            self.motion.torques().write_turn(model, i, prediction.step, &mut self.relief_step);
-            request.in_force = request.half_space.ask_for(self.state.posture.values(), &self.relief_step);
         }
     }
 

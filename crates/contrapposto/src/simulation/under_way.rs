@@ -57,7 +57,7 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Ends the way: reliefs of an old place are asked for anew.
+    /// Ends the way: reliefs of an old place are asked for anew, and every goal may be taken up.
     fn end_path(&mut self, effort: f64, has_step: bool) {
         self.state.path = None;
         let time = self.state.steps as f64 * self.scenario.run.step;
@@ -65,6 +65,7 @@ impl Simulation<'_> {
             (step.time.1, step.effort.1) = (time, effort);
             self.state.placed_at = Some(self.state.posture.clone());
             self.state.requests.iter_mut().for_each(super::state::Request::end);
+            self.state.groups.iter_mut().flatten().for_each(super::group_state::GroupState::restart);
         }
     }
 

@@ -1,0 +1,64 @@
+//! Relief does not return to a goal that it has left: random whole-body scenarios, judged by their samples alone.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+mod judge;
+mod scenarios;
+
+use contrapposto::simulation::{Scenario, ScenarioError, run};
+use judge::{Findings, Judge};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+/// Seed of the first scenario; each scenario has a seed of its own.
+const FIRST_SEED: u64 = 1_600;
+
+/// What the judge finds in one run; `None` for a scenario whose supports cannot hold its body.
+fn judged(scenario: &Scenario) -> Option<Findings> {
+    let mut judge = Judge::new(scenario);
+    match run(scenario, |sample| judge.take(sample)) {
+        Ok(_) => Some(judge.findings()),
+        Err(ScenarioError::CannotStand(_) | ScenarioError::Falls(_)) => None,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Runs `count` scenarios, each from its seed, and adds up what the judge finds; prints the seed of each violation.
+fn judge_many(count: u64) -> (Findings, u64) {
+    let (mut all, mut cannot_stand) = (Findings::default(), 0);
+    for seed in FIRST_SEED..FIRST_SEED + count {
+        let scenario = scenarios::random(&mut Pcg64Mcg::seed_from_u64(seed));
+        let Some(findings) = judged(&scenario) else {
+            cannot_stand += 1;
+            continue;
+        };
+        if findings.violations + findings.wrong_attempts + findings.efforts_above > 0 {
+            println!("seed {seed}: {findings:?}");
+        }
+        all.add(&findings);
+    }
+    println!("{count} scenarios from seed {FIRST_SEED}, {cannot_stand} without balance; {all:?}");
+    (all, cannot_stand)
+}
+
+fn assert_kept(findings: &Findings, cannot_stand: u64, count: u64) {
+    assert_eq!(findings.violations, 0, "goals that had been left were taken up again");
+    assert_eq!((findings.wrong_attempts, findings.efforts_above), (0, 0), "{findings:?}");
+    // The judge had something to judge.
+    assert!(4 * cannot_stand < 3 * count, "{cannot_stand} of {count} scenarios without balance");
+    assert!(findings.goals > count && findings.changes > count / 10, "{findings:?}");
+    assert!(findings.attempts.iter().all(|&attempts| attempts > count / 10), "{findings:?}");
+}
+
+#[test]
+fn fifty_random_scenarios_take_up_no_goal_again() {
+    let (findings, cannot_stand) = judge_many(50);
+    assert_kept(&findings, cannot_stand, 50);
+}
+
+#[test]
+#[ignore = "takes half an hour: 2,000 random scenarios"]
+fn two_thousand_random_scenarios_take_up_no_goal_again() {
+    let (findings, cannot_stand) = judge_many(2_000);
+    assert_kept(&findings, cannot_stand, 2_000);
+}
