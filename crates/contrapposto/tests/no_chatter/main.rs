@@ -57,7 +57,7 @@ fn fifty_random_scenarios_take_up_no_goal_again() {
 }
 
 #[test]
-#[ignore = "takes half an hour: 2,000 random scenarios"]
+#[ignore = "needs half an hour: 2,000 random scenarios"]
 fn two_thousand_random_scenarios_take_up_no_goal_again() {
     let (findings, cannot_stand) = judge_many(2_000);
     assert_kept(&findings, cannot_stand, 2_000);
