@@ -50,7 +50,7 @@ def scenario(height, reach, more="", law="endurance"):
         for side, across in [("r", APART), ("l", -APART)]
     )
     return (
-        f'format = 1\ntitle = "Hands at {height} % shoulder height, {reach} % arm reach"\n'
+        f'format = 1\nupright = false\ntitle = "Hands at {height} % shoulder height, {reach} % arm reach"\n'
         f'[model]\nadult = {{ sex = "male", stature_m = {STATURE}, mass_kg = {MASS} }}\n'
         f'[fatigue]\nlaw = "{law}"\n[[support]]\nsegment = "calcn_r"\n[[support]]\nsegment = "calcn_l"\n'
         f'{hands}[[task]]\nkind = "effort"\n{more}'

@@ -30,7 +30,7 @@ fn one_leg_rests_by_a_slouch_or_level() {
     let out = folder.path().join("out");
     let run = relax(&standing(), &["--json", "--figures", "--out", out.to_str().unwrap()]);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    assert!(run.stderr.contains("[strategy], [fatigue], [run] are ignored"), "{}", run.stderr);
+    assert!(run.stderr.contains("[strategy], [relief], [fatigue], [run] are ignored"), "{}", run.stderr);
     let text = std::fs::read_to_string(out.join("relax.json")).unwrap();
     assert_eq!(run.stdout, text);
     let found: Value = serde_json::from_str(&text).unwrap();

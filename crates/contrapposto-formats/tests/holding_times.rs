@@ -15,7 +15,7 @@ fn held(height: f64, ahead: f64) -> Option<(String, f64)> {
         )
     };
     let text = format!(
-        "format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73 }}\n\
+        "format = 1\nupright = false\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73 }}\n\
         [[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n{}{}[[task]]\nkind = \"effort\"\n\
         [strategy]\nkind = \"active\"\n[fatigue]\nlaw = \"endurance\"\ncritical_level = 1\n\
         [run]\nduration_s = 601\nstep_s = 1\n",

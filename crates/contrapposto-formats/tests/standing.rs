@@ -321,8 +321,8 @@ fn a_place_that_no_support_can_take_is_refused_where_it_stands_with_its_limits()
     ] {
         let text = text.replace("place = \"free\"", &format!("place = {place}"));
         let error = read_scenario("job.toml", text.as_bytes(), None).unwrap_err();
-        let shown = format!("{:?}", miette::Report::new(error));
-        let at = format!("SourceOffset({})", text.find(place).unwrap());
-        assert!(shown.contains(message) && shown.contains(&at), "{shown}");
+        let labels = miette::Diagnostic::labels(&error).unwrap();
+        let at: Vec<usize> = labels.map(|label| label.offset()).collect();
+        assert!(error.to_string().contains(message) && at == [text.find(place).unwrap()], "{error} at {at:?}");
     }
 }

@@ -1,8 +1,9 @@
-//! Decides whether a support that carries little is put elsewhere to relieve a tired muscle group.
+//! Decides whether a support is put elsewhere to relieve a tired muscle group.
 //!
 //! A step is a relief like the others: its goal is the one of the tables. The search of [`crate::equilibria`] chooses place and posture
 //! together. A posture counts where the tired joint is nearer to its goal, its group works less, and the whole body needs clearly less
-//! effort than now; of these the body takes the one of least effort to which there is a way in balance.
+//! effort than now; of these the body takes the one of least effort to which there is a way in balance, on which the other supports take
+//! the weight first.
 
 use nalgebra::Vector3;
 
@@ -18,8 +19,6 @@ use crate::model::Side;
 use crate::posture::Posture;
 use crate::tasks::PriorityLevel;
 
-/// A support that carries a greater share of the weight is not lifted (assumed).
-const LITTLE_WEIGHT: f64 = 0.25;
 /// A step must bring effort, and the load of the tired group, below this share of what they are (assumed).
 const WORTH_A_STEP: f64 = 0.8;
 /// A support that would be shifted by less is left where it is, m (assumed).
@@ -52,7 +51,7 @@ pub(super) fn plan_step(
     let scenario = body.scenario();
     let mut all = 0;
     for (i, support) in scenario.supports.iter().enumerate() {
-        if support.place == Place::Fixed || body.contact().share(i) > LITTLE_WEIGHT {
+        if support.place == Place::Fixed {
             continue;
         }
         let mut supports = body.supports().to_vec();
