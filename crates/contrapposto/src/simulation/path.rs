@@ -1,20 +1,21 @@
 //! Plans the way of a body to a posture, in balance in every sample, with or without a step of one support.
 //!
 //! The body moves by priorities: supports, the tasks above effort, then the coordinates toward the posture. A step has three parts:
-//! the body shifts its weight until the other supports hold it without the lifted one, the lifted one follows an arc to its new place,
-//! and the body takes the posture. The whole way is planned before the first sample is shown. A way on which any sample would be off
-//! balance is no way.
+//! the body brings its centre of mass over the other supports until they hold it without the lifted one, the lifted one follows an arc
+//! to its new place, and the body takes the posture. The whole way is planned before the first sample is shown. A way on which any sample would be off
+//! balance, or in which a muscle group would need more than its strength, is no way.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Balance, Support};
+use crate::joint_torques::relative_load;
 use crate::kinematics::Kinematics;
-use crate::model::Placement;
+use crate::model::{Coordinate, Placement};
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, EngineError, Options};
 use crate::statics::Load;
-use crate::tasks::{self, PriorityLevel, Task};
+use crate::tasks::{self, CenterOfMass, CenterOfMassGoal, PriorityLevel, Task};
 
 use super::Scenario;
 
@@ -123,12 +124,12 @@ impl Planner<'_> {
         &self,
         at: &Posture,
         supports: &[Support],
-        first: Option<Task>,
+        first: Vec<Task>,
         to: &Posture,
     ) -> Result<Engine<'_>, EngineError> {
         let model = &self.scenario.model;
-        let mut levels: Vec<PriorityLevel> =
-            first.map(|task| PriorityLevel { hard: true, ..task.into() }).into_iter().collect();
+        let mut levels: Vec<PriorityLevel> = first.into_iter().map(PriorityLevel::from).collect();
+        levels.iter_mut().take(1).for_each(|level| level.hard = true);
         levels.extend_from_slice(self.levels);
         levels.push(Task::Posture(tasks::Posture::whole(model, to.clone())).into());
         let mut engine = Engine::with_supports(model, at, supports.to_vec(), levels, self.loads, self.options())?;
@@ -162,21 +163,48 @@ impl Planner<'_> {
     /// The posture nearest to `from` in which the other supports hold the body while the lifted one touches its place.
     fn unloaded(&self, from: &Posture, lifted: usize) -> Result<Option<Posture>, EngineError> {
         let stays = self.held_at(self.placement(from, lifted)?, lifted);
-        let mut engine = self.engine(from, &self.without(lifted), Some(stays), from)?;
+        let first = vec![stays, self.over_the_others(from, lifted)?];
+        let mut engine = self.engine(from, &self.without(lifted), first, from)?;
         let mut posture = from.clone();
         for _ in 0..UNLOADING_STEPS {
-            engine.evaluate(&posture)?;
-            if engine.contact().balance() == Balance::Held {
-                return Ok(Some(posture));
+            if engine.step(&mut posture)?.largest <= AT_POSTURE {
+                break;
             }
-            engine.step(&mut posture)?;
         }
-        Ok(None)
+        Ok(self.is_held(&mut engine, &posture)?.then_some(posture))
+    }
+
+    /// The centre of mass over the other supports, each by the weight that it carries in `from`.
+    fn over_the_others(&self, from: &Posture, lifted: usize) -> Result<Task, EngineError> {
+        let model = &self.scenario.model;
+        let mut engine = self.engine(from, self.supports, vec![], from)?;
+        engine.evaluate(from)?;
+        let (mut target, mut weight) = (Vector3::zeros(), 0.0);
+        for (i, support) in self.supports.iter().enumerate().filter(|(i, _)| *i != lifted) {
+            let share = engine.contact().share(i).max(0.0);
+            target += share * engine.torques().kinematics().station(model, support.segment, support.middle());
+            weight += share;
+        }
+        let up = model.gravity().iamax();
+        let goal = CenterOfMassGoal::At { target: target / weight, axes: [0, 1, 2].map(|axis| axis != up) };
+        Ok(Task::CenterOfMass(CenterOfMass { goal }))
+    }
+
+    /// Whether the supports hold the body in a posture, and no group needs more than its strength.
+    fn is_held(&self, engine: &mut Engine<'_>, posture: &Posture) -> Result<bool, EngineError> {
+        engine.evaluate(posture)?;
+        let torques = engine.torques();
+        let load = |(i, coordinate): (usize, &Coordinate)| {
+            let active = coordinate.rate.map_or(0.0, |rate| torques.active_torque()[rate]);
+            relative_load(coordinate, torques.angles()[i], active)
+        };
+        let strong = self.scenario.model.coordinates().iter().enumerate().map(load).all(|load| load <= 1.0);
+        Ok(strong && engine.contact().balance() == Balance::Held)
     }
 
     /// Moves to `to` on all supports as they are in `from`; gives the posture that was reached.
     fn shift(&self, from: &Posture, to: &Posture, path: &mut Path) -> Result<Option<Posture>, EngineError> {
-        let mut engine = self.engine(from, self.supports, None, to)?;
+        let mut engine = self.engine(from, self.supports, vec![], to)?;
         let mut posture = from.clone();
         let mut steps = 0;
         loop {
@@ -189,8 +217,7 @@ impl Planner<'_> {
                 largest = largest.max(engine.step(&mut posture)?.largest);
                 steps += 1;
             }
-            engine.evaluate(&posture)?;
-            if engine.contact().balance() != Balance::Held || steps > MOST_STEPS_OF_PART {
+            if !self.is_held(&mut engine, &posture)? || steps > MOST_STEPS_OF_PART {
                 return Ok(None);
             }
             path.push(&posture, None);
@@ -209,7 +236,8 @@ impl Planner<'_> {
         path: &mut Path,
     ) -> Result<Option<Posture>, EngineError> {
         let (begin, end) = (self.placement(from, lifted)?, self.placement(to, lifted)?);
-        let mut engine = self.engine(from, &self.without(lifted), Some(self.held_at(begin, lifted)), to)?;
+        let first = vec![self.held_at(begin, lifted), self.over_the_others(from, lifted)?];
+        let mut engine = self.engine(from, &self.without(lifted), first, to)?;
         let samples = (SWING_TIME / self.scenario.run.step).ceil().max(1.0);
         let steps = self.steps_of_sample().max((20.0 / samples).ceil() as usize);
         let count = samples as usize * steps;
@@ -223,8 +251,7 @@ impl Planner<'_> {
             engine.levels_mut()[0].tasks[0] = self.held_at(target, lifted);
             engine.step(&mut posture)?;
             if k % steps == 0 && k < count {
-                engine.evaluate(&posture)?;
-                if engine.contact().balance() != Balance::Held {
+                if !self.is_held(&mut engine, &posture)? {
                     return Ok(None);
                 }
                 path.push(&posture, Some(lifted));
@@ -237,9 +264,8 @@ impl Planner<'_> {
                 break;
             }
         }
-        engine.evaluate(&posture)?;
         let missed = engine.report(&posture)?.first().map_or(0.0, |level| level.length);
-        if engine.contact().balance() != Balance::Held || missed > PLACED {
+        if !self.is_held(&mut engine, &posture)? || missed > PLACED {
             return Ok(None);
         }
         path.push(&posture, Some(lifted));
