@@ -53,6 +53,8 @@ pub(super) struct BodyMotion<'a> {
     task_levels: Vec<usize>,
     /// By coordinate.
     slopes: Vec<Option<Slope>>,
+    /// The supports are as in this posture.
+    pub(super) placed_at: Posture,
     /// The posture before the last step.
     pub(super) before: Posture,
     /// Slow steps in a row, [`RESTING`] at rest.
@@ -94,6 +96,7 @@ impl<'a> BodyMotion<'a> {
             above: above.len(),
             task_levels,
             slopes: vec![None; model.coordinates().len()],
+            placed_at: placed_at.clone(),
             before: placed_at.clone(),
             convergence_count: 0,
             requested: vec![],

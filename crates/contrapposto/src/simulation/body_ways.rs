@@ -74,7 +74,7 @@ impl BodyMotion<'_> {
             let others: Vec<Support> = others.map(|(_, support)| support.clone()).collect();
             let levels = self.engine.levels().to_vec();
             let options = Options::least_effort();
-            let mut engine = engine(self.scenario, &self.before, &others, levels, options)?;
+            let mut engine = engine(self.scenario, &self.placed_at, &others, levels, options)?;
             engine.set_loads(self.engine.loads())?;
             self.lifted = Some((lifted, engine));
         }

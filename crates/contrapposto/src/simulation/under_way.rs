@@ -17,19 +17,20 @@ impl Simulation<'_> {
     /// Takes the next posture of the way, if there is one, and computes all torques in it; returns whether it did.
     pub(super) fn follow_path(&mut self) -> Result<bool, ScenarioError> {
         let Some(path) = &mut self.state.path else { return Ok(false) };
+        let was_lifted = path.lifted().is_some();
         if let Some((posture, _)) = path.take() {
             self.state.posture.values_mut().copy_from_slice(posture.values());
         }
         let (lifted, is_over, has_step) = (path.lifted(), path.is_over(), path.has_step());
         let Some(body) = self.motion.body_mut() else { return Ok(false) };
+        let lands = (was_lifted && lifted.is_none()) || (is_over && has_step);
+        body.lift(if is_over { None } else { lifted })?;
+        if lands {
+            body.place_again(&self.state.posture)?;
+            self.state.placed_at = Some(self.state.posture.clone());
+        }
         if is_over {
-            body.lift(None)?;
-            if has_step {
-                body.place_again(&self.state.posture)?;
-            }
             body.restart_convergence();
-        } else {
-            body.lift(lifted)?;
         }
         let effort = self.evaluate()?;
         if is_over {
@@ -63,7 +64,6 @@ impl Simulation<'_> {
         let time = self.state.steps as f64 * self.scenario.run.step;
         if let (Some(step), true) = (self.state.foot_steps.last_mut(), has_step) {
             (step.time.1, step.effort.1) = (time, effort);
-            self.state.placed_at = Some(self.state.posture.clone());
             self.state.requests.iter_mut().for_each(super::state::Request::end);
             self.state.groups.iter_mut().flatten().for_each(super::group_state::GroupState::restart);
         }
