@@ -315,6 +315,7 @@ fn a_place_that_no_support_can_take_is_refused_where_it_stands_with_its_limits()
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/stand-relaxed.toml")).unwrap();
     for (place, message) in [
+        ("\"nowhere\"", "place is \"start\", \"free\", or { corners_m = [[x, y, z], ...], turn_deg = [-10, 40] }"),
         ("{ turn_deg = [10, 40] }", "turn_deg is 10..40; it must hold 0 and lie in -90..90"),
         ("{ corners_m = [[0, 0, 0], [1, 0, 0]] }", "corners_m has 2 corners; a region has three or more"),
         ("{ corners_m = [[0, 0, 0], [1e12, 0, 0], [0, 0, 1]] }", "a corner of the region is at 1e12 m; 1e9 at most"),

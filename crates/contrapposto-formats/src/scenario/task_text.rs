@@ -34,7 +34,10 @@ pub(crate) struct SupportText {
 
 /// Where a support may be.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "place is \"start\", \"free\", or { corners_m = [[x, y, z], ...], turn_deg = [-10, 40] }"
+)]
 pub(crate) enum PlaceText {
     /// In a word.
     Named(NamedPlaceText),
