@@ -301,6 +301,18 @@ fn a_free_resting_foot_is_put_elsewhere_when_the_hip_that_carries_is_tired() {
     assert!(end.effort < 0.01 && end.contacts[1].share > 0.0 && end.contacts[1].share <= 0.15 + 1e-9);
 }
 
+/// Who stands on one support cannot lift it: the run goes on.
+#[test]
+fn the_only_support_stays_though_its_place_is_free() {
+    let text = text("stand-relaxed.toml");
+    let (before, rest) = text.split_once("[[support]]\nsegment = \"calcn_l\"").unwrap();
+    let (_, after) = rest.split_once("[[task]]").unwrap();
+    let before = before.replace("segment = \"calcn_r\"", "segment = \"calcn_r\"\nplace = \"free\"");
+    let text = format!("{before}[[task]]{after}").replace("duration_s = 120", "duration_s = 5");
+    let summary = run(&scenario(&text), |_| {}).unwrap();
+    assert!(summary.foot_steps.is_empty() && summary.end_time > 4.9, "{:?}", summary.foot_steps);
+}
+
 /// With the active strategy the level posture is the goal: the foot stays.
 #[test]
 fn a_free_resting_foot_stays_with_the_active_strategy() {

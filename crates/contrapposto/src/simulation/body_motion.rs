@@ -326,11 +326,7 @@ pub(super) fn engine<'a>(
 ) -> Result<Engine<'a>, ScenarioError> {
     let model = &scenario.model;
     let mut engine = Engine::with_supports(model, placed_at, supports.to_vec(), levels, &scenario.loads, options)?;
-    for (i, rate) in model.rates().iter().enumerate() {
-        if rate.coordinate.is_some_and(|c| !scenario.free[c]) {
-            engine.lock(i);
-        }
-    }
+    scenario.locked_rates().for_each(|rate| engine.lock(rate));
     scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
     Ok(engine)
 }

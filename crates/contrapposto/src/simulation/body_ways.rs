@@ -44,23 +44,20 @@ impl BodyMotion<'_> {
         Ok(easiest(self.scenario, now, &self.supports).unwrap_or((None, 0)))
     }
 
-    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none.
-    pub(super) fn way(
-        &self,
-        from: &Posture,
-        to: &Posture,
-        lifted: Option<usize>,
-    ) -> Result<Option<Path>, ScenarioError> {
+    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none, or where a law gives no
+    /// numbers on it.
+    pub(super) fn way(&self, from: &Posture, to: &Posture, lifted: Option<usize>) -> Option<Path> {
         let levels: Vec<PriorityLevel> = self.levels().take_while(|level| !is_effort(level)).cloned().collect();
         // A step may leave what reliefs ask for at the old place.
         let keeps = |level: &&PriorityLevel| lifted.is_none() || level.half_spaces.is_empty();
         let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
         let (supports, loads) = (&self.supports[..], self.engine.loads());
         let planner = Planner { scenario: self.scenario, supports, levels: &levels, loads };
-        Ok(match lifted {
-            Some(support) => planner.step(from, to, support)?,
-            None => planner.way(from, to)?,
-        })
+        let planned = match lifted {
+            Some(support) => planner.step(from, to, support),
+            None => planner.way(from, to),
+        };
+        planned.ok().flatten()
     }
 
     /// The support that is in the air from now on.

@@ -20,6 +20,8 @@ const SEARCH_SOLVE_STEPS: usize = 300;
 pub(super) const SEARCH_BUDGET: usize = 20_000;
 /// A posture is worth a motion if its effort is less than this share of the present one.
 const WORTH_A_MOTION: f64 = 0.98;
+/// A posture whose supports are farther off their places is none, m and rad together.
+const MOST_SLIP: f64 = 1e-5;
 
 /// What a search during a run begins from.
 #[derive(Clone, Copy, Debug)]
@@ -38,16 +40,16 @@ pub(super) fn easiest(
     supports: &[Support],
 ) -> Result<(Option<Posture>, usize), SearchError> {
     let mut locked = rates_that_move(&scenario.model, supports);
-    for (locked, rate) in locked.iter_mut().zip(scenario.model.rates()) {
-        *locked |= rate.coordinate.is_some_and(|c| !scenario.free[c]);
-    }
+    scenario.locked_rates().for_each(|rate| locked[rate] = true);
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
     let (found, steps) = search(scenario, now, supports, &locked)?;
-    let better = found.into_iter().next().filter(|best| best.relaxed.effort < WORTH_A_MOTION * now.effort);
+    let better =
+        |best: &RelaxedPosture| best.relaxed.slip <= MOST_SLIP && best.relaxed.effort < WORTH_A_MOTION * now.effort;
+    let better = found.into_iter().next().filter(better);
     Ok((better.map(|best| best.relaxed.posture), steps))
 }
 
-/// The postures that a search finds, that of least effort first: none that leaves a task above effort farther away than `now`.
+/// The postures that a search finds, that of least effort first.
 pub(super) fn search(
     scenario: &Scenario,
     now: Now<'_>,

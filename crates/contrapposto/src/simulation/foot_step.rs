@@ -59,9 +59,7 @@ pub(super) fn plan_step(
         let effort = body.effort();
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
         let now = Now { posture, levels: &levels, loads: body.loads(), effort };
-        let locked: Vec<usize> = (0..scenario.model.rates().len())
-            .filter(|&rate| scenario.model.rates()[rate].coordinate.is_some_and(|c| !scenario.free[c]))
-            .collect();
+        let locked: Vec<usize> = scenario.locked_rates().collect();
         let Ok((found, steps)) = search(scenario, now, &supports, &locked) else { continue };
         all += steps;
         let before = middle(body, posture, support)?;
@@ -72,7 +70,7 @@ pub(super) fn plan_step(
             if !worth || (after - before).norm() < LEAST_SHIFT {
                 continue;
             }
-            if let Some(path) = body.way(posture, to, Some(i))? {
+            if let Some(path) = body.way(posture, to, Some(i)) {
                 let (coordinate, side) = (tired.coordinate, tired.side);
                 let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
                 let step = FootStep { support: i, coordinate, side, time: (0.0, 0.0), place, effort };

@@ -47,11 +47,15 @@ pub(super) struct Path {
 }
 
 impl Path {
-    /// The next posture, and the support that is in the air in it.
-    pub(super) fn take(&mut self) -> Option<(&Posture, Option<usize>)> {
-        let at = self.taken;
+    /// The next posture.
+    pub(super) fn take(&mut self) -> Option<&Posture> {
         self.taken += 1;
-        Some((self.postures.get(at)?, self.lifted[at]))
+        self.postures.get(self.taken - 1)
+    }
+
+    fn push(&mut self, posture: &Posture, lifted: Option<usize>) {
+        self.postures.push(posture.clone());
+        self.lifted.push(lifted);
     }
 
     /// Leaves out all postures but the last.
@@ -133,11 +137,7 @@ impl Planner<'_> {
         levels.extend_from_slice(self.levels);
         levels.push(Task::Posture(tasks::Posture::whole(model, to.clone())).into());
         let mut engine = Engine::with_supports(model, at, supports.to_vec(), levels, self.loads, self.options())?;
-        for (i, rate) in model.rates().iter().enumerate() {
-            if rate.coordinate.is_some_and(|c| !self.scenario.free[c]) {
-                engine.lock(i);
-            }
-        }
+        self.scenario.locked_rates().for_each(|rate| engine.lock(rate));
         self.scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
         Ok(engine)
     }
@@ -163,8 +163,8 @@ impl Planner<'_> {
     /// The posture nearest to `from` in which the other supports hold the body while the lifted one touches its place.
     fn unloaded(&self, from: &Posture, lifted: usize) -> Result<Option<Posture>, EngineError> {
         let stays = self.held_at(self.placement(from, lifted)?, lifted);
-        let first = vec![stays, self.over_the_others(from, lifted)?];
-        let mut engine = self.engine(from, &self.without(lifted), first, from)?;
+        let Some(over_the_others) = self.over_the_others(from, lifted)? else { return Ok(None) };
+        let mut engine = self.engine(from, &self.without(lifted), vec![stays, over_the_others], from)?;
         let mut posture = from.clone();
         for _ in 0..UNLOADING_STEPS {
             if engine.step(&mut posture)?.largest <= AT_POSTURE {
@@ -174,8 +174,8 @@ impl Planner<'_> {
         Ok(self.is_held(&mut engine, &posture)?.then_some(posture))
     }
 
-    /// The centre of mass over the other supports, each by the weight that it carries in `from`.
-    fn over_the_others(&self, from: &Posture, lifted: usize) -> Result<Task, EngineError> {
+    /// The centre of mass over the other supports, each by the weight that it carries in `from`; `None` where they carry nothing.
+    fn over_the_others(&self, from: &Posture, lifted: usize) -> Result<Option<Task>, EngineError> {
         let model = &self.scenario.model;
         let mut engine = self.engine(from, self.supports, vec![], from)?;
         engine.evaluate(from)?;
@@ -185,9 +185,12 @@ impl Planner<'_> {
             target += share * engine.torques().kinematics().station(model, support.segment, support.middle());
             weight += share;
         }
+        if weight <= 0.0 {
+            return Ok(None);
+        }
         let up = model.gravity().iamax();
         let goal = CenterOfMassGoal::At { target: target / weight, axes: [0, 1, 2].map(|axis| axis != up) };
-        Ok(Task::CenterOfMass(CenterOfMass { goal }))
+        Ok(Some(Task::CenterOfMass(CenterOfMass { goal })))
     }
 
     /// Whether the supports hold the body in a posture, and no group needs more than its strength.
@@ -236,7 +239,8 @@ impl Planner<'_> {
         path: &mut Path,
     ) -> Result<Option<Posture>, EngineError> {
         let (begin, end) = (self.placement(from, lifted)?, self.placement(to, lifted)?);
-        let first = vec![self.held_at(begin, lifted), self.over_the_others(from, lifted)?];
+        let Some(over_the_others) = self.over_the_others(from, lifted)? else { return Ok(None) };
+        let first = vec![self.held_at(begin, lifted), over_the_others];
         let mut engine = self.engine(from, &self.without(lifted), first, to)?;
         let samples = (SWING_TIME / self.scenario.run.step).ceil().max(1.0);
         let steps = self.steps_of_sample().max((20.0 / samples).ceil() as usize);
@@ -270,12 +274,5 @@ impl Planner<'_> {
         }
         path.push(&posture, Some(lifted));
         Ok(Some(posture))
-    }
-}
-
-impl Path {
-    fn push(&mut self, posture: &Posture, lifted: Option<usize>) {
-        self.postures.push(posture.clone());
-        self.lifted.push(lifted);
     }
 }

@@ -263,6 +263,12 @@ fn alike(a: &PriorityLevel, b: &PriorityLevel) -> bool {
 }
 
 impl Scenario {
+    /// Rates of the coordinates that may not move.
+    pub(crate) fn locked_rates(&self) -> impl Iterator<Item = usize> {
+        let rates = self.model.rates().iter().enumerate();
+        rates.filter(|(_, rate)| rate.coordinate.is_some_and(|c| !self.free[c])).map(|(i, _)| i)
+    }
+
     /// Whether the body has supports or tasks. Without them each coordinate finds relief on its own.
     pub fn has_supports_or_tasks(&self) -> bool {
         !self.supports.is_empty() || !self.tasks.is_empty()

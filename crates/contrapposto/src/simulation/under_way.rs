@@ -18,7 +18,7 @@ impl Simulation<'_> {
     pub(super) fn follow_path(&mut self) -> Result<bool, ScenarioError> {
         let Some(path) = &mut self.state.path else { return Ok(false) };
         let was_lifted = path.lifted().is_some();
-        if let Some((posture, _)) = path.take() {
+        if let Some(posture) = path.take() {
             self.state.posture.values_mut().copy_from_slice(posture.values());
         }
         let (lifted, is_over, has_step) = (path.lifted(), path.is_over(), path.has_step());
@@ -101,7 +101,7 @@ impl Simulation<'_> {
         let (better, searched) = body.easiest(&self.state.posture)?;
         self.state.searched += searched;
         if let Some(better) = better {
-            self.state.path = body.way(&self.state.posture, &better, None)?;
+            self.state.path = body.way(&self.state.posture, &better, None);
         }
         Ok(())
     }
