@@ -14,6 +14,8 @@ pub(crate) enum Fail {
     Refused(String),
     /// The job failed: exit code 1.
     Job(String),
+    /// The answer, already printed, is that the job cannot be done: exit code 1.
+    Answered,
     /// Complaints were already printed: exit code 2.
     Told,
     /// The reader of our output went away: no failure.
@@ -32,6 +34,7 @@ impl Fail {
             Self::Input(error) => (format!("{:?}", miette::Report::new(*error)), 2),
             Self::Refused(message) => (format!("error: {message}\n"), 2),
             Self::Job(message) => (format!("error: {message}\n"), 1),
+            Self::Answered => (String::new(), 1),
             Self::Told => (String::new(), 2),
             Self::BrokenPipe => return ExitCode::SUCCESS,
         };

@@ -1,6 +1,7 @@
 //! Shapes of results for readers: recordings, moments, drawings, charts, pages, tables and texts.
 
 pub(crate) mod animation;
+pub(crate) mod answer;
 pub(crate) mod axes;
 pub(crate) mod body;
 pub(crate) mod charts;

@@ -27,6 +27,7 @@ mod scenario;
 mod summary;
 mod toml_file;
 mod trajectory_csv;
+mod verdict;
 
 pub use adult_text::{AdultTextError, adult_size, person};
 pub use decisions_csv::{decisions_csv, relief_sentence};
@@ -42,3 +43,4 @@ pub use scenario::{
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use trajectory_csv::{TableRow, csv_header, csv_row};
+pub use verdict::{MissedText, VerdictText};

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture_solver::{LevelError, Reason, RowError, SolvedPosture};
+use contrapposto::verdict::Verdict;
 use serde::Serialize;
 
+use crate::VerdictText;
 use crate::scenario::PoseScenario;
 
 /// The whole file.
@@ -15,6 +17,8 @@ pub struct PoseText {
     pub title: String,
     /// Name of the body.
     pub model: String,
+    /// The answer.
+    pub verdict: VerdictText,
     /// `reached`: every level is; `closest`: nothing moves any more, and every level is as near as the levels above allow;
     /// `steps`: the largest number of steps was made.
     pub reason: &'static str,
@@ -50,8 +54,8 @@ pub struct PoseLevelText {
 }
 
 impl PoseText {
-    /// From a solved pose. `files`: names of the files written beside it.
-    pub fn new(scenario: &PoseScenario, pose: &SolvedPosture, files: Vec<String>) -> Self {
+    /// From a solved pose and the verdict on it. `files`: names of the files written beside it.
+    pub fn new(scenario: &PoseScenario, pose: &SolvedPosture, verdict: &Verdict, files: Vec<String>) -> Self {
         let model = &scenario.model;
         let mut levels = vec![];
         for (k, (goal, reached)) in scenario.goals.iter().zip(&pose.levels).enumerate() {
@@ -77,6 +81,7 @@ impl PoseText {
         Self {
             title: scenario.title.clone(),
             model: model.name().to_owned(),
+            verdict: VerdictText::new(model, verdict),
             reason: match pose.reason {
                 Reason::Reached => "reached",
                 Reason::Converged => "closest",

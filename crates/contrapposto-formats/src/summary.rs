@@ -6,8 +6,10 @@ use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::{CoordinateKind, Side};
 use contrapposto::simulation::{Contact, FootStep, Scenario, Standing, StopReason, Summary};
+use contrapposto::verdict::Verdict;
 use serde::Serialize;
 
+use crate::VerdictText;
 use crate::tissue::FatigueParametersText;
 
 /// The whole file.
@@ -17,6 +19,8 @@ pub struct SummaryText {
     pub title: String,
     /// Name of the body.
     pub model: String,
+    /// The answer.
+    pub verdict: VerdictText,
     /// `duration`, `settled`, `interrupted` or `fell`.
     pub stopped: &'static str,
     /// The event that threw the body off balance, if one did.
@@ -167,8 +171,8 @@ pub struct GroupText {
 }
 
 impl SummaryText {
-    /// From a finished run. `files`: names of the files written beside it.
-    pub fn new(scenario: &Scenario, summary: &Summary, files: Vec<String>) -> Self {
+    /// From a finished run and the verdict on it. `files`: names of the files written beside it.
+    pub fn new(scenario: &Scenario, summary: &Summary, verdict: &Verdict, files: Vec<String>) -> Self {
         let model = &scenario.model;
         let names = model.coordinates().iter().map(|c| c.name.clone());
         let coordinates = model.coordinates().iter().zip(&summary.coordinates).enumerate().map(|(i, (c, s))| {
@@ -205,6 +209,7 @@ impl SummaryText {
         Self {
             title: scenario.title.clone(),
             model: model.name().to_owned(),
+            verdict: VerdictText::new(model, verdict),
             failed_first: failed.min_by(|a, b| a.at_s.total_cmp(&b.at_s)),
             stopped: summary.reason.word(),
             fell: summary.fall.map(|fall| FallText {

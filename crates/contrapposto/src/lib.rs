@@ -50,3 +50,4 @@ pub mod simulation;
 pub mod statics;
 pub mod strength;
 pub mod tasks;
+pub mod verdict;

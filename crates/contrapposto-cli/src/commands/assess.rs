@@ -8,6 +8,7 @@ use contrapposto::contact::Support;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
@@ -18,6 +19,7 @@ use crate::fail::Fail;
 use crate::model_file::open;
 use crate::motion_file::{loads_of, note_values_out_of_range, read_motion};
 use crate::output::{Folder, json_text, print, print_note};
+use crate::view::answer::{answered, first_lines};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
 use crate::view::text::assess::{AssessText, report};
@@ -82,12 +84,14 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         figures_of_assessment(&title, model, &settings.supports, assessed_frames.frames(), worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
+    let span = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
+    let verdict = Verdict::of_motion(model, &found, span);
     let page = assessed_frames.map(|assessed_frames| {
-        report_of_assessment(&title, &assessed_frames, &found, &settings.supports, &held, &warnings)
+        report_of_assessment(&title, &assessed_frames, &found, &verdict, &settings.supports, &held, &warnings)
     });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = AssessText::new(model, &args.motion, &tables.times, &found, warnings, files);
+    let text = AssessText::new(model, &args.motion, &tables.times, &found, &verdict, warnings, files);
     let json = json_text("assess.json", &text)?;
     if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
         let fatigue = tables.fatigue()?;
@@ -95,7 +99,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
         Folder::open(out)?.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
-    print(&if args.json { json } else { report(&text) })
+    print(&if args.json { json } else { first_lines(&verdict) + &report(&text) })?;
+    answered(&verdict)
 }
 
 /// The motion, the loads and the settings of an assessment, checked; notes about them go to standard error.

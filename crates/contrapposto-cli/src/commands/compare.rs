@@ -4,18 +4,22 @@ use std::path::Path;
 
 use contrapposto::posture_solver::Engine;
 use contrapposto::simulation::Run;
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::{read_pose, read_scenario, scenario_runs};
 use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
 
+use super::pose::verdict;
 use crate::args::CompareArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print, print_note};
+use crate::output::{Folder, json_text, print};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
+use crate::view::answer::answered;
 use crate::view::body;
 use crate::view::figures::both;
 use crate::view::frame::Frame;
 use crate::view::held::held;
+use crate::view::report::comparison::report_of_comparison;
 use crate::view::text::compare::{CompareText, ComparedPosture, report};
 
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
@@ -26,15 +30,20 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
     for (path, letter) in args.scenarios.iter().zip('A'..) {
         postures.push(carry_out(path, letter)?);
     }
-    let files = ["compare.json", "compare.svg", "compare.png"].map(str::to_owned).to_vec();
+    let files = ["compare.json", "report.html", "compare.svg", "compare.png"].map(str::to_owned).to_vec();
     let text = CompareText::new(&postures, files);
     let json = json_text("compare.json", &text)?;
     let picture = body_figure(&picture(&postures)?);
     let [svg, png] = both("compare", &picture)?;
     let folder = Folder::open(&args.out)?;
-    folder.write(&[("compare.json", json.as_bytes()), (&svg.0, &svg.1), (&png.0, &png.1)])?;
-    let picture = folder.path(&svg.0);
-    print(&if args.json { json } else { report(&postures, &text) + &format!("picture: {}\n", picture.display()) })
+    let page = report_of_comparison(&postures, &text)?;
+    let files =
+        [("compare.json", json.as_bytes()), ("report.html", page.as_bytes()), (&svg.0, &svg.1), (&png.0, &png.1)];
+    folder.write(&files)?;
+    let (page, picture) = (folder.path("report.html"), folder.path(&svg.0));
+    let files = format!("report: {}\npicture: {}\n", page.display(), picture.display());
+    print(&if args.json { json } else { report(&postures, &text) + &files })?;
+    postures.iter().try_for_each(|compared| answered(&compared.verdict))
 }
 
 /// A scenario with a duration is simulated, and its last posture taken; one without is posed.
@@ -53,14 +62,12 @@ fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
         last = Some(Frame::of_sample(&scenario.model, &sample));
     }
     progress.finish_and_clear();
-    if let Some(fall) = run.summary().fall {
-        return Err(Fail::job(&file, fall));
-    }
     let Some(frame) = last else { return Err(Fail::job(&file, "the run has no sample")) };
     Ok(ComparedPosture {
         letter,
         title: title(&scenario.title, path),
         how: format!("simulated, {:.0} s", frame.time),
+        verdict: Verdict::of_run(&scenario, &run.summary()),
         posture: frame.posture.clone(),
         frame: Some(frame),
         supports: scenario.supports,
@@ -81,17 +88,14 @@ fn posed(
         Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));
     let pose = engine.solve(&scenario.start).map_err(|error| Fail::job(file, error))?;
-    let frame = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
-    if frame.is_none() {
-        print_note(
-            "note",
-            &format!("{file}: its supports cannot hold the body in its last posture; loads are not known"),
-        );
-    }
+    let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let verdict = verdict(&scenario, &pose, &held);
+    let frame = held.known();
     Ok(ComparedPosture {
         letter,
         title: title(&scenario.title, Path::new(file)),
         how: "posed".to_owned(),
+        verdict,
         posture: pose.posture.values().to_vec(),
         frame,
         supports: scenario.supports,

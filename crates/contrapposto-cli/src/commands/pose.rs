@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use contrapposto::posture_solver::{Engine, EngineError, Reason, SolvedPosture};
+use contrapposto::verdict::{HeldPosture, Missed, Verdict};
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
@@ -12,9 +13,11 @@ use crate::args::PoseArgs;
 use crate::fail::Fail;
 use crate::output::{Folder, json_text, print, print_note};
 use crate::scenario_file::ScenarioFile;
+use crate::view::answer::answered;
+use crate::view::held::{Held, held};
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
-use crate::view::text::pose::{all_remaining, reached, report, subtitle, tasks};
+use crate::view::text::pose::{report, subtitle};
 
 const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
@@ -36,11 +39,13 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     limits.map(|place| pose.levels.remove(place));
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
-    let text = PoseText::new(&scenario, &pose, names.collect());
-    let json = write(&scenario, &pose, &text, &figures, &args.out)?;
+    let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let verdict = verdict(&scenario, &pose, &held);
+    let text = PoseText::new(&scenario, &pose, &verdict, names.collect());
+    let json = write(&scenario, &pose, &text, &figures, held, &args.out)?;
     let folder = Folder::open(&args.out)?;
-    print(&if args.json { json } else { report(&scenario, &pose, &text, &folder) })?;
-    verdict(&scenario, &pose, &text)
+    print(&if args.json { json } else { report(&scenario, &pose, &text, &verdict, &folder) })?;
+    exit(&pose, &verdict)
 }
 
 /// Writes all files, and gives back the text of `pose.json`.
@@ -49,6 +54,7 @@ fn write(
     pose: &SolvedPosture,
     text: &PoseText,
     figures: &[(String, Vec<u8>)],
+    held: Held,
     out: &Path,
 ) -> Result<String, Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
@@ -59,27 +65,30 @@ fn write(
     let json = json_text("pose.json", &text)?;
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let page = report_of_pose(scenario, pose, text)?;
+    let page = report_of_pose(scenario, pose, text, held)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
     Folder::open(out)?.write(&POSE_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     Ok(json)
 }
 
-/// A task that yields is no failure; supports that slip, and the step limit, are.
-fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText) -> Result<(), Fail> {
-    if !text.supports_hold {
-        let lost: Vec<String> = tasks(text)
-            .filter(|entries| scenario.goals[entries[0].priority - 1].hard && !reached(entries))
-            .map(|entries| format!("{} {}", entries[0].task, all_remaining(entries)))
-            .collect();
-        return Err(Fail::Job(format!("the supports move from their places: {}", lost.join(", "))));
-    }
+/// The answer of a posture that is held.
+pub(super) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held) -> Verdict {
+    let levels = || scenario.goals.iter().zip(&pose.levels);
+    let slip = levels().filter(|(goal, _)| goal.hard).map(|(_, level)| level.length).sum();
+    let targets = levels().filter(|(goal, _)| !goal.hard).map(|(goal, level)| (goal, level.length));
+    let missed = Missed::of_supports(slip).into_iter().chain(Missed::of_levels(&scenario.model, targets)).collect();
+    let posture = HeldPosture { groups: held.groups.clone(), missing: held.missing, missed };
+    Verdict::of_posture(&scenario.model, &posture)
+}
+
+/// A target of lower priority that is missed is no failure; the step limit is one.
+fn exit(pose: &SolvedPosture, verdict: &Verdict) -> Result<(), Fail> {
     match pose.reason {
         Reason::StepLimit => Err(Fail::Job(format!(
             "not converged after {} steps; the best posture is written. [solver] max_steps allows more",
             pose.steps
         ))),
-        Reason::Reached | Reason::Converged => Ok(()),
+        Reason::Reached | Reason::Converged => answered(verdict),
     }
 }

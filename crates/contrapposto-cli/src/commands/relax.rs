@@ -7,6 +7,7 @@ use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
 use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
+use contrapposto::verdict::{HeldPosture, Missed, Verdict};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
@@ -17,6 +18,7 @@ use crate::fail::Fail;
 use crate::output::{Folder, json_text, print, print_note};
 use crate::progress::spinner;
 use crate::scenario_file::ScenarioFile;
+use crate::view::answer::{answered, first_lines, without_posture};
 use crate::view::body;
 use crate::view::frame::frame_of_posture;
 use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibria};
@@ -56,24 +58,49 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let spinner = spinner();
     let found = equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::least_effort() });
     spinner.finish_and_clear();
-    let found = found.map_err(|error| match error {
-        SearchError::Relax(error) => Fail::Refused(format!("{name}: {error}")),
-        error => Fail::Job(format!("{name}: {error}")),
-    })?;
+    let found = match found {
+        Ok(found) => found,
+        Err(SearchError::CannotStand(missing)) => {
+            let folder = args.out.as_deref().map(Folder::open).transpose()?;
+            let (title, model) = (&scenario.title, &scenario.model);
+            return without_posture("relax.json", title, model, missing, folder.as_ref(), args.json);
+        }
+        Err(SearchError::Relax(error)) => return Err(Fail::Refused(format!("{name}: {error}"))),
+        Err(error) => return Err(Fail::Job(format!("{name}: {error}"))),
+    };
+    let verdict = verdict(&scenario, &found);
     let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
     let names = RELAX_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = RelaxText::new(&scenario, &found, files);
+    let text = RelaxText::new(&scenario, &found, &verdict, files);
     let json = json_text("relax.json", &text)?;
-    let folder = args.out.as_deref().map(|out| write(&scenario, &found, &text, &json, &figures, out)).transpose()?;
+    let folder =
+        args.out.as_deref().map(|out| write(&scenario, &found, &verdict, &text, &json, &figures, out)).transpose()?;
     let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
-    print(&if args.json { json } else { report(&text) + page.as_deref().unwrap_or_default() })
+    print(&if args.json {
+        json
+    } else {
+        first_lines(&verdict) + &report(&text) + page.as_deref().unwrap_or_default()
+    })?;
+    answered(&verdict)
+}
+
+/// The answer: that of the posture of least effort.
+fn verdict(scenario: &RelaxScenario, found: &Equilibria) -> Verdict {
+    let Some(best) = found.postures.first() else {
+        return Verdict::of_posture(&scenario.model, &HeldPosture::default());
+    };
+    let lengths = best.relaxed.levels.iter().map(|level| level.length);
+    let missed = Missed::of_levels(&scenario.model, scenario.goals.iter().zip(lengths));
+    let missed = Missed::of_supports(best.relaxed.slip).into_iter().chain(missed).collect();
+    Verdict::of_posture(&scenario.model, &HeldPosture::of_equilibrium(best, missed))
 }
 
 /// Writes all files.
 fn write(
     scenario: &RelaxScenario,
     found: &Equilibria,
+    verdict: &Verdict,
     text: &RelaxText,
     json: &str,
     figures: &[(String, Vec<u8>)],
@@ -88,7 +115,7 @@ fn write(
     let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let folder = Folder::open(out)?;
-    let page = report_of_equilibria(scenario, found)?;
+    let page = report_of_equilibria(scenario, found, verdict)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
     folder.write(&RELAX_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;

@@ -6,7 +6,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use contrapposto::simulation::{Run, Scenario, StopReason, Summary};
+use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{SummaryText, decisions_csv, read_scenario, read_scenario_with_notes};
 
@@ -16,6 +17,7 @@ use crate::fail::Fail;
 use crate::output::{Folder, json_text, print, print_note};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
+use crate::view::answer::{answered, without_posture};
 use crate::view::figures::{figures_of_run, pictures_of_run};
 use crate::view::recording::Recording;
 use crate::view::report::run::report_of_run;
@@ -51,7 +53,13 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
     let failed = |error| Fail::job("simulation", error);
     let (mut run, mut recording) = match resume {
         true => go_on(scenario, &folder.path(SNAPSHOT))?,
-        false => (Run::new(scenario).map_err(failed)?, Recording::new(scenario)),
+        false => match Run::new(scenario) {
+            Ok(run) => (run, Recording::new(scenario)),
+            Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
+                return without_posture("summary.json", &scenario.title, &scenario.model, missing, Some(&folder), json);
+            }
+            Err(error) => return Err(failed(error)),
+        },
     };
     let progress = progress_bar(scenario.run.duration);
     let mut number = run.snapshot().samples;
@@ -72,23 +80,23 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
     progress.finish_and_clear();
     let summary = run.summary();
     let figures = if figures { figures_of_run(scenario, &recording, &summary)? } else { vec![] };
-    let json_text = write(scenario, &summary, &recording, &figures, &folder)?;
+    let verdict = Verdict::of_run(scenario, &summary);
+    let json_text = write(scenario, &summary, &verdict, &recording, &figures, &folder)?;
     let partial = summary.reason == StopReason::Interrupted;
     if partial {
         save(scenario, &run, &recording, &folder)?;
     } else {
         folder.remove(SNAPSHOT)?;
     }
-    print(&if json { json_text } else { report(scenario, &summary, &folder) })?;
-    match summary.fall {
-        Some(fall) => Err(Fail::Job(format!("{fall}; the results before it are in {}", out.display()))),
-        None if partial => Err(Fail::Job(format!(
+    print(&if json { json_text } else { report(scenario, &summary, &verdict, &folder) })?;
+    match partial {
+        true => Err(Fail::Job(format!(
             "interrupted at {:.2} of {} s: the results so far are in {}; the same command with --resume continues",
             summary.end_time,
             scenario.run.duration,
             out.display()
         ))),
-        None => Ok(()),
+        false => answered(&verdict),
     }
 }
 
@@ -96,6 +104,7 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
 fn write(
     scenario: &Scenario,
     summary: &Summary,
+    verdict: &Verdict,
     recording: &Recording,
     figures: &[(String, Vec<u8>)],
     folder: &Folder,
@@ -105,7 +114,7 @@ fn write(
         ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
         ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
         ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
-        ("report.html", report_of_run(scenario, recording, summary)?.into_bytes()),
+        ("report.html", report_of_run(scenario, recording, summary, verdict)?.into_bytes()),
         ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
     ];
     contents.extend(animation::bodies(scenario, recording)?);
@@ -124,7 +133,7 @@ fn write(
     }
     contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
     let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
-    let text = SummaryText::new(scenario, summary, files);
+    let text = SummaryText::new(scenario, summary, verdict, files);
     let json = json_text("summary.json", &text)?;
     contents.push(("summary.json", json.clone().into_bytes()));
     folder.write(&contents)?;

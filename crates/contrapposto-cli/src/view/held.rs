@@ -1,7 +1,8 @@
 //! Computes torques, contact forces and loads of a posture that is held still.
 
-use contrapposto::assessment::{AssessSettings, assess};
-use contrapposto::contact::Support;
+use contrapposto::assessment::{AssessSettings, GroupAssessment, assess};
+use contrapposto::contact::{Missing, Support};
+use contrapposto::joint_torques::GroupLoad;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -13,14 +14,16 @@ use crate::fail::Fail;
 pub(crate) struct Held {
     /// Torques, loads and contact forces. Where the supports cannot hold the posture, those of a body whose root is held too.
     pub(crate) frame: Frame,
-    /// Whether the supports hold it; true without supports.
-    pub(crate) holds: bool,
+    /// What the supports lack; `None` where they hold it, and without supports.
+    pub(crate) missing: Option<Missing>,
+    /// Groups at work.
+    pub(crate) groups: Vec<GroupLoad>,
 }
 
 impl Held {
     /// The frame, where the supports hold the posture.
     pub(crate) fn known(self) -> Option<Frame> {
-        self.holds.then_some(self.frame)
+        self.missing.is_none().then_some(self.frame)
     }
 }
 
@@ -37,5 +40,9 @@ pub(crate) fn held(model: &Model, posture: &Posture, loads: &[Load], supports: &
     )
     .map_err(|error| Fail::job("posture", error))?;
     let frame = frame.ok_or_else(|| Fail::job("posture", "it has no torques"))?;
-    Ok(Held { frame, holds: found.unheld == 0 })
+    let groups = found.groups.iter().filter(|group| group.peak_load.value > 0.0).map(|group| {
+        let GroupAssessment { coordinate, side, peak_torque: torque, .. } = *group;
+        GroupLoad { coordinate, side, torque, load: group.peak_load.value }
+    });
+    Ok(Held { frame, missing: found.missing.map(|(missing, _)| missing), groups: groups.collect() })
 }

@@ -3,7 +3,7 @@
 use super::error::AssessError;
 use super::result::{GroupAssessment, PeakKind, Proposal};
 use super::settings::AssessSettings;
-use crate::contact::{Balance, ContactForces, SupportError, root_rates};
+use crate::contact::{Balance, ContactForces, Missing, SupportError, root_rates};
 use crate::hybrid::{Problem, Strategy, explain, minimise};
 use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use crate::kinematics::Kinematics;
@@ -72,6 +72,11 @@ impl<'a> Evaluation<'a> {
     /// Whether the supports cannot hold the root.
     pub(super) fn is_out_of_balance(&self) -> bool {
         self.contact.as_ref().is_some_and(|contact| contact.balance() != Balance::Held)
+    }
+
+    /// What the supports lack in the posture of the last update.
+    pub(super) fn missing(&self) -> Option<Missing> {
+        self.contact.as_ref()?.missing(self.model, self.torques.kinematics())
     }
 
     /// Adds what both strategies propose to a group in the posture of the last update.

@@ -2,7 +2,7 @@
 
 use super::evaluation::Evaluation;
 use super::result::{GroupAssessment, Peak};
-use crate::fatigue::{FatigueLaw, FatigueState};
+use crate::fatigue::{FatigueLaw, FatigueState, LoadHistory};
 use crate::joint_torques::relative_load;
 use crate::model::{Model, Side};
 
@@ -70,6 +70,8 @@ impl Groups {
             coordinate,
             side,
             peak_load: Peak::default(),
+            peak_torque: 0.0,
+            loads: LoadHistory::default(),
             peak_fatigue: Peak::default(),
             fatigue: 0.0,
             exhausted_at: None,
@@ -99,7 +101,11 @@ impl Groups {
             if index == 0 {
                 self.states.push(law.start(0.0, load));
             }
+            if load > summary.peak_load.value {
+                summary.peak_torque = active;
+            }
             summary.peak_load.take(load, index, time);
+            summary.loads.push(time, load);
             let interval = Interval { law, load: (before, load), seconds, pieces };
             tire(summary, &mut self.states[place], &interval, index, time);
             self.fatigue[i][side.index()] = summary.fatigue;

@@ -52,6 +52,7 @@ pub fn assess(
         residual_force: Peak::default(),
         residual_moment: Peak::default(),
         unheld: 0,
+        missing: None,
         acceleration: Peak::default(),
         fast_share: 0.0,
     };
@@ -67,6 +68,9 @@ pub fn assess(
         found.residual_force.take(force, index, *time);
         found.residual_moment.take(moment, index, *time);
         found.unheld += usize::from(evaluation.is_out_of_balance());
+        if found.unheld == 1 && found.missing.is_none() {
+            found.missing = evaluation.missing().map(|missing| (missing, *time));
+        }
         centers.extend(evaluation.torques.kinematics().center_of_mass(model));
         record(&Instant {
             index,

@@ -1,6 +1,7 @@
 //! Holds what an assessment finds: groups, peaks and proposals.
 
-use crate::contact::ContactForces;
+use crate::contact::{ContactForces, Missing};
+use crate::fatigue::LoadHistory;
 use crate::hybrid::{Decision, Strategy};
 use crate::joint_torques::JointTorques;
 use crate::model::Side;
@@ -50,6 +51,10 @@ pub struct GroupAssessment {
     pub side: Side,
     /// Greatest active torque over strength.
     pub peak_load: Peak,
+    /// Active torque at that peak, N m.
+    pub peak_torque: f64,
+    /// Relative load over the motion.
+    pub loads: LoadHistory,
     /// Greatest fatigue, 0..=1.
     pub peak_fatigue: Peak,
     /// Fatigue at the end.
@@ -97,6 +102,8 @@ pub struct Assessment {
     pub residual_moment: Peak,
     /// Number of instants in which the supports could not hold the root.
     pub unheld: usize,
+    /// What the supports lack in the first of them, and its time, s.
+    pub missing: Option<(Missing, f64)>,
     /// Greatest acceleration of the centre of mass, m/s^2.
     pub acceleration: Peak,
     /// Share of the instants in which it was above 1 m/s^2, so that a posture at rest says little.

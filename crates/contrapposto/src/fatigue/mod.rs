@@ -7,10 +7,12 @@ use serde::{Deserialize, Serialize};
 
 mod endurance;
 mod hysteresis;
+mod load_history;
 mod three_compartment;
 
 pub use endurance::{Endurance, EnduranceCurve, EnduranceForm};
 pub use hysteresis::Hysteresis;
+pub use load_history::LoadHistory;
 pub use three_compartment::{Compartments, ThreeCompartment};
 
 /// Relative load at or below which a group counts as resting (3CC-r: Looft et al. 2018; the same for the integral).

@@ -6,6 +6,8 @@ use super::relief_log::ReliefLog;
 use super::state::State;
 use super::step::TIME_TOLERANCE;
 use super::{CoordinateSummary, Fall, Sample, Scenario, ScenarioError, Simulation, Standing, StopReason, Summary};
+use crate::joint_torques::GroupLoad;
+use crate::model::Side;
 
 /// Steps between two snapshots.
 const SNAPSHOT_STEPS: u64 = 900;
@@ -20,11 +22,46 @@ pub struct Snapshot {
     coordinates: Vec<CoordinateSummary>,
     reliefs: ReliefLog,
     effort_at_start: Option<f64>,
+    hardest: Option<(GroupLoad, f64)>,
+    errors: Errors,
+}
+
+/// Errors of the tasks of each priority, in their units.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Errors {
+    /// The greatest of those that count so far.
+    counted: Vec<f64>,
+    /// In the last sample.
+    last: Vec<f64>,
+    /// Events that have happened.
+    events: usize,
+}
+
+impl Errors {
+    /// Counts the last errors: all of them, or those of tasks above relief.
+    fn count(&mut self, scenario: &Scenario, all: bool) {
+        self.counted.resize(self.last.len(), 0.0);
+        for ((counted, last), task) in self.counted.iter_mut().zip(&self.last).zip(&scenario.tasks) {
+            if all || task.above_relief {
+                *counted = counted.max(*last);
+            }
+        }
+    }
+
+    /// Counts the errors before each event that happens until `time`.
+    fn count_before_events(&mut self, scenario: &Scenario, time: f64) {
+        let happened = scenario.events.partition_point(|event| event.time <= time + TIME_TOLERANCE);
+        if happened > self.events {
+            self.events = happened;
+            self.count(scenario, false);
+        }
+    }
 }
 
 /// A scenario under way, sample by sample.
 #[derive(Debug)]
 pub struct Run<'a> {
+    scenario: &'a Scenario,
     simulation: Simulation<'a>,
     /// All samples so far; its `state` is that of the last snapshot.
     so_far: Snapshot,
@@ -55,6 +92,8 @@ impl<'a> Run<'a> {
             coordinates: vec![CoordinateSummary::default(); n],
             reliefs: ReliefLog::new(n),
             effort_at_start: None,
+            hardest: None,
+            errors: Errors::default(),
         };
         Ok(Self::with(scenario, simulation, start))
     }
@@ -72,8 +111,9 @@ impl<'a> Run<'a> {
         Ok(Self::with(scenario, simulation, snapshot))
     }
 
-    fn with(scenario: &Scenario, simulation: Simulation<'a>, start: Snapshot) -> Self {
+    fn with(scenario: &'a Scenario, simulation: Simulation<'a>, start: Snapshot) -> Self {
         Self {
+            scenario,
             simulation,
             snapshot: start.clone(),
             so_far: start,
@@ -101,6 +141,8 @@ impl<'a> Run<'a> {
             self.so_far.state = self.simulation.state();
             self.snapshot.clone_from(&self.so_far);
         }
+        let time = self.so_far.samples as f64 * self.scenario.run.step;
+        self.so_far.errors.count_before_events(self.scenario, time);
         let sample = match self.simulation.step() {
             Err(ScenarioError::Falls(fall)) if self.so_far.samples > 0 => {
                 (self.reason, self.fall) = (Some(StopReason::Fell), Some(fall));
@@ -114,7 +156,14 @@ impl<'a> Run<'a> {
             summary.take(i, &sample);
         }
         self.so_far.reliefs.take(&sample);
+        if !sample.stepping {
+            take_hardest(&mut self.so_far.hardest, &sample);
+        }
         if let Some(standing) = sample.standing {
+            self.so_far.errors.last.clone_from(&standing.errors);
+            if self.so_far.samples == 1 {
+                self.so_far.errors.count(self.scenario, true);
+            }
             self.so_far.effort_at_start.get_or_insert(standing.effort);
             self.standing.get_or_insert_default().clone_from(standing);
         }
@@ -131,7 +180,11 @@ impl<'a> Run<'a> {
 
     /// The results so far.
     pub fn summary(&self) -> Summary {
+        let mut errors = self.so_far.errors.clone();
+        errors.count(self.scenario, false);
         Summary {
+            hardest: self.so_far.hardest,
+            errors: errors.counted,
             reason: self.reason.unwrap_or(StopReason::Interrupted),
             fall: self.fall,
             end_time: self.so_far.end_time,
@@ -145,7 +198,21 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Runs a scenario, showing every sample to `record`. Memory does not grow with the length of the run.
+/// Takes in the greatest relative load of a sample.
+fn take_hardest(hardest: &mut Option<(GroupLoad, f64)>, sample: &Sample) {
+    let (mut coordinate, mut load) = (0, 0.0);
+    for (i, &other) in sample.load.iter().enumerate() {
+        if other > load {
+            (coordinate, load) = (i, other);
+        }
+    }
+    if load > hardest.map_or(0.0, |(hardest, _)| hardest.load) {
+        let torque = sample.active[coordinate];
+        *hardest = Some((GroupLoad { coordinate, side: Side::of(torque), torque, load }, sample.time));
+    }
+}
+
+/// Runs a scenario, showing every sample to `record`. Memory grows with the number of changes of load, not with the length of the run.
 ///
 /// # Errors
 /// [`ScenarioError`] when the scenario is not in order.

@@ -23,6 +23,11 @@ pub struct Sample<'a> {
     pub load: &'a [f64],
     /// Fatigue of the positive and negative group of every coordinate, 0..=1. Depends on the load so far.
     pub fatigue: &'a [[f64; 2]],
+    /// Whether the positive and negative group of every coordinate can no longer hold their load.
+    pub exhausted: &'a [[bool; 2]],
+    /// A support is being put elsewhere: weight is shifted for it, or it is in the air. Such a second or two is a motion, whose torques
+    /// at rest say little.
+    pub stepping: bool,
     /// The decision of every coordinate that requests relief.
     pub decisions: &'a [Option<Decision>],
     /// The muscle group of every coordinate that requests relief.
@@ -45,6 +50,8 @@ pub(super) struct Record {
     pub(super) external: Vec<f64>,
     pub(super) passive: Vec<f64>,
     pub(super) load: Vec<f64>,
+    pub(super) exhausted: Vec<[bool; 2]>,
+    pub(super) stepping: bool,
     pub(super) asking: Vec<Option<Side>>,
     pub(super) attempts: Vec<Option<Attempt>>,
     pub(super) reliefs: Vec<Option<Relief>>,
@@ -59,6 +66,8 @@ impl Record {
             external: vec![0.0; n],
             passive: vec![0.0; n],
             load: vec![0.0; n],
+            exhausted: vec![[false; 2]; n],
+            stepping: false,
             asking: vec![None; n],
             attempts: vec![None; n],
             reliefs: vec![None; n],

@@ -1,6 +1,7 @@
 //! Advances a scenario by one time step (Rodriguez & Boulic 2007, section 3).
 
 use super::motion::Motion;
+use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
 use super::state::State;
 use super::{Event, Fall, Scenario, ScenarioError};
@@ -125,6 +126,8 @@ impl<'a> Simulation<'a> {
             active: &self.state.active,
             load: &self.record.load,
             fatigue: &self.state.fatigue,
+            exhausted: &self.record.exhausted,
+            stepping: self.record.stepping,
             decisions: &self.state.decisions,
             asking: &self.record.asking,
             attempts: &self.record.attempts,
@@ -137,6 +140,7 @@ impl<'a> Simulation<'a> {
 
     fn advance(&mut self, time: f64) -> Result<(), ScenarioError> {
         self.apply_events(time)?;
+        self.record.stepping = self.state.path.as_ref().is_some_and(Path::has_step);
         self.carry_out_reliefs()?;
         self.update_fatigue();
         self.decide()?;
@@ -288,6 +292,7 @@ impl<'a> Simulation<'a> {
                 let judged = if group.recovering { load.max(group.load_at_start) } else { load };
                 let level = fatigue.level(judged);
                 self.state.fatigue[i][side.index()] = level;
+                self.record.exhausted[i][side.index()] = fatigue.level(load) >= 1.0;
                 group.set_recovering(self.scenario.hysteresis.recovering(group.recovering, level), load);
             }
         }

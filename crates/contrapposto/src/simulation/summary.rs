@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{FootStep, ReliefLog, Sample, Standing};
 use crate::contact::Missing;
+use crate::fatigue::LoadHistory;
 use crate::hybrid::{Case, Decision};
+use crate::joint_torques::GroupLoad;
 use crate::model::Side;
 
 /// Most changes of case that are recorded in order; a run whose cases alternate has thousands.
@@ -73,10 +75,12 @@ pub struct CoordinateSummary {
     pub peak_load: f64,
     /// Greatest fatigue of the positive and negative group.
     pub peak_fatigue: [f64; 2],
-    /// When each group was first exhausted, s.
+    /// When each group could first no longer hold its load, s; while a support is put elsewhere nobody is judged.
     pub exhausted_at: [Option<f64>; 2],
     /// The last decision.
     pub last_decision: Option<Decision>,
+    /// Relative load of the positive and negative group over the run.
+    pub loads: [LoadHistory; 2],
 }
 
 /// Results of a run.
@@ -92,6 +96,11 @@ pub struct Summary {
     pub samples: u64,
     /// One entry a coordinate.
     pub coordinates: Vec<CoordinateSummary>,
+    /// The greatest relative load while no support was put elsewhere, and when that was, s.
+    pub hardest: Option<(GroupLoad, f64)>,
+    /// Error of the tasks of each priority, in their units, where it counts: the greatest of those in the first sample, before each
+    /// event and at the end; of tasks below relief only that in the first sample.
+    pub errors: Vec<f64>,
     /// Every relief.
     pub reliefs: ReliefLog,
     /// Effort of a body with supports or tasks in the first sample.
@@ -108,9 +117,11 @@ impl CoordinateSummary {
         self.final_torques = [sample.external[i], sample.passive[i], sample.active[i]];
         self.peak_load = self.peak_load.max(sample.load[i]);
         for side in Side::BOTH.map(Side::index) {
+            let works = Side::of(sample.active[i]).index() == side;
+            self.loads[side].push(sample.time, if works { sample.load[i] } else { 0.0 });
             let fatigue = sample.fatigue[i][side];
             self.peak_fatigue[side] = self.peak_fatigue[side].max(fatigue);
-            if fatigue >= 1.0 && self.exhausted_at[side].is_none() {
+            if sample.exhausted[i][side] && !sample.stepping && self.exhausted_at[side].is_none() {
                 self.exhausted_at[side] = Some(sample.time);
             }
         }

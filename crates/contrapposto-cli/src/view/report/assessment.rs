@@ -7,6 +7,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::simulation::{Contact, Standing};
 use contrapposto::statics::{Load, LoadKind};
+use contrapposto::verdict::Verdict;
 use contrapposto_report::{Entry, Figure, List, Moments, Table};
 use nalgebra::Vector3;
 
@@ -88,6 +89,7 @@ pub(crate) fn report_of_assessment(
     title: &str,
     assessed_frames: &AssessedFrames<'_>,
     found: &Assessment,
+    verdict: &Verdict,
     supports: &[Support],
     held: &[Load],
     warnings: &[String],
@@ -105,7 +107,7 @@ pub(crate) fn report_of_assessment(
     let times = frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), working.first().map_or(0, |group| group.coordinate))?;
     let span = last.time - first.time;
-    report.headline = headline(model, working.first().copied(), span);
+    report.headline.clone_from(&verdict.sentence);
     report.reasons = warnings.iter().map(|warning| sentence(warning) + ".").collect();
     report
         .reasons
@@ -118,18 +120,6 @@ pub(crate) fn report_of_assessment(
     };
     report.table = table(model, &working);
     Ok(contrapposto_report::write(&report))
-}
-
-fn headline(model: &Model, worst: Option<&GroupAssessment>, span: f64) -> String {
-    let Some(worst) = worst else { return "No muscle needs any torque.".to_owned() };
-    let group = name(model, worst);
-    match worst.exhausted_at {
-        Some(time) => format!("{group} fails first: from {time:.1} s on it cannot give the torque that is needed."),
-        None => {
-            let fatigue = percent(worst.peak_fatigue.value);
-            format!("No muscle group fails in {span:.1} s; {} tires most, to {fatigue}.", lower(&group))
-        }
-    }
 }
 
 fn figures(

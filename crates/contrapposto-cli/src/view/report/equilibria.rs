@@ -3,11 +3,13 @@
 use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture};
 use contrapposto::hybrid::{Carrier, Equilibrium};
 use contrapposto::model::Model;
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::RelaxScenario;
 use contrapposto_report::{Entry, List, Moments, Table};
 
 use super::figure::{carriers, figure, figures_of, weight};
 use crate::fail::Fail;
+use crate::view::answer::also_missed;
 use crate::view::figures::figures_of_postures;
 use crate::view::frame::{Frame, frame_of_posture};
 use crate::view::muscles::{fails_first, hardest};
@@ -34,7 +36,11 @@ fn numbered(count: usize) -> Vec<String> {
 }
 
 /// The page of all postures of least effort.
-pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria) -> Result<String, Fail> {
+pub(crate) fn report_of_equilibria(
+    scenario: &RelaxScenario,
+    found: &Equilibria,
+    verdict: &Verdict,
+) -> Result<String, Fail> {
     let model = &scenario.model;
     let frames = frames_of_postures(model, &found.postures)?;
     let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports);
@@ -56,7 +62,9 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
         return Ok(contrapposto_report::write(&report));
     };
     let more = found.postures.get(1).map(|next| percent(next.relaxed.effort / best.relaxed.effort - 1.0));
-    report.headline = match (found.postures.len(), &more) {
+    report.headline.clone_from(&verdict.sentence);
+    report.reasons.extend(also_missed(verdict));
+    report.reasons.push(match (found.postures.len(), &more) {
         (n, Some(more)) => {
             format!(
                 "{n} resting postures. The first takes the least effort: {}; the next one takes {more} more.",
@@ -64,8 +72,8 @@ pub(crate) fn report_of_equilibria(scenario: &RelaxScenario, found: &Equilibria)
             )
         }
         _ => format!("One resting posture: {}.", hanging_in_words(model, best)),
-    };
-    report.reasons.push(verdict(model, best));
+    });
+    report.reasons.push(stability_in_words(model, best));
     let mut searched = format!("{} starts were tried", found.starts);
     for (count, what) in [
         (found.fell, "fell"),
@@ -120,7 +128,7 @@ fn held_by(found: &RelaxedPosture) -> String {
     }
 }
 
-fn verdict(model: &Model, found: &RelaxedPosture) -> String {
+fn stability_in_words(model: &Model, found: &RelaxedPosture) -> String {
     match found.stability.equilibrium {
         None => "Its supports leave nothing free to move.".to_owned(),
         Some(Equilibrium::Stable(Carrier::Ligaments)) => {
@@ -163,7 +171,7 @@ fn description(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &
     } else {
         format!("Hangs on ligaments: {}.", list(&hanging))
     });
-    sentences.push(verdict(model, found));
+    sentences.push(stability_in_words(model, found));
     if let Some((name, load)) = hardest(model, frame) {
         sentences.push(format!("Highest load: {name}, {}.", percent(load)));
     }

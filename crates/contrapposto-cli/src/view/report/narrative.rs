@@ -1,8 +1,10 @@
 //! The words of a run's page: a headline, the reasons, and the few numbers that say most.
 
 use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
+use contrapposto::verdict::Verdict;
 use contrapposto_report::{Figure, Report};
 
+use crate::view::answer::also_missed;
 use crate::view::axes::pelvis_list;
 use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
@@ -19,6 +21,7 @@ pub(super) fn write(
     scenario: &Scenario,
     excerpt: &RunExcerpt,
     summary: &Summary,
+    verdict: &Verdict,
     shown: &[usize],
     report: &mut Report,
 ) {
@@ -32,13 +35,15 @@ pub(super) fn write(
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
     let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
-    report.headline = match standing {
+    let happened = match standing {
         Some((_, list)) if list.abs() >= LEVEL => narrative.of_slouch(list),
         _ if excerpt.happened == 0 => narrative.of_rest(summary.end_time),
         Some((_, list)) => narrative.of_level(list),
         None => narrative.of_joint(),
     };
-    report.reasons = narrative.reasons(standing.is_some());
+    report.headline.clone_from(&verdict.sentence);
+    report.reasons = also_missed(verdict).into_iter().chain([happened]).collect();
+    report.reasons.extend(narrative.reasons(standing.is_some()));
     report.reasons.extend(summary.foot_steps.iter().map(|step| narrative.of_step(step)));
     report.reasons.push(narrative.end(excerpt, summary));
     report.figures = narrative.figures(standing);

@@ -16,9 +16,14 @@ use crate::view::text::pose::{reached, tasks};
 use crate::view::words::{list, percent, plain};
 
 /// The page of a solved pose.
-pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText) -> Result<String, Fail> {
+pub(crate) fn report_of_pose(
+    scenario: &PoseScenario,
+    pose: &SolvedPosture,
+    text: &PoseText,
+    held: Held,
+) -> Result<String, Fail> {
     let model = &scenario.model;
-    let Held { frame, holds } = held(model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let Held { frame, missing: unheld, .. } = held;
     let frames = [frame];
     let supported = scenario.goals.iter().any(|goal| goal.hard);
     let scene = Scene {
@@ -37,27 +42,29 @@ pub(crate) fn report_of_pose(scenario: &PoseScenario, pose: &SolvedPosture, text
     let missing = all.iter().filter(|entries| !reached(entries) && !rest(&entries[0].task));
     let missing: Vec<String> =
         missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), remaining(entries))).collect();
-    report.headline = match (missing.is_empty(), done == all.len()) {
+    report.headline.clone_from(&text.verdict.sentence);
+    let targets = match (missing.is_empty(), done == all.len()) {
         (true, true) => "All tasks are reached.".to_owned(),
         (true, false) => {
             "All targets are reached; posture and effort tasks come as near to their goals as these allow.".to_owned()
         }
         _ => format!("Not all tasks are reached: {}.", list(&missing)),
     };
-    report.reasons = match pose.reason {
+    report.reasons = vec![targets];
+    report.reasons.extend(match pose.reason {
         Reason::Reached => vec![],
         Reason::Converged if missing.is_empty() => vec![],
         Reason::Converged => {
             vec!["The remaining errors are the smallest that tasks of higher priority allow.".to_owned()]
         }
         Reason::StepLimit => vec!["The step limit was reached before the posture converged.".to_owned()],
-    };
+    });
     if !text.supports_hold {
         report.reasons.push("The supports move from their places.".to_owned());
     }
     let free = !root_rates(model).is_empty();
-    report.reasons.extend(if !holds {
-        Some("The supports, which can only push, cannot hold the body in this posture: it would fall. The torques are those of a body whose root is also held.".to_owned())
+    report.reasons.extend(if unheld.is_some() {
+        Some("The torques shown are those of a body whose root is also held.".to_owned())
     } else {
         let nothing = scenario.supports.is_empty() && free;
         nothing.then(|| "No supports are given, so the torques are those of a body whose root is held.".to_owned())

@@ -1,6 +1,7 @@
 //! The page of a run over time.
 
 use contrapposto::simulation::{Scenario, Summary};
+use contrapposto::verdict::Verdict;
 use contrapposto_report::{Entry, List, Moments};
 
 use super::narrative;
@@ -12,7 +13,12 @@ use crate::view::scene::Scene;
 use crate::view::selection::{main_coordinate, shown};
 
 /// The page of a run.
-pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary: &Summary) -> Result<String, Fail> {
+pub(crate) fn report_of_run(
+    scenario: &Scenario,
+    recording: &Recording,
+    summary: &Summary,
+    verdict: &Verdict,
+) -> Result<String, Fail> {
     let excerpt = RunExcerpt::new(scenario, recording, summary);
     let shown = shown(&scenario.model);
     let start = excerpt.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
@@ -28,7 +34,7 @@ pub(crate) fn report_of_run(scenario: &Scenario, recording: &Recording, summary:
         entries: entries(scenario, &excerpt, &shown),
         none: "None: no muscle group needed relief.".to_owned(),
     };
-    narrative::write(scenario, &excerpt, summary, &shown, &mut report);
+    narrative::write(scenario, &excerpt, summary, verdict, &shown, &mut report);
     Ok(contrapposto_report::write(&report))
 }
 

@@ -6,6 +6,8 @@ use std::path::Path;
 use contrapposto::assessment::{Assessment, GroupAssessment, Peak, PeakKind, Proposal};
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::verdict::Verdict;
+use contrapposto_formats::VerdictText;
 use serde::Serialize;
 
 use super::group::GroupName;
@@ -20,6 +22,8 @@ const RELIEVED: usize = 3;
 pub(crate) struct AssessText {
     model: String,
     motion: String,
+    /// The answer.
+    verdict: VerdictText,
     frames: usize,
     start_s: f64,
     end_s: f64,
@@ -83,12 +87,14 @@ impl AssessText {
         motion: &Path,
         times: &[f64],
         found: &Assessment,
+        verdict: &Verdict,
         warnings: Vec<String>,
         files: Vec<String>,
     ) -> Self {
         Self {
             model: model.name().to_owned(),
             motion: motion.display().to_string(),
+            verdict: VerdictText::new(model, verdict),
             frames: times.len(),
             start_s: times.first().copied().unwrap_or_default(),
             end_s: times.last().copied().unwrap_or_default(),

@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use contrapposto::contact::Support;
 use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
+use contrapposto::verdict::{Verdict, VerdictKind};
+use contrapposto_formats::VerdictText;
 use serde::Serialize;
 
 use super::group::GroupName;
 use super::plain_table;
 use crate::view::axes::pelvis_list;
 use crate::view::frame::Frame;
-use crate::view::words::{MOST_ROWS, group as group_in_words, plain};
+use crate::view::words::{MOST_ROWS, group as group_in_words, how_long, plain};
 
 /// Least differences, as shares of strength and in degrees, that have a line.
 const SAME: f64 = 5e-4;
@@ -24,6 +26,7 @@ pub(crate) struct ComparedPosture {
     pub(crate) title: String,
     /// How it came about: `simulated, 120 s`, `posed`.
     pub(crate) how: String,
+    pub(crate) verdict: Verdict,
     pub(crate) model: Model,
     pub(crate) supports: Vec<Support>,
     /// Value of every coordinate.
@@ -35,6 +38,8 @@ pub(crate) struct ComparedPosture {
 /// The whole file.
 #[derive(Serialize)]
 pub(crate) struct CompareText {
+    /// The answer: who can go on longest.
+    pub(crate) sentence: String,
     postures: Vec<ComparedPostureText>,
     /// Muscle groups that all bodies have, those that differ most first.
     groups: Vec<GroupDifferenceText>,
@@ -50,6 +55,7 @@ struct ComparedPostureText {
     file: String,
     title: String,
     model: String,
+    verdict: VerdictText,
     /// `simulated, 120 s`, or `posed`.
     how: String,
     /// Sum of (active torque / strength)^2; `null` where the supports cannot hold it.
@@ -92,6 +98,7 @@ struct CoordinateDifferenceText {
 impl CompareText {
     pub(crate) fn new(postures: &[ComparedPosture], files: Vec<String>) -> Self {
         let mut text = Self {
+            sentence: answer(postures),
             postures: postures.iter().map(ComparedPostureText::new).collect(),
             groups: vec![],
             coordinates: vec![],
@@ -185,6 +192,7 @@ impl ComparedPostureText {
             file: stance.file.clone(),
             title: stance.title.clone(),
             model: stance.model.name().to_owned(),
+            verdict: VerdictText::new(&stance.model, &stance.verdict),
             how: stance.how.clone(),
             effort: stance.frame.as_ref().map(Frame::effort),
             supports: stance.supports.iter().enumerate().map(share).collect(),
@@ -194,11 +202,37 @@ impl ComparedPostureText {
     }
 }
 
+/// `B can be held longest: 19.8 min; A 12.0 min.`
+fn answer(postures: &[ComparedPosture]) -> String {
+    let seconds = |stance: &ComparedPosture| match stance.verdict.kind {
+        VerdictKind::Holds => f64::INFINITY,
+        VerdictKind::HeldUntil => stance.verdict.seconds.unwrap_or(f64::INFINITY),
+        _ => f64::NEG_INFINITY,
+    };
+    let said = |stance: &ComparedPosture| match stance.verdict.kind {
+        VerdictKind::CannotBeDone => "cannot be done".to_owned(),
+        VerdictKind::CannotStand => "cannot stand".to_owned(),
+        VerdictKind::NotReached => "does not reach its target".to_owned(),
+        VerdictKind::HeldUntil => format!("can be held {}", stance.verdict.seconds.map(how_long).unwrap_or_default()),
+        VerdictKind::Holds => match stance.verdict.seconds {
+            Some(time) => format!("holds through {}", how_long(time)),
+            None => "holds without a limit by muscles".to_owned(),
+        },
+    };
+    let mut order: Vec<&ComparedPosture> = postures.iter().collect();
+    // Of two that hold, the one whose hardest worked group works less.
+    let load = |stance: &ComparedPosture| stance.verdict.who.map_or(0.0, |group| group.load);
+    order.sort_by(|a, b| seconds(b).total_cmp(&seconds(a)).then(load(a).total_cmp(&load(b))));
+    let list: Vec<String> = order.iter().map(|stance| format!("{} {}", stance.letter, said(stance))).collect();
+    format!("The easiest first: {}.", list.join("; "))
+}
+
 /// The table for readers.
 pub(crate) fn report(postures: &[ComparedPosture], text: &CompareText) -> String {
-    let mut out = String::new();
+    let mut out = format!("{}\n", text.sentence);
     for (stance, posture) in postures.iter().zip(&text.postures) {
-        out += &format!("{}: {} ({}, {})\n", stance.letter, stance.title, posture.file, stance.how);
+        let sentence = &stance.verdict.sentence;
+        out += &format!("{}: {} ({}, {})\n   {sentence}\n", stance.letter, stance.title, posture.file, stance.how);
     }
     out += &format!("\n{}\n", whole(postures, text));
     let letters = |what: &str| postures.iter().map(|s| format!("{what} {}", s.letter)).collect::<Vec<_>>();

@@ -1,10 +1,12 @@
 //! The terminal table of a solved pose.
 
 use contrapposto::posture_solver::{Reason, SolvedPosture};
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 
 use super::plain_table;
 use crate::output::Folder;
+use crate::view::answer::first_lines;
 
 /// `remaining: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
 pub(crate) fn subtitle(text: &PoseText) -> String {
@@ -39,7 +41,13 @@ fn remaining(level: &PoseLevelText) -> String {
     if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
 }
 
-pub(crate) fn report(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseText, folder: &Folder) -> String {
+pub(crate) fn report(
+    scenario: &PoseScenario,
+    pose: &SolvedPosture,
+    text: &PoseText,
+    verdict: &Verdict,
+    folder: &Folder,
+) -> String {
     let mut table = plain_table();
     table.set_header(["priority", "task", "remaining error", ""]);
     for entries in tasks(text) {
@@ -57,5 +65,9 @@ pub(crate) fn report(scenario: &PoseScenario, pose: &SolvedPosture, text: &PoseT
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
     let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };
-    format!("{title}{table}\n{reason} ({steps})\nreport: {}\n", folder.path("report.html").display())
+    format!(
+        "{first}{title}{table}\n{reason} ({steps})\nreport: {}\n",
+        folder.path("report.html").display(),
+        first = first_lines(verdict)
+    )
 }

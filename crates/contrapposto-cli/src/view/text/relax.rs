@@ -9,7 +9,8 @@ use contrapposto::model::Model;
 use contrapposto::posture_solver::Reason;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::Task;
-use contrapposto_formats::RelaxScenario;
+use contrapposto::verdict::Verdict;
+use contrapposto_formats::{RelaxScenario, VerdictText};
 use serde::Serialize;
 
 use super::group::GroupName;
@@ -23,6 +24,8 @@ use crate::view::words::how_long;
 pub(crate) struct RelaxText {
     title: String,
     model: String,
+    /// The answer: that of the posture of least effort.
+    verdict: VerdictText,
     /// Starts that were tried, and how many of them fell.
     starts: usize,
     fell: usize,
@@ -119,11 +122,12 @@ struct WorkText {
 }
 
 impl RelaxText {
-    pub(crate) fn new(scenario: &RelaxScenario, found: &Equilibria, files: Vec<String>) -> Self {
+    pub(crate) fn new(scenario: &RelaxScenario, found: &Equilibria, verdict: &Verdict, files: Vec<String>) -> Self {
         let names = scenario.model.coordinates().iter().map(|c| c.name.clone());
         Self {
             title: scenario.title.clone(),
             model: scenario.model.name().to_owned(),
+            verdict: VerdictText::new(&scenario.model, verdict),
             starts: found.starts,
             fell: found.fell,
             left_out: found.yielded,

@@ -5,9 +5,12 @@ use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
 use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, StopReason, Summary, TaskSettings};
 use contrapposto::tasks::Task;
+use contrapposto::verdict::Verdict;
 
 use super::plain_table;
 use crate::output::Folder;
+use crate::view::answer::first_lines;
+use crate::view::words::MOST_ROWS;
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
 const REACHED: f64 = 1e-3;
@@ -39,12 +42,17 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
     format!("cases {}", list.join(", "))
 }
 
-pub(crate) fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) -> String {
+pub(crate) fn report(scenario: &Scenario, summary: &Summary, verdict: &Verdict, folder: &Folder) -> String {
     let mut table = plain_table();
     table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
-    for ((coordinate, summary), free) in
-        scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free)
-    {
+    let all = scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free);
+    let mut all: Vec<_> = all.collect();
+    let more = all.len().saturating_sub(MOST_ROWS);
+    if more > 0 {
+        all.sort_by(|((_, a), _), ((_, b), _)| b.peak_load.total_cmp(&a.peak_load));
+        all.truncate(MOST_ROWS);
+    }
+    for ((coordinate, summary), free) in all {
         let [external, passive, active] = summary.final_torques;
         let [positive, negative] = summary.peak_fatigue;
         table.add_row([
@@ -71,11 +79,17 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, folder: &Folder) ->
     let picture = if scenario.has_supports_or_tasks() { "postures.svg" } else { "torque-balance.svg" };
     let standing =
         summary.standing.as_ref().map_or(String::new(), |standing| standing_text(scenario, summary, standing));
+    let more = match more {
+        0 => String::new(),
+        more => format!("and {more} coordinates with lower loads, which summary.json lists\n"),
+    };
     format!(
-        "{}\n{table}\n{standing}{reason} after {:.2} s ({} samples)\npictures: {}, {}\n",
+        "{}{}\n{table}\n{more}{standing}{reason} after {:.2} s ({} samples)\nreport: {}\npictures: {}, {}\n",
+        first_lines(verdict),
         scenario.title,
         summary.end_time,
         summary.samples,
+        folder.path("report.html").display(),
         folder.path(picture).display(),
         folder.path("time-line.svg").display(),
     )

@@ -90,6 +90,21 @@ impl Library {
         Some(together(&set.reference, &rest, assigned.map(|row| &row.reference)))
     }
 
+    /// Published laws of a movement's class with a checked source: the controller's, the endurance curve of Frey-Law & Avin 2010 of the
+    /// class and their general one.
+    pub fn published_laws(&self, movement: &str) -> Vec<FatigueLaw> {
+        let Some(class) = self.fatigue_class(movement) else { return vec![] };
+        let curves = [class, "general"].map(|class| self.endurance(&self.default_endurance(class)));
+        let curves = curves.into_iter().flatten().map(|(law, _)| law);
+        self.three_compartment(class).map(|(law, _)| law).into_iter().chain(curves).collect()
+    }
+
+    /// Standard deviation of a movement's strength between people over its mean, and where that comes from.
+    pub fn strength_variation(&self, movement: &str) -> Option<(f64, &Reference)> {
+        let row = self.strength.variation.iter().find(|row| lists(&row.movements, movement))?;
+        Some((row.coefficient, &row.reference))
+    }
+
     fn muscle_group_use(&self, movement: &str) -> Option<&MuscleGroupUseRow> {
         self.fatigue.muscle_group_use.iter().find(|row| lists(&row.movements, movement))
     }
@@ -163,6 +178,11 @@ mod tests {
         for movement in listed {
             let class = library.fatigue_class(movement).unwrap();
             assert!(library.endurance(&library.default_endurance(class)).is_some(), "no curve for {class}");
+            assert_eq!(library.published_laws(movement).len(), 3, "{movement}");
+            assert!(
+                library.strength_variation(movement).is_some_and(|(share, _)| share > 0.0 && share < 1.0),
+                "{movement}"
+            );
             for sex in [None, Some(Sex::Female), Some(Sex::Male)] {
                 for set in [FatigueSet::Joint, FatigueSet::MuscleGroup] {
                     let law = library.fatigue_law(movement, set, sex).unwrap();

@@ -10,6 +10,7 @@ use crate::strength::{EVERY_ANGLE, Strength};
 #[serde(deny_unknown_fields)]
 pub(crate) struct StrengthFile {
     floor: FloorRow,
+    pub(super) variation: Vec<VariationRow>,
     group: Vec<GroupRow>,
     anderson2007: AndersonTable,
 }
@@ -21,6 +22,15 @@ struct FloorRow {
     share: f64,
     status: Status,
     source: String,
+}
+
+/// Spread of strength between people: standard deviation over mean.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct VariationRow {
+    pub(super) coefficient: f64,
+    pub(super) movements: Vec<String>,
+    pub(super) reference: Reference,
 }
 
 #[derive(Debug, Deserialize)]

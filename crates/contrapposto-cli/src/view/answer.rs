@@ -1,0 +1,53 @@
+//! Says a verdict: first line, JSON file of a job without a posture, and exit code.
+
+use contrapposto::contact::Missing;
+use contrapposto::model::Model;
+use contrapposto::verdict::Verdict;
+use contrapposto_formats::VerdictText;
+use serde::Serialize;
+
+use crate::fail::Fail;
+use crate::output::{Folder, json_text, print};
+
+/// The file of a job for which there is no posture.
+#[derive(Serialize)]
+struct AnswerText<'a> {
+    title: &'a str,
+    model: &'a str,
+    verdict: VerdictText,
+}
+
+/// The sentence, and below it the targets of lower priority that are missed.
+pub(crate) fn first_lines(verdict: &Verdict) -> String {
+    let more = also_missed(verdict).map_or(String::new(), |more| more + "\n");
+    format!("{}\n{more}", verdict.sentence)
+}
+
+/// `Missed besides, of lower priority: look at head by 3.4°.`
+pub(crate) fn also_missed(verdict: &Verdict) -> Option<String> {
+    let lower = verdict.missed.iter().filter(|missed| !missed.decides);
+    let list: Vec<String> = lower.map(|missed| format!("{} by {}", missed.task, missed.by())).collect();
+    (!list.is_empty()).then(|| format!("Missed besides, of lower priority: {}.", list.join(", ")))
+}
+
+/// Exit code 1 for a job that cannot be done.
+pub(crate) fn answered(verdict: &Verdict) -> Result<(), Fail> {
+    if verdict.kind.is_done() { Ok(()) } else { Err(Fail::Answered) }
+}
+
+/// Answers for a body that no posture near the start keeps in balance: prints the verdict, and writes it to the file `name`.
+pub(crate) fn without_posture(
+    name: &str,
+    title: &str,
+    model: &Model,
+    missing: Missing,
+    folder: Option<&Folder>,
+    json: bool,
+) -> Result<(), Fail> {
+    let verdict = Verdict::of_fall(model, missing);
+    let text = AnswerText { title, model: model.name(), verdict: VerdictText::new(model, &verdict) };
+    let text = json_text(name, &text)?;
+    folder.map(|folder| folder.write(&[(name, text.as_bytes())])).transpose()?;
+    print(&if json { text } else { first_lines(&verdict) })?;
+    Err(Fail::Answered)
+}

@@ -1,0 +1,69 @@
+//! The page of postures side by side.
+
+use contrapposto_report::{Entry, List, Moments, Report, Table};
+
+use super::figure::figure;
+use crate::fail::Fail;
+use crate::view::frame::Frame;
+use crate::view::muscles::hardest;
+use crate::view::scene::Scene;
+use crate::view::text::compare::{CompareText, ComparedPosture};
+use crate::view::words::{how_long, percent};
+
+/// The page of a comparison. The body is drawn where all postures are of one body and known; tables say the rest.
+pub(crate) fn report_of_comparison(postures: &[ComparedPosture], text: &CompareText) -> Result<String, Fail> {
+    let frames: Vec<Frame> = postures.iter().filter_map(|compared| compared.frame.clone()).collect();
+    let names: Vec<String> =
+        postures.iter().map(|compared| format!("{}: {}", compared.letter, compared.title)).collect();
+    let Some(first) = postures.first() else { return Ok(contrapposto_report::write(&Report::default())) };
+    let same = postures
+        .iter()
+        .all(|compared| compared.model.name() == first.model.name() && compared.supports.len() == first.supports.len());
+    let mut report = if same && frames.len() == postures.len() {
+        let scene = Scene::of("Compared postures", &first.model, &first.posture, &frames, &first.supports);
+        let main = first.verdict.who.map_or(0, |group| group.coordinate);
+        scene.report(Moments::Postures(names.clone()), main)?
+    } else {
+        Report { title: "Compared postures".to_owned(), ..Report::default() }
+    };
+    report.headline.clone_from(&text.sentence);
+    report.reasons =
+        postures.iter().map(|compared| format!("{}: {}", compared.letter, compared.verdict.sentence)).collect();
+    report.figures = postures
+        .iter()
+        .map(|compared| {
+            let time = compared.verdict.seconds.map_or_else(|| "no time".to_owned(), how_long);
+            figure(&compared.letter.to_string(), time, &compared.title)
+        })
+        .collect();
+    let entry = |(frame, compared): (usize, &ComparedPosture)| Entry {
+        frame,
+        joint: report.main,
+        text: format!("{}: {} {}", compared.letter, compared.title, compared.verdict.sentence),
+    };
+    report.list = List {
+        heading: "Postures".to_owned(),
+        entries: if report.joints.is_empty() { vec![] } else { postures.iter().enumerate().map(entry).collect() },
+        none: String::new(),
+    };
+    report.table = table(postures);
+    Ok(contrapposto_report::write(&report))
+}
+
+fn table(postures: &[ComparedPosture]) -> Table {
+    let row = |compared: &ComparedPosture| {
+        let frame = compared.frame.as_ref();
+        let hardest = frame.and_then(|frame| hardest(&compared.model, frame));
+        vec![
+            format!("{}: {}", compared.letter, compared.title),
+            compared.verdict.sentence.clone(),
+            frame.map_or_else(|| "not known".to_owned(), |frame| format!("{:.4}", frame.effort())),
+            hardest.map_or_else(String::new, |(name, load)| format!("{name}, {}", percent(load))),
+        ]
+    };
+    Table {
+        heading: "Side by side".to_owned(),
+        columns: ["Posture", "Answer", "Effort", "Highest load"].map(str::to_owned).to_vec(),
+        rows: postures.iter().map(row).collect(),
+    }
+}

@@ -1,0 +1,66 @@
+//! Writes a verdict as it stands in every JSON file.
+
+use contrapposto::model::{Model, plain_group_name, plain_name};
+use contrapposto::tasks::Unit;
+use contrapposto::verdict::{Missed, Verdict};
+use serde::Serialize;
+
+/// The answer to a job.
+#[derive(Clone, Debug, Serialize)]
+pub struct VerdictText {
+    /// `cannot_be_done`, `cannot_stand`, `not_reached`, `held_until` or `holds`.
+    pub kind: &'static str,
+    /// How long the job can be done, min; `null`: muscles set no limit, or it cannot be done.
+    pub minutes: Option<f64>,
+    /// Least and greatest time until `who` fails, min, over published laws of fatigue and two of three people; `null` in it: never.
+    pub minutes_range: Option<[Option<f64>; 2]>,
+    /// The muscle group that is too weak or fails first; of a job that holds, the one with the greatest load.
+    pub who: Option<String>,
+    /// Its active torque over strength.
+    pub load: Option<f64>,
+    /// The same in one sentence.
+    pub sentence: String,
+    /// Targets that are missed, the most important first.
+    pub missed: Vec<MissedText>,
+}
+
+/// A target that is missed.
+#[derive(Clone, Debug, Serialize)]
+pub struct MissedText {
+    /// The tasks of its priority.
+    pub task: String,
+    /// By how much, in `unit`.
+    pub distance: f64,
+    /// `m`, `rad`, or `m and rad` taken together.
+    pub unit: &'static str,
+}
+
+impl VerdictText {
+    /// Of a verdict on a body.
+    pub fn new(model: &Model, verdict: &Verdict) -> Self {
+        let who = verdict.who.map(|group| {
+            let coordinate = &model.coordinates()[group.coordinate];
+            match &coordinate.groups {
+                Some(groups) => plain_group_name(&groups[group.side.index()].name, &coordinate.name),
+                None => plain_name(&coordinate.name),
+            }
+        });
+        let minutes = |seconds: f64| seconds.is_finite().then_some(seconds / 60.0);
+        Self {
+            kind: verdict.kind.word(),
+            minutes: verdict.seconds.and_then(minutes),
+            minutes_range: verdict.range.map(|(least, greatest)| [least, greatest].map(minutes)),
+            who,
+            load: verdict.who.map(|group| group.load),
+            sentence: verdict.sentence.clone(),
+            missed: verdict.missed.iter().map(MissedText::from).collect(),
+        }
+    }
+}
+
+impl From<&Missed> for MissedText {
+    fn from(missed: &Missed) -> Self {
+        let unit = missed.unit.map_or("m and rad", Unit::symbol);
+        Self { task: missed.task.clone(), distance: missed.distance, unit }
+    }
+}

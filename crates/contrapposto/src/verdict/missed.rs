@@ -1,0 +1,79 @@
+//! Finds the targets that a posture misses.
+
+use crate::model::{Model, plain_name};
+use crate::tasks::{LookAt, LookAtGoal, PriorityLevel, Task, Unit};
+
+/// A target counts as missed from here on, m. Assumed: what a hand or an eye makes good without another posture.
+pub const MISSED_DISTANCE: f64 = 5e-3;
+/// A direction counts as missed from here on, rad (1 degree). Assumed likewise.
+pub const MISSED_ANGLE: f64 = 0.017_453;
+
+/// A target that is missed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Missed {
+    /// The tasks of its priority in plain words: `point right hand`.
+    pub task: String,
+    /// By how much, in `unit`.
+    pub distance: f64,
+    /// The unit; `None` where metres and radians are taken together.
+    pub unit: Option<Unit>,
+    /// It is the most important target, or the places of the supports.
+    pub decides: bool,
+}
+
+impl Missed {
+    /// Supports that are off their places by `distance`, m and rad together; `None` where that is nothing.
+    pub fn of_supports(distance: f64) -> Option<Self> {
+        (distance > MISSED_DISTANCE).then(|| Self {
+            task: "the places of the supports".to_owned(),
+            distance,
+            unit: None,
+            decides: true,
+        })
+    }
+
+    /// The missed targets among the levels of a posture, the most important first, with the lengths of their errors. Only the first
+    /// level with a target decides.
+    pub fn of_levels<'a>(model: &Model, levels: impl IntoIterator<Item = (&'a PriorityLevel, f64)>) -> Vec<Self> {
+        let mut first = true;
+        let mut missed = vec![];
+        for (level, error) in levels {
+            if !level.tasks.iter().any(is_target) {
+                continue;
+            }
+            let decides = std::mem::replace(&mut first, false);
+            let unit = unit(level);
+            let least = if unit == Some(Unit::Radian) { MISSED_ANGLE } else { MISSED_DISTANCE };
+            if error > least {
+                let words: Vec<String> = level.tasks.iter().map(|task| in_words(&task.label(model))).collect();
+                missed.push(Self { task: words.join(" and "), distance: error, unit, decides });
+            }
+        }
+        missed
+    }
+}
+
+/// Whether a task names a place or a direction that the job asks for: not least effort, a posture or an upright head, which take what
+/// the targets leave.
+fn is_target(task: &Task) -> bool {
+    let upright = matches!(task, Task::LookAt(LookAt { goal: LookAtGoal::Direction(_), .. }));
+    !upright && !matches!(task, Task::Effort(_) | Task::Posture(_) | Task::Bounds(_) | Task::Clearance(_))
+}
+
+/// The unit of all errors of a level.
+fn unit(level: &PriorityLevel) -> Option<Unit> {
+    let of = |task: &Task| match task {
+        Task::Point(_) | Task::Distance(_) | Task::CenterOfMass(_) => Some(Unit::Metre),
+        Task::Orientation(_) | Task::LookAt(_) => Some(Unit::Radian),
+        _ => None,
+    };
+    let mut units = level.tasks.iter().map(of);
+    let first = units.next().flatten()?;
+    units.all(|unit| unit == Some(first)).then_some(first)
+}
+
+/// `look_at head` is `look at head`, `point hand_r` is `point right hand`.
+fn in_words(label: &str) -> String {
+    let words = label.split(' ').map(|word| if word == "look_at" { "look at".to_owned() } else { plain_name(word) });
+    words.collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,115 @@
+//! States whether a job can be done, for how long, and which muscle group fails first.
+//!
+//! A verdict is of one kind, the first that applies:
+//!
+//! 1. [`VerdictKind::CannotBeDone`]: a muscle group would need more than its strength in a posture that is held;
+//! 2. [`VerdictKind::CannotStand`]: the supports do not hold the body;
+//! 3. [`VerdictKind::NotReached`]: the most important target is missed, or supports leave their places;
+//! 4. [`VerdictKind::HeldUntil`]: a group tires until it can no longer hold its load, before the end of the asked time;
+//! 5. [`VerdictKind::Holds`]: none of these.
+//!
+//! While a support is put elsewhere nobody is judged: a step is a motion of a second or two, whose torques at rest say little.
+//! A time comes with its spread ([`spread`]): over published laws of fatigue and over people of different strength.
+
+mod holding;
+mod missed;
+mod motion;
+mod posture;
+mod run;
+pub mod spread;
+mod words;
+
+pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed};
+pub use posture::HeldPosture;
+pub use words::how_long;
+
+use crate::contact::Missing;
+use crate::joint_torques::GroupLoad;
+
+/// The kinds of verdicts, the first that applies first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum VerdictKind {
+    /// A muscle group would need more than its strength.
+    CannotBeDone,
+    /// The supports do not hold the body.
+    CannotStand,
+    /// The most important target is missed.
+    NotReached,
+    /// A muscle group fails before the end of the asked time.
+    HeldUntil,
+    /// The job can be done.
+    Holds,
+}
+
+impl VerdictKind {
+    /// All, the first that applies first.
+    pub const ALL: [Self; 5] = [Self::CannotBeDone, Self::CannotStand, Self::NotReached, Self::HeldUntil, Self::Holds];
+
+    /// `cannot_be_done`, `cannot_stand`, `not_reached`, `held_until`, `holds`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::CannotBeDone => "cannot_be_done",
+            Self::CannotStand => "cannot_stand",
+            Self::NotReached => "not_reached",
+            Self::HeldUntil => "held_until",
+            Self::Holds => "holds",
+        }
+    }
+
+    /// Whether the job can be done, if only for a time.
+    pub fn is_done(self) -> bool {
+        matches!(self, Self::HeldUntil | Self::Holds)
+    }
+}
+
+/// The answer to a job.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Its kind.
+    pub kind: VerdictKind,
+    /// How long the job can be done, s: until `who` fails, or the time that was asked for; `None` where no muscle sets a limit, and
+    /// where the job cannot be done.
+    pub seconds: Option<f64>,
+    /// Least and greatest time until `who` fails, s, over published laws and two of three people; infinite where it never fails.
+    pub range: Option<(f64, f64)>,
+    /// The muscle group that is too weak or fails first; of a job that holds, the one with the greatest load.
+    pub who: Option<GroupLoad>,
+    /// The first sentence of every result.
+    pub sentence: String,
+    /// Targets that are missed, the most important first.
+    pub missed: Vec<Missed>,
+}
+
+/// What a job has shown.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Findings {
+    /// The time that was asked for, s.
+    pub(crate) asked: Option<f64>,
+    /// The group with the greatest load; when, s, where that matters.
+    pub(crate) hardest: Option<(GroupLoad, Option<f64>)>,
+    /// What the supports lack; when, s, where that matters.
+    pub(crate) missing: Option<(Missing, Option<f64>)>,
+    /// All targets that are missed, the most important first.
+    pub(crate) missed: Vec<Missed>,
+    /// The group that fails first, its time (s) and the spread of that time.
+    pub(crate) fails: Option<(GroupLoad, f64, (f64, f64))>,
+    /// The run was left before its end, at that time, s.
+    pub(crate) interrupted: Option<f64>,
+}
+
+impl Findings {
+    /// The kind, by precedence.
+    fn kind(&self) -> VerdictKind {
+        if self.hardest.is_some_and(|(group, _)| group.load > 1.0) {
+            VerdictKind::CannotBeDone
+        } else if self.missing.is_some() {
+            VerdictKind::CannotStand
+        } else if self.missed.first().is_some_and(|missed| missed.decides) {
+            VerdictKind::NotReached
+        } else if self.fails.is_some() {
+            VerdictKind::HeldUntil
+        } else {
+            VerdictKind::Holds
+        }
+    }
+}

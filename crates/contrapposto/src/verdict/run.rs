@@ -1,0 +1,41 @@
+//! Judges a run over time.
+
+use super::spread::spread;
+use super::{Findings, Missed, Verdict};
+use crate::joint_torques::GroupLoad;
+use crate::model::Side;
+use crate::simulation::{Scenario, StopReason, Summary};
+
+impl Verdict {
+    /// Of a run, whether it went to its end or not.
+    pub fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
+        let levels = scenario.tasks.iter().map(|task| &task.goal).zip(summary.errors.iter().copied());
+        let slip = summary.standing.as_ref().and_then(|standing| Missed::of_supports(standing.slip));
+        let interrupted = summary.reason == StopReason::Interrupted;
+        Findings {
+            asked: Some(summary.end_time),
+            hardest: summary.hardest.map(|(group, time)| (group, Some(time))),
+            missing: summary.fall.map(|fall| (fall.missing, Some(fall.time))),
+            missed: slip.into_iter().chain(Missed::of_levels(&scenario.model, levels)).collect(),
+            fails: fails(scenario, summary),
+            interrupted: interrupted.then_some(summary.end_time),
+        }
+        .verdict(&scenario.model)
+    }
+}
+
+/// The group that fails first in a run, its time (s) and the spread of that time.
+fn fails(scenario: &Scenario, summary: &Summary) -> Option<(GroupLoad, f64, (f64, f64))> {
+    let failures = summary.coordinates.iter().enumerate().flat_map(|(coordinate, course)| {
+        Side::BOTH.into_iter().filter_map(move |side| Some((coordinate, side, course.exhausted_at[side.index()]?)))
+    });
+    let (coordinate, side, time) = failures.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    let group = &scenario.model.coordinates()[coordinate].groups.as_ref()?[side.index()];
+    let history = &summary.coordinates[coordinate].loads[side.index()];
+    let start = scenario.start_fatigue[coordinate][side.index()];
+    let (least, greatest) = spread(group, history, start, summary.end_time);
+    let load = history.at(time);
+    let angle = summary.coordinates[coordinate].final_value;
+    let torque = side.signed(load * group.strength.torque(angle));
+    Some((GroupLoad { coordinate, side, torque, load }, time, (least.min(time), greatest.max(time))))
+}
