@@ -19,6 +19,7 @@ pub(crate) mod residual;
 pub(crate) mod scene;
 pub(crate) mod selection;
 mod solid;
+pub(crate) mod stage;
 mod surfaces;
 pub(crate) mod tables;
 pub(crate) mod text;

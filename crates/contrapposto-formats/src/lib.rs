@@ -25,6 +25,7 @@ mod passive_law;
 mod pose;
 mod scenario;
 mod summary;
+mod thing;
 mod toml_file;
 mod trajectory_csv;
 mod verdict;
@@ -38,9 +39,10 @@ pub use numbers::NumberError;
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
-    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, read_pose, read_relax, read_scenario, read_scenario_with_notes,
+    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, read_pose, read_relax, read_run, read_scenario,
     scenario_model, scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
+pub use thing::Thing;
 pub use trajectory_csv::{TableRow, csv_header, csv_row};
 pub use verdict::{MissedText, VerdictText};

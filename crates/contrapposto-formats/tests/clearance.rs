@@ -238,3 +238,15 @@ fn obstacles_of_a_file_become_pairs() {
         assert!(error.contains(message), "{error}");
     }
 }
+
+#[test]
+fn a_block_among_the_obstacles_is_a_thing_of_its_size_and_place_and_a_wall_is_none() {
+    let text = "format = 1\n[model]\nadult = { sex = \"female\", stature_m = 1.65, mass_kg = 60 }\n[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n\
+        [[task]]\nkind = \"effort\"\n[[obstacle]]\nname = \"table\"\nmiddle_m = [0.6, 0.7, 0.1]\nsize_m = [0.7, 0.03, 1.4]\n\
+        [[obstacle]]\nname = \"wall\"\nnormal = [1, 0, 0]\npoint_m = [-1, 0, 0]\n";
+    let things = contrapposto_formats::read_relax("a.toml", text.as_bytes(), None).unwrap().things;
+    assert_eq!(things.len(), 1);
+    assert_eq!((things[0].name.as_str(), things[0].segment), ("table", None));
+    assert!((things[0].size - nalgebra::Vector3::new(0.7, 0.03, 1.4)).norm() < 1e-12);
+    assert!((things[0].place.translation.vector - nalgebra::Vector3::new(0.6, 0.7, 0.1)).norm() < 1e-12);
+}

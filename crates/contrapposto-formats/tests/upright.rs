@@ -8,7 +8,7 @@ use common::complaint;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture_solver::Engine;
 use contrapposto::tasks::{LookAtGoal, Task};
-use contrapposto_formats::{RelaxScenario, read_pose, read_relax, read_scenario, read_scenario_with_notes};
+use contrapposto_formats::{RelaxScenario, RunScenario, read_pose, read_relax, read_run, read_scenario};
 
 const FEET: &str = "[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n";
 const EFFORT: &str = "[[task]]\nkind = \"effort\"\n";
@@ -80,7 +80,7 @@ fn an_event_still_names_the_tasks_of_the_file() {
     let event = "[[event]]\nat_s = 0.5\ntask = 2\ntarget_m = [0.5, 1.3, 0.3]\n";
     // Effort first, so that the added task stands above the one that the event names.
     let text = format!("format = 1\n{FEET}{EFFORT}{HAND}{RUN}{event}");
-    let (scenario, notes) = read_scenario_with_notes("a.toml", text.as_bytes(), None).unwrap();
+    let RunScenario { scenario, notes, .. } = read_run("a.toml", text.as_bytes(), None).unwrap();
     let kinds: Vec<&str> = scenario.tasks.iter().map(|task| task.goal.tasks[0].kind()).collect();
     assert_eq!((kinds, notes.len()), (vec!["look_at", "effort", "point"], 1));
     let (level, goal) = &scenario.events[0].tasks[0];

@@ -2,6 +2,11 @@
 
 use crate::axes::drawable;
 
+/// Greatest number of surfaces and of things that are drawn.
+const MOST_BOXES: usize = 24;
+/// Thickness of a surface, m.
+const SLAB_THICKNESS: f64 = 0.025;
+
 /// Bodies side by side.
 #[derive(Clone, Debug, Default)]
 pub struct BodyFigure {
@@ -32,6 +37,12 @@ pub struct BodyPosture {
     pub center_of_mass: Option<[f64; 3]>,
     /// Height of the ground; with `None` no ground is drawn.
     pub ground: Option<f64>,
+    /// Surfaces that carry the body, a seat, a table, a step: the four corners of each in order.
+    pub surfaces: Vec<[[f64; 3]; 4]>,
+    /// Things around the body and in its hands.
+    pub things: Vec<BodyThing>,
+    /// Loads on the body besides its weight.
+    pub loads: Vec<BodyForce>,
     /// Targets of points, drawn as crosses.
     pub targets: Vec<[f64; 3]>,
     /// Lines of sight: the eye and its target.
@@ -46,6 +57,18 @@ pub struct BodyPart {
     /// Load of the muscles that move the part, as a share of their strength, not negative; `None` where it is not known.
     pub load: Option<f64>,
 }
+
+/// A thing, drawn as a box.
+#[derive(Clone, Debug, Default)]
+pub struct BodyThing {
+    /// Its name in the legend.
+    pub label: String,
+    /// Its corners; the bits of the index say at which end along its axes x (1), y (2) and z (4).
+    pub corners: Corners,
+}
+
+/// The corners of a box, in the order that [`BodyThing`] explains.
+pub(crate) type Corners = [[f64; 3]; 8];
 
 /// A force on the body.
 #[derive(Clone, Copy, Debug, Default)]
@@ -70,6 +93,13 @@ impl BodyForce {
 }
 
 impl BodyPosture {
+    /// Corners of all boxes that are drawn: surfaces as thin slabs, then things, which `true` marks.
+    pub(crate) fn boxes(&self) -> impl Iterator<Item = (Corners, bool)> {
+        let surfaces = self.surfaces.iter().take(MOST_BOXES).map(|corners| (slab(corners), false));
+        let things = self.things.iter().take(MOST_BOXES).map(|thing| (thing.corners, true));
+        surfaces.chain(things).filter(|(corners, _)| corners.iter().flatten().all(|v| drawable(*v)))
+    }
+
     /// A square of the ground around the contacts and below the centre of mass.
     pub(crate) fn ground_square(&self) -> Option<[[f64; 3]; 4]> {
         const AROUND: f64 = 0.28;
@@ -85,4 +115,14 @@ impl BodyPosture {
         let (back, front, left, right) = (back - AROUND, front + AROUND, left - AROUND, right + AROUND);
         Some([corner(back, left), corner(front, left), corner(front, right), corner(back, right)])
     }
+}
+
+/// A thin box below four corners.
+fn slab(top: &[[f64; 3]; 4]) -> Corners {
+    let [u, v] = [1, 3].map(|i| [0, 1, 2].map(|k| top[i][k] - top[0][k]));
+    let up = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let length = up.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+    let below = |corner: [f64; 3]| [0, 1, 2].map(|k| corner[k] - SLAB_THICKNESS * up[k] / length);
+    let [a, b, c, d] = *top;
+    [below(a), below(b), a, b, below(d), below(c), d, c]
 }

@@ -68,7 +68,11 @@ impl Layout {
         let single = postures.len() <= 1;
         let columns = if single { VIEWS.len() } else { postures.len() };
         let width = (WIDTH - 2.0 * MARGIN - COLUMN_GAP * (columns - 1) as f64) / columns as f64;
-        let carried = |posture: &BodyPosture| posture.forces.iter().take(MOST_PARTS).map(BodyForce::size).sum::<f64>();
+        // Loads of a body without contacts have arrows as long as its contact forces would have.
+        let carried = |posture: &BodyPosture| {
+            let sum = |forces: &[BodyForce]| forces.iter().take(MOST_PARTS).map(BodyForce::size).sum::<f64>();
+            if posture.forces.is_empty() { sum(&posture.loads) } else { sum(&posture.forces) }
+        };
         let weight = postures.iter().map(carried).fold(0.0, f64::max);
         let length_per_newton = if weight > 0.0 { WEIGHT_ARROW / weight } else { 0.0 };
         let bounds = |view| postures.iter().map(|p| Bounds::of(p, view, length_per_newton)).collect();

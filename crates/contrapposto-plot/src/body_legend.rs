@@ -2,13 +2,13 @@
 
 use crate::axes::number_text;
 use crate::body::{BodyFigure, BodyPosture};
-use crate::body_paper::{arrow, cross};
+use crate::body_paper::{GLASS, arrow, cross};
 use crate::canvas::Canvas;
 use crate::geometry::Point;
 use crate::shape::Align;
 use crate::style::{
-    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, Ink, MARGIN, OUTLINE_PEN, PAPER, Pen, SMALL_SIZE, TEXT, UNKNOWN, WIDTH,
-    load_ink,
+    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, HELD, Ink, MARGIN, OUTLINE_PEN, PAPER, Pen, SMALL_SIZE, SURFACE_PEN,
+    TEXT, THING_PEN, UNKNOWN, WIDTH, load_ink,
 };
 use crate::text::{fit, text_width};
 
@@ -63,17 +63,13 @@ pub(crate) fn legend(
             swatch(canvas, x, y, GHOST, Pen::solid(GHOST_EDGE, 1.0))
         });
     }
-    if newton > 0.0 && any(&|posture| !posture.forces.is_empty()) {
-        let size = round(34.0 / newton);
-        let length = size * newton;
-        let label = format!("contact force, {}", amount(size, "N"));
-        row.entry("", length, &label, |canvas, (x, y)| arrow(canvas, (x, y), (x + length, y), FORCE));
-    }
+    force_entries(&mut row, postures, newton);
     if any(&|posture| posture.center_of_mass.is_some()) {
         row.entry("", SAMPLE_HEIGHT, "centre of mass", |canvas, (x, y)| {
             canvas.dot((x + 0.5 * SAMPLE_HEIGHT, y), 5.0, CENTER, PAPER)
         });
     }
+    box_entries(&mut row, postures);
     if any(&|posture| !posture.targets.is_empty()) {
         let label = match outside {
             0 => picture.target.clone(),
@@ -92,6 +88,36 @@ pub(crate) fn legend(
         [x, x + length].into_iter().for_each(|x| canvas.line(&[(x, y - 4.0), (x, y + 4.0)], pen));
     });
     row.at.1 + 0.5 * ROW_HEIGHT
+}
+
+/// Draws samples of contact forces and loads; `newton` in px.
+fn force_entries(row: &mut Row<'_>, postures: &[BodyPosture], newton: f64) {
+    let contact = postures.iter().any(|posture| !posture.forces.is_empty());
+    let held = postures.iter().any(|posture| !posture.loads.is_empty());
+    if newton > 0.0 {
+        let size = round(34.0 / newton);
+        let length = size * newton;
+        for (name, ink, _) in [("contact force", FORCE, contact), ("load", HELD, held)].into_iter().filter(|e| e.2) {
+            let label = format!("{name}, {}", amount(size, "N"));
+            row.entry("", length, &label, |canvas, (x, y)| arrow(canvas, (x, y), (x + length, y), ink));
+        }
+    }
+}
+
+/// Draws samples of surfaces and things.
+fn box_entries(row: &mut Row<'_>, postures: &[BodyPosture]) {
+    if postures.iter().any(|posture| !posture.surfaces.is_empty()) {
+        row.entry("", SAMPLE_HEIGHT, "seat, table, step or wall", |canvas, (x, y)| glass(canvas, x, y, SURFACE_PEN));
+    }
+    let mut names: Vec<&str> = vec![];
+    for thing in postures.iter().flat_map(|posture| &posture.things) {
+        if !names.contains(&thing.label.as_str()) {
+            names.push(&thing.label);
+        }
+    }
+    if !names.is_empty() {
+        row.entry("", SAMPLE_HEIGHT, &names.join(", "), |canvas, (x, y)| glass(canvas, x, y, THING_PEN));
+    }
 }
 
 /// Draws the colour scale of muscle load, and the colour of parts whose load is not known.
@@ -114,6 +140,13 @@ fn load_entries(row: &mut Row<'_>, postures: &[BodyPosture], scale_end: f64) {
     if any(&|posture| posture.parts.iter().any(|part| part.load.is_none())) {
         row.entry("", SAMPLE_HEIGHT, "load not known", |canvas, (x, y)| swatch(canvas, x, y, UNKNOWN, OUTLINE_PEN));
     }
+}
+
+fn glass(canvas: &mut Canvas, x: f64, y: f64, pen: Pen) {
+    let half = 0.5 * SAMPLE_HEIGHT;
+    let corners = [(x, y - half), (x + SAMPLE_HEIGHT, y - half), (x + SAMPLE_HEIGHT, y + half), (x, y + half)];
+    canvas.glass(&corners, pen.ink, GLASS);
+    canvas.line(&[corners[0], corners[1], corners[2], corners[3], corners[0]], pen);
 }
 
 fn swatch(canvas: &mut Canvas, x: f64, y: f64, fill: Ink, pen: Pen) {

@@ -1,15 +1,15 @@
 //! Draws one body in one view: its parts from the farthest to the nearest, then the marks on them.
 
 use crate::axes::drawable;
-use crate::body::{BodyForce, BodyPart, BodyPosture};
+use crate::body::{BodyForce, BodyPart, BodyPosture, Corners};
 use crate::body_view::{Bounds, MOST_PARTS, View, balls};
 use crate::canvas::Canvas;
 use crate::depth::{Solid, order};
-use crate::geometry::Point;
+use crate::geometry::{Point, Rect, clip, clip_polygon};
 use crate::path::Path;
 use crate::style::{
-    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, GROUND, GROUND_PEN, Ink, OUTLINE_PEN, PAPER, PLUMB_PEN, Pen,
-    TARGET_PEN, UNKNOWN, load_ink,
+    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, GROUND, GROUND_PEN, HELD, Ink, OUTLINE_PEN, PAPER, PLUMB_PEN, Pen,
+    SURFACE_PEN, TARGET_PEN, THING_PEN, UNKNOWN, load_ink,
 };
 
 /// Half the width of a cross, px.
@@ -18,6 +18,8 @@ const CROSS: f64 = 5.0;
 const HEAD: (f64, f64) = (9.0, 4.0);
 /// Shorter arrows are not drawn, px.
 const SHORTEST_ARROW: f64 = 2.0;
+/// Opacity of surfaces and things.
+pub(crate) const GLASS: f64 = 0.3;
 /// A target farther than this beyond the bounds, m, is outside.
 const BOUNDS_TOLERANCE: f64 = 1e-9;
 
@@ -55,14 +57,14 @@ impl Paper<'_> {
             canvas.polygon(&corners, GROUND, GROUND_PEN);
         }
         self.ghost(canvas, &posture.start);
-        self.parts(canvas, &posture.parts);
+        self.solids_in_order(canvas, posture, bounds);
         for gaze in posture.gazes.iter().take(MOST_PARTS) {
             let points: Vec<Point> =
                 gaze.iter().filter(|p| within(bounds, self.view, **p)).filter_map(|p| self.point(*p)).collect();
             canvas.line(&points, GAZE_PEN);
         }
-        for force in posture.forces.iter().take(MOST_PARTS) {
-            self.force(canvas, force);
+        for (forces, ink) in [(&posture.forces, FORCE), (&posture.loads, HELD)] {
+            forces.iter().take(MOST_PARTS).for_each(|force| self.force(canvas, force, ink));
         }
         if let Some((center, at)) = posture.center_of_mass.and_then(|center| Some((center, self.point(center)?))) {
             if let Some(foot) = posture.ground.and_then(|ground| self.point([center[0], ground, center[2]])) {
@@ -100,18 +102,52 @@ impl Paper<'_> {
         }
     }
 
-    fn parts(&self, canvas: &mut Canvas, parts: &[BodyPart]) {
-        let (solids, loads): (Vec<Solid>, Vec<Option<f64>>) = self.solids(parts).into_iter().unzip();
+    /// Parts of the body, which hide what is behind them, and surfaces and things, which do not.
+    fn solids_in_order(&self, canvas: &mut Canvas, posture: &BodyPosture, bounds: &Bounds) {
+        let (mut solids, loads): (Vec<Solid>, Vec<Option<f64>>) = self.solids(&posture.parts).into_iter().unzip();
+        let boxes: Vec<(Corners, bool)> = posture.boxes().collect();
+        for (corners, _) in &boxes {
+            let points = corners.map(|corner| self.place(corner)).map(|[x, y, z]| [x, y, z, 0.0]);
+            solids.push(Solid::new(&points));
+        }
         for i in order(&solids) {
-            let known = loads[i].filter(|load| !load.is_nan());
-            let fill = known.map_or(UNKNOWN, |load| load_ink(load / self.scale_end));
-            canvas.shape(solids[i].outline.path(), fill, OUTLINE_PEN);
+            match loads.get(i) {
+                Some(load) => {
+                    let known = load.filter(|load| !load.is_nan());
+                    let fill = known.map_or(UNKNOWN, |load| load_ink(load / self.scale_end));
+                    canvas.shape(solids[i].outline.path(), fill, OUTLINE_PEN);
+                }
+                None => {
+                    let (corners, is_thing) = &boxes[i - loads.len()];
+                    let pen = if *is_thing { THING_PEN } else { SURFACE_PEN };
+                    self.glass_box(canvas, corners, &solids[i], pen, bounds);
+                }
+            }
         }
     }
 
-    fn force(&self, canvas: &mut Canvas, force: &BodyForce) {
+    /// A box through which the marks behind it are seen, as far as it is within the bounds.
+    fn glass_box(&self, canvas: &mut Canvas, corners: &Corners, solid: &Solid, pen: Pen, bounds: &Bounds) {
+        if bounds.is_empty() {
+            return;
+        }
+        let [width, height] = bounds.size().map(|size| self.scale * size);
+        let [left, top] = [bounds.low[0], bounds.high[1]];
+        let left = self.center.0 + self.scale * (left - self.middle[0]);
+        let top = self.center.1 - self.scale * (top - self.middle[1]);
+        let window = Rect { left, top, width, height };
+        canvas.glass(&clip_polygon(solid.outline.corners(), window), pen.ink, GLASS);
+        for i in 0..corners.len() {
+            for k in [1, 2, 4].map(|bit| i | bit).into_iter().filter(|k| *k != i) {
+                let ends: Vec<Point> = [i, k].into_iter().filter_map(|end| self.point(corners[end])).collect();
+                clip(&ends, window).iter().for_each(|part| canvas.line(part, pen));
+            }
+        }
+    }
+
+    fn force(&self, canvas: &mut Canvas, force: &BodyForce, ink: Ink) {
         if let (Some(foot), Some(tip)) = (self.point(force.at), self.point(force.tip(self.length_per_newton))) {
-            arrow(canvas, foot, tip, FORCE);
+            arrow(canvas, foot, tip, ink);
         }
     }
 }

@@ -9,6 +9,9 @@ use crate::outline::MOST_CIRCLES;
 /// Greatest number of parts of a body that are drawn, and of forces, targets and lines of sight.
 pub(crate) const MOST_PARTS: usize = 120;
 
+/// Surfaces and things farther than this beyond the rest, m, are cut off.
+const FARTHEST_BOX: f64 = 0.35;
+
 /// A direction of view.
 pub(crate) struct View {
     pub(crate) label: &'static str,
@@ -59,7 +62,8 @@ impl Bounds {
             bounds.take([x - r, y - r]);
             bounds.take([x + r, y + r]);
         }
-        let tips = posture.forces.iter().take(MOST_PARTS).map(|force| force.tip(length_per_newton));
+        let forces = posture.forces.iter().take(MOST_PARTS).chain(posture.loads.iter().take(MOST_PARTS));
+        let tips = forces.map(|force| force.tip(length_per_newton));
         let marks = tips.chain(posture.center_of_mass).chain(posture.ground_square().into_iter().flatten());
         marks.for_each(|mark| bounds.take_point(view, mark));
         // A target farther from the body than the body's size stays outside, so that the body is not drawn small.
@@ -71,7 +75,21 @@ impl Bounds {
                 bounds.take_point(view, *target);
             }
         }
+        bounds.take_boxes(posture, view);
         bounds
+    }
+
+    /// Takes in surfaces and things, as far as they are near the rest.
+    fn take_boxes(&mut self, posture: &BodyPosture, view: &View) {
+        if self.is_empty() {
+            return;
+        }
+        let near = *self;
+        for corner in posture.boxes().flat_map(|(corners, _)| corners) {
+            let seen = view.project(corner);
+            let within = |k: usize| seen[k].clamp(near.low[k] - FARTHEST_BOX, near.high[k] + FARTHEST_BOX);
+            self.take([within(0), within(1)]);
+        }
     }
 
     fn take_point(&mut self, view: &View, point: [f64; 3]) {

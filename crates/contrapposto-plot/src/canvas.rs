@@ -38,7 +38,15 @@ impl Canvas {
 
     /// A filled closed path with a solid outline.
     pub(crate) fn shape(&mut self, path: Path, fill: Ink, pen: Pen) {
-        self.shapes.push(Shape::Path { path, fill: Some(fill), stroke: pen.ink, width: pen.width });
+        self.shapes.push(Shape::Path { path, fill: Some((fill, 1.0)), stroke: pen.ink, width: pen.width });
+    }
+
+    /// A polygon through which the marks below it are seen, without an outline; of fewer than three points, nothing.
+    pub(crate) fn glass(&mut self, corners: &[Point], fill: Ink, opacity: f64) {
+        if corners.len() > 2 {
+            let path = Path::polygon(corners);
+            self.shapes.push(Shape::Path { path, fill: Some((fill, opacity)), stroke: fill, width: 0.0 });
+        }
     }
 
     /// A filled polygon with an outline; of fewer than three points, nothing.

@@ -71,6 +71,31 @@ fn clip_segment(a: Point, b: Point, window: Rect) -> Option<(Point, Point)> {
     Some((at(from), at(to)))
 }
 
+/// The part of a convex polygon inside the rectangle (Sutherland and Hodgman 1974): each edge of the rectangle cuts off the corners
+/// beyond it.
+pub(crate) fn clip_polygon(corners: &[Point], window: Rect) -> Vec<Point> {
+    let mut left = corners.to_vec();
+    // Room to each edge, positive inside.
+    let rooms: [&dyn Fn(Point) -> f64; 4] =
+        [&|p| p.0 - window.left, &|p| window.right() - p.0, &|p| p.1 - window.top, &|p| window.bottom() - p.1];
+    for room in rooms {
+        let mut inside = vec![];
+        for (i, &b) in left.iter().enumerate() {
+            let a = left[(i + left.len() - 1) % left.len()];
+            let (from, to) = (room(a), room(b));
+            if (from < 0.0) != (to < 0.0) {
+                let t = from / (from - to);
+                inside.push((a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1)));
+            }
+            if to >= 0.0 {
+                inside.push(b);
+            }
+        }
+        left = inside;
+    }
+    left
+}
+
 /// The dashes of a line: `dash` px drawn, `gap` px left out, and so on along the whole line.
 pub(crate) fn dashes(points: &[Point], dash: f64, gap: f64) -> Vec<Vec<Point>> {
     let mut parts: Vec<Vec<Point>> = Vec::new();
@@ -160,6 +185,13 @@ mod tests {
     fn clipping_a_line_that_leaves_the_window_twice_gives_two_parts() {
         let parts = clip(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (8.0, 20.0), (8.0, 2.0)], WINDOW);
         assert_eq!(parts, [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)], vec![(8.0, 10.0), (8.0, 2.0)]]);
+    }
+
+    #[test]
+    fn clipping_a_triangle_at_an_edge_gives_a_quadrilateral_and_one_outside_gives_nothing() {
+        let clipped = clip_polygon(&[(-4.0, 2.0), (4.0, 2.0), (4.0, 6.0)], WINDOW);
+        assert_eq!(clipped, [(0.0, 4.0), (0.0, 2.0), (4.0, 2.0), (4.0, 6.0)]);
+        assert!(clip_polygon(&[(-4.0, 2.0), (-1.0, 2.0), (-1.0, 6.0)], WINDOW).is_empty());
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | Torque balance | [`torque_balance()`] | Figures 1 and 7-14 of Rodriguez & Boulic (2007): torques against the angle, the path of the active torque, the arm |
 //! | Passive curve | [`passive_curve()`] | passive torque and its slope over the range of a coordinate |
-//! | Bodies | [`body_figure()`] | one posture from three sides, or several side by side: load colours, contact forces, centre of mass, targets, the start as a ghost |
+//! | Bodies | [`body_figure()`] | one posture from three sides, or several side by side: load colours, contact forces, loads, centre of mass, targets, surfaces and things, the start as a ghost |
 //! | Time line | [`time_line()`] | angle, torques and fatigue of one coordinate against time |
 //!
 //! Every function takes any input without panicking: numbers that are not finite (or beyond 1e9 in size) leave a gap
@@ -41,7 +41,7 @@ mod text;
 mod time_line;
 mod torque_balance;
 
-pub use body::{BodyFigure, BodyForce, BodyPart, BodyPosture};
+pub use body::{BodyFigure, BodyForce, BodyPart, BodyPosture, BodyThing};
 pub use body_figure::body_figure;
 pub use figure::{Figure, PlotError};
 pub use passive_chart::{PassiveChart, passive_curve};

@@ -73,6 +73,11 @@ impl Outline {
         Self { arcs, corners }
     }
 
+    /// Corners of the hull of circles without radius, one after the other.
+    pub(crate) fn corners(&self) -> &[Point] {
+        &self.corners
+    }
+
     /// Whether the hull contains the point.
     pub(crate) fn contains(&self, (x, y): Point) -> bool {
         let left_of = |(a, b): (&Point, &Point)| (b.0 - a.0) * (y - a.1) - (b.1 - a.1) * (x - a.0) >= 0.0;

@@ -34,20 +34,20 @@ impl Sheet {
         match shape {
             Shape::Path { path, fill, stroke, width } => {
                 let path = outline(path);
-                if let Some(fill) = fill {
-                    self.fill(path.as_ref(), *fill, Transform::identity());
+                if let Some((fill, opacity)) = fill {
+                    self.fill(path.as_ref(), paint(*fill, *opacity), Transform::identity());
                 }
                 self.stroke(path.as_ref(), *stroke, *width);
             }
             Shape::Circle { center, radius, fill, rim, rim_width } => {
                 let circle = PathBuilder::from_circle(center.0 as f32, center.1 as f32, *radius as f32);
-                self.fill(circle.as_ref(), *fill, Transform::identity());
+                self.fill(circle.as_ref(), paint(*fill, 1.0), Transform::identity());
                 self.stroke(circle.as_ref(), *rim, *rim_width);
             }
             Shape::Block { area, fill } => {
                 let [left, top, width, height] = [area.left, area.top, area.width, area.height].map(|v| v as f32);
                 let block = tiny_skia::Rect::from_xywh(left, top, width, height).map(PathBuilder::from_rect);
-                self.fill(block.as_ref(), *fill, Transform::identity());
+                self.fill(block.as_ref(), paint(*fill, 1.0), Transform::identity());
             }
             Shape::Text(text) => self.text(text),
         }
@@ -65,14 +65,14 @@ impl Sheet {
         let mut letters = PathBuilder::new();
         font.outline(&text.content, size, (left, y), &mut letters);
         let turn = if text.upward { Transform::from_rotate_at(-90.0, x, y) } else { Transform::identity() };
-        self.fill(letters.finish().as_ref(), text.ink, turn);
+        self.fill(letters.finish().as_ref(), paint(text.ink, 1.0), turn);
     }
 
     /// A path without points, or with one that is not a number, is not drawn.
-    fn fill(&mut self, path: Option<&tiny_skia::Path>, ink: Ink, turn: Transform) {
+    fn fill(&mut self, path: Option<&tiny_skia::Path>, paint: Paint, turn: Transform) {
         if let Some(path) = path {
             let transform = turn.post_scale(PIXELS_PER_UNIT, PIXELS_PER_UNIT);
-            self.pixmap.fill_path(path, &paint(ink), FillRule::Winding, transform, None);
+            self.pixmap.fill_path(path, &paint, FillRule::Winding, transform, None);
         }
     }
 
@@ -82,7 +82,7 @@ impl Sheet {
         if let Some(path) = path {
             self.pixmap.stroke_path(
                 path,
-                &paint(ink),
+                &paint(ink, 1.0),
                 &round,
                 Transform::from_scale(PIXELS_PER_UNIT, PIXELS_PER_UNIT),
                 None,
@@ -107,8 +107,8 @@ fn outline(path: &Path) -> Option<tiny_skia::Path> {
     builder.finish()
 }
 
-fn paint(ink: Ink) -> Paint<'static> {
+fn paint(ink: Ink, opacity: f64) -> Paint<'static> {
     let mut paint = Paint::default();
-    paint.set_color_rgba8(ink.0, ink.1, ink.2, 255);
+    paint.set_color_rgba8(ink.0, ink.1, ink.2, (255.0 * opacity).round() as u8);
     paint
 }

@@ -30,10 +30,10 @@ pub(crate) struct Text {
 /// One mark.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
-    /// A path drawn with a pen; with `fill`, its inside is filled first.
+    /// A path drawn with a pen; with `fill`, its inside is filled first, opaque at 1 and not at all at 0.
     Path {
         path: Path,
-        fill: Option<Ink>,
+        fill: Option<(Ink, f64)>,
         stroke: Ink,
         width: f64,
     },

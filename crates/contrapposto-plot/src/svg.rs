@@ -32,7 +32,10 @@ impl Display for Shape {
                 let width = Px(*width);
                 write!(f, "<path d=\"{path}\" stroke=\"{stroke}\" stroke-width=\"{width}\" fill=\"")?;
                 match fill {
-                    Some(fill) => write!(f, "{fill}\"/>"),
+                    Some((fill, opacity)) if *opacity < 1.0 => {
+                        write!(f, "{fill}\" fill-opacity=\"{}\"/>", Px(*opacity))
+                    }
+                    Some((fill, _)) => write!(f, "{fill}\"/>"),
                     None => write!(f, "none\"/>"),
                 }
             }

@@ -2,9 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
-use contrapposto_plot::{BodyFigure, BodyForce, BodyPart, BodyPosture, body_figure};
+use contrapposto_plot::{BodyFigure, BodyForce, BodyPart, BodyPosture, BodyThing, body_figure};
 
 const HOSTILE_TEXT: &str = "</text><script>alert(\"&'\")</script> $x$ \u{0} \u{ffff} 関節 \u{202e}";
+
+/// A cube before the body.
+fn thing(label: &str, edge: f64) -> BodyThing {
+    let end = |i: usize, bit: usize| if i & bit == 0 { 0.0 } else { edge };
+    let corners = std::array::from_fn(|i| [0.3 + end(i, 1), 0.7 + end(i, 2), 0.1 + end(i, 4)]);
+    BodyThing { label: label.to_owned(), corners }
+}
 
 /// A standing body of a few parts: trunk, head, two arms, two legs.
 fn body(load: f64) -> BodyPosture {
@@ -29,6 +36,9 @@ fn body(load: f64) -> BodyPosture {
         forces: vec![BodyForce { at: [0.0, 0.0, 0.1], force: [0.0, 500.0, 0.0] }],
         center_of_mass: Some([0.02, 0.95, 0.0]),
         ground: Some(0.0),
+        surfaces: vec![[[0.5, 0.4, -0.3], [0.2, 0.4, -0.3], [0.2, 0.4, 0.3], [0.5, 0.4, 0.3]]],
+        things: vec![thing("a box", 0.3), thing("a wall", 30.0)],
+        loads: vec![BodyForce { at: [0.3, 0.9, 0.2], force: [0.0, -80.0, 0.0] }],
         targets: vec![[0.4, 1.5, 0.2]],
         gazes: vec![[[0.05, 1.6, 0.0], [0.4, 1.5, 0.2]]],
     }
@@ -163,6 +173,31 @@ fn parts_have_the_colours_of_their_loads_and_the_scale_ends_at_a_round_number() 
 }
 
 #[test]
+fn boxes_are_translucent_cut_off_far_from_the_body_and_named_in_the_legend() {
+    let svg = body_figure(&figure(vec![body(0.1)], "")).svg();
+    let glass: Vec<&str> = svg.lines().filter(|line| line.contains("fill-opacity")).collect();
+    // Seat, box and wall in three views, and two samples of the legend.
+    assert_eq!(glass.len(), 3 * 3 + 2);
+    let height = number(&svg, "height");
+    let lines = svg.lines().filter(|line| line.contains("#5f7690") || line.contains("#a07a4c"));
+    for line in lines {
+        let numbers = attribute(line, "d").replace(['M', 'L', 'Z'], " ");
+        let numbers: Vec<f64> = numbers.split_whitespace().map(|n| n.parse().unwrap()).collect();
+        let inside = |p: &[f64]| (0.0..=800.0).contains(&p[0]) && (0.0..=height).contains(&p[1]);
+        assert!(numbers.chunks_exact(2).all(inside), "{line}");
+    }
+    let words: Vec<String> = texts(&svg).into_iter().map(|(_, said)| said).collect();
+    for said in ["a box, a wall", "seat, table, step or wall"] {
+        assert!(words.iter().any(|word| word == said), "{said}");
+    }
+    assert!(words.iter().any(|word| word.starts_with("load, ")));
+    let mut bare = body(0.1);
+    (bare.surfaces, bare.things, bare.loads) = (vec![], vec![], vec![]);
+    let bare = body_figure(&figure(vec![bare], "")).svg();
+    assert!(!bare.contains("fill-opacity") && !bare.contains("#6a2c91"));
+}
+
+#[test]
 fn arrows_of_forces_have_the_scale_of_the_legend() {
     let svg = body_figure(&figure(vec![body(0.1)], "")).svg();
     let words = texts(&svg).into_iter().map(|(_, said)| said).find(|said| said.starts_with("contact force, ")).unwrap();
@@ -204,6 +239,9 @@ fn extreme_numbers_and_texts_with_markup_give_well_formed_figures() {
                 forces: vec![BodyForce { at: [a, b, a], force: [b, a, b] }],
                 center_of_mass: Some([a, a, b]),
                 ground: Some(b),
+                surfaces: vec![[[a, b, a], [b, a, b], [a, a, b], [b, b, a]]],
+                things: vec![BodyThing { label: HOSTILE_TEXT.to_owned(), corners: [[a, b, a]; 8] }, thing("box", a)],
+                loads: vec![BodyForce { at: [b, b, a], force: [a, b, a] }],
                 targets: vec![[a, b, b]],
                 gazes: vec![[[a, b, a], [b, b, a]]],
             });

@@ -1,12 +1,13 @@
-// The body in three dimensions: every segment is the hull of a few balls, coloured by a measure; with contact forces, centre of
-// mass, targets, surfaces, and the start as a ghost.
-const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, ARROW_HEAD = 0.09;
+// The body in three dimensions: every segment is the hull of a few balls, coloured by a measure; with contact forces, loads, centre
+// of mass, targets, surfaces, things, and the start as a ghost.
+const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.16, ARROW_HEAD = 0.09; // m
 
-// Largest sum of contact forces in any frame, N.
+// Largest sum of contact forces in any frame, N; of a body without supports, of loads.
 function largestWeight() {
   let weight = 0;
+  const pushes = report.supports.length ? report.supports : report.loads;
   for (let frame = 0; frame < report.frames; frame++) {
-    const sum = [0, 1, 2].map((k) => report.supports.reduce((force, support) => force + support.force[k][frame], 0));
+    const sum = [0, 1, 2].map((k) => pushes.reduce((force, push) => force + push.force[k][frame], 0));
     weight = Math.max(weight, Math.hypot(...sum));
   }
   return weight;
@@ -40,6 +41,8 @@ class Body {
       { mesh: painter.listMesh(gl.TRIANGLES, faces), alpha: 0.45 },
       { mesh: painter.listMesh(gl.LINES, edges), alpha: 0.85 },
     ]);
+    const box = boxPoints();
+    [this.boxFaces, this.boxEdges] = [painter.listMesh(gl.TRIANGLES, box.faces), painter.listMesh(gl.LINES, box.edges)];
     this.grid = report.ground === null ? null : painter.listMesh(gl.LINES, gridPoints(this.camera.middle, report.ground));
   }
 
@@ -55,11 +58,12 @@ class Body {
     this.drawSegments(frame, measure);
     painter.flatness(0.35);
     this.drawMarks(frame, 1);
-    // Surfaces are transparent: the body behind them stays visible.
+    // Surfaces and things are transparent: the body behind them stays visible.
     painter.flatness(0.6);
     gl.enable(gl.BLEND);
     gl.depthMask(false);
     for (const { mesh, alpha } of this.slabs) painter.list(mesh, styleColor("--surface"), alpha);
+    this.drawThings(frame);
     gl.depthMask(true);
     this.drawGhost(frame);
     // Marks behind the body shine through it.
@@ -79,6 +83,15 @@ class Body {
     });
   }
 
+  drawThings(frame) {
+    const color = styleColor("--thing");
+    for (const { places, size } of report.things) {
+      const place = stretched(placement(places, frame), size);
+      this.painter.list(this.boxFaces, color, 0.38, place);
+      this.painter.list(this.boxEdges, color, 0.9, place);
+    }
+  }
+
   // The start as a ghost: first its depth, then its nearest surface only, so that overlapping parts are not darker.
   drawGhost(frame) {
     const moved = (segment) => segment.start.some((column, k) => Math.abs(column[0] - segment.places[k][frame]) > 1e-3);
@@ -92,11 +105,12 @@ class Body {
     gl.colorMask(true, true, true, true);
   }
 
-  // Contact forces, centre of mass with its plumb line, targets.
+  // Contact forces, loads, centre of mass with its plumb line, targets.
   drawMarks(frame, alpha) {
     const at = (columns) => columns.map((column) => column[frame]);
     const dot = (point, size, height, color) => this.painter.hull(this.ball, scaledAt(point, size, height), color, alpha);
-    for (const support of report.supports) this.drawForce(at(support.at), at(support.force), alpha);
+    for (const support of report.supports) this.drawForce(at(support.at), at(support.force), "--force", alpha);
+    for (const load of report.loads) this.drawForce(at(load.at), at(load.force), "--load", alpha, SHORTEST_LOAD);
     if (report.center) {
       const [x, y, z] = at(report.center), color = styleColor("--center"), ground = report.ground;
       dot([x, y, z], 0.03, 0.03, color);
@@ -108,10 +122,12 @@ class Body {
     for (const target of report.targets) dot(target, 0.022, 0.022, styleColor("--target"));
   }
 
-  drawForce(foot, force, alpha) {
-    const arrow = force.map((newtons) => newtons * ARROW_OF_WEIGHT / this.weight), length = Math.hypot(...arrow);
-    if (length < SHORTEST_ARROW) return;
-    const color = styleColor("--force"), tip = foot.map((v, k) => v + arrow[k]);
+  // An arrow in proportion to the force, but not shorter than `shortest`; none of a force of next to nothing.
+  drawForce(foot, force, colorName, alpha, shortest = 0) {
+    const wanted = Math.hypot(...force) * ARROW_OF_WEIGHT / this.weight, length = Math.max(wanted, shortest);
+    if (wanted < SHORTEST_ARROW) return;
+    const arrow = unit(force).map((v) => v * length);
+    const color = styleColor(colorName), tip = foot.map((v, k) => v + arrow[k]);
     this.painter.hull(this.shaft, pointing(foot, arrow, 1, Math.max(0.001, length - ARROW_HEAD)), color, alpha);
     this.painter.hull(this.tip, pointing(tip, arrow, 1, 1), color, alpha);
   }

@@ -1,5 +1,5 @@
 // Placements and the camera, as matrices of four columns. Ground axes: y up.
-const FIELD_OF_VIEW = 0.45;
+const FIELD_OF_VIEW = 0.45, FARTHEST_THING = 0.5; // rad; m
 // Yaw and pitch of the camera, rad: yaw 0 is from the front, a quarter turn from the body's right.
 const VIEWS = { front: [0, 0.06], side: [Math.PI / 2, 0.06], between: [0.45, 0.14] };
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -25,7 +25,13 @@ function scaledAt(point, size, height) {
   return [size, 0, 0, 0, 0, height, 0, 0, 0, 0, size, 0, ...point, 1];
 }
 
-// Bounds of the segments in some frames and at the start, of the surfaces and of the targets.
+// A matrix that first scales along its own axes.
+function stretched(matrix, size) {
+  return matrix.map((v, i) => i < 12 ? v * (size[i >> 2]) : v);
+}
+
+// Bounds of the segments in some frames and at the start, of the surfaces, the targets and the things: of these at most
+// FARTHEST_THING beyond the rest, so that a wall does not make the body small.
 function sceneBounds() {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   const include = (k, from, to) => {
@@ -44,6 +50,17 @@ function sceneBounds() {
     for (const place of places) for (const ball of segment.balls) includeBall(place, ball);
   }
   for (const corner of [...report.surfaces.flat(), ...report.targets]) corner.forEach((c, k) => include(k, c, c));
+  const [lowest, highest] = [low.map((v) => v - FARTHEST_THING), high.map((v) => v + FARTHEST_THING)];
+  for (const thing of report.things) {
+    for (const frame of [0, frames.at(-1)]) {
+      const m = stretched(placement(thing.places, frame), thing.size);
+      for (let k = 0; k < 3; k++) {
+        const half = (Math.abs(m[k]) + Math.abs(m[4 + k]) + Math.abs(m[8 + k])) / 2;
+        const within = (v) => Math.min(highest[k], Math.max(lowest[k], v));
+        include(k, within(m[12 + k] - half), within(m[12 + k] + half));
+      }
+    }
+  }
   return { low, high };
 }
 

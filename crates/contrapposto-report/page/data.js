@@ -19,11 +19,12 @@ const report = (() => {
     segment.places = segment.places.map(list);
     segment.start = segment.start.map((value) => [value]);
   }
-  for (const support of read.supports) {
-    support.force = support.force.map(list);
-    support.at = support.at.map(list);
-    support.share = list(support.share);
+  for (const thing of read.things) thing.places = thing.places.map(list);
+  for (const push of [...read.supports, ...read.loads]) {
+    push.force = push.force.map(list);
+    push.at = push.at.map(list);
   }
+  for (const support of read.supports) support.share = list(support.share);
   for (const joint of read.joints) {
     for (const key of ["angle", "external", "passive", "load"]) joint[key] = list(joint[key]);
     joint.active = joint.external.map((external, i) => -(external + joint.passive[i]) || 0);

@@ -69,6 +69,20 @@ function slabPoints(top) {
   return { faces, edges };
 }
 
+// A box whose edges have length 1, about the origin: the triangles of its faces, and the lines of its edges.
+function boxPoints() {
+  const faces = [], edges = [], signs = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+  for (let axis = 0; axis < 3; axis++) {
+    const at = (along, [u, v]) => [0, 1, 2].map((k) => k === axis ? along : k === (axis + 1) % 3 ? u : v);
+    for (const side of [-0.5, 0.5]) {
+      const normal = at(2 * side, [0, 0]), corners = signs.map((sign) => at(side, sign));
+      for (const i of [0, 1, 2, 0, 2, 3]) faces.push(...corners[i], ...normal);
+    }
+    for (const sign of signs) edges.push(...at(-0.5, sign), 0, 1, 0, ...at(0.5, sign), 0, 1, 0);
+  }
+  return { faces, edges };
+}
+
 // Lines of a square grid on the ground, about a point.
 function gridPoints(middle, height) {
   const [x, z] = [middle[0], middle[2]].map((v) => Math.round(v / GRID_SPACING) * GRID_SPACING);

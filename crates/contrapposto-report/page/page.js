@@ -1,5 +1,5 @@
 // Ties the page together: one frame, one joint, one measure; everything shown follows from these three.
-const HARDEST_GROUPS = 8, LONGEST_PLAY = 12; // rows; s
+const HARDEST_GROUPS = 8, LONGEST_PLAY = 12, MOST_LOADS = 3; // rows; s; named in the key
 const LAST_FRAME = Math.max(0, report.frames - 1), TIMES = report.times || [], END = TIMES[LAST_FRAME] || 0;
 const MOVES = TIMES.length > 1, SEVERAL = LAST_FRAME > 0;
 const TIRES = report.joints.some((joint) => (joint.groups || []).some((group) => group.fatigue));
@@ -78,11 +78,14 @@ function fillHeader() {
 function hideUnknown() {
   const known = {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
-    "key-target": report.targets.length, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
+    "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
     postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
     overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
+  find("things").textContent = [...new Set(report.things.map((thing) => thing.label))].join(", ");
+  const loads = report.loads.map((load) => load.label);
+  find("loads").textContent = loads.length && loads.length <= MOST_LOADS ? `: ${loads.join(", ")}` : "";
   document.documentElement.toggleAttribute("data-still", !MOVES);
   if (!TIRES) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
   const postureKeys = SEVERAL ? "Arrow keys go from posture to posture. " : "";

@@ -99,8 +99,8 @@ class Painter {
     this.gl.drawElements(this.gl.TRIANGLES, this.hullTriangles.count, this.gl.UNSIGNED_SHORT, 0);
   }
 
-  list(mesh, color, alpha) {
-    this.use(mesh.data, IDENTITY, color, alpha);
+  list(mesh, color, alpha, matrix = IDENTITY) {
+    this.use(mesh.data, matrix, color, alpha);
     this.gl.drawArrays(mesh.kind, 0, mesh.count);
   }
 

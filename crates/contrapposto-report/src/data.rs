@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::column::{column, columns};
-use crate::{Balance, Entry, Group, Joint, Moments, Report, Segment, Support};
+use crate::{Balance, Entry, Group, Joint, Moments, Push, Report, Segment, Support, Thing};
 
 /// Steps to which numbers are rounded: the smallest visible differences.
 const SECONDS: f64 = 1e-3;
@@ -39,6 +39,8 @@ pub(crate) fn data(report: &Report) -> String {
         "supports": report.supports.iter().map(|s| support(s, n)).collect::<Value>(),
         "ground": report.ground.map(|height| short(&[height], METRES)[0].clone()),
         "surfaces": report.surfaces.iter().map(|corners| points(corners)).collect::<Value>(),
+        "things": report.things.iter().map(|t| thing(t, n)).collect::<Value>(),
+        "loads": report.loads.iter().map(|l| push(l, n)).collect::<Value>(),
         "targets": points(&report.targets),
         "center": known(&report.center_of_mass, || columns(&report.center_of_mass, n, [METRES; 3])),
         "list": {
@@ -64,12 +66,11 @@ fn escape(json: &str) -> String {
 }
 
 fn segment(segment: &Segment, n: usize) -> Value {
-    let [m, t] = [METRES, TURN];
     json!({
         "name": segment.name,
         "balls": segment.balls.iter().map(|ball| short(ball, METRES)).collect::<Value>(),
         "joints": segment.joints,
-        "places": columns(&segment.places, n, [m, m, m, t, t, t, t]),
+        "places": places(&segment.places, n),
         "start": short(&segment.start, METRES),
     })
 }
@@ -116,6 +117,23 @@ fn support(support: &Support, n: usize) -> Value {
         "at": columns(&support.at, n, [METRES; 3]),
         "share": column(support.share.iter().copied(), n, SHARE),
     })
+}
+
+fn thing(thing: &Thing, n: usize) -> Value {
+    json!({ "label": thing.label, "size": short(&thing.size, METRES), "places": places(&thing.places, n) })
+}
+
+fn push(push: &Push, n: usize) -> Value {
+    json!({
+        "label": push.label,
+        "force": columns(&push.force, n, [NEWTONS; 3]),
+        "at": columns(&push.at, n, [METRES; 3]),
+    })
+}
+
+fn places(places: &[[f64; 7]], n: usize) -> Value {
+    let [m, t] = [METRES, TURN];
+    columns(places, n, [m, m, m, t, t, t, t])
 }
 
 fn entry(entry: &Entry) -> Value {

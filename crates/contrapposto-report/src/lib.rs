@@ -45,6 +45,10 @@ pub struct Report {
     pub ground: Option<f64>,
     /// Other surfaces that carry the body, a seat, a table, a wall: the four corners of each in order, m.
     pub surfaces: Vec<[[f64; 3]; 4]>,
+    /// Things around the body and in its hands.
+    pub things: Vec<Thing>,
+    /// Loads on the body besides its weight.
+    pub loads: Vec<Push>,
     /// Targets of tasks, m.
     pub targets: Vec<[f64; 3]>,
     /// Centre of mass in every frame; may be empty.
@@ -169,6 +173,28 @@ pub struct Support {
     pub at: Vec<[f64; 3]>,
     /// Share of the body's weight in every frame.
     pub share: Vec<f64>,
+}
+
+/// A thing, drawn as a box.
+#[derive(Clone, Debug, Default)]
+pub struct Thing {
+    /// Its name.
+    pub label: String,
+    /// Full lengths along its own axes x, y and z, m.
+    pub size: [f64; 3],
+    /// Placement of its middle in every frame: origin, m, and unit quaternion `w x y z`; one entry for a thing that stays.
+    pub places: Vec<[f64; 7]>,
+}
+
+/// A load over time: a held weight, a tool, a push at a handle.
+#[derive(Clone, Debug, Default)]
+pub struct Push {
+    /// Its name.
+    pub label: String,
+    /// Point where it acts in every frame, m.
+    pub at: Vec<[f64; 3]>,
+    /// Force on the body in every frame, N; zero where the load is not in force.
+    pub force: Vec<[f64; 3]>,
 }
 
 /// Texts about single frames; the default is empty.

@@ -8,7 +8,7 @@ mod support;
 use std::path::PathBuf;
 
 use contrapposto_report::{
-    Balance, Entry, Figure, Group, Joint, List, Moments, Report, Segment, Support, Table, balls_of, write,
+    Balance, Entry, Figure, Group, Joint, List, Moments, Push, Report, Segment, Support, Table, Thing, balls_of, write,
 };
 use serde_json::json;
 use support::chromium::Chromium;
@@ -64,6 +64,8 @@ fn report() -> Report {
         ground: Some(0.0),
         surfaces: vec![],
         targets: vec![],
+        things: vec![],
+        loads: vec![],
         list: List {
             heading: HOSTILE.to_owned(),
             entries: vec![entry(0, 0, HOSTILE), entry(30, 1, "the second joint is relieved")],
@@ -226,6 +228,27 @@ fn a_seat_is_drawn() {
     page.open(&file("seat.html", &write(&report)));
     assert_ne!(page.evaluate(PICTURE), without);
     assert_eq!(page.evaluate("document.getElementById('key-surface').hidden"), false);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn a_thing_and_a_load_change_the_picture_and_have_a_key() {
+    let mut report = report();
+    let mut page = open_page("bare.html", &report);
+    let without = page.evaluate(PICTURE);
+    assert_eq!(page.evaluate("document.getElementById('key-thing').hidden"), true);
+    let place = [0.1, 0.3, 0.0, 1.0, 0.0, 0.0, 0.0];
+    report.things = vec![Thing { label: HOSTILE.to_owned(), size: [0.1; 3], places: vec![place] }];
+    page.open(&file("thing.html", &write(&report)));
+    let with_thing = page.evaluate(PICTURE);
+    assert_ne!(with_thing, without);
+    assert_eq!(page.evaluate("document.getElementById('key-thing').textContent"), HOSTILE);
+    let [at, force] = [vec![[0.1, 0.3, 0.0]; 50], vec![[0.0, -60.0, 0.0]; 50]];
+    report.loads = vec![Push { label: HOSTILE.to_owned(), at, force }];
+    page.open(&file("load.html", &write(&report)));
+    assert_ne!(page.evaluate(PICTURE), with_thing);
+    assert_eq!(page.evaluate("document.getElementById('key-load').hidden"), false);
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
 

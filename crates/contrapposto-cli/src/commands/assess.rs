@@ -22,6 +22,7 @@ use crate::output::{Folder, json_text, print, print_note};
 use crate::view::answer::{answered, first_lines};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
+use crate::view::stage::Stage;
 use crate::view::text::assess::{AssessText, report};
 use crate::view::text::torques::{header, row};
 use crate::view::torque_rows::{Frame, Order};
@@ -80,8 +81,9 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
 
     let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let figures = assessed_frames.as_ref().filter(|_| args.figures).map(|assessed_frames| {
+        let stage = Stage::still(&settings.supports, &[], &held);
         let worst = found.groups.iter().map(|group| group.coordinate);
-        figures_of_assessment(&title, model, &settings.supports, assessed_frames.frames(), worst)
+        figures_of_assessment(&title, model, &stage, assessed_frames.frames(), worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
     let span = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);

@@ -5,7 +5,7 @@ use std::path::Path;
 use contrapposto::posture_solver::Engine;
 use contrapposto::simulation::Run;
 use contrapposto::verdict::Verdict;
-use contrapposto_formats::{read_pose, read_scenario, scenario_runs};
+use contrapposto_formats::{RunScenario, read_pose, read_run, scenario_runs};
 use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
 
 use super::pose::verdict;
@@ -20,6 +20,7 @@ use crate::view::figures::both;
 use crate::view::frame::Frame;
 use crate::view::held::held;
 use crate::view::report::comparison::report_of_comparison;
+use crate::view::stage::Stage;
 use crate::view::text::compare::{CompareText, ComparedPosture, report};
 
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
@@ -52,7 +53,7 @@ fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
     if !scenario_runs(&file, &bytes)? {
         return posed(&file, &bytes, model, letter);
     }
-    let scenario = read_scenario(&file, &bytes, model)?;
+    let RunScenario { scenario, things, .. } = read_run(&file, &bytes, model)?;
     let failed = |error| Fail::job(&file, error);
     let mut run = Run::new(&scenario).map_err(failed)?;
     let progress = progress_bar(scenario.run.duration);
@@ -69,7 +70,9 @@ fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
         how: format!("simulated, {:.0} s", frame.time),
         verdict: Verdict::of_run(&scenario, &run.summary()),
         posture: frame.posture.clone(),
+        loads: Stage::of_run(&scenario, &things).loads_at(frame.time).to_vec(),
         frame: Some(frame),
+        things,
         supports: scenario.supports,
         model: scenario.model,
         file,
@@ -98,6 +101,8 @@ fn posed(
         verdict,
         posture: pose.posture.values().to_vec(),
         frame,
+        things: scenario.things,
+        loads: scenario.loads,
         supports: scenario.supports,
         model: scenario.model,
         file: file.to_owned(),
@@ -115,7 +120,10 @@ fn picture(postures: &[ComparedPosture]) -> Result<BodyFigure, Fail> {
     let mut drawn = vec![];
     for compared in postures {
         let mut posture = match &compared.frame {
-            Some(frame) => body::body(&compared.model, &compared.supports, frame)?,
+            Some(frame) => {
+                let stage = Stage::still(&compared.supports, &compared.things, &compared.loads);
+                body::body(&compared.model, &stage, frame)?
+            }
             None => {
                 BodyPosture { parts: body::parts(&compared.model, &compared.posture, None)?, ..BodyPosture::default() }
             }

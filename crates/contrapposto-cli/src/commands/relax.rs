@@ -22,6 +22,7 @@ use crate::view::answer::{answered, first_lines, without_posture};
 use crate::view::body;
 use crate::view::frame::frame_of_posture;
 use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibria};
+use crate::view::stage::Stage;
 use crate::view::text::relax::{RelaxText, percent, report};
 
 const RELAX_FILES: [&str; 6] =
@@ -151,10 +152,11 @@ fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
 /// All postures side by side.
 fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<BodyFigure, Fail> {
     let model = &scenario.model;
+    let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
     let mut postures = vec![];
     for (i, (posture, text)) in found.postures.iter().zip(&text.postures).enumerate() {
         let frame = frame_of_posture(model, posture)?;
-        let mut drawn = body::body(model, &scenario.supports, &frame)?;
+        let mut drawn = body::body(model, &stage, &frame)?;
         drawn.title = format!("{}: effort {:.4}", i + 1, text.effort);
         // The first number is the effort of all muscles, not that of the task.
         drawn.notes = body::key_numbers(model, &scenario.supports, &frame).split_off(1);

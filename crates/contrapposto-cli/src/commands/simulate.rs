@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
-use contrapposto_formats::{SummaryText, decisions_csv, read_scenario, read_scenario_with_notes};
+use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 
 use self::snapshot::{SNAPSHOT, go_on, save};
 use crate::args::{DemoArgs, SimulateArgs};
@@ -35,18 +35,24 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
-    let (scenario, notes) = read_scenario_with_notes(&name, &bytes, model)?;
-    notes.iter().for_each(|note| print_note("note", note));
-    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
-    carry_out(&scenario, &args.out, args.resume, args.figures, args.json)
+    let run = read_run(&name, &bytes, model)?;
+    run.notes.iter().for_each(|note| print_note("note", note));
+    fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
+    carry_out(&run, &args.out, args.resume, args.figures, args.json)
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
-    let scenario = read_scenario(DEMO.0, DEMO.1.as_bytes(), None)?;
-    carry_out(&scenario, &args.out, false, false, args.json)
+    let run = read_run(DEMO.0, DEMO.1.as_bytes(), None)?;
+    carry_out(&run, &args.out, false, false, args.json)
 }
 
-fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json: bool) -> Result<(), Fail> {
+fn carry_out(
+    RunScenario { scenario, things, .. }: &RunScenario,
+    out: &Path,
+    resume: bool,
+    figures: bool,
+    json: bool,
+) -> Result<(), Fail> {
     let folder = Folder::open(out)?;
     // A second handler is refused, which only happens if there is one already.
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
@@ -79,9 +85,9 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
     }
     progress.finish_and_clear();
     let summary = run.summary();
-    let figures = if figures { figures_of_run(scenario, &recording, &summary)? } else { vec![] };
+    let figures = if figures { figures_of_run(scenario, things, &recording, &summary)? } else { vec![] };
     let verdict = Verdict::of_run(scenario, &summary);
-    let json_text = write(scenario, &summary, &verdict, &recording, &figures, &folder)?;
+    let json_text = write((scenario, things), &summary, &verdict, &recording, &figures, &folder)?;
     let partial = summary.reason == StopReason::Interrupted;
     if partial {
         save(scenario, &run, &recording, &folder)?;
@@ -102,7 +108,7 @@ fn carry_out(scenario: &Scenario, out: &Path, resume: bool, figures: bool, json:
 
 /// All files but the snapshot; gives the text of `summary.json`.
 fn write(
-    scenario: &Scenario,
+    (scenario, things): (&Scenario, &[Thing]),
     summary: &Summary,
     verdict: &Verdict,
     recording: &Recording,
@@ -114,7 +120,7 @@ fn write(
         ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
         ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
         ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
-        ("report.html", report_of_run(scenario, recording, summary, verdict)?.into_bytes()),
+        ("report.html", report_of_run((scenario, things), recording, summary, verdict)?.into_bytes()),
         ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
     ];
     contents.extend(animation::bodies(scenario, recording)?);
@@ -126,7 +132,7 @@ fn write(
     } else {
         ["torque-balance.svg", "torque-balance.png"]
     };
-    let [first, second] = pictures_of_run(scenario, summary, recording)?;
+    let [first, second] = pictures_of_run(scenario, things, summary, recording)?;
     for (names, figure) in [(names, first), (["time-line.svg", "time-line.png"], second)] {
         contents.push((names[0], figure.svg().into_bytes()));
         contents.push((names[1], figure.png().map_err(|error| Fail::job("PNG", error))?));

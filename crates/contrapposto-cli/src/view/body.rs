@@ -5,14 +5,17 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::simulation::Contact;
-use contrapposto_plot::{BodyForce, BodyPart, BodyPosture};
-use nalgebra::{Point3, Vector3};
+use contrapposto_plot::{BodyForce, BodyPart, BodyPosture, BodyThing};
+use nalgebra::Point3;
 
-use super::axes::{pelvis_list, turn};
+use super::axes::pelvis_list;
 use super::frame::Frame;
+use super::held::Held;
 use super::selection::shown;
-use super::solid;
+use super::stage::{Stage, place, push};
+use super::surfaces::surroundings;
 use super::words::{percent, plain};
+use super::{axes, solid};
 use crate::fail::Fail;
 
 /// Most supports whose share is listed.
@@ -22,7 +25,7 @@ const MOST_SHARES: usize = 4;
 pub(crate) fn parts(model: &Model, posture: &[f64], load: Option<&[f64]>) -> Result<Vec<BodyPart>, Fail> {
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("picture", error))?;
-    let (shown, turn) = (shown(model), turn(model));
+    let (shown, turn) = (shown(model), axes::turn(model));
     let mut parts = vec![];
     for s in 0..model.segments().len() {
         let place = kinematics.placement(model, s);
@@ -40,9 +43,10 @@ pub(crate) fn parts(model: &Model, posture: &[f64], load: Option<&[f64]>) -> Res
     Ok(parts)
 }
 
-/// The body of a frame: parts, contact forces, centre of mass, ground. Loads are shown where they are known.
-pub(crate) fn body(model: &Model, supports: &[Support], frame: &Frame) -> Result<BodyPosture, Fail> {
-    let turn = turn(model);
+/// The body of a frame among the things of its stage: parts, contact forces, centre of mass, ground, surfaces, things, loads. The
+/// relative loads of muscles are shown where they are known.
+pub(crate) fn body(model: &Model, stage: &Stage<'_>, frame: &Frame) -> Result<BodyPosture, Fail> {
+    let turn = axes::turn(model);
     let standing = frame.standing.as_ref();
     let force = |contact: &Contact| {
         let at = contact.center_of_pressure?;
@@ -51,24 +55,44 @@ pub(crate) fn body(model: &Model, supports: &[Support], frame: &Frame) -> Result
     Ok(BodyPosture {
         parts: parts(model, &frame.posture, (!frame.load.is_empty()).then_some(&frame.load))?,
         forces: standing.iter().flat_map(|standing| &standing.contacts).filter_map(force).collect(),
-        center_of_mass: standing.filter(|_| !supports.is_empty()).map(|standing| turn.point(standing.center_of_mass)),
-        ground: ground(model, supports, &frame.posture)?,
-        ..BodyPosture::default()
+        center_of_mass: standing
+            .filter(|_| !stage.supports.is_empty())
+            .map(|standing| turn.point(standing.center_of_mass)),
+        ..around(model, stage, frame)?
     })
 }
 
-/// Height of the lowest corner of the supports.
-fn ground(model: &Model, supports: &[Support], posture: &[f64]) -> Result<Option<f64>, Fail> {
+/// A body that is held still; where the supports cannot hold it, its torques and forces are not known.
+pub(crate) fn held_body(model: &Model, stage: &Stage<'_>, held: &Held) -> Result<BodyPosture, Fail> {
+    let frame = &held.frame;
+    match held.missing {
+        None => body(model, stage, frame),
+        Some(_) => Ok(BodyPosture { parts: parts(model, &frame.posture, None)?, ..around(model, stage, frame)? }),
+    }
+}
+
+/// Ground, surfaces, things and loads of a frame.
+fn around(model: &Model, stage: &Stage<'_>, frame: &Frame) -> Result<BodyPosture, Fail> {
+    let turn = axes::turn(model);
+    let surroundings = surroundings(model, stage, &frame.posture, std::slice::from_ref(frame), &turn)?;
     let mut kinematics = Kinematics::new(model);
-    kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("picture", error))?;
-    let turn = turn(model);
-    let height =
-        |support: &Support, corner: &Vector3<f64>| turn.point(kinematics.station(model, support.segment, *corner))[1];
-    Ok(supports
-        .iter()
-        .flat_map(|s| s.corners.iter().map(move |corner| (s, corner)))
-        .map(|(s, c)| height(s, c))
-        .reduce(f64::min))
+    let updated = kinematics.update(model, &Posture::new(frame.posture.clone()));
+    updated.map_err(|error| Fail::job("picture", error))?;
+    let thing = |thing: &contrapposto_formats::Thing| {
+        let (place, half) = (place(model, &kinematics, thing), 0.5 * thing.size);
+        let end = |i: usize, k: usize| if i & (1 << k) == 0 { -half[k] } else { half[k] };
+        let corner = |i| turn.point((place * Point3::new(end(i, 0), end(i, 1), end(i, 2))).coords);
+        BodyThing { label: thing.name.clone(), corners: std::array::from_fn(corner) }
+    };
+    let load = |[at, force]: [nalgebra::Vector3<f64>; 2]| BodyForce { at: turn.point(at), force: turn.point(force) };
+    let loads = stage.loads_at(frame.time).iter().filter_map(|load| push(model, &kinematics, load));
+    Ok(BodyPosture {
+        ground: surroundings.ground,
+        surfaces: surroundings.surfaces,
+        things: stage.things.iter().map(thing).collect(),
+        loads: loads.map(load).collect(),
+        ..BodyPosture::default()
+    })
 }
 
 /// The few numbers that say most of how it stands: `effort 0.0590`, `left foot 15 %`, `pelvis 6.2° down to the right`.

@@ -1,9 +1,9 @@
 //! Pictures of results: the body at the start, at its highest effort and at the end; torques and
 //! course of the joints that matter.
 
-use contrapposto::contact::Support;
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::simulation::{Scenario, Summary};
+use contrapposto_formats::Thing;
 use contrapposto_plot::{
     BodyFigure, BodyPosture, Figure, SketchRole, TimeLine, TorqueBalance, body_figure, time_line, torque_balance,
 };
@@ -15,6 +15,7 @@ use super::frame::Frame;
 use super::recording::Recording;
 use super::scene::ANGLES;
 use super::selection::{main_coordinate, shown};
+use super::stage::Stage;
 use super::text::simulate::strategy_and_cases;
 use super::{body, words};
 use crate::fail::Fail;
@@ -33,12 +34,14 @@ const STILL: f64 = 1e-3;
 /// Names, in [`FOLDER`], and contents of all figures of a run.
 pub(crate) fn figures_of_run(
     scenario: &Scenario,
+    things: &[Thing],
     recording: &Recording,
     summary: &Summary,
 ) -> Result<Vec<(String, Vec<u8>)>, Fail> {
     let model = &scenario.model;
     let excerpt = RunExcerpt::new(scenario, recording, summary);
-    let mut figures = vec![("body".to_owned(), moments(&scenario.title, model, &scenario.supports, &excerpt.frames)?)];
+    let mut figures =
+        vec![("body".to_owned(), moments(&scenario.title, model, &Stage::of_run(scenario, things), &excerpt.frames)?)];
     for (number, i) in joints(scenario, summary).into_iter().enumerate() {
         let mut line = course(model, recording, &summary.reliefs, i);
         line.subtitle = strategy_and_cases(scenario, &summary.coordinates[i]);
@@ -58,11 +61,11 @@ pub(crate) fn figures_of_run(
 pub(crate) fn figures_of_assessment(
     title: &str,
     model: &Model,
-    supports: &[Support],
+    stage: &Stage<'_>,
     frames: &[Frame],
     worst: impl Iterator<Item = usize>,
 ) -> Result<Vec<(String, Vec<u8>)>, Fail> {
-    let mut figures = vec![("body".to_owned(), moments(title, model, supports, frames)?)];
+    let mut figures = vec![("body".to_owned(), moments(title, model, stage, frames)?)];
     let mut shown: Vec<usize> = vec![];
     for i in worst.filter(|&i| model.coordinates()[i].kind == CoordinateKind::Rotation) {
         if !shown.contains(&i) && shown.len() < MOST_JOINTS {
@@ -153,10 +156,15 @@ pub(crate) fn both(name: &str, figure: &Figure) -> Result<[(String, Vec<u8>); 2]
 }
 
 /// The body as a run leaves it, and pale as it began.
-fn before_and_after(scenario: &Scenario, recording: &Recording, subtitle: &str) -> Result<BodyFigure, Fail> {
+fn before_and_after(
+    scenario: &Scenario,
+    things: &[Thing],
+    recording: &Recording,
+    subtitle: &str,
+) -> Result<BodyFigure, Fail> {
     let rows = recording.times().len();
     let [first, last] = [0, rows.saturating_sub(1)].map(|row| Frame::of_row(&scenario.model, recording.row(row)));
-    let mut posture = body::body(&scenario.model, &scenario.supports, &last)?;
+    let mut posture = body::body(&scenario.model, &Stage::of_run(scenario, things), &last)?;
     posture.start = body::parts(&scenario.model, &first.posture, None)?;
     posture.notes = vec![body::key_numbers(&scenario.model, &scenario.supports, &last).join("; ")];
     Ok(BodyFigure {
@@ -170,6 +178,7 @@ fn before_and_after(scenario: &Scenario, recording: &Recording, subtitle: &str) 
 /// The pictures of a run: the body before and after (one joint: its torques over angle), and the main coordinate over time.
 pub(crate) fn pictures_of_run(
     scenario: &Scenario,
+    things: &[Thing],
     summary: &Summary,
     recording: &Recording,
 ) -> Result<[Figure; 2], Fail> {
@@ -183,7 +192,7 @@ pub(crate) fn pictures_of_run(
     line.critical_level = scenario.hysteresis.critical_level;
     line.recovery_level = scenario.hysteresis.recovery_level;
     if scenario.has_supports_or_tasks() {
-        return Ok([body_figure(&before_and_after(scenario, recording, &subtitle)?), time_line(&line)]);
+        return Ok([body_figure(&before_and_after(scenario, things, recording, &subtitle)?), time_line(&line)]);
     }
     let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
     let mut sweep = Sweep::new(&scenario.model, &scenario.loads, main, &posture)?;
@@ -199,12 +208,12 @@ pub(crate) fn pictures_of_run(
 }
 
 /// The body at the start, at its hardest if that is another moment, and at the end.
-fn moments(title: &str, model: &Model, supports: &[Support], frames: &[Frame]) -> Result<Figure, Fail> {
+fn moments(title: &str, model: &Model, stage: &Stage<'_>, frames: &[Frame]) -> Result<Figure, Fail> {
     let mut postures: Vec<BodyPosture> = vec![];
     let mut show = |title: String, frame: &Frame| -> Result<(), Fail> {
-        let mut posture = body::body(model, supports, frame)?;
+        let mut posture = body::body(model, stage, frame)?;
         posture.title = title;
-        posture.notes = body::key_numbers(model, supports, frame);
+        posture.notes = body::key_numbers(model, stage.supports, frame);
         postures.push(posture);
         Ok(())
     };

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use super::axes::turn;
 use super::body;
 use super::held::held;
+use super::stage::Stage;
 use crate::fail::Fail;
 
 /// Marks beside the body, ground, m.
@@ -37,11 +38,9 @@ pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &SolvedPosture, subtit
 /// The body of a solved pose, with its targets.
 fn pose_posture(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<BodyPosture, Fail> {
     let model = &scenario.model;
-    let frame = held(model, &pose.posture, &scenario.loads, &scenario.supports)?.known();
-    let mut posture = match &frame {
-        Some(frame) => body::body(model, &scenario.supports, frame)?,
-        None => BodyPosture { parts: body::parts(model, pose.posture.values(), None)?, ..BodyPosture::default() },
-    };
+    let held = held(model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
+    let mut posture = body::held_body(model, &stage, &held)?;
     let (turn, marks) = (turn(model), marks(scenario, pose)?);
     posture.targets = marks.targets.into_iter().map(|at| turn.point(at)).collect();
     posture.gazes = marks.gazes.into_iter().map(|gaze| gaze.map(|at| turn.point(at))).collect();

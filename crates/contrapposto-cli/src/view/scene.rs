@@ -1,17 +1,17 @@
 //! The numbers that all pages share: the body, its joints and its supports in every moment.
 
-use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
-use contrapposto_report::{Balance, Group, Joint, Moments, Report, Segment};
+use contrapposto_report::{Balance, Group, Joint, Moments, Push, Report, Segment, Thing};
 use nalgebra::Vector3;
 
 use super::axes::{Turn, turn, visible};
 use super::charts::Sweep;
 use super::frame::Frame;
 use super::selection::shown;
+use super::stage::{Stage, load_in_words, place, push};
 use super::{solid, surfaces, words};
 use crate::fail::Fail;
 
@@ -25,8 +25,8 @@ pub(crate) struct Scene<'a> {
     /// Its posture before anything happened.
     pub(crate) start: &'a [f64],
     pub(crate) frames: &'a [Frame],
-    /// Supports, which stay in their places.
-    pub(crate) supports: &'a [Support],
+    /// Supports, things and loads.
+    pub(crate) stage: Stage<'a>,
     /// Segments of the contacts of every frame.
     pub(crate) carried: Vec<usize>,
     /// Loads while one joint alone is moved; `None` for a body on supports, whose joints cannot move alone.
@@ -34,23 +34,23 @@ pub(crate) struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// A body in some moments on its supports, which alone touch it; no joint is moved alone.
+    /// A body in some moments among the things of its stage, whose supports alone touch it; no joint is moved alone.
     pub(crate) fn of(
         title: &'a str,
         model: &'a Model,
         start: &'a [f64],
         frames: &'a [Frame],
-        supports: &'a [Support],
+        stage: Stage<'a>,
     ) -> Self {
-        let carried = supports.iter().map(|support| support.segment).collect();
-        Self { title, model, start, frames, supports, carried, held: None }
+        let carried = stage.supports.iter().map(|support| support.segment).collect();
+        Self { title, model, start, frames, stage, carried, held: None }
     }
 
     /// The page without its words. `main`: the coordinate to show first.
     pub(crate) fn report(&self, moments: Moments, main: usize) -> Result<Report, Fail> {
         let model = self.model;
         let (shown, turn) = (shown(model), turn(model));
-        let surroundings = surfaces::surroundings(model, self.supports, self.start, self.frames, &turn)?;
+        let surroundings = surfaces::surroundings(model, &self.stage, self.start, self.frames, &turn)?;
         let standing = self.frames.iter().filter_map(|frame| frame.standing.as_ref());
         let centers: Vec<[f64; 3]> = standing.map(|standing| turn.point(standing.center_of_mass)).collect();
         // Postures that differ bend the curves of coupled laws each in its own way.
@@ -66,6 +66,8 @@ impl<'a> Scene<'a> {
             supports: self.supports(&turn),
             ground: surroundings.ground,
             surfaces: surroundings.surfaces,
+            things: self.things(&turn)?,
+            loads: self.loads(&turn)?,
             center_of_mass: if centers.len() == self.frames.len() { centers } else { vec![] },
             ..Report::default()
         })
@@ -95,6 +97,41 @@ impl<'a> Scene<'a> {
         }
         place(self.start, &mut parts, |part, place| part.start = place)?;
         Ok(parts.into_iter().map(|(_, part)| part).collect())
+    }
+
+    fn kinematics(&self, frame: &Frame) -> Result<Kinematics, Fail> {
+        let mut kinematics = Kinematics::new(self.model);
+        let updated = kinematics.update(self.model, &Posture::new(frame.posture.clone()));
+        updated.map_err(|error| Fail::job("report", error)).map(|()| kinematics)
+    }
+
+    /// Things in every frame; those in ground once.
+    fn things(&self, turn: &Turn) -> Result<Vec<Thing>, Fail> {
+        let mut things = vec![];
+        for thing in self.stage.things {
+            let frames = if thing.segment.is_some() { self.frames } else { &self.frames[..self.frames.len().min(1)] };
+            let at = |frame| Ok::<_, Fail>(turn.place(&place(self.model, &self.kinematics(frame)?, thing)));
+            let places = frames.iter().map(at).collect::<Result<_, _>>()?;
+            things.push(Thing { label: thing.name.clone(), size: thing.size.into(), places });
+        }
+        Ok(things)
+    }
+
+    /// Loads in every frame, with zero force where they are not in force.
+    fn loads(&self, turn: &Turn) -> Result<Vec<Push>, Fail> {
+        let all = self.stage.all_loads();
+        let labels = all.iter().map(|load| Push { label: load_in_words(self.model, load), ..Push::default() });
+        let mut pushes: Vec<Push> = labels.collect();
+        for frame in self.frames.iter().filter(|_| !all.is_empty()) {
+            let (kinematics, now) = (self.kinematics(frame)?, self.stage.loads_at(frame.time));
+            for (load, shown) in all.iter().zip(&mut pushes) {
+                let [at, force] = push(self.model, &kinematics, load).unwrap_or_default();
+                shown.at.push(turn.point(at));
+                shown.force.push(if now.contains(load) { turn.point(force) } else { [0.0; 3] });
+            }
+        }
+        pushes.retain(|shown| shown.force.iter().flatten().any(|newtons| *newtons != 0.0));
+        Ok(pushes)
     }
 
     fn supports(&self, turn: &Turn) -> Vec<contrapposto_report::Support> {

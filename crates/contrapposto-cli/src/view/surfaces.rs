@@ -4,10 +4,12 @@ use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
-use nalgebra::Vector3;
+use contrapposto_formats::Thing;
+use nalgebra::{Point3, Vector3};
 
 use super::axes::Turn;
 use super::frame::Frame;
+use super::stage::Stage;
 use crate::fail::Fail;
 
 /// Planes that are nearer to each other, m, are one.
@@ -27,18 +29,33 @@ pub(super) struct Surroundings {
     pub(super) surfaces: Vec<[[f64; 3]; 4]>,
 }
 
-/// The normal of a support, and where its corners are.
-type Patch = (Vector3<f64>, Vec<Vector3<f64>>);
+/// A support in page axes.
+struct Patch {
+    normal: Vector3<f64>,
+    points: Vec<Vector3<f64>>,
+    /// A thing that is drawn carries it.
+    on_thing: bool,
+}
 
 /// A plane, and the corners of patches on it; page axes.
 struct Plane {
     normal: Vector3<f64>,
     points: Vec<Vector3<f64>>,
+    /// Things that are drawn carry all patches on it.
+    on_things: bool,
 }
 
 impl Plane {
+    fn of(patch: Patch) -> Self {
+        Self { normal: patch.normal, points: patch.points, on_things: patch.on_thing }
+    }
+
     fn height(&self) -> f64 {
         self.points.iter().map(|point| self.normal.dot(point)).sum::<f64>() / self.points.len() as f64
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        self.normal.dot(&other.normal) > 0.999 && (self.height() - other.height()).abs() < SAME_PLANE
     }
 
     fn is_level(&self) -> bool {
@@ -66,17 +83,21 @@ impl Plane {
 /// Where supports are at the start. Pieces that the body moves about with are none.
 pub(super) fn surroundings(
     model: &Model,
-    supports: &[Support],
+    stage: &Stage<'_>,
     start: &[f64],
     frames: &[Frame],
     turn: &Turn,
 ) -> Result<Surroundings, Fail> {
+    let supports = stage.supports;
     let mut kinematics = Kinematics::new(model);
     let mut place = |posture: &[f64]| -> Result<Vec<Patch>, Fail> {
         kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("report", error))?;
         let patch = |support: &Support| {
-            let corner = |c: &Vector3<f64>| turn.0 * kinematics.station(model, support.segment, *c);
-            (turn.0 * support.normal, support.corners.iter().map(corner).collect())
+            let corners = support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner));
+            let corners: Vec<Vector3<f64>> = corners.collect();
+            let on_thing = stage.things.iter().any(|thing| carries(thing, &corners));
+            let points = corners.iter().map(|corner| turn.0 * corner).collect();
+            Patch { normal: turn.0 * support.normal, points, on_thing }
         };
         Ok(supports.iter().map(patch).collect())
     };
@@ -84,18 +105,19 @@ pub(super) fn surroundings(
     let at_start = place(start)?;
     let mut still = vec![true; at_start.len()];
     for frame in frames {
-        for (i, (normal, points)) in place(&frame.posture)?.iter().enumerate() {
-            still[i] &=
-                points.iter().zip(&at_start[i].1).all(|(now, then)| normal.dot(&(now - then)).abs() < SAME_PLANE);
+        for (i, Patch { normal, points, .. }) in place(&frame.posture)?.iter().enumerate() {
+            let moved = |(now, then): (&Vector3<f64>, &Vector3<f64>)| normal.dot(&(now - then)).abs() >= SAME_PLANE;
+            still[i] &= !points.iter().zip(&at_start[i].points).any(moved);
         }
     }
-    for ((normal, points), _) in at_start.into_iter().zip(still).filter(|(_, still)| *still) {
-        let height = Plane { normal, points: points.clone() }.height();
-        let same =
-            |plane: &&mut Plane| plane.normal.dot(&normal) > 0.999 && (plane.height() - height).abs() < SAME_PLANE;
-        match planes.iter_mut().find(same) {
-            Some(plane) => plane.points.extend(points),
-            None => planes.push(Plane { normal, points }),
+    for (patch, _) in at_start.into_iter().zip(still).filter(|(_, still)| *still) {
+        let (new, mut known) = (Plane::of(patch), planes.iter_mut());
+        match known.find(|plane| plane.is(&new)) {
+            Some(plane) => {
+                plane.points.extend(new.points);
+                plane.on_things &= new.on_things;
+            }
+            None => planes.push(new),
         }
     }
     kinematics.update(model, &Posture::new(start.to_vec())).map_err(|error| Fail::job("report", error))?;
@@ -105,8 +127,17 @@ pub(super) fn surroundings(
     let ground = ground.filter(|height| *height < lowest + SUNK);
     let other =
         |plane: &&Plane| !(plane.is_level() && ground.is_some_and(|height| plane.height() < height + SAME_PLANE));
-    let surfaces = planes.iter().filter(other).map(Plane::piece).collect();
+    let surfaces = planes.iter().filter(other).filter(|plane| !plane.on_things).map(Plane::piece).collect();
     Ok(Surroundings { ground: ground.or_else(|| pushed_from(supports, frames, turn)), surfaces })
+}
+
+/// Whether all points are in or on a thing that stands in ground.
+fn carries(thing: &Thing, points: &[Vector3<f64>]) -> bool {
+    let within = |point: &Vector3<f64>| {
+        let inside = thing.place.inverse_transform_point(&Point3::from(*point));
+        (0..3).all(|k| inside[k].abs() <= 0.5 * thing.size[k] + SAME_PLANE)
+    };
+    thing.segment.is_none() && points.iter().all(within)
 }
 
 /// Where forces that were measured come from: the height of the lowest one.

@@ -32,7 +32,7 @@ mod upright;
 pub use model::{ModelFile, scenario_model};
 pub use pose::{PoseScenario, read_pose};
 pub use relax::{RelaxScenario, read_relax};
-pub use simulate::{read_scenario, read_scenario_with_notes, scenario_runs};
+pub use simulate::{RunScenario, read_run, read_scenario, scenario_runs};
 pub(crate) use text::StrategyKindText;
 pub use text::scenario_schema;
 

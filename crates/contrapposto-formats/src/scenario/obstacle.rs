@@ -43,6 +43,17 @@ pub(super) fn limits(
     Ok(Clearance::of_body(model, &things, standing).map(Task::Clearance).into_iter().collect())
 }
 
+/// The obstacles that have a size, for drawings.
+pub(super) fn boxes(at: &Located, text: &ScenarioText) -> Result<Vec<crate::Thing>, InputError> {
+    let mut boxes = vec![];
+    for (i, text) in text.obstacle.iter().enumerate() {
+        if let Thing::Block { placement, half } = obstacle(at, &i.to_string(), text)? {
+            boxes.push(crate::Thing { name: text.name.clone(), size: 2.0 * half, place: placement, segment: None });
+        }
+    }
+    Ok(boxes)
+}
+
 /// Height of the floor, m: ground, or the lowest corner of a support if it lies deeper.
 fn floor(model: &Model, standing: &[usize], kinematics: &Kinematics) -> f64 {
     let corners = standing.iter().flat_map(|&segment| {

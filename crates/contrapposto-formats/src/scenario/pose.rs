@@ -12,6 +12,7 @@ use super::fatigue_choice::LAW_KEYS;
 use super::setup::{Setup, present};
 use super::text::ScenarioText;
 use crate::input_error::InputError;
+use crate::thing::Thing;
 use crate::toml_file::{Located, read_toml, shown};
 
 /// A posture to be solved for.
@@ -35,6 +36,8 @@ pub struct PoseScenario {
     pub labels: Vec<Vec<String>>,
     /// The supports, where the patches of all of them are known; else empty. Levels know supports without them.
     pub supports: Vec<Support>,
+    /// Things around the body and in its hands, for drawings.
+    pub things: Vec<Thing>,
     /// How it is solved.
     pub options: Options,
     /// Tables of the file that have no part in a pose.
@@ -94,6 +97,7 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
         locked,
         limits: setup.limits,
         loads: setup.loads,
+        things: setup.things,
         goals,
         labels,
         options: options(at, text)?,

@@ -10,6 +10,7 @@ use super::fatigue_choice::LAW_KEYS;
 use super::setup::{Setup, present};
 use super::text::ScenarioText;
 use crate::input_error::InputError;
+use crate::thing::Thing;
 use crate::toml_file::{Located, read_toml};
 
 /// A body whose postures of least effort are sought.
@@ -27,6 +28,8 @@ pub struct RelaxScenario {
     pub loads: Vec<Load>,
     /// The supports that carry it.
     pub supports: Vec<Support>,
+    /// Things around the body and in its hands, for drawings.
+    pub things: Vec<Thing>,
     /// Inequalities above all tasks.
     pub limits: Vec<Task>,
     /// Tasks, the most important first; one of them is effort.
@@ -54,7 +57,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
     let setup = Setup::read(at, text, file)?;
     setup.check_ranges(at)?;
     let locked = setup.locked(at, text)?;
-    let Setup { model, start, loads, supports, limits, levels, notes, .. } = setup;
+    let Setup { model, start, loads, supports, limits, levels, things, notes, .. } = setup;
     let supports = supports?;
     let (mut goals, mut labels) = (vec![], vec![]);
     for level in levels {
@@ -83,6 +86,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
         locked,
         loads,
         supports,
+        things,
         limits,
         goals,
         labels,

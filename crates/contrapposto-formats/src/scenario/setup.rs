@@ -12,7 +12,7 @@ use super::head::check_head;
 use super::levels::{Level, levels};
 use super::load::load;
 use super::model::body;
-use super::obstacle::limits;
+use super::obstacle::{boxes, limits};
 use super::place::set_places;
 use super::posture::{balls, free, free_rates, rates, set};
 use super::stage::{Stage, Start};
@@ -20,6 +20,7 @@ use super::support;
 use super::text::ScenarioText;
 use super::upright::add_upright;
 use crate::input_error::InputError;
+use crate::thing::Thing;
 use crate::toml_file::{Located, shown};
 
 /// The checked parts of a scenario that every reader needs.
@@ -38,6 +39,8 @@ pub(super) struct Setup {
     pub(super) limits: Vec<Task>,
     /// The tasks by priority, the most important first.
     pub(super) levels: Vec<Level>,
+    /// Things around the body and in its hands, for drawings.
+    pub(super) things: Vec<Thing>,
     /// What was changed or added, a sentence each, for the reader of the results.
     pub(super) notes: Vec<String>,
 }
@@ -67,7 +70,8 @@ impl Setup {
         let mut levels = levels(&stage, &text.task)?;
         notes.extend(add_upright(&stage, text, &mut levels)?.map(str::to_owned));
         let limits = limits(at, text, &model, &standing, &kinematics)?;
-        Ok(Self { loads, standing, supports, limits, levels, notes, kinematics, start, model })
+        let things = boxes(at, text)?;
+        Ok(Self { loads, standing, supports, limits, levels, things, notes, kinematics, start, model })
     }
 
     /// Where each task of the file stands: its level, and its place within the level.

@@ -13,7 +13,19 @@ use super::posture::free;
 use super::setup::Setup;
 use super::text::{FatigueText, ReliefText, RunText, ScenarioText, StrategyText, TablesText};
 use crate::input_error::InputError;
+use crate::thing::Thing;
 use crate::toml_file::{Located, read_toml, shown};
+
+/// A scenario of a run, with the parts of its file that the experiment itself does not need.
+#[derive(Clone, Debug)]
+pub struct RunScenario {
+    /// The experiment.
+    pub scenario: Scenario,
+    /// Things around the body and in its hands, for drawings.
+    pub things: Vec<Thing>,
+    /// What was changed or added, a sentence each.
+    pub notes: Vec<String>,
+}
 
 /// Reads a scenario of a run. `name` is the file's name for messages; `model` is the model of the file that
 /// [`super::scenario_model`] names.
@@ -21,18 +33,14 @@ use crate::toml_file::{Located, read_toml, shown};
 /// # Errors
 /// [`InputError`] says what is wrong, where, and what would be right.
 pub fn read_scenario(name: &str, bytes: &[u8], model: Option<Model>) -> Result<Scenario, InputError> {
-    Ok(read_scenario_with_notes(name, bytes, model)?.0)
+    Ok(read_run(name, bytes, model)?.scenario)
 }
 
-/// As [`read_scenario`]; with what was changed or added, a sentence each.
+/// As [`read_scenario`], with the things around the body and the notes.
 ///
 /// # Errors
 /// [`InputError`] says what is wrong, where, and what would be right.
-pub fn read_scenario_with_notes(
-    name: &str,
-    bytes: &[u8],
-    model: Option<Model>,
-) -> Result<(Scenario, Vec<String>), InputError> {
+pub fn read_run(name: &str, bytes: &[u8], model: Option<Model>) -> Result<RunScenario, InputError> {
     read_toml(name, bytes, |at, text| scenario(at, text, model))
 }
 
@@ -44,12 +52,12 @@ pub fn scenario_runs(name: &str, bytes: &[u8]) -> Result<bool, InputError> {
     read_toml(name, bytes, |_, text: &ScenarioText| Ok(text.run.is_some()))
 }
 
-fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<(Scenario, Vec<String>), InputError> {
+fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<RunScenario, InputError> {
     let setup = Setup::read(at, text, file)?;
     let (strategy, run) = tables_of_a_run(at, text)?;
     setup.check_ranges(at)?;
     let places = setup.places();
-    let Setup { model, start, loads, supports, limits, levels, notes, .. } = setup;
+    let Setup { model, start, loads, supports, limits, levels, things, notes, .. } = setup;
     let supports = supports?;
     let tasks: Vec<TaskSettings> =
         levels.into_iter().map(|level| TaskSettings { goal: level.tasks, above_relief: level.above_relief }).collect();
@@ -82,7 +90,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<(S
     };
     scenario.check().map_err(|error| at.error(scenario_path(&error), in_units_of_file(&error, text, run), None))?;
     check_events_happen(at, text, &scenario.run)?;
-    Ok((scenario, notes))
+    Ok(RunScenario { scenario, things, notes })
 }
 
 /// The tables that a run needs; a table that only a pose takes is refused.

@@ -17,6 +17,7 @@ use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
+use crate::view::stage::Stage;
 use crate::view::words::{MOST_ROWS, group, percent, plain, sentence, value};
 
 /// Moments of a motion, as many as a page shows.
@@ -102,7 +103,8 @@ pub(crate) fn report_of_assessment(
     let shown = shown(model);
     let moved = |i: &&usize| frames.iter().any(|frame| (frame.posture[**i] - first.posture[**i]).abs() > 1e-6);
     let alone = supports.is_empty() && assessed_frames.pushed.is_empty() && shown.iter().filter(moved).count() <= 1;
-    let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, supports) };
+    let stage = Stage::still(supports, &[], held);
+    let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, stage) };
     scene.carried.extend(&assessed_frames.pushed);
     let times = frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), working.first().map_or(0, |group| group.coordinate))?;

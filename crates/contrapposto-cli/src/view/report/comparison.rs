@@ -7,6 +7,7 @@ use crate::fail::Fail;
 use crate::view::frame::Frame;
 use crate::view::muscles::hardest;
 use crate::view::scene::Scene;
+use crate::view::stage::Stage;
 use crate::view::text::compare::{CompareText, ComparedPosture};
 use crate::view::words::{how_long, percent};
 
@@ -20,7 +21,12 @@ pub(crate) fn report_of_comparison(postures: &[ComparedPosture], text: &CompareT
         .iter()
         .all(|compared| compared.model.name() == first.model.name() && compared.supports.len() == first.supports.len());
     let mut report = if same && frames.len() == postures.len() {
-        let scene = Scene::of("Compared postures", &first.model, &first.posture, &frames, &first.supports);
+        // Things and loads that differ from posture to posture are not drawn.
+        let alike = postures.iter().all(|other| other.things == first.things && other.loads == first.loads);
+        let (things, loads) =
+            if alike { (first.things.as_slice(), first.loads.as_slice()) } else { (&[][..], &[][..]) };
+        let stage = Stage::still(&first.supports, things, loads);
+        let scene = Scene::of("Compared postures", &first.model, &first.posture, &frames, stage);
         let main = first.verdict.who.map_or(0, |group| group.coordinate);
         scene.report(Moments::Postures(names.clone()), main)?
     } else {

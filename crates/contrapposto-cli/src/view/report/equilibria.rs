@@ -15,6 +15,7 @@ use crate::view::frame::{Frame, frame_of_posture};
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
+use crate::view::stage::Stage;
 use crate::view::words::{MOST_JOINTS_SHOWN, how_long, list, percent, plain, value};
 
 /// `--figures` of all postures of least effort.
@@ -43,7 +44,8 @@ pub(crate) fn report_of_equilibria(
 ) -> Result<String, Fail> {
     let model = &scenario.model;
     let frames = frames_of_postures(model, &found.postures)?;
-    let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports);
+    let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
+    let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, stage);
     let shown = shown(model);
     let first = found.postures.first().map_or(0, main_coordinate_of);
     let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;

@@ -12,6 +12,7 @@ use crate::view::figures::figures_of_postures;
 use crate::view::held::{Held, held};
 use crate::view::pose_picture::targets;
 use crate::view::scene::Scene;
+use crate::view::stage::Stage;
 use crate::view::text::pose::{reached, tasks};
 use crate::view::words::{list, percent, plain};
 
@@ -25,10 +26,11 @@ pub(crate) fn report_of_pose(
     let model = &scenario.model;
     let Held { frame, missing: unheld, .. } = held;
     let frames = [frame];
+    let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
     let supported = scenario.goals.iter().any(|goal| goal.hard);
     let scene = Scene {
         held: (!supported).then_some(scenario.loads.as_slice()),
-        ..Scene::of(&scenario.title, model, scenario.start.values(), &frames, &scenario.supports)
+        ..Scene::of(&scenario.title, model, scenario.start.values(), &frames, stage)
     };
     let [frame] = &frames;
     let worst = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]));

@@ -2,6 +2,7 @@
 
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::verdict::Verdict;
+use contrapposto_formats::Thing;
 use contrapposto_report::{Entry, List, Moments};
 
 use super::narrative;
@@ -11,10 +12,11 @@ use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::recording::Recording;
 use crate::view::scene::Scene;
 use crate::view::selection::{main_coordinate, shown};
+use crate::view::stage::Stage;
 
 /// The page of a run.
 pub(crate) fn report_of_run(
-    scenario: &Scenario,
+    (scenario, things): (&Scenario, &[Thing]),
     recording: &Recording,
     summary: &Summary,
     verdict: &Verdict,
@@ -24,7 +26,7 @@ pub(crate) fn report_of_run(
     let start = excerpt.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
     let scene = Scene {
         held: (!scenario.has_supports_or_tasks()).then_some(scenario.loads.as_slice()),
-        ..Scene::of(&scenario.title, &scenario.model, start, &excerpt.frames, &scenario.supports)
+        ..Scene::of(&scenario.title, &scenario.model, start, &excerpt.frames, Stage::of_run(scenario, things))
     };
     let times = excerpt.frames.iter().map(|frame| frame.time).collect();
     let mut report = scene.report(Moments::Times(times), main_coordinate(scenario, summary))?;

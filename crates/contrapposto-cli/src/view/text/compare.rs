@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use contrapposto::contact::Support;
 use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
+use contrapposto::statics::Load;
 use contrapposto::verdict::{Verdict, VerdictKind};
-use contrapposto_formats::VerdictText;
+use contrapposto_formats::{Thing, VerdictText};
 use serde::Serialize;
 
 use super::group::GroupName;
@@ -29,6 +30,10 @@ pub(crate) struct ComparedPosture {
     pub(crate) verdict: Verdict,
     pub(crate) model: Model,
     pub(crate) supports: Vec<Support>,
+    /// Things around the body and in its hands.
+    pub(crate) things: Vec<Thing>,
+    /// Loads in force.
+    pub(crate) loads: Vec<Load>,
     /// Value of every coordinate.
     pub(crate) posture: Vec<f64>,
     /// Torques and loads; `None` where the supports cannot hold the posture.

@@ -1,0 +1,86 @@
+//! Describes what stands around a body and pushes on it, as pages and figures draw it.
+
+use contrapposto::contact::Support;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::simulation::Scenario;
+use contrapposto::statics::{FixedIn, Load, LoadKind};
+use contrapposto_formats::Thing;
+use nalgebra::{Isometry3, Vector3};
+
+use super::words::plain;
+
+/// An event is due at samples from so long before it on, s.
+const EVENT_TOLERANCE: f64 = 1e-9;
+
+/// Supports, things and loads of a body.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stage<'a> {
+    /// Supports, which stay in their places.
+    pub(crate) supports: &'a [Support],
+    /// Things in ground and in hands.
+    pub(crate) things: &'a [Thing],
+    /// Loads besides the body's weight, and the time from which on they are in force, s; the earliest first.
+    pub(crate) loads: Vec<(f64, &'a [Load])>,
+}
+
+impl<'a> Stage<'a> {
+    /// With loads that do not change.
+    pub(crate) fn still(supports: &'a [Support], things: &'a [Thing], loads: &'a [Load]) -> Self {
+        Self { supports, things, loads: vec![(f64::NEG_INFINITY, loads)] }
+    }
+
+    /// Of a run, whose events may change the loads.
+    pub(crate) fn of_run(scenario: &'a Scenario, things: &'a [Thing]) -> Self {
+        let mut stage = Self::still(&scenario.supports, things, &scenario.loads);
+        let changes = scenario.events.iter().filter_map(|event| Some((event.time, event.loads.as_deref()?)));
+        stage.loads.extend(changes);
+        stage
+    }
+
+    /// The loads in force at a time.
+    pub(crate) fn loads_at(&self, time: f64) -> &'a [Load] {
+        let begun = self.loads.partition_point(|(from, _)| *from <= time + EVENT_TOLERANCE);
+        self.loads[..begun].last().map_or(&[], |(_, loads)| loads)
+    }
+
+    /// All loads, each once.
+    pub(crate) fn all_loads(&self) -> Vec<Load> {
+        let mut all: Vec<Load> = vec![];
+        for load in self.loads.iter().flat_map(|(_, loads)| *loads) {
+            if !all.contains(load) {
+                all.push(*load);
+            }
+        }
+        all
+    }
+}
+
+/// Point and force of a load in ground, m and N; `None` of a couple.
+pub(crate) fn push(model: &Model, kinematics: &Kinematics, load: &Load) -> Option<[Vector3<f64>; 2]> {
+    let force = match load.kind {
+        LoadKind::Weight(mass) => mass * model.gravity(),
+        LoadKind::Force(force, FixedIn::World) => force,
+        LoadKind::Force(force, FixedIn::Segment) => kinematics.placement(model, load.segment).rotation * force,
+        LoadKind::Couple(..) => return None,
+    };
+    Some([kinematics.station(model, load.segment, load.point), force])
+}
+
+/// `7.5 kg on the right hand`, `60 N on the right hand`.
+pub(crate) fn load_in_words(model: &Model, load: &Load) -> String {
+    let amount = match load.kind {
+        LoadKind::Weight(mass) => format!("{} kg", (10.0 * mass).round() / 10.0),
+        LoadKind::Force(force, _) => format!("{:.0} N", force.norm()),
+        LoadKind::Couple(couple, _) => format!("{:.1} N m", couple.norm()),
+    };
+    format!("{amount} on {}", plain(&model.segments()[load.segment].name))
+}
+
+/// Where a thing is, in ground.
+pub(crate) fn place(model: &Model, kinematics: &Kinematics, thing: &Thing) -> Isometry3<f64> {
+    match thing.segment {
+        Some(segment) => kinematics.placement(model, segment) * thing.place,
+        None => thing.place,
+    }
+}
