@@ -28,6 +28,7 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail>
             return Err(Fail::Refused(format!("--person: {why}")));
         }
         Some(size) => SourcedModel::adult(&size.map_err(refused)?).map_err(refused)?,
+        None if args.no_strength => file(&args.model, root)?.without_strength(),
         None => file(&args.model, root)?,
     };
     if let Some(path) = &args.overlay {

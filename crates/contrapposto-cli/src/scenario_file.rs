@@ -49,6 +49,7 @@ fn model_args(scenario: &Path, file: &ModelFile) -> ModelArgs {
             RootAttachment::Free => RootChoice::Free,
         }),
         passive: None,
+        no_strength: !file.strength,
         person: Some(file.person),
     }
 }

@@ -4,6 +4,7 @@
 //! resolved as MuJoCo 4.0 resolves them. What matters to quasi-static torque and is not supported is refused with its place;
 //! the rest is counted in [`ModelIr::ignored`].
 
+mod actuator;
 mod attributes;
 mod built;
 mod chain;
@@ -65,11 +66,15 @@ pub fn read(
     }
     let built = walk.finish(root)?;
     let mut couplings = vec![];
+    let mut motors = actuator::Motors::new();
     for section in root.children() {
         match section.name() {
             "worldbody" | "compiler" | "option" | "default" => {}
             "equality" => {
                 equality::read(section, &mut body, &settings, &classes, &built, &mut couplings, &mut ignored)?
+            }
+            "actuator" => {
+                actuator::read(section, &body, &settings, &classes, &built, &mut motors, &mut ignored)?;
             }
             "tendon" => tendons(section, &settings, &classes, &mut ignored)?,
             "deformable" => {
@@ -84,6 +89,7 @@ pub fn read(
             _ => return Err(MjcfError::unknown_element(section, schema::SECTIONS)),
         }
     }
+    actuator::finish(&mut body, &built, motors, &mut ignored);
     equality::close(&mut body, couplings)?;
     springdamper::apply(&mut body, &built, root)?;
     unique_coordinates(&body).map_err(|value| MjcfError::DuplicateName { place: root.place(), value })?;

@@ -11,6 +11,7 @@ use contrapposto::strength::Strength;
 use serde::Deserialize;
 
 use crate::input_error::{InputError, suggestion};
+use crate::model_ir::MOST_STRENGTH;
 use crate::passive_law::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, passive_curve};
 use crate::toml_file::{Located, read_toml};
 
@@ -288,7 +289,7 @@ impl Table<'_> {
         if let Some(strength) = &text.strength {
             let sides = [("positive_nm", strength.positive_nm), ("negative_nm", strength.negative_nm)];
             for ((key, peak), group) in sides.into_iter().zip(&mut groups) {
-                if !(peak > 0.0 && peak <= 1e6) {
+                if !(peak > 0.0 && peak <= MOST_STRENGTH) {
                     let path = [self.path[0], self.path[1], "strength", key];
                     let help = Some("both sizes are positive, at most 1e6 N m".to_owned());
                     return Err(self.at.error(&path, format!("{key} is {peak}"), help));

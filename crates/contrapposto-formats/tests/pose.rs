@@ -203,19 +203,23 @@ fn polygons_are_horizontal() {
     assert_eq!((polygon.len(), margin), (4, 0.0));
     let inside = |x, y, z| polygon.iter().all(|edge| edge.excess(&nalgebra::Vector3::new(x, y, z)) <= 0.0);
     assert!(inside(0.19, 1.0, 0.19) && !inside(0.21, 1.0, 0.0) && !inside(0.0, 1.0, -0.21));
-    // From the joints of both feet: ankle to ball.
+    // Around the patches of both feet, as they lie at the start.
     let scenario = good(&format!("{TWO_FEET}[[task]]\nkind = \"center_of_mass\"\n"));
     let Task::CenterOfMass(center) = &scenario.goals[1].tasks[0] else { panic!() };
     let CenterOfMassGoal::Inside { polygon, .. } = &center.goal else { panic!() };
-    for (name, share) in [("calcn_r", 0.999), ("toes_l", 0.999), ("calcn_r", 1.001), ("toes_l", 1.001)] {
-        let at = at_default(&scenario.model, name).translation.vector;
-        let middle = ["calcn_r", "calcn_l", "toes_r", "toes_l"]
-            .map(|name| at_default(&scenario.model, name).translation.vector)
-            .iter()
-            .sum::<nalgebra::Vector3<f64>>()
-            / 4.0;
-        let point = middle + share * (at - middle);
-        assert_eq!(polygon.iter().all(|edge| edge.excess(&point) <= 0.0), share < 1.0, "{name} {share}");
+    let corners: Vec<nalgebra::Vector3<f64>> = ["calcn_r", "calcn_l"]
+        .into_iter()
+        .flat_map(|name| {
+            let foot = at_default(&scenario.model, name);
+            let patch = scenario.model.segments()[scenario.model.segment(name).unwrap()].patch.clone();
+            patch.into_iter().map(move |corner| (foot * nalgebra::Point3::from(corner)).coords)
+        })
+        .collect();
+    for direction in [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]].map(nalgebra::Vector3::from)
+    {
+        let outermost = corners.iter().max_by(|a, b| a.dot(&direction).total_cmp(&b.dot(&direction))).unwrap();
+        let inside = |point: nalgebra::Vector3<f64>| polygon.iter().all(|edge| edge.excess(&point) <= 1e-9);
+        assert!(inside(*outermost) && !inside(outermost + 1e-3 * direction), "{direction:?}");
     }
 }
 
@@ -349,7 +353,7 @@ fn mistakes_are_refused_where_they_stand() {
         ),
         ("[[task]]\nkind = \"center_of_mass\"\n", "3, column 8", "no support is there"),
         (
-            "[[support]]\nsegment = \"calcn_r\"\n[[task]]\nkind = \"center_of_mass\"\n",
+            "[[support]]\nsegment = \"ulna_r\"\n[[task]]\nkind = \"center_of_mass\"\n",
             "5, column 8",
             "give polygon_m = [[x, z], ...]",
         ),

@@ -52,15 +52,7 @@ fn every_joint_type_is_read() {
     let ignored: Vec<_> = body.ignored.iter().map(|(k, n)| (k.as_str(), *n)).collect();
     assert_eq!(
         ignored,
-        [
-            ("collision", 1),
-            ("dynamics", 1),
-            ("gazebo", 1),
-            ("material", 1),
-            ("safety_controller", 1),
-            ("transmission", 1),
-            ("visual", 1)
-        ]
+        [("dynamics", 1), ("gazebo", 1), ("material", 1), ("safety_controller", 1), ("transmission", 1), ("visual", 1)]
     );
     let freed = file(&here().join("tests/models/arm.urdf"), RootAttachment::Free);
     assert_eq!(freed.coordinates[0].name, "root_tx");

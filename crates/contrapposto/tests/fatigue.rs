@@ -615,3 +615,15 @@ fn strength_outside_the_tested_angles_is_that_of_the_nearer_end() {
         assert!(strength.torque(angle) <= strength.greatest());
     }
 }
+
+#[test]
+fn a_motor_holds_its_strength_for_ever_and_no_time_above_it() {
+    let motor = FatigueLaw::Tireless;
+    assert_eq!((motor.endurance_time(1.0), motor.endurance_time(1.001)), (f64::INFINITY, 0.0));
+    assert_eq!((motor.time_left(0.0, 0.5), motor.time_left(0.0, 2.0)), (f64::INFINITY, 0.0));
+    let rested = motor.start(0.7, 0.2);
+    let over = motor.advance(rested, 1.5, 1e4);
+    assert_eq!((rested.level(0.2), over.level(1.5)), (0.0, 1.0));
+    assert_eq!(motor.advance(over, 0.9, 0.01).level(0.9), 0.0, "no memory");
+    assert_eq!((rested.capacity(0.2), over.capacity(1.5)), (1.0, 1.0));
+}

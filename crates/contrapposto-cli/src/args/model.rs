@@ -24,6 +24,9 @@ pub(crate) struct ModelArgs {
     /// Passive torque and strength that the file does not have: from the built-in library by name, or none.
     #[arg(long, value_enum)]
     pub(crate) passive: Option<PassiveFrom>,
+    /// Leave out the strength that a URDF or MJCF file gives to the motors of its joints.
+    #[arg(long)]
+    pub(crate) no_strength: bool,
     /// The person whom a model file stands for, as the built-in strength and passive torque need: `female,1.65m,60kg`, or some
     /// of them. Without it: a man of the model's mass, and of a stature in proportion to it.
     #[arg(long, value_name = "SEX,STATURE,MASS", value_parser = person)]

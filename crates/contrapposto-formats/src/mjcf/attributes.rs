@@ -17,7 +17,7 @@ pub(super) struct Attributes<'a, 'c> {
 impl<'a, 'c> Attributes<'a, 'c> {
     /// `class` is the class of the surrounding body or frame.
     pub(super) fn new(item: Item<'a>, tag: Tag, classes: &'c Classes<'a>, class: usize) -> Result<Self, MjcfError> {
-        check(item, tag.attributes())?;
+        tag.attributes().map_or(Ok(()), |known| check(item, known))?;
         let class = classes.named(item, "class")?.unwrap_or(class);
         Ok(Self { item, tag, classes, class })
     }
@@ -40,6 +40,19 @@ impl<'a, 'c> Attributes<'a, 'c> {
             own.prefix(&mut values)?;
         }
         Ok(values)
+    }
+
+    /// The range `name` if it is a limit: as the flag `limited` says, or where that is "auto", if the range is given and the compiler
+    /// takes a range for a limit.
+    pub(super) fn limits(
+        &self,
+        name: &'static str,
+        limited: &'static str,
+        automatic: bool,
+    ) -> Result<Option<[f64; 2]>, MjcfError> {
+        let limited = self.get(limited).map_or(Ok(2), |v| v.keyword(&["false", "true", "auto"]))?;
+        let range = self.numbers::<2>(name)?.filter(|[low, high]| low < high);
+        Ok(range.filter(|_| limited == 1 || limited == 2 && automatic))
     }
 
     pub(super) fn number(&self, name: &'static str) -> Result<Option<f64>, MjcfError> {

@@ -12,6 +12,8 @@ pub(super) struct Built<'a> {
     pub(super) places: Vec<Place>,
     /// Hinges and slides by name: coordinate and reference value.
     pub(super) joints: BTreeMap<&'a str, (usize, f64)>,
+    /// Least and greatest torque (N m) of all actuators of a hinge together, by coordinate.
+    pub(super) torques: BTreeMap<usize, [f64; 2]>,
     /// All degrees of freedom at the file's configuration.
     pub(super) freedoms: Vec<Freedom>,
     /// Springs whose stiffness is still to be found.

@@ -62,7 +62,7 @@ impl<'a> Classes<'a> {
                 }
                 return Err(MjcfError::unknown_element(child, schema::DEFAULT_CHILDREN));
             };
-            check(child, tag.attributes())?;
+            tag.attributes().map_or(Ok(()), |known| check(child, known))?;
             let values = &mut self.classes[class].values;
             if let Some(value) = own_orientation(child)? {
                 values.insert((tag, ORIENTATION), value);

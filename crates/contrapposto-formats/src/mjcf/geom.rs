@@ -5,7 +5,7 @@ use super::compiler::Settings;
 use super::error::{MjcfError, MjcfRule, Unsupported};
 use super::orientation::{rotation, to_z};
 use super::value::Value;
-use crate::model_ir::{turned, unit};
+use crate::model_ir::{SolidIr, SolidShape, turned, unit};
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 use std::f64::consts::PI;
 
@@ -86,6 +86,31 @@ pub(super) fn solid(
     let turn = frame.rotation.to_rotation_matrix();
     let inertia = turned(&Matrix3::from_diagonal(&(moments * mass)), turn.matrix());
     Ok(Some(Solid { mass, center: frame.translation.vector, inertia }))
+}
+
+/// The shape of a geom of segment number `segment` for contact, in the segment's frame; `None` of a mesh, a plane, or a geom that
+/// touches nothing. A size that is none leaves it out: geoms without mass are not checked.
+pub(super) fn contact_shape(
+    geom: &Attributes<'_, '_>,
+    outer: &Isometry3<f64>,
+    settings: &Settings,
+    segment: usize,
+) -> Option<SolidIr> {
+    let shape = geom.get("type").map_or(Some("sphere"), |value| SHAPES.iter().copied().find(|s| *s == value.text))?;
+    let touches = |name| geom.number(name).ok().flatten() != Some(0.0);
+    let solid = !matches!(shape, "plane" | "hfield" | "mesh" | "sdf") && geom.get("mesh").is_none();
+    if !solid || !(touches("contype") || touches("conaffinity")) {
+        return None;
+    }
+    let (placed, [a, b, c]) = frame_and_size(geom, shape, settings).ok()?;
+    let shape = match shape {
+        "sphere" => SolidShape::Ellipsoid([a; 3]),
+        "capsule" => SolidShape::Capsule { radius: a, half: b },
+        "cylinder" => SolidShape::Cylinder { radius: a, half: b },
+        "ellipsoid" => SolidShape::Ellipsoid([a, b, c]),
+        _ => SolidShape::Box([a, b, c]),
+    };
+    Some(SolidIr { segment, pose: outer * placed, shape })
 }
 
 /// Frame of a geom, and the sizes that its shape needs.

@@ -30,6 +30,8 @@ pub(super) struct Joint<'a> {
     pub(super) armature: f64,
     /// Time constant and damping ratio.
     pub(super) springdamper: Option<[f64; 2]>,
+    /// Least and greatest torque of all its actuators together (N m), of a hinge.
+    pub(super) torques: Option<[f64; 2]>,
     range: Option<(f64, f64)>,
     stiffness: [f64; 3],
     rest: f64,
@@ -58,6 +60,7 @@ impl<'a> Joint<'a> {
             reference: 0.0,
             armature: 0.0,
             springdamper: None,
+            torques: None,
             range: None,
             stiffness: [0.0; 3],
             rest: 0.0,
@@ -92,6 +95,9 @@ impl<'a> Joint<'a> {
             read.reference = scale(joint.number("ref")?.unwrap_or(0.0));
         }
         read.rest = scale(joint.number("springref")?.unwrap_or(0.0));
+        if kind == Kind::Hinge {
+            read.torques = joint.limits("actuatorfrcrange", "actuatorfrclimited", settings.automatic_limits)?;
+        }
         read.range = range(joint, kind, settings)?.map(|[low, high]| (scale(low), scale(high)));
         if settings.springs {
             read.springs(joint)?;

@@ -11,6 +11,8 @@ pub(super) enum Tag {
     Site,
     Equality,
     Tendon,
+    /// Every kind of actuator: they share their defaults.
+    Actuator,
 }
 
 impl Tag {
@@ -21,20 +23,39 @@ impl Tag {
             "site" => Some(Self::Site),
             "equality" => Some(Self::Equality),
             "tendon" => Some(Self::Tendon),
+            _ if ACTUATORS.contains(&name) => Some(Self::Actuator),
             _ => None,
         }
     }
 
-    pub(super) fn attributes(self) -> &'static [&'static str] {
+    /// The attributes that are accepted; `None` where they are not checked, for only some of them are read.
+    pub(super) fn attributes(self) -> Option<&'static [&'static str]> {
         match self {
-            Self::Joint => JOINT,
-            Self::Geom => GEOM,
-            Self::Site => SITE,
-            Self::Equality => EQUALITY,
-            Self::Tendon => TENDON,
+            Self::Joint => Some(JOINT),
+            Self::Geom => Some(GEOM),
+            Self::Site => Some(SITE),
+            Self::Equality => Some(EQUALITY),
+            Self::Tendon => Some(TENDON),
+            Self::Actuator => None,
         }
     }
 }
+
+/// Kinds of actuators.
+pub(super) const ACTUATORS: &[&str] = &[
+    "general",
+    "motor",
+    "position",
+    "velocity",
+    "intvelocity",
+    "orientation",
+    "pid",
+    "damper",
+    "cylinder",
+    "muscle",
+    "adhesion",
+    "dcmotor",
+];
 
 /// The five ways to give an orientation.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];

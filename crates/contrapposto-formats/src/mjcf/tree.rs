@@ -6,7 +6,7 @@ use super::chain::Chain;
 use super::compiler::{MassFrom, Settings};
 use super::defaults::Classes;
 use super::error::{MjcfError, MjcfRule, Unsupported};
-use super::geom::middle;
+use super::geom::{contact_shape, middle};
 use super::inertial;
 use super::item::Item;
 use super::joint::{Joint, Kind};
@@ -185,8 +185,11 @@ impl<'a, 'w> Walk<'a, 'w> {
         let moves = !joints.is_empty() || freed;
         let carried = context.parent.is_some_and(|p| self.built.moves[p]);
         let solid = inertial::mass(item, contents.inertial, &contents.geoms, settings, moves || carried)?;
+        let solids = contents.geoms.iter().filter_map(|(geom, frame)| contact_shape(geom, frame, settings, index));
+        let known = self.body.solids.len();
+        self.body.solids.extend(solids);
         if contents.inertial.is_some() && settings.mass_from != MassFrom::Geoms {
-            self.ignored.add("geom", contents.geoms.len());
+            self.ignored.add("geom", contents.geoms.len() - (self.body.solids.len() - known));
         }
         let world = context.parent.map_or(pose, |p| self.built.poses[p] * pose);
         self.built.poses.push(world);
@@ -283,6 +286,7 @@ impl<'a, 'w> Walk<'a, 'w> {
         {
             self.built.joints.insert(name, (coordinate, joint.reference));
         }
+        self.built.torques.extend(joint.torques.map(|torques| (coordinate, torques)));
         if let Some(wanted) = joint.springdamper {
             let place = joint.item.place();
             let freedom = self.built.freedoms.len();

@@ -6,6 +6,7 @@ mod build;
 mod ignored;
 mod model;
 mod root;
+mod sole;
 
 pub use contrapposto::math::{Function, Spline, SplineError};
 pub use contrapposto::model::{CoordinateKind, Coupling, Drive};
@@ -17,6 +18,9 @@ pub(crate) use build::{compose_couplings, first_too_large, near, polynomial, tur
 pub(crate) use ignored::Ignored;
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
+
+/// Greatest torque of a motor that a file can mean, N m; as of a muscle group in an overlay.
+pub(crate) const MOST_STRENGTH: f64 = 1e6;
 
 /// A model as its file describes it, resolved.
 #[derive(Clone, Debug, Default)]
@@ -33,6 +37,10 @@ pub struct ModelIr {
     pub couplings: Vec<Coupling>,
     /// Passive torques on coordinates; several on one coordinate add up.
     pub passive: Vec<PassiveIr>,
+    /// Greatest torques of coordinates, where the file limits its motors.
+    pub strength: Vec<StrengthIr>,
+    /// Shapes for contact.
+    pub solids: Vec<SolidIr>,
     /// Named points (markers, sites): name, segment index, position in the segment's frame.
     pub stations: Vec<(String, usize, Vector3<f64>)>,
     /// Ignored elements, which do not matter to quasi-static torque: kind and count, sorted by kind.
@@ -101,6 +109,49 @@ pub struct CoordinateIr {
     pub locked: bool,
     /// The file says that its range is a hard limit.
     pub clamped: bool,
+}
+
+/// A solid with which a segment touches other things.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolidIr {
+    /// Index of the segment.
+    pub segment: usize,
+    /// Its middle and axes in the segment's frame.
+    pub pose: Isometry3<f64>,
+    /// Its shape about its middle.
+    pub shape: SolidShape,
+}
+
+/// Shapes of solids, m. A mesh is none: files of meshes are not read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SolidShape {
+    /// Half the lengths of a box.
+    Box([f64; 3]),
+    /// Semi-axes; three equal ones are a ball.
+    Ellipsoid([f64; 3]),
+    /// A cylinder along z.
+    Cylinder {
+        /// Its radius.
+        radius: f64,
+        /// Half its length.
+        half: f64,
+    },
+    /// A cylinder along z between two half balls.
+    Capsule {
+        /// The radius of all three.
+        radius: f64,
+        /// Half the length of the cylinder.
+        half: f64,
+    },
+}
+
+/// The greatest torque of the motor of one coordinate, the same at every angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrengthIr {
+    /// Index of the coordinate, an angle.
+    pub coordinate: usize,
+    /// Greatest torque in the coordinate's positive and in its negative sense, N m, both positive.
+    pub torque: [f64; 2],
 }
 
 /// A passive torque law on one coordinate.

@@ -1,10 +1,15 @@
 //! Builds the [`Model`] of an intermediate representation.
 
-use contrapposto::model::{CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, SegmentSpec};
+use contrapposto::fatigue::FatigueLaw;
+use contrapposto::model::{
+    CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, SegmentSpec, Side,
+};
 use contrapposto::passive::{PassiveError, PassiveLaw, Term};
+use contrapposto::strength::Strength;
 use nalgebra::Unit;
 
-use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, PassiveLawIr, SegmentIr};
+use super::sole::with_soles;
+use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, PassiveLawIr, SegmentIr, StrengthIr};
 
 /// A model, and notes on its file.
 #[derive(Clone, Debug)]
@@ -33,7 +38,7 @@ pub enum ModelIrError {
 }
 
 impl ModelIr {
-    /// The model.
+    /// The model. Where the file gives the strength of motors, every joint is judged by its coordinates ([`Model::by_coordinates`]).
     ///
     /// # Errors
     /// [`ModelIrError`] when the model refuses a name or number.
@@ -48,7 +53,21 @@ impl ModelIr {
             let name = |i: usize| self.coordinates[i].name.as_str();
             builder.couple(name(coupling.dependent), name(coupling.independent), coupling.function.clone())?;
         }
-        Ok(Imported { model: builder.build(), notes })
+        let model = builder.build();
+        let model = if self.strength.is_empty() { model } else { model.by_coordinates() };
+        Ok(Imported { model: with_soles(model, &self.solids), notes })
+    }
+
+    /// The two groups of a coordinate that a motor drives; none of one that follows another coordinate.
+    fn motors(&self, index: usize) -> Option<[MuscleGroup; 2]> {
+        let StrengthIr { torque, .. } = self.strength.iter().find(|strength| strength.coordinate == index)?;
+        let own = self.couplings.iter().all(|coupling| coupling.dependent != index);
+        let group = |side: Side| MuscleGroup {
+            name: format!("{}, {}", self.coordinates[index].name, side.word()),
+            strength: Strength::constant(torque[side.index()]),
+            fatigue: FatigueLaw::Tireless,
+        };
+        own.then(|| Side::BOTH.map(group))
     }
 
     fn spec(&self, segment: &SegmentIr, notes: &mut Vec<String>) -> Result<SegmentSpec, ModelIrError> {
@@ -126,6 +145,7 @@ impl ModelIr {
         spec.default = *default;
         spec.kind = *kind;
         spec.locked = *locked;
+        spec.groups = self.motors(index);
         spec.passive = (!terms.is_empty()).then_some(PassiveLaw::Sum(terms));
         Ok(spec)
     }

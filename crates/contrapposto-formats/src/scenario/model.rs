@@ -22,6 +22,8 @@ pub struct ModelFile {
     pub overlay: Option<String>,
     /// How its root is attached, if that is said.
     pub root: Option<RootAttachment>,
+    /// Whether its joints have the strength that the file gives to their motors.
+    pub strength: bool,
     /// Fatigue law of its muscle groups, for [`SourcedModel::with_fatigue`].
     pub fatigue: FatigueChoice,
     /// The person whom it stands for.
@@ -42,8 +44,12 @@ pub fn scenario_model(name: &str, bytes: &[u8]) -> Result<Option<ModelFile>, Inp
 fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>, InputError> {
     let text: &ModelText = &scenario.model;
     let Some(file) = &text.file else {
-        let given =
-            [("overlay", text.overlay.is_some()), ("root", text.root.is_some()), ("person", text.person.is_some())];
+        let given = [
+            ("overlay", text.overlay.is_some()),
+            ("root", text.root.is_some()),
+            ("file_strength", text.file_strength.is_some()),
+            ("person", text.person.is_some()),
+        ];
         for (key, given) in given {
             if given {
                 let help = Some("add `file = \"MODEL\"`, or leave it out".to_owned());
@@ -67,7 +73,8 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
     });
     let fatigue = fatigue_choice(at, scenario)?;
     let person = text.person.as_ref().map_or(Ok(Person::default()), |text| person(at, text))?;
-    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, fatigue, person }))
+    let strength = text.file_strength.unwrap_or(true);
+    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, strength, fatigue, person }))
 }
 
 fn person(at: &Located, text: &PersonText) -> Result<Person, InputError> {

@@ -1,5 +1,6 @@
 //! Reads the polygon over which a task wants the centre of mass.
 
+use contrapposto::contact::Support;
 use contrapposto::model::LARGEST;
 use contrapposto::tasks::{HalfPlane, half_planes};
 use nalgebra::Vector3;
@@ -12,8 +13,8 @@ use crate::toml_file::shown;
 /// A polygon narrower than this, m, is refused.
 const NARROWEST: f64 = 0.01;
 
-/// The half-planes of the polygon whose corners the task number `number` gives, or of the polygon around the joints of the
-/// supports.
+/// The half-planes of the polygon whose corners the task number `number` gives, or of the polygon around the patches of the supports;
+/// around their joints where the patch of one is not known.
 pub(super) fn polygon(stage: &Stage<'_>, number: &str, text: &TaskText) -> Result<Vec<HalfPlane>, InputError> {
     let error =
         |key: &str, message: &str, help: String| Err(stage.at.error(&["task", number, key], message, Some(help)));
@@ -30,13 +31,17 @@ pub(super) fn polygon(stage: &Stage<'_>, number: &str, text: &TaskText) -> Resul
         None if stage.supports.is_empty() => {
             return error("kind", "no support is there to stand over", format!("add a [[support]], {asked}"));
         }
-        None => ("kind", joints_of_supports(stage)),
+        None if stage.patches.is_empty() => ("kind", joints_of_supports(stage)),
+        None => ("kind", corners_of_supports(stage)),
     };
     let polygon = half_planes(&points, gravity);
     let width = |edge: &HalfPlane| points.iter().map(|p| -edge.excess(p)).fold(0.0, f64::max);
     if polygon.len() < 3 || polygon.iter().any(|edge| width(edge) < NARROWEST) {
         let message = match text.polygon_m {
-            None => "the joints of the supports lie on a line, over which nobody stands",
+            None if stage.patches.is_empty() => {
+                "the patches of the supports are not known (corners_m), and their joints lie on a line, over which nobody stands"
+            }
+            None => "the patches of the supports are narrower than a centimetre, over which nobody stands",
             Some(_) => "the polygon is narrower than a centimetre",
         };
         return error(key, message, asked);
@@ -65,6 +70,19 @@ fn corner_points(
         points.push(point);
     }
     Ok(points)
+}
+
+/// Corners of the patches of the supports, ground, m.
+fn corners_of_supports(stage: &Stage<'_>) -> Vec<Vector3<f64>> {
+    let in_ground = |support: &Support| {
+        let placement = stage.kinematics.placement(stage.model, support.segment);
+        support
+            .corners
+            .iter()
+            .map(move |&corner| (placement * nalgebra::Point3::from(corner)).coords)
+            .collect::<Vec<_>>()
+    };
+    stage.patches.iter().flat_map(in_ground).collect()
 }
 
 /// Joints at the start of the supports, and of the segments that each support carries.

@@ -66,7 +66,8 @@ impl Setup {
         if let Ok(supports) = &mut supports {
             set_places(at, (&model, &kinematics), &text.support, supports)?;
         }
-        let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing };
+        let patches = supports.as_ref().map_or(&[][..], Vec::as_slice);
+        let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing, patches };
         let mut levels = levels(&stage, &text.task)?;
         notes.extend(add_upright(&stage, text, &mut levels)?.map(str::to_owned));
         let limits = limits(at, text, &model, &standing, &kinematics)?;

@@ -1,5 +1,6 @@
 //! Holds the body at the start: the posture with its kinematics, and what tasks refer to.
 
+use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
@@ -42,4 +43,6 @@ pub(super) struct Stage<'a> {
     pub(super) kinematics: &'a Kinematics,
     /// Segments that carry weight.
     pub(super) supports: &'a [usize],
+    /// The same with their patches; empty where the patch of one is not known.
+    pub(super) patches: &'a [Support],
 }

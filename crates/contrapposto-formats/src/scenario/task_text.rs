@@ -148,7 +148,7 @@ pub(crate) struct TaskText {
     pub(crate) range_m: Option<[f64; 2]>,
     /// distance: exactly this, m.
     pub(crate) distance_m: Option<f64>,
-    /// center_of_mass over a polygon: corners in the horizontal plane, m, such as `[[x, z], ...]` where y is up; the joints of
+    /// center_of_mass over a polygon: corners in the horizontal plane, m, such as `[[x, z], ...]` where y is up; the patches of
     /// the supports when left out.
     #[serde(default, deserialize_with = "rows")]
     pub(crate) polygon_m: Option<Vec<[f64; 2]>>,

@@ -98,6 +98,8 @@ pub(crate) struct ModelText {
     pub(crate) overlay: Option<String>,
     /// How the root of a URDF or MJCF file is attached; as the file says when left out.
     pub(crate) root: Option<RootText>,
+    /// Whether the joints of a URDF or MJCF file have the strength that it gives to their motors; true when left out.
+    pub(crate) file_strength: Option<bool>,
     /// The person whom a model file stands for: size of the built-in strength and passive torque.
     pub(crate) person: Option<PersonText>,
 }

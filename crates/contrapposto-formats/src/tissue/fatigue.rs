@@ -57,6 +57,10 @@ impl SourcedModel {
 }
 
 fn chosen(choice: &FatigueChoice, group: &MuscleGroup, origins: &Origins, of_body: Option<Sex>) -> FatigueLaw {
+    // The file gives the strength of motors, which do not tire.
+    if origins.fatigue == Origin::File {
+        return group.fatigue.clone();
+    }
     let library = data::library();
     let law = match choice {
         FatigueChoice::ThreeCompartment(..) if origins.fatigue != Origin::Library => None,
@@ -106,7 +110,11 @@ pub fn fatigue_notes(model: &Model) -> Vec<String> {
     let library = data::library();
     let mut rows: Vec<(&str, Vec<&str>)> = vec![];
     for group in model.coordinates().iter().filter_map(|c| c.groups.as_ref()).flatten() {
-        let FatigueLaw::ThreeCompartment(law) = &group.fatigue else { return vec![] };
+        let law = match &group.fatigue {
+            FatigueLaw::ThreeCompartment(law) => law,
+            FatigueLaw::Tireless => continue,
+            FatigueLaw::Endurance(_) => return vec![],
+        };
         let at = rows.iter().position(|(name, _)| *name == law.name).unwrap_or_else(|| {
             rows.push((&law.name, vec![]));
             rows.len() - 1

@@ -65,7 +65,19 @@ impl SourcedModel {
     ) -> Result<Self, ModelFileError> {
         let (imported, format) = read_model(name, bytes, root, include)?;
         let origins = vec![Origins::default(); imported.model.coordinates().len()];
-        Ok(Self { model: imported.model, format, sex: None, origins, notes: gathered(imported.notes) })
+        let mut notes = gathered(imported.notes);
+        notes.extend(strength_note(&imported.model, format));
+        Ok(Self { model: imported.model, format, sex: None, origins, notes })
+    }
+
+    /// The model without the strength that its file gives to motors; its notes no longer tell of it. For a model file as it was read.
+    #[must_use]
+    pub fn without_strength(mut self) -> Self {
+        if self.model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
+            self.model = self.model.without_groups();
+            self.notes.retain(|note| !note.starts_with(STRENGTH_NOTE));
+        }
+        self
     }
 
     /// The built-in adult.
@@ -141,6 +153,24 @@ impl SourcedModel {
         });
         ranges.collect()
     }
+}
+
+/// How the note about strength from the file begins.
+const STRENGTH_NOTE: &str = "strength of ";
+
+/// How many joints have the strength that the file gives to their motors.
+fn strength_note(model: &Model, format: ModelFormat) -> Option<String> {
+    let known = model.coordinates().iter().filter(|coordinate| coordinate.groups.is_some()).count();
+    let from = match format {
+        ModelFormat::Mjcf => "`actuatorfrcrange`, or `forcerange` or a motor's `ctrlrange` times `gear`",
+        _ => "`effort`",
+    };
+    (known > 0).then(|| {
+        format!(
+            "{STRENGTH_NOTE}{known} joints from the file ({from}): the same at every angle, and motors do not tire; \
+             --no-strength, in a scenario `file_strength = false`, leaves it out"
+        )
+    })
 }
 
 /// One note for everything that was ignored, before the others.

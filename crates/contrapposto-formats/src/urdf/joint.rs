@@ -2,7 +2,7 @@
 
 use super::attributes::{name_place, number, origin, required, required_child, vector};
 use super::error::{UrdfError, UrdfRule};
-use crate::model_ir::{CoordinateIr, CoordinateKind, Drive, Ignored, ModelIr, MotionIr};
+use crate::model_ir::{CoordinateIr, CoordinateKind, Drive, Ignored, MOST_STRENGTH, ModelIr, MotionIr, StrengthIr};
 use crate::xml::Node;
 use nalgebra::{Isometry3, Unit, UnitQuaternion, Vector3};
 
@@ -25,6 +25,8 @@ pub(super) struct Joint<'a> {
     kind: Kind,
     axis: Unit<Vector3<f64>>,
     range: (f64, f64),
+    /// Greatest torque of its motor, N m, if the file gives one above 0.
+    effort: Option<f64>,
 }
 
 pub(super) struct Mimic<'a> {
@@ -91,7 +93,8 @@ impl<'a> Joint<'a> {
                 return Err(UrdfError::Invalid { place: part.place(), value, needs: UrdfRule::MimicKind });
             }
         };
-        Ok(Self { node, name, parent, child, origin: origin(node)?, mimic, kind, axis, range })
+        let effort = effort(node, kind, ignored);
+        Ok(Self { node, name, parent, child, origin: origin(node)?, mimic, kind, axis, range, effort })
     }
 
     /// Whether one coordinate moves it, so that another joint can mimic it.
@@ -112,6 +115,7 @@ impl<'a> Joint<'a> {
             Kind::Fixed => vec![],
             Kind::Hinge => {
                 add(self.name.to_owned(), CoordinateKind::Rotation, self.range);
+                body.strength.extend(self.effort.map(|effort| StrengthIr { coordinate: first, torque: [effort; 2] }));
                 vec![MotionIr::Hinge { axis, drive: own(0) }]
             }
             Kind::Slide => {
@@ -148,4 +152,21 @@ fn limits(limit: Node<'_>) -> Result<(f64, f64), UrdfError> {
         return Err(UrdfError::Invalid { place: limit.attribute_place("lower"), value, needs: UrdfRule::LimitOrder });
     }
     Ok((lower, upper))
+}
+
+/// The greatest torque of a hinge. Files that know none write 0 there, or a number without a meaning: these are counted.
+fn effort(joint: Node<'_>, kind: Kind, ignored: &mut Ignored) -> Option<f64> {
+    let limit = joint.child("limit").filter(|limit| limit.attribute("effort").is_some())?;
+    match (kind, number(limit, "effort").ok().flatten()) {
+        (Kind::Hinge, Some(effort)) if effort > 0.0 && effort <= MOST_STRENGTH => Some(effort),
+        (Kind::Hinge, _) => {
+            ignored.add("effort that is no torque above 0 and at most 1e6 N m", 1);
+            None
+        }
+        (Kind::Slide, Some(effort)) if effort > 0.0 => {
+            ignored.add("effort of a slide", 1);
+            None
+        }
+        _ => None,
+    }
 }

@@ -1,8 +1,8 @@
-//! Reads mass and inertia of a link.
+//! Reads mass, inertia and shapes for contact of a link.
 
-use super::attributes::{number, origin, required, required_child};
+use super::attributes::{number, origin, required, required_child, vector};
 use super::error::{UrdfError, UrdfRule};
-use crate::model_ir::{Ignored, SegmentIr, turned};
+use crate::model_ir::{Ignored, SegmentIr, SolidIr, SolidShape, turned};
 use crate::xml::Node;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -23,7 +23,7 @@ pub(super) fn segment(link: Node<'_>, name: &str, ignored: &mut Ignored) -> Resu
         motions: Vec::new(),
     };
     for child in link.children() {
-        if child.name() != "inertial" {
+        if !matches!(child.name(), "inertial" | "collision") {
             ignored.add(child.name(), 1);
         }
     }
@@ -60,4 +60,31 @@ pub(super) fn segment(link: Node<'_>, name: &str, ignored: &mut Ignored) -> Resu
     segment.center_of_mass = frame.translation.vector;
     segment.inertia = turned(&own, frame.rotation.to_rotation_matrix().matrix());
     Ok(segment)
+}
+
+/// The shapes for contact of a link, the segment number `segment`. Meshes, and shapes without a size above 0, are counted.
+pub(super) fn solids(link: Node<'_>, segment: usize, ignored: &mut Ignored) -> Vec<SolidIr> {
+    let mut solids = vec![];
+    for collision in link.children_named("collision") {
+        let shape = collision.child("geometry").and_then(|geometry| geometry.children().next());
+        match shape.and_then(shape_of).zip(origin(collision).ok()) {
+            Some((shape, pose)) => solids.push(SolidIr { segment, pose, shape }),
+            None => ignored.add("collision that is no box, cylinder, capsule or sphere", 1),
+        }
+    }
+    solids
+}
+
+fn shape_of(node: Node<'_>) -> Option<SolidShape> {
+    let size = |name| number(node, name).ok().flatten().filter(|size| *size > 0.0);
+    match node.name() {
+        "box" => {
+            let half = vector(node, "size").ok().flatten()? / 2.0;
+            (half.min() > 0.0).then(|| SolidShape::Box(half.into()))
+        }
+        "sphere" => Some(SolidShape::Ellipsoid([size("radius")?; 3])),
+        "cylinder" => Some(SolidShape::Cylinder { radius: size("radius")?, half: size("length")? / 2.0 }),
+        "capsule" => Some(SolidShape::Capsule { radius: size("radius")?, half: size("length")? / 2.0 }),
+        _ => None,
+    }
 }

@@ -3,7 +3,7 @@
 use super::attributes::{name_place, required};
 use super::error::{UrdfError, UrdfRule};
 use super::joint::Joint;
-use super::link::segment;
+use super::link::{segment, solids};
 use super::options::Options;
 use crate::model_ir::{
     Coupling, Function, Ignored, ModelIr, RootAttachment, compose_couplings, near, unique_coordinates,
@@ -48,6 +48,7 @@ pub(super) fn build(
         seen[link] = true;
         let mut segment = segment(links[link], links[link].attribute("name").unwrap_or_default(), ignored)?;
         let index = body.segments.len();
+        body.solids.extend(solids(links[link], index, ignored));
         if let Some((joint, parent)) = by {
             let first = body.coordinates.len();
             segment.parent = Some(parent);

@@ -14,7 +14,7 @@ use super::mjcf_body::{Group, Joint, group, solid};
 use super::names::Names;
 use super::steps::resting;
 use super::xml::{Xml, moments, number, numbers};
-use super::{FEATHER_INERTIA, FEATHER_MASS, PLACEHOLDER_LIMIT, WriteError, Written, common, exact, listed};
+use super::{FEATHER_INERTIA, FEATHER_MASS, PLACEHOLDER_LIMIT, WriteError, Written, common, exact, listed, motor};
 use crate::model_ir::{FREE_ENDINGS, Function};
 
 /// Writes the model as an MJCF file.
@@ -25,7 +25,7 @@ use crate::model_ir::{FREE_ENDINGS, Function};
 /// # Errors
 /// [`WriteError`] for joints that functions drive, and for bodies with more than six degrees of freedom.
 pub fn mjcf(model: &Model) -> Result<Written, WriteError> {
-    let lost = common(model)?;
+    let lost = common(model, |_| true)?;
     let mut writer = Writer::new(model, lost);
     writer.xml.open("mujoco", &[("model", model.name())]);
     writer.xml.leaf("compiler", &[("angle", "radian"), ("inertiafromgeom", "false")]);
@@ -192,6 +192,7 @@ impl<'m> Writer<'m> {
         let anchor = numbers(&joint.anchor);
         let (low, high) = coordinate.range;
         let range = numbers(&[low.max(-PLACEHOLDER_LIMIT), high.min(PLACEHOLDER_LIMIT)]);
+        let torques = motor(coordinate).map(|[positive, negative]| numbers(&[-negative, positive]));
         let (reference, spring) = (number(joint.reference), self.spring(coordinate));
         let mut attributes = vec![("name", name.as_str())];
         if kind != "hinge" {
@@ -217,6 +218,9 @@ impl<'m> Writer<'m> {
         }
         if joint.reference != 0.0 {
             attributes.push(("ref", &reference));
+        }
+        if let Some(torques) = &torques {
+            attributes.push(("actuatorfrcrange", torques));
         }
         if let Some((stiffness, rest)) = &spring {
             attributes.push(("stiffness", stiffness));

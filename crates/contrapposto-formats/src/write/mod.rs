@@ -26,7 +26,8 @@ pub use osim::osim;
 pub use osim_motion::osim_motion;
 pub use urdf::urdf;
 
-use contrapposto::model::Model;
+use contrapposto::fatigue::FatigueLaw;
+use contrapposto::model::{Coordinate, Model};
 
 /// A file, and the properties of the model that it lacks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,8 +68,9 @@ pub enum WriteError {
 
 /// Written as a joint's greatest speed (rad/s or m/s): URDF asks for one, and models of posture know none.
 const PLACEHOLDER_VELOCITY: f64 = 10.0;
-/// Written as a joint's greatest effort (N m or N) where the strength of its muscle groups is not known.
-const PLACEHOLDER_EFFORT: f64 = 1000.0;
+/// Written as a joint's greatest effort where the strength of its muscle groups is not known: URDF asks for one, and this reader takes
+/// 0 for none.
+const PLACEHOLDER_EFFORT: f64 = 0.0;
 /// Written as a limit where there is none but the format asks for one, rad or m.
 const PLACEHOLDER_LIMIT: f64 = 1e9;
 
@@ -77,8 +79,15 @@ const FEATHER_MASS: f64 = 1e-12;
 /// Inertia of such a segment, kg m^2, which plays no part at rest.
 const FEATHER_INERTIA: f64 = 1e-9;
 
-/// Properties that no format holds, after a check of all names.
-fn common(model: &Model) -> Result<Vec<String>, WriteError> {
+/// Greatest torque in the positive and negative sense of a coordinate that a motor drives, N m.
+fn motor(coordinate: &Coordinate) -> Option<[f64; 2]> {
+    let groups = coordinate.groups.as_ref()?;
+    let motors = groups.iter().all(|group| group.fatigue == FatigueLaw::Tireless);
+    motors.then(|| [0, 1].map(|side| groups[side].strength.peak))
+}
+
+/// Properties that the format does not hold, after a check of all names. `holds`: the format holds the strength of such a motor.
+fn common(model: &Model, holds: fn([f64; 2]) -> bool) -> Result<Vec<String>, WriteError> {
     let segments = model.segments().iter().flat_map(|s| [&s.name, &s.joint]);
     let all = segments.chain(model.coordinates().iter().map(|c| &c.name));
     for name in all.map(String::as_str).chain([model.name()]) {
@@ -87,13 +96,16 @@ fn common(model: &Model) -> Result<Vec<String>, WriteError> {
         }
     }
     let mut lost = vec![];
-    let count =
-        |wanted: fn(&contrapposto::model::Coordinate) -> bool| model.coordinates().iter().filter(|c| wanted(c)).count();
-    let groups = count(|c| c.groups.is_some());
+    let count = |wanted: &dyn Fn(&Coordinate) -> bool| model.coordinates().iter().filter(|c| wanted(c)).count();
+    let groups = count(&|c| c.groups.is_some() && !motor(c).is_some_and(holds));
     if groups > 0 {
         lost.push(format!("Strength and fatigue of the muscle groups of {groups} coordinates are not written."));
     }
-    let words = count(|c| !c.positive.is_empty());
+    let patches = model.segments().iter().filter(|segment| !segment.patch.is_empty()).count();
+    if patches > 0 {
+        lost.push(format!("The patches of {patches} segments, which can rest on something, are not written."));
+    }
+    let words = count(&|c| !c.positive.is_empty());
     if words > 0 {
         lost.push(format!("The clinical words for the positive direction of {words} coordinates are not written."));
     }

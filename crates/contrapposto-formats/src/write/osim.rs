@@ -35,7 +35,7 @@ fn accepts(c: char) -> bool {
 /// # Errors
 /// [`WriteError`] for names that XML cannot hold, and for joints whose chain must be split at a coordinate that moves both parts.
 pub fn osim(model: &Model) -> Result<Written, WriteError> {
-    let mut lost = common(model)?;
+    let mut lost = common(model, |_| false)?;
     let mut writer = Writer::new(model, &mut lost)?;
     writer.xml.open("OpenSimDocument", &[("Version", "40000")]);
     let name = Names::new(&[], accepts).keep("model", model.name(), &mut lost);

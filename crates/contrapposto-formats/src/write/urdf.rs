@@ -24,7 +24,7 @@ use crate::urdf::GRAVITY;
 /// # Errors
 /// [`WriteError`] for balls (other than a free joint's) and for joints that functions drive, which URDF has not.
 pub fn urdf(model: &Model) -> Result<Written, WriteError> {
-    let mut lost = common(model)?;
+    let mut lost = common(model, |[positive, negative]| positive == negative)?;
     let mut writer = Writer::new(model, &mut lost);
     writer.xml.comment("Gravity is taken to be 9.81 m/s^2 along -z. Speed limits are placeholders.");
     let name = if model.name().is_empty() { "model" } else { model.name() };

@@ -54,6 +54,14 @@ fn skeleton(model: &Model) -> (String, Vec<f64>) {
     (words, numbers)
 }
 
+/// No format of ours holds patches: they are told as lost.
+fn without_patches(mut model: Model) -> Model {
+    for segment in 0..model.segments().len() {
+        model = model.with_patch(segment, vec![]);
+    }
+    model
+}
+
 /// Writes and reads each model in its own format; the number of models that can be written. At most so many numbers of a
 /// model change.
 fn survivors(folders: &[PathBuf], most_changed: usize) -> usize {
@@ -68,7 +76,8 @@ fn survivors(folders: &[PathBuf], most_changed: usize) -> usize {
         };
         let back = read(&written.text, format);
         assert_eq!(format!("{back:?}"), format!("{:?}", read(&written.text, format)), "{name} twice");
-        let ((words, numbers), (words_back, numbers_back)) = (skeleton(&model), skeleton(&back));
+        let bare = without_patches(model.clone());
+        let ((words, numbers), (words_back, numbers_back)) = (skeleton(&bare), skeleton(&back));
         let changed = numbers.iter().zip(&numbers_back).filter(|(a, b)| a != b).count();
         let pairs = numbers.iter().zip(&numbers_back).filter(|(a, b)| a != b);
         let worst = pairs.fold(0.0_f64, |w, (a, b)| w.max((a - b).abs() / a.abs().max(1.0)));

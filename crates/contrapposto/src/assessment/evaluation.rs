@@ -87,7 +87,7 @@ impl<'a> Evaluation<'a> {
         if Side::of(self.active(rate)) != group.side {
             return;
         }
-        let range = self.ranges.get(i).copied().flatten().unwrap_or(coordinate.range);
+        let range = proposed_range(coordinate.range, self.ranges.get(i).copied().flatten());
         let (passive, kinematics) = (self.torques.passive_torque(), self.torques.kinematics());
         let Some(curve) = passive.curve_about_axis(self.model, kinematics, i, range) else { return };
         let value = passive.values()[i];
@@ -108,5 +108,26 @@ impl<'a> Evaluation<'a> {
                 group.proposals.push(Proposal { at, time, angle, strategy, decision, sentence });
             }
         }
+    }
+}
+
+/// The angles in which relief is sought: those of the model's own range for which the passive law is meant, too. A goal outside of the
+/// model's own range could not be taken. The own range alone where the two have no angle in common.
+fn proposed_range(own: (f64, f64), meant: Option<(f64, f64)>) -> (f64, f64) {
+    let Some(meant) = meant else { return own };
+    let both = (own.0.max(meant.0), own.1.min(meant.1));
+    if both.0 < both.1 { both } else { own }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::proposed_range;
+
+    #[test]
+    fn relief_is_sought_inside_the_models_own_range() {
+        assert_eq!(proposed_range((0.0, 2.0), None), (0.0, 2.0));
+        assert_eq!(proposed_range((0.0, 2.0), Some((-0.2, 1.5))), (0.0, 1.5));
+        assert_eq!(proposed_range((f64::NEG_INFINITY, f64::INFINITY), Some((-0.2, 1.5))), (-0.2, 1.5));
+        assert_eq!(proposed_range((0.0, 1.0), Some((2.0, 3.0))), (0.0, 1.0), "nothing in common");
     }
 }

@@ -1,7 +1,8 @@
 //! Computes the fatigue of a muscle group, and decides when the group must rest.
 //!
 //! Two laws, one scale: fatigue is 0 rested and 1 when the present load can no longer be held, so thresholds mean the same
-//! for both. Load is relative: |active torque| over strength at the present angle. This module knows nothing of posture.
+//! for both. A motor has no law: it holds every load up to its strength for ever, and none above. Load is relative: |active
+//! torque| over strength at the present angle. This module knows nothing of posture.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +26,8 @@ pub enum FatigueLaw {
     ThreeCompartment(ThreeCompartment),
     /// Integral of time over endurance time.
     Endurance(Endurance),
+    /// None: a motor. It is exhausted while its load is above its strength, and rested otherwise.
+    Tireless,
 }
 
 /// How tired a group is now. Depends on the history of its load; filled by [`FatigueLaw::advance`].
@@ -42,6 +45,7 @@ impl FatigueLaw {
         match self {
             Self::ThreeCompartment(law) => &law.name,
             Self::Endurance(law) => &law.curve.name,
+            Self::Tireless => "none (does not tire)",
         }
     }
 
@@ -50,6 +54,7 @@ impl FatigueLaw {
         match self {
             Self::ThreeCompartment(_) => FatigueState::Compartments(Compartments::with_fatigue(level, load)),
             Self::Endurance(_) => FatigueState::Share(level.clamp(0.0, 1.0)),
+            Self::Tireless => FatigueState::Share(overload(load)),
         }
     }
 
@@ -62,6 +67,7 @@ impl FatigueLaw {
             (Self::Endurance(law), FatigueState::Share(share)) => {
                 FatigueState::Share(law.advance(share, load, seconds))
             }
+            (Self::Tireless, _) => self.start(0.0, load),
             // A state of the other law can only come from a caller's mix-up: it starts rested.
             (law, _) => law.advance(law.start(0.0, load), load, seconds),
         }
@@ -72,6 +78,8 @@ impl FatigueLaw {
         match self {
             Self::ThreeCompartment(law) => law.endurance_time(load),
             Self::Endurance(law) => law.curve.time(load),
+            Self::Tireless if load > 1.0 => 0.0,
+            Self::Tireless => f64::INFINITY,
         }
     }
 
@@ -81,6 +89,7 @@ impl FatigueLaw {
             Self::ThreeCompartment(law) => law.time_left(level, load),
             Self::Endurance(law) if level < 1.0 => (1.0 - level.max(0.0)) * law.curve.time(load),
             Self::Endurance(_) => 0.0,
+            Self::Tireless => self.endurance_time(load),
         }
     }
 
@@ -90,8 +99,14 @@ impl FatigueLaw {
         match self {
             Self::ThreeCompartment(law) => law.steady_fatigue(load) <= level * (1.0 - judged.clamp(0.0, 1.0)),
             Self::Endurance(_) => load <= REST_LOAD,
+            Self::Tireless => judged <= 1.0,
         }
     }
+}
+
+/// Fatigue of a group that does not tire: 1 above its strength, 0 up to it.
+fn overload(load: f64) -> f64 {
+    if load > 1.0 { 1.0 } else { 0.0 }
 }
 
 impl FatigueState {

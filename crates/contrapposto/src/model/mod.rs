@@ -217,6 +217,14 @@ impl Model {
         self
     }
 
+    /// The same body without muscle groups, its joints judged as those of a body of which no strength is known.
+    #[must_use]
+    pub fn without_groups(mut self) -> Self {
+        self.coordinates.iter_mut().for_each(|coordinate| coordinate.groups = None);
+        self.find_three_axis_joints();
+        self
+    }
+
     /// The same body with other muscle groups, positive first, at one coordinate.
     #[must_use]
     pub fn with_groups(mut self, coordinate: usize, groups: [MuscleGroup; 2]) -> Self {
@@ -248,7 +256,7 @@ impl Model {
 
     /// The same body with another contact patch of one segment (corners in its frame, m).
     #[must_use]
-    pub(crate) fn with_patch(mut self, segment: usize, corners: Vec<Vector3<f64>>) -> Self {
+    pub fn with_patch(mut self, segment: usize, corners: Vec<Vector3<f64>>) -> Self {
         self.segments[segment].patch = corners;
         self
     }

@@ -110,7 +110,7 @@ impl<'a> GroupFatigueText<'a> {
                 recovery_per_s: law.recovery_rate,
                 rest_multiplier: law.rest_multiplier,
             }),
-            FatigueLaw::Endurance(_) => None,
+            FatigueLaw::Endurance(_) | FatigueLaw::Tireless => None,
         };
         Self { parameters: law.name(), rates, source }
     }

@@ -1,0 +1,93 @@
+//! Finds the soles of segments: the lowest corners of their shapes for contact in the default posture.
+//!
+//! A corner belongs to the sole if it lies no more than 2 mm above the lowest one (assumed: a flat sole, as files round it). Of more than
+//! 32 corners those that lie farthest in 32 directions of the ground are kept, so that the patch lies inside the shape.
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{LARGEST, Model};
+use nalgebra::{Unit, Vector3};
+use std::f64::consts::TAU;
+
+use super::{SolidIr, SolidShape};
+
+/// Corners higher than this above the lowest one are no part of the sole, m.
+const SOLE_DEPTH: f64 = 0.002;
+/// Most corners of a sole, and the directions in which they lie farthest.
+const SOLE_CORNERS: usize = 32;
+/// Corners of a round edge, inside of it.
+const RIM_CORNERS: usize = 16;
+/// Corners nearer to each other than this are one, m.
+const SAME_PLACE: f64 = 1e-9;
+
+/// The model with the soles of its segments; without gravity there is no lowest place.
+pub(super) fn with_soles(mut model: Model, solids: &[SolidIr]) -> Model {
+    let Some(down) = Unit::try_new(model.gravity(), 1e-9) else { return model };
+    let mut kinematics = Kinematics::new(&model);
+    if solids.is_empty() || kinematics.update(&model, &model.default_posture()).is_err() {
+        return model;
+    }
+    for segment in 0..model.segments().len() {
+        let down = kinematics.placement(&model, segment).rotation.inverse() * down;
+        let of_segment = solids.iter().filter(|solid| solid.segment == segment);
+        let corners: Vec<Vector3<f64>> = of_segment.flat_map(|solid| lowest(solid, &down)).collect();
+        let corners = sole(corners, &down);
+        if !corners.is_empty() {
+            model = model.with_patch(segment, corners);
+        }
+    }
+    model
+}
+
+/// Corners of a solid that may be its lowest, in the segment's frame.
+fn lowest(solid: &SolidIr, down: &Unit<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    let own = solid.pose.rotation.inverse() * down.into_inner();
+    let points = match solid.shape {
+        SolidShape::Box([a, b, c]) => {
+            let signs = (0..8).map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { 1.0 } else { -1.0 }));
+            signs.map(|[x, y, z]| Vector3::new(a * x, b * y, c * z)).collect()
+        }
+        SolidShape::Ellipsoid(axes) => {
+            let scaled = own.component_mul(&Vector3::from(axes));
+            vec![scaled.component_mul(&Vector3::from(axes)) / scaled.norm().max(f64::MIN_POSITIVE)]
+        }
+        SolidShape::Capsule { radius, half } => {
+            [half, -half].map(|end| Vector3::new(0.0, 0.0, end) + own * radius).to_vec()
+        }
+        SolidShape::Cylinder { radius, half } => {
+            // The lowest place of a rim, or around the whole rim where the cylinder stands upright.
+            let lowest = own.y.atan2(own.x);
+            let angles = (0..RIM_CORNERS).map(move |i| lowest + TAU * i as f64 / RIM_CORNERS as f64);
+            let rim = angles.map(|angle| Vector3::new(radius * angle.cos(), radius * angle.sin(), 0.0));
+            rim.flat_map(|point| [half, -half].map(|end| point + Vector3::new(0.0, 0.0, end))).collect()
+        }
+    };
+    points.into_iter().map(|point| (solid.pose * nalgebra::Point3::from(point)).coords).collect()
+}
+
+/// The lowest corners along `down`, at most [`SOLE_CORNERS`].
+fn sole(mut corners: Vec<Vector3<f64>>, down: &Unit<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    let depth = |corner: &Vector3<f64>| corner.dot(down);
+    corners.retain(|corner| corner.amax() <= LARGEST);
+    let deepest = corners.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
+    corners.retain(|corner| depth(corner) >= deepest - SOLE_DEPTH);
+    let mut kept: Vec<Vector3<f64>> = vec![];
+    for corner in corners {
+        if kept.iter().all(|other| (other - corner).norm() > SAME_PLACE) {
+            kept.push(corner);
+        }
+    }
+    if kept.len() <= SOLE_CORNERS {
+        return kept;
+    }
+    let right = down.cross(&Vector3::ith(down.iamin(), 1.0)).normalize();
+    let ahead = down.cross(&right);
+    let mut farthest = vec![];
+    for i in 0..SOLE_CORNERS {
+        let angle = TAU * i as f64 / SOLE_CORNERS as f64;
+        let direction = angle.cos() * right + angle.sin() * ahead;
+        let place = (0..kept.len()).max_by(|&a, &b| kept[a].dot(&direction).total_cmp(&kept[b].dot(&direction)));
+        farthest.extend(place.filter(|place| !farthest.contains(place)));
+    }
+    farthest.sort_unstable();
+    farthest.into_iter().map(|place| kept[place]).collect()
+}
