@@ -104,7 +104,7 @@ fn a_file_tells_its_segments_and_what_was_ignored() {
     assert_eq!(report["coordinates"]["hip"]["range"], serde_json::json!([-1.0, 1.0]));
     assert_eq!(report["coordinates"]["hip"]["range_source"]["status"], "from the file");
     let notes = report["notes"].to_string();
-    assert!(notes.contains("1 actuator"), "{notes}");
+    assert!(notes.contains("1 hinge whose motor has no limit in both senses"), "{notes}");
     // No ending, no trouble: the outermost element tells.
     let plain = write(folder.path(), "leg", &text);
     assert_eq!(json(&["inspect", &plain, "--json"])["format"], "MJCF");

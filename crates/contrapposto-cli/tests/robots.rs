@@ -41,7 +41,9 @@ fn assess_of_a_robot_uses_its_effort_limits_and_no_motor_tires() {
 fn a_motor_above_its_strength_fails_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let held = write(folder.path(), "held.csv", "time,left_hip\n0,-1.5\n10,-1.5\n");
-    let report = json(&["assess", &biped(), &held, "--json", "--radians", "--load", "left_foot 100kg"]);
+    let run = run(&["assess", &biped(), &held, "--json", "--radians", "--load", "left_foot 100kg"]);
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
     let hips = ["positive", "negative"].map(|side| group(&report, "left_hip", side));
     let hip = hips.into_iter().find(|group| group["peak_load"]["value"].as_f64().unwrap() > 1.0).unwrap();
     assert_eq!(hip["exhausted_at_s"].as_f64(), Some(0.0), "{hip}");

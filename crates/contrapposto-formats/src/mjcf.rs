@@ -65,18 +65,33 @@ pub fn read(
         }
     }
     let built = walk.finish(root)?;
+    other_sections(root, &mut body, (&settings, &classes, &built), &mut ignored)?;
+    springdamper::apply(&mut body, &built, root)?;
+    unique_coordinates(&body).map_err(|value| MjcfError::DuplicateName { place: root.place(), value })?;
+    if let Some(segment) = first_too_large(&body) {
+        let value = body.segments.get(segment).map_or_else(String::new, |s| s.name.clone());
+        let place = built.places.get(segment).cloned().unwrap_or_else(|| root.place());
+        return Err(MjcfError::Invalid { place, value, needs: MjcfRule::Overflow });
+    }
+    body.ignored = ignored.into_list();
+    Ok(body)
+}
+
+/// Reads the sections beside bodies and settings: couplings and the strength of motors; the rest is counted.
+fn other_sections<'a>(
+    root: Item<'a>,
+    body: &mut ModelIr,
+    (settings, classes, built): (&Settings, &Classes<'a>, &built::Built<'a>),
+    ignored: &mut Ignored,
+) -> Result<(), MjcfError> {
     let mut couplings = vec![];
     let mut motors = actuator::Motors::new();
     for section in root.children() {
         match section.name() {
             "worldbody" | "compiler" | "option" | "default" => {}
-            "equality" => {
-                equality::read(section, &mut body, &settings, &classes, &built, &mut couplings, &mut ignored)?
-            }
-            "actuator" => {
-                actuator::read(section, &body, &settings, &classes, &built, &mut motors, &mut ignored)?;
-            }
-            "tendon" => tendons(section, &settings, &classes, &mut ignored)?,
+            "equality" => equality::read(section, body, settings, classes, built, &mut couplings, ignored)?,
+            "actuator" => actuator::read(section, body, settings, classes, built, &mut motors, ignored)?,
+            "tendon" => tendons(section, settings, classes, ignored)?,
             "deformable" => {
                 for child in section.children() {
                     match child.name() {
@@ -89,17 +104,8 @@ pub fn read(
             _ => return Err(MjcfError::unknown_element(section, schema::SECTIONS)),
         }
     }
-    actuator::finish(&mut body, &built, motors, &mut ignored);
-    equality::close(&mut body, couplings)?;
-    springdamper::apply(&mut body, &built, root)?;
-    unique_coordinates(&body).map_err(|value| MjcfError::DuplicateName { place: root.place(), value })?;
-    if let Some(segment) = first_too_large(&body) {
-        let value = body.segments.get(segment).map_or_else(String::new, |s| s.name.clone());
-        let place = built.places.get(segment).cloned().unwrap_or_else(|| root.place());
-        return Err(MjcfError::Invalid { place, value, needs: MjcfRule::Overflow });
-    }
-    body.ignored = ignored.into_list();
-    Ok(body)
+    actuator::finish(body, built, motors, ignored);
+    equality::close(body, couplings)
 }
 
 /// Springs of tendons act on several joints and are not represented.
