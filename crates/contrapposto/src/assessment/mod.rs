@@ -47,15 +47,7 @@ pub fn assess(
     }
     let mut evaluation = Evaluation::new(model, settings)?;
     let mut groups = Groups::new(model);
-    let mut found = Assessment {
-        groups: vec![],
-        residual_force: Peak::default(),
-        residual_moment: Peak::default(),
-        unheld: 0,
-        missing: None,
-        acceleration: Peak::default(),
-        fast_share: 0.0,
-    };
+    let mut found = Assessment::default();
     let mut centers: Vec<Vector3<f64>> = vec![];
     let mut before: Option<f64> = None;
     for (index, (time, posture)) in motion.iter().enumerate() {

@@ -92,7 +92,7 @@ pub struct Proposal {
 }
 
 /// The result of an assessment.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assessment {
     /// Every group of known strength: those that fail first, then by fatigue, then by load.
     pub groups: Vec<GroupAssessment>,

@@ -18,10 +18,10 @@
 //! folded into its independent one. Least-squares solvers minimise `effort / 2`; that half is called objective there.
 
 mod about_axes;
+mod group_load;
 
 pub use about_axes::AboutAxes;
-
-use serde::{Deserialize, Serialize};
+pub use group_load::GroupLoad;
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};
@@ -31,19 +31,6 @@ use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, P
 
 /// Square of the rotation about an axis by steps of length 1 of the coordinates, from which on they turn the joint about it.
 const LEAST_TURN: f64 = 1e-6;
-
-/// A muscle group at work.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GroupLoad {
-    /// Its coordinate.
-    pub coordinate: usize,
-    /// Which of the two groups of the coordinate.
-    pub side: Side,
-    /// Active torque, N m, about the axis of the coordinate.
-    pub torque: f64,
-    /// `|torque|` over strength.
-    pub load: f64,
-}
 
 /// Active torque (Eq. 1), N m: what muscles give for external and passive torque to be in equilibrium.
 #[inline]

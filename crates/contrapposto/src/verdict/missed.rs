@@ -38,10 +38,11 @@ impl Missed {
         let mut first = true;
         let mut missed = vec![];
         for (level, error) in levels {
-            if !level.tasks.iter().any(is_target) {
+            let (is_target, is_direction) = (level.tasks.iter().any(is_target), level.tasks.iter().any(is_direction));
+            if !is_target && !is_direction {
                 continue;
             }
-            let decides = std::mem::replace(&mut first, false);
+            let decides = is_target && std::mem::replace(&mut first, false);
             let unit = unit(level);
             let least = if unit == Some(Unit::Radian) { MISSED_ANGLE } else { MISSED_DISTANCE };
             if error > least {
@@ -56,8 +57,12 @@ impl Missed {
 /// Whether a task names a place or a direction that the job asks for: not least effort, a posture or an upright head, which take what
 /// the targets leave.
 fn is_target(task: &Task) -> bool {
-    let upright = matches!(task, Task::LookAt(LookAt { goal: LookAtGoal::Direction(_), .. }));
-    !upright && !matches!(task, Task::Effort(_) | Task::Posture(_) | Task::Bounds(_) | Task::Clearance(_))
+    !is_direction(task) && !matches!(task, Task::Effort(_) | Task::Posture(_) | Task::Bounds(_) | Task::Clearance(_))
+}
+
+/// An upright head or trunk, a direction of the gaze.
+fn is_direction(task: &Task) -> bool {
+    matches!(task, Task::LookAt(LookAt { goal: LookAtGoal::Direction(_), .. }))
 }
 
 /// The unit of all errors of a level.

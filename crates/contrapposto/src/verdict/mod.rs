@@ -2,8 +2,9 @@
 //!
 //! A verdict is of one kind, the first that applies:
 //!
-//! 1. [`VerdictKind::CannotBeDone`]: a muscle group would need more than its strength in a posture that is held;
-//! 2. [`VerdictKind::CannotStand`]: the supports do not hold the body;
+//! 1. [`VerdictKind::CannotBeDone`]: a muscle group would need more than its strength in a posture that is held. A posture that misses
+//!    its most important target is the best of those that do not do the job, and nobody need hold it: it is judged by that;
+//! 2. [`VerdictKind::CannotStand`]: the supports do not hold the body; of a posture that misses its target, too, it is not said;
 //! 3. [`VerdictKind::NotReached`]: the most important target is missed, or supports leave their places;
 //! 4. [`VerdictKind::HeldUntil`]: a group tires until it can no longer hold its load, before the end of the asked time;
 //! 5. [`VerdictKind::Holds`]: none of these.
@@ -100,12 +101,14 @@ pub(crate) struct Findings {
 impl Findings {
     /// The kind, by precedence.
     fn kind(&self) -> VerdictKind {
-        if self.hardest.is_some_and(|(group, _)| group.load > 1.0) {
+        let misses = self.missed.first().is_some_and(|missed| missed.decides);
+        let ends_in_a_fall = self.missing.is_some_and(|(_, time)| time.is_some());
+        if misses && !ends_in_a_fall {
+            VerdictKind::NotReached
+        } else if self.hardest.is_some_and(|(group, _)| group.load > 1.0) {
             VerdictKind::CannotBeDone
         } else if self.missing.is_some() {
             VerdictKind::CannotStand
-        } else if self.missed.first().is_some_and(|missed| missed.decides) {
-            VerdictKind::NotReached
         } else if self.fails.is_some() {
             VerdictKind::HeldUntil
         } else {

@@ -76,17 +76,7 @@ pub(crate) fn report_of_equilibria(
         _ => format!("One resting posture: {}.", hanging_in_words(model, best)),
     });
     report.reasons.push(stability_in_words(model, best));
-    let mut searched = format!("{} starts were tried", found.starts);
-    for (count, what) in [
-        (found.fell, "fell"),
-        (found.yielded, "were left out because tasks or supports were kept less well"),
-        (found.alike, "were left out as the same way to stand as a better one, or too heavy"),
-    ] {
-        if count > 0 {
-            searched += &format!(", {count} {what}");
-        }
-    }
-    report.reasons.push(searched + ".");
+    report.reasons.push(searched(found));
     let note =
         more.map_or_else(|| "sum of squared relative loads".to_owned(), |more| format!("the next takes {more} more"));
     report.figures.push(figure("Least effort", format!("{:.4}", best.relaxed.effort), &note));
@@ -102,6 +92,21 @@ pub(crate) fn report_of_equilibria(
         rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
     };
     Ok(contrapposto_report::write(&report))
+}
+
+/// What became of the starts.
+fn searched(found: &Equilibria) -> String {
+    let mut searched = format!("{} starts were tried", found.starts);
+    for (count, what) in [
+        (found.fell, "fell"),
+        (found.yielded, "were left out because tasks or supports were kept less well"),
+        (found.alike, "were left out as the same way to stand as a better one, or too heavy"),
+    ] {
+        if count > 0 {
+            searched += &format!(", {count} {what}");
+        }
+    }
+    searched + "."
 }
 
 /// The coordinate that says most of a posture: the one that hangs on its ligaments, else the hardest worked.

@@ -45,32 +45,11 @@ pub(crate) fn report_of_pose(
     let missing: Vec<String> =
         missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), remaining(entries))).collect();
     report.headline.clone_from(&text.verdict.sentence);
-    let targets = match (missing.is_empty(), done == all.len()) {
-        (true, true) => "All tasks are reached.".to_owned(),
-        (true, false) => {
-            "All targets are reached; posture and effort tasks come as near to their goals as these allow.".to_owned()
-        }
-        _ => format!("Not all tasks are reached: {}.", list(&missing)),
-    };
-    report.reasons = vec![targets];
-    report.reasons.extend(match pose.reason {
-        Reason::Reached => vec![],
-        Reason::Converged if missing.is_empty() => vec![],
-        Reason::Converged => {
-            vec!["The remaining errors are the smallest that tasks of higher priority allow.".to_owned()]
-        }
-        Reason::StepLimit => vec!["The step limit was reached before the posture converged.".to_owned()],
-    });
-    if !text.supports_hold {
-        report.reasons.push("The supports move from their places.".to_owned());
+    report.reasons = reasons(pose.reason, &missing, done == all.len());
+    let nothing = scenario.supports.is_empty() && !root_rates(model).is_empty();
+    if unheld.is_some() || nothing {
+        report.reasons.push("The torques shown are those of a body whose root is held, as if by hand.".to_owned());
     }
-    let free = !root_rates(model).is_empty();
-    report.reasons.extend(if unheld.is_some() {
-        Some("The torques shown are those of a body whose root is also held.".to_owned())
-    } else {
-        let nothing = scenario.supports.is_empty() && free;
-        nothing.then(|| "No supports are given, so the torques are those of a body whose root is held.".to_owned())
-    });
     report.figures.push(figure("Tasks reached", format!("{done} of {}", all.len()), "supports among them"));
     figures_of(model, frame, &carriers(&scene), &mut report);
     let row = |entries: &&[PoseLevelText]| {
@@ -83,6 +62,25 @@ pub(crate) fn report_of_pose(
         rows: all.iter().map(row).collect(),
     };
     Ok(contrapposto_report::write(&report))
+}
+
+/// Whether the tasks are reached, and why not. `missing`: the targets that are missed; `all`: nothing at all is left.
+fn reasons(reason: Reason, missing: &[String], all: bool) -> Vec<String> {
+    let targets = match (missing.is_empty(), all) {
+        (true, true) => "All tasks are reached.".to_owned(),
+        (true, false) => {
+            "All targets are reached; posture and effort tasks come as near to their goals as these allow.".to_owned()
+        }
+        _ => format!("Not all tasks are reached: {}.", list(missing)),
+    };
+    let why = match reason {
+        Reason::Converged if !missing.is_empty() => {
+            Some("The remaining errors are the smallest that tasks of higher priority allow.")
+        }
+        Reason::StepLimit => Some("The step limit was reached before the posture converged."),
+        Reason::Reached | Reason::Converged => None,
+    };
+    std::iter::once(targets).chain(why.map(str::to_owned)).collect()
 }
 
 /// `--figures` of a solved pose.

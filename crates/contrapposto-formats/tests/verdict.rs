@@ -1,0 +1,216 @@
+//! Every kind of verdict against numbers that are computed here in another way: levers, polygons, distances, Euler's method.
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Model, Side};
+use contrapposto::posture::Posture;
+use contrapposto::simulation::{Run, Scenario, ScenarioError, Summary};
+use contrapposto::verdict::{Verdict, VerdictKind};
+use contrapposto_formats::{VerdictText, read_scenario};
+use nalgebra::Vector3;
+
+const GRAVITY: f64 = 9.81;
+
+/// A right arm that cannot move, its forearm level, with a weight on the forearm straight below the shoulder: no lever there.
+fn arm(kilograms: f64, seconds: f64) -> Scenario {
+    let text = format!(
+        r#"
+format = 1
+title = "a weight on the forearm"
+[model]
+adult = {{ sex = "male", stature_m = 1.75, mass_kg = 75, part = "right_arm" }}
+[posture]
+arm_flex_r_deg = -20
+elbow_flex_r_deg = 110
+[coordinates]
+free = []
+[[load]]
+segment = "radius_r"
+mass_kg = {kilograms}
+[strategy]
+kind = "active"
+[run]
+duration_s = {seconds}
+step_s = 0.1
+"#
+    );
+    read_scenario("arm.toml", text.as_bytes(), None).unwrap()
+}
+
+/// A man on both feet with more tables.
+fn standing(tables: &str) -> Scenario {
+    let text = format!(
+        r#"
+format = 1
+title = "standing"
+[model]
+adult = {{ sex = "male", stature_m = 1.75, mass_kg = 75 }}
+[[support]]
+segment = "calcn_r"
+[[support]]
+segment = "calcn_l"
+{tables}
+[[task]]
+kind = "effort"
+[strategy]
+kind = "active"
+[run]
+duration_s = 1
+step_s = 0.1
+"#
+    );
+    read_scenario("standing.toml", text.as_bytes(), None).unwrap()
+}
+
+fn run(scenario: &Scenario) -> (Summary, Verdict, Posture) {
+    let mut run = Run::new(scenario).unwrap();
+    let mut last = vec![];
+    while let Some(sample) = run.next_sample().unwrap() {
+        last = sample.posture.to_vec();
+    }
+    let summary = run.summary();
+    let verdict = Verdict::of_run(scenario, &summary);
+    (summary, verdict, Posture::new(last))
+}
+
+/// Torque about the elbow that weight, load and ligaments leave to muscles, N m, from masses and levers, and the flexors' strength.
+fn elbow(scenario: &Scenario, kilograms: f64) -> (f64, f64) {
+    let model = &scenario.model;
+    let i = model.coordinate("elbow_flex_r").unwrap();
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &scenario.start).unwrap();
+    let elbow = kinematics.station(model, model.segment("ulna_r").unwrap(), Vector3::zeros());
+    let lever = |segment: &str, at: Vector3<f64>| {
+        (kinematics.station(model, model.segment(segment).unwrap(), at) - elbow).x
+    };
+    let mut torque = 0.0;
+    for name in ["ulna_r", "radius_r", "hand_r"] {
+        let Some(s) = model.segment(name) else { continue };
+        let segment = &model.segments()[s];
+        torque += segment.mass * GRAVITY * lever(name, segment.center_of_mass);
+    }
+    let forearm = &model.segments()[model.segment("radius_r").unwrap()];
+    torque += kilograms * GRAVITY * lever("radius_r", forearm.center_of_mass);
+    let passive = model.coordinates()[i].passive.as_ref().unwrap().torque(i, scenario.start.values());
+    let groups = model.coordinates()[i].groups.as_ref().unwrap();
+    (torque - passive, groups[Side::Positive.index()].strength.torque(scenario.start.values()[i]))
+}
+
+/// Time (s) at which a rested group fails under a constant load by the three-compartment controller's equations, by Euler's method;
+/// infinite if not within a day.
+fn euler(model: &Model, coordinate: &str, load: f64) -> f64 {
+    let i = model.coordinate(coordinate).unwrap();
+    let group = &model.coordinates()[i].groups.as_ref().unwrap()[0];
+    let contrapposto::fatigue::FatigueLaw::ThreeCompartment(law) = &group.fatigue else { panic!("another law") };
+    // The active share is the load while it can be carried: MF' = F TL - R MF.
+    let (mut fatigued, mut time, h) = (0.0, 0.0, 0.01);
+    while fatigued < 1.0 - load && time < 86_400.0 {
+        fatigued += h * (law.fatigue_rate * load - law.recovery_rate * fatigued);
+        time += h;
+    }
+    if time < 86_400.0 { time } else { f64::INFINITY }
+}
+
+#[test]
+fn a_weight_beyond_the_strength_of_the_elbow_cannot_be_done_by_the_share_that_levers_give() {
+    let kilograms = 90.0;
+    let scenario = arm(kilograms, 10.0);
+    let (torque, strength) = elbow(&scenario, kilograms);
+    assert!(torque > 1.2 * strength, "{torque} of {strength}");
+    let (_, verdict, _) = run(&scenario);
+    assert_eq!(verdict.kind, VerdictKind::CannotBeDone);
+    let who = verdict.who.unwrap();
+    assert!((who.load - torque / strength).abs() < 1e-3 * who.load, "{} of {}", who.load, torque / strength);
+    let words = format!(
+        "Cannot be done: right elbow flexion would need {:.0}\u{a0}% of its strength ({torque:.0} of {strength:.0} N m).",
+        100.0 * torque / strength
+    );
+    assert_eq!(verdict.sentence, words);
+}
+
+#[test]
+fn a_weight_that_tires_the_elbow_is_held_until_the_time_of_eulers_method_and_the_range_holds_it() {
+    let kilograms = 25.0;
+    let scenario = arm(kilograms, 900.0);
+    let (torque, strength) = elbow(&scenario, kilograms);
+    let time = euler(&scenario.model, "elbow_flex_r", torque / strength);
+    assert!(time > 20.0 && time < 800.0, "{time}");
+    let (_, verdict, _) = run(&scenario);
+    assert_eq!(verdict.kind, VerdictKind::HeldUntil, "{}", verdict.sentence);
+    let seconds = verdict.seconds.unwrap();
+    // The controller takes half a second to reach the load.
+    assert!((seconds - time).abs() < 1.0 + 0.01 * time, "{seconds} s, by Euler {time} s");
+    let (least, greatest) = verdict.range.unwrap();
+    assert!(least < 0.8 * seconds && greatest > 1.2 * seconds, "{least} to {greatest}");
+    assert!(verdict.sentence.starts_with("Can be held "), "{}", verdict.sentence);
+    assert!(verdict.sentence.ends_with("then right elbow flexion fails first."), "{}", verdict.sentence);
+    let text = VerdictText::new(&scenario.model, &verdict);
+    assert_eq!((text.kind, text.who.as_deref()), ("held_until", Some("right elbow flexion")));
+    assert!((text.minutes.unwrap() - seconds / 60.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_same_weight_for_a_minute_holds_and_names_the_hardest_worked_group() {
+    let kilograms = 2.0;
+    let scenario = arm(kilograms, 60.0);
+    let (torque, strength) = elbow(&scenario, kilograms);
+    assert!(euler(&scenario.model, "elbow_flex_r", torque / strength) > 60.0);
+    let (summary, verdict, _) = run(&scenario);
+    assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
+    let greatest = summary.coordinates.iter().map(|coordinate| coordinate.peak_load).fold(0.0, f64::max);
+    assert_eq!(verdict.who.unwrap().load, greatest);
+    assert!(verdict.sentence.starts_with("Holds through the run (60\u{a0}s); hardest worked: "), "{}", verdict.sentence);
+}
+
+#[test]
+fn a_target_195_metres_up_is_not_reached_by_its_distance_from_the_hand() {
+    let target = Vector3::new(0.4, 195.0, 0.2);
+    let scenario = standing(
+        "[[task]]\nkind = \"point\"\nsegment = \"hand_r\"\nat_m = [0, -0.07, 0]\ntarget_m = [0.4, 195.0, 0.2]\nabove_relief = true",
+    );
+    let (_, verdict, last) = run(&scenario);
+    assert_eq!(verdict.kind, VerdictKind::NotReached, "{}", verdict.sentence);
+    let mut kinematics = Kinematics::new(&scenario.model);
+    kinematics.update(&scenario.model, &last).unwrap();
+    let hand = scenario.model.segment("hand_r").unwrap();
+    let away = (kinematics.station(&scenario.model, hand, Vector3::new(0.0, -0.07, 0.0)) - target).norm();
+    assert!((verdict.missed[0].distance - away).abs() < 0.02 * away, "{} and {away}", verdict.missed[0].distance);
+    assert!(verdict.sentence.starts_with("Not reached: point right hand is missed by 19"), "{}", verdict.sentence);
+}
+
+#[test]
+fn a_weight_before_the_body_with_every_joint_locked_cannot_stand_where_the_line_of_weight_leaves_the_feet() {
+    let kilograms = 60.0;
+    let load = format!("[posture]\narm_flex_r_deg = 90\narm_flex_l_deg = 90\n[coordinates]\nfree = []\n[[load]]\nsegment = \"hand_r\"\nmass_kg = {kilograms}");
+    let scenario = standing(&load);
+    let model = &scenario.model;
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &scenario.start).unwrap();
+    let hand = model.segment("hand_r").unwrap();
+    let held = kinematics.station(model, hand, model.segments()[hand].center_of_mass);
+    let body = kinematics.center_of_mass(model).unwrap();
+    let together = (model.mass() * body + kilograms * held) / (model.mass() + kilograms);
+    let toes = scenario.supports.iter().flat_map(|support| {
+        support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner).x).collect::<Vec<_>>()
+    });
+    let front = toes.fold(f64::NEG_INFINITY, f64::max);
+    assert!(together.x > front + 0.01, "{} of {front}", together.x);
+    let missing = match Run::new(&scenario).map(|_| ()) {
+        Err(ScenarioError::CannotStand(missing)) => missing,
+        other => panic!("{other:?}"),
+    };
+    let verdict = Verdict::of_fall(model, missing);
+    assert_eq!(verdict.kind, VerdictKind::CannotStand);
+    assert!(verdict.sentence.starts_with("Cannot stand: the supports do not hold the body; "), "{}", verdict.sentence);
+    let beyond = together.x - front;
+    assert!(verdict.sentence.contains("beyond the supports"), "{}", verdict.sentence);
+    let said: f64 = verdict.sentence.split(" act ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((said - beyond).abs() < 0.01, "{said} and {beyond}");
+}
+
+#[test]
+fn words_of_kinds_are_those_of_the_files_and_only_two_are_done() {
+    let words: Vec<&str> = VerdictKind::ALL.iter().map(|kind| kind.word()).collect();
+    assert_eq!(words, ["cannot_be_done", "cannot_stand", "not_reached", "held_until", "holds"]);
+    let done: Vec<bool> = VerdictKind::ALL.iter().map(|kind| kind.is_done()).collect();
+    assert_eq!(done, [false, false, false, true, true]);
+}
