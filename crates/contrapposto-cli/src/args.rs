@@ -10,7 +10,7 @@ pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
 pub(crate) use model::{
     AssessArgs, ConvertArgs, InspectArgs, LoadArgs, ModelArgs, PassiveFrom, RootChoice, TorquesArgs,
 };
-pub(crate) use scenario::{CompareArgs, DemoArgs, PoseArgs, RelaxArgs, SimulateArgs};
+pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs};
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.
 #[derive(Debug, Parser)]
@@ -23,6 +23,8 @@ pub(crate) struct Args {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// Write a commented scenario to begin with: lift, overhead, sit, push, stand or carry.
+    New(NewArgs),
     /// Run a scenario over time: fatigue, relief, a table and charts.
     Simulate(SimulateArgs),
     /// Run a built-in scenario (the paper's Figure 8); needs no file.
@@ -39,7 +41,8 @@ pub(crate) enum Verb {
     Minimize(MinimizeArgs),
     /// Draw the passive torque of a coordinate, with its limits and source.
     Passive(PassiveArgs),
-    /// Show a model: segments, masses, joints, coordinates, notes about ignored parts, and the source of every number.
+    /// Show a model: segments, masses, joints, coordinates, notes about ignored parts, and the source of every number. Or a scenario:
+    /// its supports, loads, tasks and obstacles.
     Inspect(InspectArgs),
     /// External, passive and active torque of every coordinate, for one posture or a motion.
     Torques(TorquesArgs),

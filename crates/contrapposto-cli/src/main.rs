@@ -19,10 +19,11 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Verb};
-use commands::{assess, compare, convert, figures, inspect, minimize, passive, pose, relax, simulate, torques};
+use commands::{assess, compare, convert, figures, inspect, minimize, new, passive, pose, relax, simulate, torques};
 
 fn main() -> ExitCode {
     let result = match Args::parse().verb {
+        Verb::New(args) => new::new(&args),
         Verb::Simulate(args) => simulate::simulate(&args),
         Verb::Demo(args) => simulate::demo(&args),
         Verb::Pose(args) => pose::pose(&args),

@@ -47,6 +47,9 @@ pub(crate) struct Pending {
 impl Folder {
     /// The folder, made if it is not there.
     pub(crate) fn open(path: &Path) -> Result<Self, Fail> {
+        if path.is_file() {
+            return Err(Fail::Refused(format!("--out {}: is a file; give the name of a folder", path.display())));
+        }
         std::fs::create_dir_all(path).map_err(|error| Fail::Refused(format!("--out {}: {error}", path.display())))?;
         Ok(Self { path: path.to_owned() })
     }

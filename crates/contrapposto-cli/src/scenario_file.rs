@@ -1,10 +1,12 @@
 //! SCENARIO on the command line: its bytes, its name, and the model file that it names.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use contrapposto::model::Model;
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{MOST_BYTES, ModelFile, scenario_model};
+use serde_json::Value;
 
 use crate::args::{ModelArgs, RootChoice};
 use crate::fail::Fail;
@@ -22,11 +24,59 @@ pub(crate) struct ScenarioFile {
 
 impl ScenarioFile {
     pub(crate) fn read(path: &Path) -> Result<Self, Fail> {
-        let bytes = read(path, MOST_BYTES)?;
         let name = path.display().to_string();
+        refuse_model(path, &name)?;
+        let bytes = read(path, MOST_BYTES)?;
         let model = model_of(path, &name, &bytes)?;
         Ok(Self { name, bytes, model })
     }
+
+    /// As [`Self::read`]; the body starts in the posture of a result, if one is given.
+    pub(crate) fn read_from(path: &Path, start: Option<&Path>) -> Result<Self, Fail> {
+        let mut file = Self::read(path)?;
+        if let Some(start) = start {
+            file.bytes.extend(start_table(start)?.bytes());
+        }
+        Ok(file)
+    }
+}
+
+/// Largest result that a start is read from, bytes.
+const MOST_RESULT_BYTES: u64 = 64 << 20;
+
+/// The table `[start_from]` of a scenario with the coordinates of `pose.json`, or of the first posture of `relax.json`. At the end of
+/// a scenario it leaves all lines where they are.
+fn start_table(path: &Path) -> Result<String, Fail> {
+    let name = path.display();
+    let refused = |why: String| Fail::Refused(format!("--start-from {name}: {why}"));
+    let json: Value = serde_json::from_slice(&read(path, MOST_RESULT_BYTES)?)
+        .map_err(|error| refused(format!("is no JSON file: {error}")))?;
+    let coordinates = json.get("coordinates").or_else(|| json.pointer("/postures/0/coordinates"));
+    let coordinates = coordinates.and_then(Value::as_object).ok_or_else(|| {
+        refused("has no `coordinates`; `pose.json` has them, and `relax.json` for each of its postures".to_owned())
+    })?;
+    let mut table = "\n[start_from]\n".to_owned();
+    for (coordinate, value) in coordinates {
+        let Some(value) = value.as_f64() else {
+            return Err(refused(format!("`{coordinate}` of `coordinates` is no number; `pose.json` has one for each")));
+        };
+        // Names in JSON strings are names in TOML strings.
+        let _ = writeln!(table, "{} = {value:?}", Value::String(coordinate.clone()));
+    }
+    Ok(table)
+}
+
+/// Refuses a model file where a scenario is due.
+fn refuse_model(path: &Path, name: &str) -> Result<(), Fail> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+    if !["osim", "urdf", "xml", "mjcf"].contains(&ending.as_str()) {
+        return Ok(());
+    }
+    let why = format!(
+        "is a model, not a scenario. A scenario (.toml) names it: [model] file = \"{name}\". Commands for models: inspect, torques, \
+         assess, convert"
+    );
+    Err(Fail::Refused(format!("{name}: {why}")))
 }
 
 /// The model file that a scenario names, if it names one.

@@ -307,3 +307,83 @@ fn inspect_gives_the_axes_of_a_joint_judged_by_its_moment_and_the_reason_of_one_
         assert_eq!(frames[0]["joints"].as_object().unwrap().is_empty(), because.is_some(), "{name}");
     }
 }
+
+#[test]
+fn a_scenario_is_inspected_as_the_supports_loads_tasks_and_obstacles_of_its_things() {
+    let scenario = support::scenarios().join("lift-box.toml");
+    let report = json(&["inspect", scenario.to_str().unwrap(), "--json"]);
+    let names = |table: &str, key: &str| {
+        let entries = report[table].as_array().unwrap().iter();
+        entries.map(|entry| entry[key].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(names("supports", "segment"), ["calcn_r", "calcn_l"]);
+    assert_eq!(names("loads", "segment"), ["hand_r", "hand_l"]);
+    assert_eq!(report["loads"][0]["mass_kg"], 7.5);
+    assert_eq!(report["tasks"][0]["target"], "at 0.400  0.300  0.200");
+    let desk = support::scenarios().join("sit-and-type.toml");
+    let readable = run(&["inspect", desk.to_str().unwrap()]);
+    assert_eq!(readable.code, 0, "{}", readable.stderr);
+    for part in ["pelvis", "0.430", "table", "block, middle", "toward 0.800  0.950  0.000", "above relief"] {
+        assert!(readable.stdout.contains(part), "{part}: {}", readable.stdout);
+    }
+}
+
+const JOBS: [&str; 6] = ["lift", "overhead", "sit", "push", "stand", "carry"];
+
+#[test]
+fn every_new_scenario_runs_as_it_is_and_an_existing_file_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    for job in JOBS {
+        let path = folder.path().join(format!("{job}.toml"));
+        let file = path.to_str().unwrap();
+        let written = run(&["new", job, "--out", file]);
+        assert_eq!(written.code, 0, "{job}: {}", written.stderr);
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(run(&["new", job, "--out", file]).stderr.contains("is there already"), "{job}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+        // The start and one step.
+        let line = text.lines().find(|line| line.starts_with("duration_s")).unwrap();
+        std::fs::write(&path, text.replace(line, "duration_s = 0.2")).unwrap();
+        let out = folder.path().join(job);
+        let result = run(&["simulate", file, "--out", out.to_str().unwrap(), "--json"]);
+        assert_eq!(result.code, 0, "{job}: {} {}", result.stdout, result.stderr);
+    }
+}
+
+#[test]
+fn a_run_starts_from_the_coordinates_of_a_pose_and_refuses_a_result_without_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = write(
+        folder.path(),
+        "arm.toml",
+        "format = 1\n[model]\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75, part = \"right_arm\" }\n[posture]\n\
+         elbow_flex_r_deg = 20\n[coordinates]\nfree = []\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 0.1",
+    );
+    let pose = write(folder.path(), "pose.json", r#"{"coordinate_order": [], "coordinates": {"elbow_flex_r": 1.25}}"#);
+    let out = folder.path().join("out");
+    let run_from =
+        |start: &str| run(&["simulate", &scenario, "--out", out.to_str().unwrap(), "--json", "--start-from", start]);
+    let started = run_from(&pose);
+    assert_eq!(started.code, 0, "{}", started.stderr);
+    let summary: serde_json::Value = serde_json::from_str(&started.stdout).unwrap();
+    let elbow = summary["coordinates"]["elbow_flex_r"]["final_deg"].as_f64().unwrap();
+    assert!((elbow - 1.25_f64.to_degrees()).abs() < 1e-6, "{elbow}");
+    let other = write(folder.path(), "other.json", "{}");
+    assert!(run_from(&other).stderr.contains("has no `coordinates`"));
+    let unknown = write(folder.path(), "unknown.json", r#"{"coordinates": {"elbow_flexr": 1.25}}"#);
+    assert!(run_from(&unknown).stderr.contains("did you mean `elbow_flex_r`?"));
+}
+
+#[test]
+fn a_model_where_a_scenario_is_due_and_a_file_where_a_folder_is_due_are_named_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = write(folder.path(), "subject.osim", "<?xml version=\"1.0\"?>\n");
+    let out = folder.path().join("out");
+    let told = run(&["simulate", &model, "--out", out.to_str().unwrap()]);
+    assert_eq!(told.code, 2);
+    assert!(told.stderr.contains("is a model, not a scenario") && told.stderr.contains("torques"), "{}", told.stderr);
+    let scenario = support::scenarios().join("figure-08.toml");
+    let told = run(&["simulate", scenario.to_str().unwrap(), "--out", &model]);
+    assert_eq!(told.code, 2);
+    assert!(told.stderr.contains("is a file; give the name of a folder"), "{}", told.stderr);
+}

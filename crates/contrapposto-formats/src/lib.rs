@@ -39,8 +39,8 @@ pub use numbers::NumberError;
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
-    MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, read_pose, read_relax, read_run, read_scenario,
-    scenario_model, scenario_runs, scenario_schema,
+    ContentsTask, MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, ScenarioContents, read_contents,
+    read_pose, read_relax, read_run, read_scenario, scenario_model, scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use thing::Thing;

@@ -17,11 +17,32 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
 ) -> Result<R, InputError> {
     let text = utf8(name, bytes)?;
     let source = Source { name, text };
-    let tree = DeTable::parse(text)
-        .map_err(|error| source.error(placed(error.span()), format!("not TOML: {}", error.message()), "here", None))?;
+    let tree = DeTable::parse(text).map_err(|error| not_toml(&source, &error))?;
     refuse_non_finite(&source, tree.get_ref())?;
     let parsed: T = toml::from_str(text).map_err(|error| reworded(&source, &error))?;
-    convert(&Located { source, tree: tree.get_ref() }, &parsed)
+    convert(&Located { source, tree: tree.get_ref(), aliases: vec![] }, &parsed)
+}
+
+/// An error of the grammar; where the line has a decimal comma, the help says so.
+fn not_toml(source: &Source, error: &toml::de::Error) -> InputError {
+    let start = error.span().map_or(0, |span| span.start);
+    let before = source.text.get(..start).and_then(|text| text.rfind('\n')).map_or(0, |at| at + 1);
+    let line = source.text.get(before..).and_then(|text| text.lines().next()).unwrap_or_default();
+    let help = decimal_comma(line).map(|number| format!("the decimal mark is a point: {number}"));
+    source.error(placed(error.span()), format!("not TOML: {}", error.message()), "here", help)
+}
+
+/// The first value of a line that has a decimal comma, with a point: `1.75` for `stature_m = 1,75`.
+fn decimal_comma(line: &str) -> Option<String> {
+    let number = |value: &str| {
+        let value = value.trim_start();
+        let (whole, rest) = value.split_once(',')?;
+        let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+        let written = whole.strip_prefix('-').unwrap_or(whole);
+        let is_number = !written.is_empty() && written.chars().all(|c| c.is_ascii_digit()) && !digits.is_empty();
+        is_number.then(|| format!("{whole}.{digits}"))
+    };
+    line.split('=').skip(1).find_map(number)
 }
 
 /// The place of an error; an error without one is placed at the beginning of the file, so that the file is named.
@@ -33,9 +54,22 @@ fn placed(span: Option<Range<usize>>) -> Option<Range<usize>> {
 pub(crate) struct Located<'a> {
     source: Source<'a>,
     tree: &'a DeTable<'a>,
+    /// Entries of tables that the file does not write, and the tables of the file that they come from.
+    aliases: Vec<Alias>,
 }
 
-impl Located<'_> {
+/// An entry, by its table and number, and the path of the file's table that it comes from.
+pub(crate) struct Alias {
+    pub(crate) entry: (&'static str, String),
+    pub(crate) from: Vec<String>,
+}
+
+impl<'a> Located<'a> {
+    /// The same file, in which errors of entries that the file does not write are placed at the tables that they come from.
+    pub(crate) fn with_aliases(&self, aliases: Vec<Alias>) -> Located<'a> {
+        Located { source: self.source, tree: self.tree, aliases }
+    }
+
     /// An error at the value at `path`, or at the innermost table of the path that exists.
     pub(crate) fn error(&self, path: &[&str], message: impl Into<String>, help: Option<String>) -> InputError {
         let (_, value) = self.find(path);
@@ -70,6 +104,12 @@ impl Located<'_> {
 
     /// The span of the key at `path`, and its value. Where the path ends early: no key, and the innermost table.
     fn find(&self, path: &[&str]) -> (Option<Range<usize>>, Option<&Spanned<DeValue<'_>>>) {
+        if let [table, number, ..] = path
+            && let Some(alias) = self.aliases.iter().find(|alias| alias.entry.0 == *table && alias.entry.1 == *number)
+        {
+            let from: Vec<&str> = alias.from.iter().map(String::as_str).collect();
+            return (None, self.find(&from).1);
+        }
         let Some((first, rest)) = path.split_first() else { return (None, None) };
         let Some((name, mut value)) = self.tree.get_key_value(*first) else { return (None, None) };
         let mut key = name.span();
@@ -145,6 +185,11 @@ pub(crate) fn numbers<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Res
     let list = Vec::<f64>::deserialize(from)?;
     let given = list.len();
     list.try_into().map(Some).map_err(|_| D::Error::custom(format!("{given} numbers are given; {N} are due")))
+}
+
+/// As [`numbers`], for a key that is not left out.
+pub(crate) fn exactly<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<[f64; N], D::Error> {
+    numbers(from)?.ok_or_else(|| D::Error::custom(format!("{N} numbers are due")))
 }
 
 /// Reads rows of exactly `N` numbers each.

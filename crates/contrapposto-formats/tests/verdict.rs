@@ -79,9 +79,8 @@ fn elbow(scenario: &Scenario, kilograms: f64) -> (f64, f64) {
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &scenario.start).unwrap();
     let elbow = kinematics.station(model, model.segment("ulna_r").unwrap(), Vector3::zeros());
-    let lever = |segment: &str, at: Vector3<f64>| {
-        (kinematics.station(model, model.segment(segment).unwrap(), at) - elbow).x
-    };
+    let lever =
+        |segment: &str, at: Vector3<f64>| (kinematics.station(model, model.segment(segment).unwrap(), at) - elbow).x;
     let mut torque = 0.0;
     for name in ["ulna_r", "radius_r", "hand_r"] {
         let Some(s) = model.segment(name) else { continue };
@@ -158,7 +157,11 @@ fn the_same_weight_for_a_minute_holds_and_names_the_hardest_worked_group() {
     assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
     let greatest = summary.coordinates.iter().map(|coordinate| coordinate.peak_load).fold(0.0, f64::max);
     assert_eq!(verdict.who.unwrap().load, greatest);
-    assert!(verdict.sentence.starts_with("Holds through the run (60\u{a0}s); hardest worked: "), "{}", verdict.sentence);
+    assert!(
+        verdict.sentence.starts_with("Holds through the run (60\u{a0}s); hardest worked: "),
+        "{}",
+        verdict.sentence
+    );
 }
 
 #[test]
@@ -180,7 +183,9 @@ fn a_target_195_metres_up_is_not_reached_by_its_distance_from_the_hand() {
 #[test]
 fn a_weight_before_the_body_with_every_joint_locked_cannot_stand_where_the_line_of_weight_leaves_the_feet() {
     let kilograms = 60.0;
-    let load = format!("[posture]\narm_flex_r_deg = 90\narm_flex_l_deg = 90\n[coordinates]\nfree = []\n[[load]]\nsegment = \"hand_r\"\nmass_kg = {kilograms}");
+    let load = format!(
+        "[posture]\narm_flex_r_deg = 90\narm_flex_l_deg = 90\n[coordinates]\nfree = []\n[[load]]\nsegment = \"hand_r\"\nmass_kg = {kilograms}"
+    );
     let scenario = standing(&load);
     let model = &scenario.model;
     let mut kinematics = Kinematics::new(model);

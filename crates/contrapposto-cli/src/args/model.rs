@@ -114,7 +114,9 @@ impl FatigueArgs {
 
 #[derive(Debug, Parser)]
 #[command(
-    after_help = "Examples:\n  contrapposto inspect subject.osim\n  contrapposto inspect adult:female,1.65m,60kg --json"
+    after_help = "Examples:\n  contrapposto inspect subject.osim\n  contrapposto inspect adult:female,1.65m,60kg --json\n  \
+    contrapposto inspect scenarios/lift-box.toml\n\n\
+    Of a scenario (.toml): supports, loads, tasks, obstacles and start that it and its things became."
 )]
 pub(crate) struct InspectArgs {
     #[command(flatten)]

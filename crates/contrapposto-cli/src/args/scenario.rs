@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto simulate scenarios/figure-07.toml --out out\n\n\
@@ -14,6 +14,9 @@ use clap::Parser;
 pub(crate) struct SimulateArgs {
     /// Scenario file (TOML); `-` reads standard input.
     pub(crate) scenario: PathBuf,
+    /// Start in the posture of a result: the coordinates of a pose.json, or of the first posture of a relax.json.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) start_from: Option<PathBuf>,
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
@@ -27,6 +30,37 @@ pub(crate) struct SimulateArgs {
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    after_help = "Examples:\n  contrapposto new lift --out job.toml\n  contrapposto simulate job.toml --out out\n\n\
+    The file is a commented scenario that runs as it is. An existing file is not overwritten."
+)]
+pub(crate) struct NewArgs {
+    /// The job.
+    #[arg(value_enum)]
+    pub(crate) job: JobChoice,
+    /// File to write.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) out: PathBuf,
+}
+
+/// A job that a new scenario begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum JobChoice {
+    /// A box held in two hands.
+    Lift,
+    /// A tool overhead.
+    Overhead,
+    /// Sitting at a desk.
+    Sit,
+    /// Pushing at a handle.
+    Push,
+    /// Standing at a counter.
+    Stand,
+    /// Carrying a bag.
+    Carry,
 }
 
 #[derive(Debug, Parser)]
@@ -47,6 +81,9 @@ pub(crate) struct DemoArgs {
 pub(crate) struct PoseArgs {
     /// Scenario file (TOML) with tasks; `-` reads standard input.
     pub(crate) scenario: PathBuf,
+    /// Start in the posture of a result: the coordinates of a pose.json, or of the first posture of a relax.json.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) start_from: Option<PathBuf>,
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
@@ -67,6 +104,9 @@ pub(crate) struct PoseArgs {
 pub(crate) struct RelaxArgs {
     /// Scenario file (TOML) with supports and tasks; `-` reads standard input.
     pub(crate) scenario: PathBuf,
+    /// Start in the posture of a result: the coordinates of a pose.json, or of the first posture of a relax.json.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) start_from: Option<PathBuf>,
     /// Folder for the results; made if it is not there. Nothing is written without it.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

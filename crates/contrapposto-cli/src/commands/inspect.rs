@@ -1,12 +1,21 @@
-//! `contrapposto inspect`: the contents of a model, its ignored parts, and the source of every number.
+//! `contrapposto inspect`: the contents of a model or a scenario, ignored and added parts, and the source of every number.
+
+use std::path::Path;
+
+use contrapposto_formats::read_contents;
 
 use crate::args::InspectArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
 use crate::output::{json_text, print};
+use crate::scenario_file::ScenarioFile;
+use crate::view::text::inspect::scenario::{readable_scenario, scenario_report};
 use crate::view::text::inspect::{readable, report};
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Fail> {
+    if args.model.model.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        return inspect_scenario(&args.model.model, args);
+    }
     let opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
     let file = args.model.model.display().to_string();
     if args.json {
@@ -14,4 +23,16 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Fail> {
         return print(&json_text("JSON", &text)?);
     }
     print(&readable(&opened, &file))
+}
+
+fn inspect_scenario(path: &Path, args: &InspectArgs) -> Result<(), Fail> {
+    let model = &args.model;
+    if model.overlay.is_some() || model.root.is_some() || model.passive.is_some() || model.person.is_some() {
+        let why = "a scenario says in its table [model] what --overlay, --root, --passive and --person say of a model";
+        return Err(Fail::Refused(format!("{}: {why}", path.display())));
+    }
+    let ScenarioFile { name, bytes, model } = ScenarioFile::read(path)?;
+    let contents = read_contents(&name, &bytes, model)?;
+    let report = scenario_report(&contents, &name);
+    print(&if args.json { json_text("JSON", &report)? } else { readable_scenario(&report) })
 }

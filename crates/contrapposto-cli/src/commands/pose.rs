@@ -22,7 +22,7 @@ use crate::view::text::pose::{report, subtitle};
 const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
-    let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
+    let ScenarioFile { name, bytes, model } = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
     let scenario = read_pose(&name, &bytes, model)?;
     if !scenario.unused.is_empty() {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();

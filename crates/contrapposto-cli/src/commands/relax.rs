@@ -33,7 +33,7 @@ const STEP: f64 = 0.1;
 const STEPS: usize = 300;
 
 pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
-    let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
+    let ScenarioFile { name, bytes, model } = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
     let scenario = read_relax(&name, &bytes, model)?;
     if !scenario.unused.is_empty() {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();

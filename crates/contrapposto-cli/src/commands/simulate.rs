@@ -34,7 +34,7 @@ const BETWEEN_SAVES: Duration = Duration::from_secs(20);
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
-    let ScenarioFile { name, bytes, model } = ScenarioFile::read(&args.scenario)?;
+    let ScenarioFile { name, bytes, model } = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
     let run = read_run(&name, &bytes, model)?;
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));

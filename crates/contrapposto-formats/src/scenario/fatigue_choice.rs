@@ -2,7 +2,8 @@
 
 use contrapposto::model::data::{self, FatigueSet};
 
-use super::text::{FatigueSexText, LawText, ParametersText, ScenarioText};
+use super::fatigue_text::{FatigueSexText, LawText, ParametersText};
+use super::text::ScenarioText;
 use crate::input_error::{InputError, suggestion};
 use crate::tissue::{FatigueChoice, FatigueSex};
 use crate::toml_file::Located;

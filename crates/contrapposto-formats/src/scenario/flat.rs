@@ -73,7 +73,7 @@ pub(super) fn lay_flat(
 }
 
 /// Takes out the distance that all patches on the floor have in common, by the slides of the root.
-fn move_to_floor(
+pub(super) fn move_to_floor(
     at: &Located,
     model: &Model,
     free: &[bool],
@@ -112,17 +112,28 @@ fn move_to_floor(
     Ok(())
 }
 
+/// Greatest angle between a patch and its surface, rad.
+fn steepest(name: &str, soft: bool) -> f64 {
+    match soft {
+        true => STEEPEST_SOFT,
+        false if PALMS.contains(&name) => STEEPEST_HAND,
+        false => STEEPEST,
+    }
+}
+
+/// Whether a patch is so near its surface that it is laid on it.
+pub(super) fn near(model: &Model, resting: &Resting, fit: &Fit) -> bool {
+    let name = &model.segments()[resting.support.segment].name;
+    fit.gap.abs() <= FARTHEST && fit.tilt <= steepest(name, resting.soft)
+}
+
 /// Refuses a patch that is too far off its surface, or too tilted.
 fn check(at: &Located, model: &Model, i: usize, resting: &Resting, fit: &Fit) -> Result<(), InputError> {
-    let name = &model.segments()[resting.support.segment].name;
-    let steepest = match resting.soft {
-        true => STEEPEST_SOFT,
-        false if PALMS.contains(&name.as_str()) => STEEPEST_HAND,
-        false => STEEPEST,
-    };
-    if fit.gap.abs() <= FARTHEST && fit.tilt <= steepest {
+    if near(model, resting, fit) {
         return Ok(());
     }
+    let name = &model.segments()[resting.support.segment].name;
+    let steepest = steepest(name, resting.soft);
     let (gap, tilt) = (rounded(fit.gap.abs(), 4), rounded(fit.tilt.to_degrees(), 1));
     let (surface, side) =
         (if resting.on_floor { "floor or step" } else { "plane" }, if fit.gap < 0.0 { "below" } else { "above" });
@@ -192,7 +203,7 @@ fn bring(
 }
 
 /// All coordinates as near to the start as possible. Those that carry much of the body, root and trunk, count more than limbs.
-fn near_to(model: &Model, start: &Posture) -> Task {
+pub(super) fn near_to(model: &Model, start: &Posture) -> Task {
     let mut task = NearTo::whole(model, start.clone());
     let segments = model.segments();
     let mut carried: Vec<f64> = segments.iter().map(|segment| segment.mass).collect();
@@ -219,7 +230,7 @@ fn largest_change(model: &Model, before: &Posture, after: &Posture) -> Option<St
 }
 
 /// The middle at the height of the plane, and a rigid patch flat on it.
-fn on_plane(resting: &Resting, fit: &Fit, model: &Model, kinematics: &Kinematics) -> Vec<Task> {
+pub(super) fn on_plane(resting: &Resting, fit: &Fit, model: &Model, kinematics: &Kinematics) -> Vec<Task> {
     let segment = resting.support.segment;
     let normal = Unit::new_normalize(resting.support.normal);
     let height = normal.dot(&resting.middle(model, kinematics)) - fit.gap;
@@ -250,7 +261,7 @@ fn in_place(resting: &Resting, _: &Fit, model: &Model, kinematics: &Kinematics) 
 }
 
 /// Two directions of a plane.
-fn across(normal: &UnitVector3<f64>) -> [UnitVector3<f64>; 2] {
+pub(super) fn across(normal: &UnitVector3<f64>) -> [UnitVector3<f64>; 2] {
     let first = normal.cross(&Vector3::ith(normal.iamin(), 1.0));
     [Unit::new_normalize(first), Unit::new_normalize(normal.cross(&first))]
 }

@@ -1,11 +1,13 @@
 //! Reads scenario files: text becomes a checked experiment, or an error with file, line and column.
 //!
 //! `text`, `task_text` and `obstacle_text` hold the file as it is written; `setup` reads what all experiments share; `simulate`,
-//! `pose` and `relax` complete it for one command each.
+//! `pose` and `relax` complete it for one command each. `world` reads things by name: box, tool, seat, table.
 
+mod contents;
 mod error_keys;
 mod events;
 mod fatigue_choice;
+mod fatigue_text;
 mod flat;
 mod head;
 mod levels;
@@ -28,7 +30,9 @@ mod task;
 mod task_text;
 mod text;
 mod upright;
+mod world;
 
+pub use contents::{ContentsTask, ScenarioContents, read_contents};
 pub use model::{ModelFile, scenario_model};
 pub use pose::{PoseScenario, read_pose};
 pub use relax::{RelaxScenario, read_relax};

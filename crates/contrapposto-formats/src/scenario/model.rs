@@ -11,7 +11,7 @@ use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
 use crate::passive_law::passive_curve;
 use crate::tissue::{FatigueChoice, Person, SourcedModel};
-use crate::toml_file::{Located, read_toml};
+use crate::toml_file::{Located, read_toml, shown};
 
 /// A model file that a scenario names.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +83,8 @@ fn person(at: &Located, text: &PersonText) -> Result<Person, InputError> {
     {
         if value.is_some_and(|value| !sizes.contains(&value)) {
             let message = format!("`{key}` must lie in {}..{}", sizes.start(), sizes.end());
-            return Err(at.error(&["model", "person", key], message, None));
+            let help = value.and_then(|value| stature_in_metres(key, value));
+            return Err(at.error(&["model", "person", key], message, help));
         }
     }
     let sex = text.sex.map(SexText::sex);
@@ -121,9 +122,20 @@ fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
         match error {
             // The name of the segment is refused, not its length.
             AdultError::Length { .. } => at.key_error(&path, message, None),
+            AdultError::Size { value, .. } => {
+                let help = path.last().and_then(|key| stature_in_metres(key, value));
+                at.error(&path, message, help)
+            }
             _ => at.error(&path, message, None),
         }
     };
     let choice = fatigue_choice(at, text)?;
     Ok(SourcedModel::adult(&size).map_err(refuse)?.with_fatigue(&choice).model)
+}
+
+/// A question whether the stature was written in centimetres.
+fn stature_in_metres(key: &str, value: f64) -> Option<String> {
+    let metres = value / 100.0;
+    (key == "stature_m" && Adult::STATURES.contains(&metres))
+        .then(|| format!("{} m? lengths are in metres", shown(metres)))
 }

@@ -10,17 +10,21 @@ use super::text::ScenarioText;
 use crate::input_error::InputError;
 use crate::toml_file::{Located, shown};
 
+/// The obstacles of the file and of its things, by name.
+pub(super) fn obstacles(at: &Located, texts: &[&ObstacleText]) -> Result<Vec<(String, Thing)>, InputError> {
+    let named = |(i, text): (usize, &&ObstacleText)| Ok((text.name.clone(), obstacle(at, &i.to_string(), text)?));
+    texts.iter().enumerate().map(named).collect()
+}
+
 /// The inequalities above all tasks: none for a body without shapes, or where the file turns them off. `standing`: the segments of
 /// the supports, in the posture of `kinematics`.
 pub(super) fn limits(
     at: &Located,
     text: &ScenarioText,
-    model: &Model,
-    standing: &[usize],
+    obstacles: &[(String, Thing)],
+    (model, standing): (&Model, &[usize]),
     kinematics: &Kinematics,
 ) -> Result<Vec<Task>, InputError> {
-    let obstacles = text.obstacle.iter().enumerate().map(|(i, text)| obstacle(at, &i.to_string(), text));
-    let obstacles = obstacles.collect::<Result<Vec<Thing>, _>>()?;
     let refuse = |path: &[&str], message: &str, help: &str| Err(at.key_error(path, message, Some(help.to_owned())));
     if text.model.file.is_some() {
         let help = "leave it out; only the built-in adult has them";
@@ -39,19 +43,18 @@ pub(super) fn limits(
         return Ok(vec![]);
     }
     let mut things = vec![Thing::floor(floor(model, standing, kinematics))];
-    things.extend(obstacles);
+    things.extend(obstacles.iter().map(|(_, thing)| *thing));
     Ok(Clearance::of_body(model, &things, standing).map(Task::Clearance).into_iter().collect())
 }
 
 /// The obstacles that have a size, for drawings.
-pub(super) fn boxes(at: &Located, text: &ScenarioText) -> Result<Vec<crate::Thing>, InputError> {
-    let mut boxes = vec![];
-    for (i, text) in text.obstacle.iter().enumerate() {
-        if let Thing::Block { placement, half } = obstacle(at, &i.to_string(), text)? {
-            boxes.push(crate::Thing { name: text.name.clone(), size: 2.0 * half, place: placement, segment: None });
+pub(super) fn boxes(obstacles: &[(String, Thing)]) -> impl Iterator<Item = crate::Thing> {
+    obstacles.iter().filter_map(|(name, thing)| match thing {
+        Thing::Block { placement, half } => {
+            Some(crate::Thing { name: name.clone(), size: 2.0 * half, place: *placement, segment: None })
         }
-    }
-    Ok(boxes)
+        Thing::HalfSpace { .. } => None,
+    })
 }
 
 /// Height of the floor, m: ground, or the lowest corner of a support if it lies deeper.

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use crate::toml_file::numbers;
 
 /// A thing that no part of the body passes through: a block, or a wall.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ObstacleText {
     /// Its name.

@@ -30,7 +30,7 @@ const SAME_SURFACE: f64 = 0.25;
 pub(super) fn set_places(
     at: &Located,
     (model, kinematics): (&Model, &Kinematics),
-    texts: &[SupportText],
+    texts: &[&SupportText],
     supports: &mut [Support],
 ) -> Result<(), InputError> {
     for (i, text) in texts.iter().enumerate() {

@@ -51,6 +51,23 @@ pub(super) fn set(
     Ok(())
 }
 
+/// Sets coordinates as a result has them: by name, rad, m or components of quaternions. Dependent ones follow the others.
+pub(super) fn set_result(
+    at: &Located,
+    model: &Model,
+    table: &BTreeMap<String, f64>,
+    posture: &mut Posture,
+) -> Result<(), InputError> {
+    for (name, &value) in table {
+        let index = coordinate(at, model, &["start_from", name], name)?;
+        let (low, high) = model.coordinates()[index].range;
+        let inside = value.max(low).min(high);
+        // A result may lie outside of a range by the rounding of its text.
+        posture.values_mut()[index] = if (value - inside).abs() < UNIT { inside } else { value };
+    }
+    Ok(())
+}
+
 /// First coordinates of all balls.
 pub(super) fn balls(model: &Model) -> Vec<usize> {
     let quaternions =

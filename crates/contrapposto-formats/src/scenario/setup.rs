@@ -5,20 +5,23 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
-use contrapposto::tasks::Task;
+use contrapposto::tasks::{Task, Thing as Obstacle};
 
 use super::flat::lay_flat;
 use super::head::check_head;
 use super::levels::{Level, levels};
 use super::load::load;
 use super::model::body;
-use super::obstacle::{boxes, limits};
+use super::obstacle::{boxes, limits, obstacles};
+use super::obstacle_text::ObstacleText;
 use super::place::set_places;
-use super::posture::{balls, free, free_rates, rates, set};
+use super::posture::{balls, free, free_rates, rates, set, set_result};
 use super::stage::{Stage, Start};
 use super::support;
+use super::task_text::SupportText;
 use super::text::ScenarioText;
 use super::upright::add_upright;
+use super::world::{drawn_things, fit_things, read_world};
 use crate::input_error::InputError;
 use crate::thing::Thing;
 use crate::toml_file::{Located, shown};
@@ -35,6 +38,8 @@ pub(super) struct Setup {
     pub(super) kinematics: Kinematics,
     /// Supports with their patches. A pose needs only their segments: for it, an error of a patch is none.
     pub(super) supports: Result<Vec<Support>, InputError>,
+    /// Things that no part of the body passes through, by name.
+    pub(super) obstacles: Vec<(String, Obstacle)>,
     /// Inequalities above all tasks.
     pub(super) limits: Vec<Task>,
     /// The tasks by priority, the most important first.
@@ -51,28 +56,42 @@ impl Setup {
         check_head(at, text)?;
         let model = body(at, text, file)?;
         let mut start = model.default_posture();
+        let world = read_world(at, text, &model)?;
+        let at = &at.with_aliases(world.aliases(text));
+        world.seed(&model, &mut start);
         set(at, &model, &["posture"], &text.posture, &mut start)?;
+        set_result(at, &model, &text.start_from, &mut start)?;
         start.displace(&model, &vec![0.0; model.rates().len()]);
         let mut start = Start::new(at, &model, start)?;
         let load = |(i, text): (usize, _)| load(at, &model, &["load", &i.to_string()], text);
-        let loads = text.load.iter().enumerate().map(load).collect::<Result<_, _>>()?;
-        let standing = support::segments(at, &model, &text.support)?;
+        let mut loads = text.load.iter().enumerate().map(load).collect::<Result<Vec<Load>, _>>()?;
+        loads.extend(world.loads.iter().cloned());
+        let texts: Vec<&SupportText> = text.support.iter().chain(&world.supports).collect();
+        let standing = support::segments(at, &model, &texts)?;
         let mut notes = vec![];
-        let mut supports = match support::resting(at, text, &model, &standing) {
-            Ok(resting) => Ok(lay_flat(at, &model, &free_rates(at, &model, text)?, &mut start, resting, &mut notes)?),
+        let built_in = text.model.file.is_none();
+        let mut supports = match support::resting(at, built_in, &model, (&texts, &standing)) {
+            Ok(resting) => {
+                let free = free_rates(at, &model, text)?;
+                fit_things(at, &model, &free, &mut start, &resting, (&world, text), &mut notes)?;
+                Ok(lay_flat(at, &model, &free, &mut start, resting, &mut notes)?)
+            }
             Err(error) => Err(error),
         };
         let Start { posture: start, kinematics } = start;
         if let Ok(supports) = &mut supports {
-            set_places(at, (&model, &kinematics), &text.support, supports)?;
+            set_places(at, (&model, &kinematics), &texts, supports)?;
         }
         let patches = supports.as_ref().map_or(&[][..], Vec::as_slice);
         let stage = Stage { at, model: &model, start: &start, kinematics: &kinematics, supports: &standing, patches };
-        let mut levels = levels(&stage, &text.task)?;
+        let mut levels: Vec<Level> = world.levels(&stage).into_iter().chain(levels(&stage, &text.task)?).collect();
         notes.extend(add_upright(&stage, text, &mut levels)?.map(str::to_owned));
-        let limits = limits(at, text, &model, &standing, &kinematics)?;
-        let things = boxes(at, text)?;
-        Ok(Self { loads, standing, supports, limits, levels, things, notes, kinematics, start, model })
+        notes.extend(far_targets(&stage, &levels));
+        let texts: Vec<&ObstacleText> = text.obstacle.iter().chain(&world.obstacles).collect();
+        let obstacles = obstacles(at, &texts)?;
+        let limits = limits(at, text, &obstacles, (&model, &standing), &kinematics)?;
+        let things = boxes(&obstacles).chain(drawn_things(&world, &stage)).collect();
+        Ok(Self { obstacles, loads, standing, supports, limits, levels, things, notes, kinematics, start, model })
     }
 
     /// Where each task of the file stands: its level, and its place within the level.
@@ -112,6 +131,29 @@ impl Setup {
         locked.dedup();
         Ok(locked)
     }
+}
+
+/// Farthest place from the body that a person means, m (assumed).
+const FARTHEST_TARGET: f64 = 3.0;
+
+/// A sentence on every place that a point of the body should be at, and that is far away from the body at the start.
+fn far_targets(stage: &Stage<'_>, levels: &[Level]) -> Vec<String> {
+    let Some(body) = stage.kinematics.center_of_mass(stage.model) else { return vec![] };
+    let far = |task: &Task| {
+        let target = match task {
+            Task::Point(task) => (0..3).map(|axis| if task.axes[axis] { task.target[axis] - body[axis] } else { 0.0 }),
+            _ => return None,
+        };
+        let distance = target.map(|x| x * x).sum::<f64>().sqrt();
+        (distance > FARTHEST_TARGET).then(|| {
+            let distance = shown((10.0 * distance).round() / 10.0);
+            let label = task.label(stage.model);
+            format!(
+                "the place of `{label}` is {distance} m away from the body; lengths are in metres: are metres meant?"
+            )
+        })
+    };
+    levels.iter().flat_map(|level| &level.tasks.tasks).filter_map(far).collect()
 }
 
 /// Names of the tables, among these, that the file has.

@@ -8,10 +8,11 @@ use contrapposto::simulation::{
 
 use super::error_keys::scenario_path;
 use super::events::{change_strategies, check_events_happen, events};
+use super::fatigue_text::FatigueText;
 use super::names::coordinate;
 use super::posture::free;
 use super::setup::Setup;
-use super::text::{FatigueText, ReliefText, RunText, ScenarioText, StrategyText, TablesText};
+use super::text::{ReliefText, RunText, ScenarioText, StrategyText, TablesText};
 use crate::input_error::InputError;
 use crate::thing::Thing;
 use crate::toml_file::{Located, read_toml, shown};

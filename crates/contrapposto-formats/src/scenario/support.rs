@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 use super::names;
 use super::surface::Resting;
 use super::task_text::{GroundText, OnText, SupportText};
-use super::text::ScenarioText;
 use crate::input_error::InputError;
 use crate::toml_file::{Located, shown};
 
@@ -16,12 +15,12 @@ const FRICTION: f64 = 0.6;
 /// Highest step, m.
 const HIGHEST_STEP: f64 = 2.0;
 /// Segments of the built-in adult that stand on the floor unless the file says otherwise.
-const FEET: [&str; 6] = ["calcn_r", "calcn_l", "toes_r", "toes_l", "talus_r", "talus_l"];
+pub(super) const FEET: [&str; 6] = ["calcn_r", "calcn_l", "toes_r", "toes_l", "talus_r", "talus_l"];
 /// Segments whose patch is flesh: it takes the shape of its surface (assumed).
 const SOFT: [&str; 5] = ["pelvis", "abdomen", "torso", "femur_r", "femur_l"];
 
 /// The segments of all supports, each named once; and checks their numbers.
-pub(super) fn segments(at: &Located, model: &Model, texts: &[SupportText]) -> Result<Vec<usize>, InputError> {
+pub(super) fn segments(at: &Located, model: &Model, texts: &[&SupportText]) -> Result<Vec<usize>, InputError> {
     let mut segments: Vec<usize> = vec![];
     for (i, text) in texts.iter().enumerate() {
         let path = ["support", &i.to_string(), "segment"];
@@ -63,15 +62,14 @@ fn check_numbers(at: &Located, i: usize, text: &SupportText) -> Result<(), Input
     Ok(())
 }
 
-/// All supports of a scenario with their planes. `segments`: those of [`segments`].
+/// All supports of a scenario with their planes. `segments`: those of [`segments`]. `built_in`: the body is the built-in adult.
 pub(super) fn resting(
     at: &Located,
-    text: &ScenarioText,
+    built_in: bool,
     model: &Model,
-    segments: &[usize],
+    (texts, segments): (&[&SupportText], &[usize]),
 ) -> Result<Vec<Resting>, InputError> {
-    let built_in = text.model.file.is_none();
-    let resting = |(i, (text, &segment)): (usize, (&SupportText, &usize))| {
+    let resting = |(i, (&text, &segment)): (usize, (&&SupportText, &usize))| {
         let name = model.segments()[segment].name.as_str();
         let reader = Reader { at, model, text, segment, number: i.to_string() };
         let corners = reader.corners()?;
@@ -86,7 +84,7 @@ pub(super) fn resting(
         let support = Support { segment, corners, normal, friction, share_max, place: Place::Fixed };
         Ok(Resting { support, height, on_floor, soft: SOFT.contains(&name) })
     };
-    text.support.iter().zip(segments).enumerate().map(resting).collect()
+    texts.iter().zip(segments).enumerate().map(resting).collect()
 }
 
 /// Reads one support.

@@ -6,8 +6,10 @@ use contrapposto::hybrid::Strategy;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::fatigue_text::FatigueText;
 use super::obstacle_text::ObstacleText;
 use super::task_text::{SolverText, SupportText, TaskText};
+use super::world::text::{BagText, BoxText, FloorText, HandleText, SeatText, StepText, TableText, ToolText, WallText};
 use crate::passive_law::PassiveText;
 use crate::toml_file::numbers;
 
@@ -29,6 +31,9 @@ pub(crate) struct ScenarioText {
     /// Start: `NAME_deg` for rotations, `NAME_m` for slides, bare names for quaternions. What is not named is at its default.
     #[serde(default)]
     pub(crate) posture: BTreeMap<String, f64>,
+    /// Start as a result has it, over `[posture]`: the `coordinates` of `pose.json`, rad or m. `--start-from pose.json` gives it.
+    #[serde(default)]
+    pub(crate) start_from: BTreeMap<String, f64>,
     /// Which coordinates may move; all when left out.
     #[serde(default)]
     pub(crate) coordinates: CoordinatesText,
@@ -38,6 +43,34 @@ pub(crate) struct ScenarioText {
     /// The supports, which carry weight.
     #[serde(default)]
     pub(crate) support: Vec<SupportText>,
+    /// Boxes held in both hands.
+    #[serde(default, rename = "box")]
+    pub(crate) boxes: Vec<BoxText>,
+    /// Tools, each in one hand.
+    #[serde(default)]
+    pub(crate) tool: Vec<ToolText>,
+    /// Bags that are carried.
+    #[serde(default)]
+    pub(crate) bag: Vec<BagText>,
+    /// Handles that are pushed or pulled.
+    #[serde(default)]
+    pub(crate) handle: Vec<HandleText>,
+    /// The floor, y = 0, and the feet on it. When left out beside any other thing of the world: both feet stand on it.
+    pub(crate) floor: Option<FloorText>,
+    /// Steps, each under one foot.
+    #[serde(default)]
+    pub(crate) step: Vec<StepText>,
+    /// Tables.
+    #[serde(default)]
+    pub(crate) table: Vec<TableText>,
+    /// Counters: as tables, of another size.
+    #[serde(default)]
+    pub(crate) counter: Vec<TableText>,
+    /// The seat.
+    pub(crate) seat: Option<SeatText>,
+    /// Walls.
+    #[serde(default)]
+    pub(crate) wall: Vec<WallText>,
     /// Things that no part of the body passes through.
     #[serde(default)]
     pub(crate) obstacle: Vec<ObstacleText>,
@@ -62,6 +95,13 @@ pub(crate) struct ScenarioText {
     pub(crate) event: Vec<EventText>,
     /// How long; `simulate` needs it.
     pub(crate) run: Option<RunText>,
+}
+
+impl ScenarioText {
+    /// Whether the file says how the body starts.
+    pub(crate) fn has_posture(&self) -> bool {
+        !self.posture.is_empty() || !self.start_from.is_empty()
+    }
 }
 
 /// Something that changes during a run.
@@ -299,77 +339,6 @@ pub(crate) enum TablesText {
     Total,
     /// As printed.
     Literal,
-}
-
-/// How muscle groups tire.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct FatigueText {
-    /// `three_compartment` (3CC-r) or `endurance`.
-    pub(crate) law: LawText,
-    /// Parameters of `three_compartment`: `joint` (Frey-Law et al. 2012) or `muscle_group` (Rakshit et al. 2021); `joint` when left
-    /// out.
-    pub(crate) parameters: Option<ParametersText>,
-    /// Sex whose parameters `muscle_group` takes: `female`, `male` or `any`; that of the body when left out.
-    pub(crate) sex: Option<FatigueSexText>,
-    /// Endurance curve of every group, by name; each joint's own of Frey-Law & Avin 2010 when left out.
-    pub(crate) curve: Option<String>,
-    /// Fatigue at which a group asks for relief, above 0, at most 1.
-    pub(crate) critical_level: f64,
-    /// Fatigue below which it no longer does.
-    pub(crate) recovery_level: f64,
-    /// Fatigue at the start, 0 rested to 1 exhausted; rested when left out.
-    pub(crate) start: BTreeMap<String, StartText>,
-}
-
-impl Default for FatigueText {
-    fn default() -> Self {
-        let start = BTreeMap::new();
-        let law = LawText::ThreeCompartment;
-        Self { law, parameters: None, sex: None, curve: None, critical_level: 0.6, recovery_level: 0.3, start }
-    }
-}
-
-/// Fatigue law.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum LawText {
-    /// Three-compartment controller with rest recovery.
-    ThreeCompartment,
-    /// Integral of time over endurance time.
-    Endurance,
-}
-
-/// Published parameters of the three-compartment controller.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum ParametersText {
-    /// One fit a joint.
-    Joint,
-    /// One fit a functional muscle group and sex; movements without a group keep the fit of their joint.
-    MuscleGroup,
-}
-
-/// Sex whose parameters are taken.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum FatigueSexText {
-    /// Women's.
-    Female,
-    /// Men's.
-    Male,
-    /// Both together.
-    Any,
-}
-
-/// Fatigue of the two groups of a coordinate at the start.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct StartText {
-    /// Group that pulls toward larger values.
-    pub(crate) positive: f64,
-    /// Group that pulls toward smaller values.
-    pub(crate) negative: f64,
 }
 
 /// How long, and how finely.

@@ -1,6 +1,7 @@
 //! The contents of a model, as `inspect --json` prints them and as terminal tables.
 
 mod group_strength;
+pub(crate) mod scenario;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -1,0 +1,229 @@
+//! Things of the world by name: each becomes the loads, supports, tasks and obstacles that the longhand would give.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::complaint;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::simulation::Scenario;
+use contrapposto::statics::LoadKind;
+use contrapposto::tasks::{Task, Thing};
+use contrapposto_formats::{read_run, read_scenario};
+use nalgebra::Vector3;
+
+const HEAD: &str = "format = 1\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n";
+
+fn read(text: &str) -> Scenario {
+    let text = format!("{HEAD}{text}");
+    read_scenario("world.toml", text.as_bytes(), None).unwrap_or_else(|e| panic!("{:?}", miette::Report::new(e)))
+}
+
+fn refused(text: &str) -> String {
+    complaint(&read_scenario("world.toml", format!("{HEAD}{text}").as_bytes(), None).unwrap_err())
+}
+
+fn segment(model: &Model, name: &str) -> usize {
+    model.segment(name).unwrap()
+}
+
+/// Places that points of hands must be at, by the name of the hand.
+fn targets(scenario: &Scenario) -> Vec<(String, Vector3<f64>)> {
+    let tasks = scenario.tasks.iter().flat_map(|task| &task.goal.tasks);
+    let point = |task: &Task| match task {
+        Task::Point(point) => Some((scenario.model.segments()[point.segment].name.clone(), point.target)),
+        _ => None,
+    };
+    tasks.filter_map(point).collect()
+}
+
+/// Height of every support's patch at the start, m, by the name of its segment.
+fn heights(scenario: &Scenario) -> Vec<(String, f64)> {
+    let model = &scenario.model;
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &scenario.start).unwrap();
+    let height = |support: &contrapposto::contact::Support| {
+        let middle = kinematics.station(model, support.segment, support.middle());
+        (model.segments()[support.segment].name.clone(), middle.y)
+    };
+    scenario.supports.iter().map(height).collect()
+}
+
+fn assert_heights(scenario: &Scenario, expected: &[(&str, f64)]) {
+    let found = heights(scenario);
+    assert_eq!(
+        found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+        expected.iter().map(|e| e.0).collect::<Vec<_>>()
+    );
+    for ((name, height), (_, expected)) in found.iter().zip(expected) {
+        assert!((height - expected).abs() < 1e-3, "{name} is at {height} m, wanted {expected}");
+    }
+}
+
+#[test]
+fn a_box_in_two_hands_is_half_its_weight_and_one_place_on_its_side_for_each() {
+    let named = read("[[box]]\nmass_kg = 15\nsize_m = [0.3, 0.25, 0.4]\nat_m = [0.4, 0.3, 0]\n");
+    let hands = [("hand_r", 0.2), ("hand_l", -0.2)];
+    assert_eq!(named.loads.len(), 2);
+    for (load, (hand, _)) in named.loads.iter().zip(hands) {
+        assert_eq!((load.segment, load.kind), (segment(&named.model, hand), LoadKind::Weight(7.5)));
+    }
+    let expected = hands.map(|(hand, z)| (hand.to_owned(), Vector3::new(0.4, 0.3, z)));
+    assert_eq!(targets(&named), expected);
+    assert!(named.tasks[0].above_relief && named.tasks[0].goal.tasks.len() == 2);
+    assert_heights(&named, &[("calcn_r", 0.0), ("calcn_l", 0.0)]);
+}
+
+#[test]
+fn a_box_without_a_place_is_where_the_hands_are_at_the_start_as_wide_as_it_is() {
+    let places = targets(&read("[[box]]\nmass_kg = 5\nsize_m = [0.3, 0.2, 0.5]\n"));
+    let apart = places[0].1 - places[1].1;
+    assert!((apart - Vector3::new(0.0, 0.0, 0.5)).norm() < 1e-12, "{apart}");
+    assert!(places[0].1.y > 0.9 && places[0].1.x > 0.2, "{places:?}");
+}
+
+#[test]
+fn a_push_presses_back_on_both_hands_and_a_pull_of_one_hand_pulls_it() {
+    let push = read("[[handle]]\nat_m = [0.5, 1.1, 0]\npush_n = 200\nspacing_m = 0.4\n");
+    let force = |scenario: &Scenario| match scenario.loads[0].kind {
+        LoadKind::Force(force, _) => force.x,
+        _ => panic!("no force"),
+    };
+    assert_eq!((push.loads.len(), force(&push)), (2, -100.0));
+    assert_eq!(targets(&push)[1], ("hand_l".to_owned(), Vector3::new(0.5, 1.1, -0.2)));
+    let pull = read("[[handle]]\nat_m = [0.5, 1.1, -0.2]\nhands = \"left\"\npull_n = 80\n");
+    assert_eq!((pull.loads.len(), force(&pull)), (1, 80.0));
+    assert_eq!(targets(&pull), [("hand_l".to_owned(), Vector3::new(0.5, 1.1, -0.2))]);
+}
+
+#[test]
+fn a_tool_without_a_place_is_only_carried_and_a_bag_hangs_on_the_side_that_is_named() {
+    let named = read("[[tool]]\nhand = \"left\"\nmass_kg = 2\n[[bag]]\nmass_kg = 6\non = \"left_shoulder\"\n");
+    assert!(targets(&named).is_empty());
+    let loads: Vec<_> = named.loads.iter().map(|load| (load.segment, load.kind, load.point.z < 0.0)).collect();
+    let hand = (segment(&named.model, "hand_l"), LoadKind::Weight(2.0));
+    let torso = (segment(&named.model, "torso"), LoadKind::Weight(6.0));
+    assert_eq!((loads[0].0, loads[0].1), hand);
+    assert_eq!(loads[1], (torso.0, torso.1, true));
+}
+
+#[test]
+fn a_seat_without_a_posture_has_the_sitter_on_it_with_both_feet_on_the_floor() {
+    for height in [0.35, 0.43, 0.55] {
+        let named = read(&format!("[seat]\nheight_m = {height}\nbackrest = true\narmrests_m = {}\n", height + 0.22));
+        let arms = height + 0.22;
+        let found = heights(&named);
+        let back = found.iter().find(|(name, _)| name == "torso").unwrap().1;
+        assert!(back > height + 0.2, "{back}");
+        let expected = [
+            ("calcn_r", 0.0),
+            ("calcn_l", 0.0),
+            ("pelvis", height),
+            ("torso", back),
+            ("radius_r", arms),
+            ("radius_l", arms),
+        ];
+        assert_heights(&named, &expected);
+        let value = |name: &str| named.start.values()[named.model.coordinate(name).unwrap()].to_degrees();
+        assert!(
+            (value("hip_flexion_r") + value("pelvis_tilt") - value("knee_angle_r")).abs() < 20.0,
+            "shanks are upright"
+        );
+    }
+}
+
+#[test]
+fn hands_rest_on_a_table_on_a_counter_and_on_a_wall_without_a_posture() {
+    let hands = "carries = [\"right_hand\", \"left_hand\"]";
+    for height in [0.7, 0.9, 1.0] {
+        let named = read(&format!("[[table]]\nheight_m = {height}\nedge_m = 0.3\n{hands}\n"));
+        assert_heights(&named, &[("calcn_r", 0.0), ("calcn_l", 0.0), ("hand_r", height), ("hand_l", height)]);
+    }
+    let wall = read(&format!("[[wall]]\nahead_m = 0.5\n{hands}\n"));
+    assert_eq!(wall.supports[2].normal, Vector3::new(-1.0, 0.0, 0.0));
+    let leaning = read("[[wall]]\nbehind_m = 0.15\ncarries = [\"back\"]\n");
+    assert_eq!(leaning.supports[2].segment, segment(&leaning.model, "torso"));
+}
+
+#[test]
+fn a_step_is_under_its_foot_and_the_other_foot_stands_on_the_floor_a_stride_apart_where_asked() {
+    for height in [0.1, 0.2, 0.35] {
+        let named = read(&format!("[[step]]\nheight_m = {height}\nunder = \"right_foot\"\n"));
+        assert_heights(&named, &[("calcn_l", 0.0), ("calcn_r", height)]);
+    }
+    let stride = read("[floor]\nstride_m = 0.4\nahead = \"left_foot\"\n");
+    let mut kinematics = Kinematics::new(&stride.model);
+    kinematics.update(&stride.model, &stride.start).unwrap();
+    let ahead = |i: usize| {
+        let support = &stride.supports[i];
+        kinematics.station(&stride.model, support.segment, support.middle()).x
+    };
+    assert!((ahead(1) - ahead(0) - 0.4).abs() < 1e-3, "{} {}", ahead(0), ahead(1));
+}
+
+#[test]
+fn tables_and_seats_are_obstacles_and_feet_may_step_where_the_floor_lets_them() {
+    let named = read("[floor]\nmay_step = true\n[[counter]]\nheight_m = 0.95\nedge_m = 0.4\n");
+    let Task::Clearance(limits) = &named.limits[0] else { panic!("no limits") };
+    let block = |thing: &Thing| matches!(thing, Thing::Block { half, .. } if (half.y - 0.02).abs() < 1e-12);
+    let things = limits
+        .pairs
+        .iter()
+        .filter(|pair| matches!(&pair.other, contrapposto::tasks::Obstacle::Thing(thing) if block(thing)));
+    assert!(things.count() > 0);
+    assert!(named.supports.iter().all(|support| support.place != contrapposto::contact::Place::Fixed));
+}
+
+#[test]
+fn the_first_task_of_an_event_is_the_first_of_the_file_beside_things_that_have_tasks() {
+    let text = "[[box]]\nmass_kg = 2\nsize_m = [0.3, 0.2, 0.4]\nat_m = [0.4, 1, 0]\n[[task]]\nkind = \"look_at\"\n\
+                target_m = [1, 1, 0]\n[[event]]\nat_s = 0.5\ntask = 1\ntarget_m = [1, 2, 0]\n";
+    let named = read(text);
+    assert_eq!(named.events[0].tasks[0].0, 1, "level 0 is the box");
+}
+
+#[test]
+fn wrong_numbers_of_things_are_refused_at_their_key_with_the_accepted_range() {
+    let cases = [
+        ("[[table]]\nheight_m = 75\nedge_m = 0.3\n", "height_m is 75 m; it must lie in 0..2.5 m"),
+        ("[[table]]\nheight_m = 75\nedge_m = 0.3\n", "0.75 m? lengths are in metres"),
+        ("[[box]]\nmass_kg = -1\nsize_m = [1, 1, 1]\n", "mass"),
+        ("[[box]]\nmass_kg = 1\nsize_m = [1, 1]\n", "2 numbers are given; 3 are due"),
+        ("[[tool]]\nhand = \"right\"\n", "neither mass nor force nor place"),
+        ("[[handle]]\nat_m = [0.5, 1, 0]\npush_n = 1\npull_n = 1\n", "both pushed and pulled"),
+        ("[[wall]]\ncarries = [\"back\"]\n", "is said 0 times"),
+        ("[seat]\nheight_m = 0.4\nbackrest_deg = 100\n", "no backrest"),
+        ("[[step]]\nheight_m = 0.2\nunder = \"right_hand\"\n", "unknown value `right_hand`"),
+        ("[floor]\nfeet = \"both\"\n[[step]]\nheight_m = 0.2\nunder = \"left_foot\"\n", "is a support already"),
+    ];
+    for (text, expected) in cases {
+        let found = refused(text);
+        assert!(found.contains(expected), "{text}: {found}");
+        assert!(found.contains("label at line") && !found.contains("label at line 1,"), "no place: {found}");
+    }
+}
+
+#[test]
+fn everyday_mistakes_get_the_number_or_the_name_that_was_meant() {
+    let adult = |stature: &str| {
+        let text = format!("format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = {stature}, mass_kg = 75 }}\n");
+        complaint(&read_scenario("world.toml", text.as_bytes(), None).unwrap_err())
+    };
+    assert!(adult("175").contains("1.75 m? lengths are in metres"), "{}", adult("175"));
+    assert!(adult("1,75").contains("the decimal mark is a point: 1.75"), "{}", adult("1,75"));
+    for (word, segment) in [("right_hand", "hand_r"), ("left_foot", "calcn_l"), ("back", "torso")] {
+        let found = refused(&format!("[[load]]\nsegment = \"{word}\"\nmass_kg = 1\n"));
+        assert!(found.contains(&format!("did you mean `{segment}`?")), "{found}");
+    }
+}
+
+#[test]
+fn a_place_of_a_hand_in_centimetres_gets_a_note_and_one_in_metres_none() {
+    let notes = |height: &str| {
+        let text = format!("{HEAD}[[tool]]\nhand = \"right\"\nat_m = [0.3, {height}, 0.2]\n");
+        read_run("world.toml", text.as_bytes(), None).unwrap().notes
+    };
+    assert!(notes("195").iter().any(|note| note.contains("m away from the body")));
+    assert!(!notes("1.95").iter().any(|note| note.contains("m away")));
+}
