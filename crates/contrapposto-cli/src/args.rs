@@ -19,6 +19,12 @@ pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, R
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) verb: Verb,
+    /// Show all notes; without it the most important ones and the number of the others. Warnings are always shown.
+    #[arg(long, global = true)]
+    pub(crate) verbose: bool,
+    /// Show no notes. Warnings are always shown.
+    #[arg(long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]

@@ -6,6 +6,11 @@ use std::path::Path;
 
 use crate::fail::Fail;
 
+/// The first bytes of a file that gzip made.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+/// The first bytes of a file that zip made.
+const ZIP: &[u8] = b"PK\x03\x04";
+
 /// Reads a regular file (or standard input for `-`) of `most` bytes at most.
 pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Fail> {
     let shown = path.display();
@@ -27,6 +32,12 @@ pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Fail> {
     }
     if bytes.len() as u64 > most {
         return Err(refuse(format!("is longer than {most} bytes, the most that is read")));
+    }
+    if bytes.starts_with(&GZIP) {
+        return Err(refuse("is compressed (gzip); unpack it first, for example with gunzip".to_owned()));
+    }
+    if bytes.starts_with(ZIP) {
+        return Err(refuse("is compressed (zip); unpack it first".to_owned()));
     }
     Ok(bytes)
 }

@@ -20,9 +20,16 @@ use clap::Parser;
 
 use args::{Args, Verb};
 use commands::{assess, compare, convert, figures, inspect, minimize, new, passive, pose, relax, simulate, torques};
+use output::Notes;
 
 fn main() -> ExitCode {
-    let result = match Args::parse().verb {
+    let args = Args::parse();
+    output::show_notes(match (args.verbose, args.quiet) {
+        (true, _) => Notes::All,
+        (_, true) => Notes::Quiet,
+        _ => Notes::Folded,
+    });
+    let result = match args.verb {
         Verb::New(args) => new::new(&args),
         Verb::Simulate(args) => simulate::simulate(&args),
         Verb::Demo(args) => simulate::demo(&args),
@@ -38,6 +45,7 @@ fn main() -> ExitCode {
         Verb::Convert(args) => convert::convert(&args),
         Verb::Schema => output::print(&format!("{:#}\n", contrapposto_formats::scenario_schema())),
     };
+    output::print_waiting_notes();
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(fail) => fail.report(),

@@ -13,6 +13,7 @@ use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size};
 use crate::args::{ModelArgs, PassiveFrom, RootChoice};
 use crate::fail::Fail;
 use crate::input::read;
+use crate::output::print_note;
 
 /// Opens MODEL, with --overlay and --passive. `filled`: unknown passive laws of a file are filled in from the built-in library
 /// where neither --passive nor --overlay is given.
@@ -31,6 +32,7 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail>
         None if args.no_strength => file(&args.model, root)?.without_strength(),
         None => file(&args.model, root)?,
     };
+    opened.warnings().iter().for_each(|warning| print_note("warning", warning));
     if let Some(path) = &args.overlay {
         opened = opened.lay_over(&path.display().to_string(), &read(path, MOST_BYTES)?)?;
     }

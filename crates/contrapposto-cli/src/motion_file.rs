@@ -2,16 +2,18 @@
 
 use std::path::Path;
 
-use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::assessment::Peak;
+use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError};
-use contrapposto_formats::motion::{self, Units, postures, read_table};
+use contrapposto_formats::motion::{self, Table, Units, postures, read_table};
 use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::LoadArgs;
 use crate::fail::Fail;
 use crate::input::read;
+use crate::output::print_note;
 
 /// Held weights and forces, and ground reactions if there are any.
 pub(crate) fn loads_of(
@@ -34,17 +36,44 @@ pub(crate) fn loads_of(
 fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<String>) -> Result<GroundReaction, Fail> {
     let name = path.display().to_string();
     let bytes = read(path, motion::MOST_TABLE_BYTES as u64)?;
-    let ground = GroundReaction::read(&name, &bytes, on, model).map_err(|error| match error {
+    let is_xml = bytes.trim_ascii_start().first() == Some(&b'<');
+    let ground = if is_xml {
+        external(path, &bytes, on, model)
+    } else {
+        GroundReaction::read(&name, &bytes, on, model).map_err(told)
+    }?;
+    ground.warnings().iter().for_each(|warning| print_note("warning", warning));
+    for (label, segment) in ground.guessed() {
+        notes.push(format!("`{label}` of {name} is taken to act on `{segment}`; --grf-on says otherwise"));
+    }
+    Ok(ground)
+}
+
+/// The table that OpenSim's ExternalLoads file at `path` names.
+fn external(path: &Path, bytes: &[u8], on: &[String], model: &Model) -> Result<GroundReaction, Fail> {
+    let refuse = |why: String| Fail::Refused(format!("{}: {why}", path.display()));
+    if !on.is_empty() {
+        return Err(refuse("names the segments of its forces itself; leave out --grf-on".to_owned()));
+    }
+    let loads = loads::external_loads(bytes).map_err(|error| refuse(error.to_string()))?;
+    let table = path.parent().unwrap_or(Path::new("")).join(&loads.table);
+    let bytes = read(&table, motion::MOST_TABLE_BYTES as u64)?;
+    GroundReaction::of_external_loads(&table.display().to_string(), &bytes, &loads, model).map_err(
+        |error| match error {
+            GroundReactionError::Table(error) => Fail::from(error),
+            error => refuse(error.to_string()),
+        },
+    )
+}
+
+fn told(error: GroundReactionError) -> Fail {
+    match error {
         GroundReactionError::Table(error) => Fail::from(error),
         GroundReactionError::Count { .. } => Fail::Refused(format!("--grf-on {error}")),
         GroundReactionError::Segment(_) => Fail::Refused(format!("--grf-on: {error}")),
         GroundReactionError::Unknown { .. } => Fail::Refused(format!("{error} with --grf-on SEG,SEG")),
         error => Fail::Refused(error.to_string()),
-    })?;
-    for (label, segment) in ground.guessed() {
-        notes.push(format!("`{label}` of {name} is taken to act on `{segment}`; --grf-on says otherwise"));
     }
-    Ok(ground)
 }
 
 /// The postures of a table, with their times. `accepted`: the sentence that names the accepted files.
@@ -60,7 +89,13 @@ pub(crate) fn read_motion(
         Fail::Refused(why) => Fail::Refused(format!("{why}\n  {accepted}")),
         other => other,
     })?;
-    let table = read_table(&name, &bytes)?;
+    if name.to_ascii_lowercase().ends_with(".trc") || bytes.starts_with(b"PathFileType") {
+        let why = "is a marker file; run OpenSim's inverse kinematics first, and give the motion that it writes (.mot)";
+        return Err(Fail::Refused(format!("{name}: {why}")));
+    }
+    let mut table = read_table(&name, &bytes)?;
+    table.warnings.iter().for_each(|warning| print_note("warning", warning));
+    keep(&mut table, args.from, args.to).map_err(|why| Fail::Refused(format!("{name}: {why}")))?;
     let units = match (args.degrees, args.radians) {
         (true, _) => Units::Degrees,
         (_, true) => Units::Radians,
@@ -81,28 +116,55 @@ pub(crate) fn read_motion(
     Ok(read.postures)
 }
 
+/// Keeps the rows from a time to another one, s.
+fn keep(table: &mut Table, from: Option<f64>, to: Option<f64>) -> Result<(), String> {
+    let (first, last) = (table.times.first().copied(), table.times.last().copied());
+    let (from, to) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
+    let kept: Vec<bool> = table.times.iter().map(|time| (from..=to).contains(time)).collect();
+    let mut flags = kept.iter();
+    table.rows.retain(|_| flags.next().copied().unwrap_or(true));
+    let mut flags = kept.iter();
+    table.times.retain(|_| flags.next().copied().unwrap_or(true));
+    match (first.zip(last), table.rows.is_empty()) {
+        (Some((first, last)), true) => {
+            Err(format!("no frame lies between --from {from} s and --to {to} s; it goes from {first} s to {last} s"))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn first_of(names: &[String]) -> String {
     let more = if names.len() > 12 { ", ..." } else { "" };
     format!("{}{more}", names.iter().take(12).map(String::as_str).collect::<Vec<_>>().join(", "))
 }
 
-/// Notes the coordinates that leave their range, and those that leave the range of their built-in curve.
-pub(crate) fn note_values_out_of_range(opened: &SourcedModel, frames: &[(f64, Posture)], notes: &mut Vec<String>) {
-    /// Beyond a limit without a word, rad or m.
-    const SLACK: f64 = 1e-3;
+/// Beyond a limit of a range without a word, rad or m.
+const SLACK: f64 = 1e-3;
+/// Share of the frames that counts as nearly all.
+const NEARLY_ALL: f64 = 0.9;
+
+/// Notes the coordinates that leave their range, and those that leave the range of their built-in curve. Gives a warning for each whose
+/// values lie outside its range in nearly all frames: a wrong sign, unit or zero.
+pub(crate) fn note_values_out_of_range(
+    opened: &SourcedModel,
+    frames: &[(f64, Posture)],
+    notes: &mut Vec<String>,
+) -> Vec<String> {
     let model = &opened.model;
     let ranges = opened.passive_ranges();
-    let (mut beyond, mut held) = (vec![], vec![]);
+    let (mut beyond, mut held, mut warnings) = (vec![], vec![], vec![]);
     for (index, coordinate) in model.coordinates().iter().enumerate() {
-        let (min, max) = coordinate.range;
         if coordinate.kind == CoordinateKind::Quaternion || model.is_dependent(index) {
             continue;
         }
-        let any = |test: &dyn Fn(f64) -> bool| frames.iter().any(|(_, posture)| test(posture.values()[index]));
-        if any(&|value| value < min - SLACK || value > max + SLACK) {
+        let values: Vec<f64> = frames.iter().map(|(_, posture)| posture.values()[index]).collect();
+        let outside = share_outside(&values, coordinate.range, 1.0);
+        if outside >= NEARLY_ALL {
+            warnings.push(out_of_range(coordinate, &values, outside));
+        } else if outside > 0.0 {
             beyond.push(format!("`{}`", coordinate.name));
         }
-        if ranges[index].is_some_and(|(min, max)| any(&|value| value < min - SLACK || value > max + SLACK)) {
+        if ranges[index].is_some_and(|range| share_outside(&values, range, 1.0) > 0.0) {
             held.push(format!("`{}`", coordinate.name));
         }
     }
@@ -111,7 +173,53 @@ pub(crate) fn note_values_out_of_range(opened: &SourcedModel, frames: &[(f64, Po
         (held, "outside the range of their built-in curve in some frame, passive torque held at its limit"),
     ] {
         if !names.is_empty() {
-            notes.push(format!("{what}: {}", first_of(&names)));
+            notes.insert(0, format!("{what}: {}", first_of(&names)));
         }
     }
+    warnings
+}
+
+/// The share of values that lie outside a range after a multiplication with `sign`.
+fn share_outside(values: &[f64], (min, max): (f64, f64), sign: f64) -> f64 {
+    let outside = values.iter().filter(|value| sign * **value < min - SLACK || sign * **value > max + SLACK).count();
+    outside as f64 / values.len().max(1) as f64
+}
+
+/// The warning about a coordinate whose values lie outside its range in a share `outside` of the frames.
+fn out_of_range(coordinate: &Coordinate, values: &[f64], outside: f64) -> String {
+    let (scale, unit) =
+        if coordinate.kind == CoordinateKind::Rotation { (1f64.to_degrees(), "deg") } else { (1.0, "m") };
+    let shown = |value: f64| format!("{:.1}", scale * value);
+    let (least, greatest) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
+    let [min, max] = [coordinate.range.0, coordinate.range.1].map(shown);
+    let fits = 1.0 - share_outside(values, coordinate.range, -1.0);
+    let opposite = if fits >= NEARLY_ALL {
+        format!("; opposite sign? With it {:.0} % of the frames lie inside", 100.0 * fits)
+    } else {
+        String::new()
+    };
+    format!(
+        "`{}` lies outside its range {min} .. {max} {unit} in {:.0} % of the frames ({} .. {} {unit}){opposite}",
+        coordinate.name,
+        100.0 * outside,
+        shown(least),
+        shown(greatest)
+    )
+}
+
+/// Least share of frames with fast motion that gives a warning.
+const FAST_SHARE: f64 = 0.05;
+
+/// The warning about a motion in which the centre of mass accelerates: greatest acceleration (m/s^2), and the share of fast frames.
+pub(crate) fn fast_motion((acceleration, share): (Peak, f64)) -> Option<String> {
+    (share > FAST_SHARE).then(|| {
+        format!(
+            "the centre of mass accelerates by more than 1 m/s2 in {:.0} percent of the frames (at most {:.1}, at {} s): \
+             torques of postures at rest do not describe such a motion",
+            100.0 * share,
+            acceleration.value,
+            acceleration.time
+        )
+    })
 }

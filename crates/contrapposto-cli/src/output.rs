@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use tempfile::NamedTempFile;
 
@@ -14,10 +15,63 @@ pub(crate) fn print(text: &str) -> Result<(), Fail> {
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(stdout_failed)
 }
 
-/// Tells standard error something that is no failure.
+/// How many notes standard error gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Notes {
+    /// None.
+    Quiet,
+    /// The most important ones, and the number of the others.
+    Folded,
+    /// All, at once.
+    All,
+}
+
+/// Notes that are shown of more than that.
+const MOST_NOTES: usize = 4;
+
+static NOTES: OnceLock<Notes> = OnceLock::new();
+static WAITING: Mutex<Vec<String>> = Mutex::new(vec![]);
+
+/// Says once, at the start, how many notes standard error gets.
+pub(crate) fn show_notes(notes: Notes) {
+    let _ = NOTES.set(notes);
+}
+
+/// Tells standard error something that is no failure: a `note` waits for [`print_waiting_notes`], everything else appears at once.
 pub(crate) fn print_note(kind: &str, text: &str) {
-    // Nothing is left to try when standard error is closed.
-    let _ = writeln!(std::io::stderr(), "{kind}: {text}");
+    match (kind, NOTES.get().copied().unwrap_or(Notes::All)) {
+        ("note", Notes::Quiet) => {}
+        ("note", Notes::Folded) => {
+            let mut waiting = WAITING.lock().unwrap_or_else(PoisonError::into_inner);
+            if !waiting.iter().any(|told| told == text) {
+                waiting.push(text.to_owned());
+            }
+        }
+        // Nothing is left to try when standard error is closed.
+        _ => drop(writeln!(std::io::stderr(), "{kind}: {text}")),
+    }
+}
+
+/// Tells standard error the most important of the notes that wait, in their order, and the number of the others.
+pub(crate) fn print_waiting_notes() {
+    let notes = std::mem::take(&mut *WAITING.lock().unwrap_or_else(PoisonError::into_inner));
+    let (shown, folded) = most_important(&notes);
+    let mut text: String = shown.iter().map(|note| format!("note: {note}\n")).collect();
+    if folded > 0 {
+        text += &format!("note: {folded} more notes; --verbose shows all of them\n");
+    }
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// The notes to show, in their order, and the number of the others: those about a single coordinate, which begin with its name, and
+/// those about parameters of fatigue come last.
+fn most_important(notes: &[String]) -> (Vec<&String>, usize) {
+    let detail = |note: &str| note.starts_with('`') || note.starts_with("fatigue of ");
+    let mut order: Vec<usize> = (0..notes.len()).collect();
+    order.sort_by_key(|&i| detail(&notes[i]));
+    order.truncate(MOST_NOTES);
+    order.sort_unstable();
+    (order.iter().map(|&i| &notes[i]).collect(), notes.len() - order.len())
 }
 
 /// A JSON file of that name.
@@ -125,4 +179,18 @@ pub(crate) fn folder_and_name(path: &Path) -> Result<(PathBuf, String), Fail> {
     let name = name.ok_or_else(|| Fail::Refused(format!("{}: is no name of a file", path.display())))?;
     let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     Ok((parent.unwrap_or(Path::new(".")).to_owned(), name.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_NOTES, most_important};
+
+    #[test]
+    fn notes_about_single_coordinates_are_folded_first() {
+        let notes = ["a", "`q`: b", "fatigue of c", "d", "`p`: e", "f", "g"].map(str::to_owned);
+        let (shown, folded) = most_important(&notes);
+        assert_eq!((shown, folded), (vec![&notes[0], &notes[3], &notes[5], &notes[6]], 3));
+        let few = &notes[..MOST_NOTES];
+        assert_eq!(most_important(few).1, 0);
+    }
 }

@@ -55,7 +55,18 @@ fn json_has_the_promised_shape() {
     for (index, frame) in frames.iter().enumerate() {
         assert_eq!(
             keys(frame),
-            ["center_of_mass", "coordinate_order", "coordinates", "effort", "frame", "gradient", "joints", "uncoupled"]
+            [
+                "center_of_mass",
+                "coordinate_order",
+                "coordinates",
+                "effort",
+                "frame",
+                "gradient",
+                "joints",
+                "quasi_static",
+                "time_s",
+                "uncoupled"
+            ]
         );
         assert_eq!(frame["frame"], index);
         assert_eq!(frame["coordinate_order"], serde_json::json!(["hip", "shin"]));
@@ -71,7 +82,17 @@ fn json_has_the_promised_shape() {
     let plain = json(&["torques", &model, &two, "--json"]);
     assert_eq!(
         keys(&plain[0]),
-        ["center_of_mass", "coordinate_order", "coordinates", "effort", "frame", "joints", "uncoupled"]
+        [
+            "center_of_mass",
+            "coordinate_order",
+            "coordinates",
+            "effort",
+            "frame",
+            "joints",
+            "quasi_static",
+            "time_s",
+            "uncoupled"
+        ]
     );
     // Hinges of a body without known strength.
     assert_eq!((&plain[0]["effort"], &plain[0]["joints"]), (&serde_json::json!(0.0), &serde_json::json!({})));

@@ -179,9 +179,29 @@ pub fn nearest<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
+/// The one of `names` with the same words in any order, `right` and `left` being `r` and `l`: `hand_r` for `right_hand`.
+fn same_words<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    fn words(name: &str) -> Vec<String> {
+        let mut words: Vec<String> = name
+            .split(|c: char| !c.is_alphanumeric())
+            .filter(|word| !word.is_empty())
+            .map(|word| match word.to_lowercase().as_str() {
+                "right" => "r".to_owned(),
+                "left" => "l".to_owned(),
+                "foot" => "calcn".to_owned(),
+                word => word.to_owned(),
+            })
+            .collect();
+        words.sort_unstable();
+        words
+    }
+    let given = words(given);
+    names.into_iter().find(|name| words(name) == given)
+}
+
 /// "did you mean ..." or the list of all names.
 pub(crate) fn suggestion<'a>(given: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> Option<String> {
-    match nearest(given, names.clone()) {
+    match same_words(given, names.clone()).or_else(|| nearest(given, names.clone())) {
         Some(name) => Some(format!("did you mean `{name}`?")),
         None => {
             let all: Vec<&str> = names.into_iter().collect();
@@ -189,5 +209,21 @@ pub(crate) fn suggestion<'a>(given: &str, names: impl IntoIterator<Item = &'a st
             let more = if all.len() > 40 { ", ..." } else { "" };
             (!all.is_empty()).then(|| format!("there are: {shown}{more}"))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::suggestion;
+
+    #[test]
+    fn names_with_the_same_words_are_suggested() {
+        let names = ["hand_l", "hand_r", "calcn_r", "torso"];
+        let suggested = |given| suggestion(given, names);
+        assert_eq!(suggested("right_hand").as_deref(), Some("did you mean `hand_r`?"));
+        assert_eq!(suggested("Left Hand").as_deref(), Some("did you mean `hand_l`?"));
+        assert_eq!(suggested("right_foot").as_deref(), Some("did you mean `calcn_r`?"));
+        assert_eq!(suggested("tosro").as_deref(), Some("did you mean `torso`?"));
+        assert!(suggested("pelvis").is_some_and(|help| help.starts_with("there are: hand_l")));
     }
 }

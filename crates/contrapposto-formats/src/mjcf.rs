@@ -73,6 +73,7 @@ pub fn read(
         let place = built.places.get(segment).cloned().unwrap_or_else(|| root.place());
         return Err(MjcfError::Invalid { place, value, needs: MjcfRule::Overflow });
     }
+    ignored.add("sites", body.stations.len());
     body.ignored = ignored.into_list();
     Ok(body)
 }

@@ -45,13 +45,13 @@ pub fn csv_header(model: &Model) -> String {
 
 /// Appends one row, with its line end, to `line`. Numbers are written in their shortest form that reads back the same.
 pub fn csv_row(model: &Model, row: &TableRow, line: &mut String) {
-    let _ = write!(line, "{}", row.time);
+    let _ = write!(line, "{:?}", row.time);
     for (i, coordinate) in model.coordinates().iter().enumerate() {
         let shown = |x: f64| if coordinate.kind == CoordinateKind::Rotation { x.to_degrees() } else { x };
         let [positive, negative] = row.fatigue[i];
         let _ = write!(
             line,
-            ",{},{},{},{},{positive},{negative},",
+            ",{:?},{:?},{:?},{:?},{positive:?},{negative:?},",
             shown(row.posture[i]),
             row.external[i],
             row.passive[i],
@@ -62,7 +62,7 @@ pub fn csv_row(model: &Model, row: &TableRow, line: &mut String) {
         }
         line.push(',');
         if let Some(goal) = row.asked[i].and_then(|(_, goal)| goal) {
-            let _ = write!(line, "{}", shown(goal));
+            let _ = write!(line, "{:?}", shown(goal));
         }
     }
     line.push('\n');

@@ -158,6 +158,7 @@ fn what_is_read_past_is_reported() {
             ("constraints switched off", 1),
             ("forces switched off", 1),
             ("inertias that are not finite", 1),
+            ("markers", 1),
             ("markers fixed to ground", 1),
             ("muscles", 1),
             ("wrap objects", 1),

@@ -37,7 +37,7 @@ fn refusals_say_where() {
         (&b""[..], "line 1, column 1: the file has no element"),
         (b"<!-- only -->\n", "line 2, column 1: the file has no element"),
         (b"<a>\n<b></a>", "line 2, column 4: `</a>` where `</b>` is needed"),
-        (b"<a/></a>", "line 1, column 5: `</a>` where `</>` is needed"),
+        (b"<a/></a>", "line 1, column 5: `</a>` closes nothing: no element is open here; remove it"),
         (b"<a>\n <b>", "line 2, column 2: <b> is never closed; `</b>` is missing"),
         (b"<a/>\n<b/>", "line 2, column 1: a second outermost element; one is allowed"),
         (b"<a/> x", "line 1, column 5: text outside the outermost element"),

@@ -132,6 +132,8 @@ pub(crate) struct InspectArgs {
 #[command(after_help = "Examples:\n  contrapposto torques adult default --load \"hand_r 3kg\"\n  \
     contrapposto torques subject.osim gait.mot --grf forces.mot --out torques.csv\n  \
     contrapposto torques robot.urdf pose.csv --root free --gradient --json\n\n\
+    Each posture is treated as held at rest: there is no inertia in these torques. In a fast motion, such as walking, they differ from \
+    those of inverse dynamics; a warning says so.\n\n\
     Torques act in the direction of their coordinate, as OpenSim's generalised forces; external + passive + active = 0. Loads and \
     effort of three-axis joints are those of their moment: --json gives it about their axes.")]
 pub(crate) struct TorquesArgs {
@@ -193,12 +195,19 @@ pub(crate) struct LoadArgs {
     /// A force (N) at a point of a segment (m): "hand_r 0,-20,0 at 0,-0.08,0 world" (or segment: its axes).
     #[arg(long, value_name = "FORCE")]
     pub(crate) force: Vec<String>,
-    /// Ground reaction forces as OpenSim writes them (ground_force_vx .. ground_torque_z), interpolated in time.
+    /// Ground reaction forces as OpenSim writes them (ground_force_vx .. ground_torque_z), interpolated in time; or OpenSim's ExternalLoads
+    /// file (.xml), which names them and their segments.
     #[arg(long, value_name = "FILE.mot")]
     pub(crate) grf: Option<PathBuf>,
     /// Segments that the ground reactions act on, in the order of the file's columns; guessed by name when left out.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", requires = "grf")]
     pub(crate) grf_on: Vec<String>,
+    /// Leave out the frames before this time, s.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// Leave out the frames after this time, s.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
     /// Angles of the postures are degrees, whatever the file says.
     #[arg(long, conflicts_with = "radians")]
     pub(crate) degrees: bool,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contrapposto::assessment::assess as assessed;
-use contrapposto::assessment::{AssessSettings, Assessment, Instant};
+use contrapposto::assessment::{AssessSettings, Assessment, GroupAssessment, Instant, PeakTorques};
 use contrapposto::contact::Support;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
@@ -17,13 +17,14 @@ use nalgebra::Vector3;
 use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
-use crate::motion_file::{loads_of, note_values_out_of_range, read_motion};
+use crate::motion_file::{fast_motion, loads_of, note_values_out_of_range, read_motion};
 use crate::output::{Folder, json_text, print, print_note};
 use crate::view::answer::{answered, first_lines};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
 use crate::view::stage::Stage;
 use crate::view::text::assess::{AssessText, report};
+use crate::view::text::sources::StrengthAtText;
 use crate::view::text::torques::{header, row};
 use crate::view::torque_rows::{Frame, Order};
 
@@ -32,8 +33,10 @@ const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "r
 const FRICTION: f64 = 0.6;
 /// Least residual, as a share of the body's weight, that gives a warning.
 const RESIDUAL: f64 = 1e-6;
-/// Least share of frames with fast motion that gives a warning.
-const FAST_SHARE: f64 = 0.05;
+/// Least load of a group that works against ligaments, as a share of its strength, that gives a warning (assumed).
+const LIGAMENT_LOAD: f64 = 0.1;
+/// Most groups that the warning names.
+const MOST_LIGAMENTS: usize = 5;
 
 /// The motion and its loads, checked.
 struct Given {
@@ -43,6 +46,8 @@ struct Given {
     held: Vec<Load>,
     ground: Option<GroundReaction>,
     settings: AssessSettings,
+    /// Reasons to doubt the motion.
+    warnings: Vec<String>,
 }
 
 pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
@@ -50,11 +55,11 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
     let mut opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
-    let Given { motion, held, ground, settings } = given(args, &mut opened)?;
+    let Given { motion, held, ground, settings, warnings: doubts } = given(args, &mut opened)?;
     let model = &opened.model;
 
     let mut tables = Tables::new(model, motion.len());
-    let mut assessed_frames = args.out.as_ref().map(|_| AssessedFrames::new(model, motion.len()));
+    let mut assessed_frames = args.out.as_ref().map(|_| AssessedFrames::new(&opened, motion.len()));
     let found = assessed(
         model,
         &motion,
@@ -76,8 +81,9 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         },
     )
     .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
-    let warnings = warnings(args, &opened, &found, motion.len());
-    warnings.iter().for_each(|warning| print_note("warning", warning));
+    let new = warnings(args, &opened, &found, motion.len());
+    new.iter().for_each(|warning| print_note("warning", warning));
+    let warnings = [doubts, new].concat();
 
     let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let figures = assessed_frames.as_ref().filter(|_| args.figures).map(|assessed_frames| {
@@ -93,7 +99,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = AssessText::new(model, &args.motion, &tables.times, &found, &verdict, warnings, files);
+    let text = AssessText::new(&opened, &args.motion, &tables.times, &found, &verdict, warnings, files);
     let json = json_text("assess.json", &text)?;
     if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
         let fatigue = tables.fatigue()?;
@@ -124,9 +130,10 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
         passive_ranges: opened.passive_ranges(),
         ..AssessSettings::default()
     };
-    note_values_out_of_range(opened, &motion, &mut notes);
+    let warnings = note_values_out_of_range(opened, &motion, &mut notes);
+    warnings.iter().for_each(|warning| print_note("warning", warning));
     notes.iter().for_each(|note| print_note("note", note));
-    Ok(Given { motion, held, ground, settings })
+    Ok(Given { motion, held, ground, settings, warnings })
 }
 
 /// The supports, on horizontal ground.
@@ -189,16 +196,46 @@ fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames
             format!("nothing holds the body up: the root carries {missing}; give --grf FILE.mot or --support SEG,SEG")
         });
     }
-    if found.fast_share > FAST_SHARE {
-        warnings.push(format!(
-            "the centre of mass accelerates by more than 1 m/s2 in {:.0} percent of the frames (at most {:.1}, at {} s): \
-            torques of postures at rest do not describe such a motion",
-            100.0 * found.fast_share,
-            found.acceleration.value,
-            found.acceleration.time
-        ));
-    }
+    warnings.extend(fast_motion((found.acceleration, found.fast_share)));
+    warnings.extend(against_ligaments(opened, found));
     warnings
+}
+
+/// The warning about groups that work against the ligaments of their own joint at their greatest load.
+fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String> {
+    let worked = |group: &&GroupAssessment| {
+        let angle = opened.model.coordinates()[group.coordinate].kind == CoordinateKind::Rotation;
+        angle && group.peak_load.value >= LIGAMENT_LOAD && group.at_peak.works_against_ligaments()
+    };
+    let told = |group: &&GroupAssessment| {
+        let PeakTorques { angle, external, passive } = group.at_peak;
+        let floor = StrengthAtText::new(opened, group).is_some_and(|strength| strength.is_floor());
+        let [passive, external, active] = [passive, external, group.peak_torque].map(tenths);
+        format!(
+            "`{}` at {} deg ({} s): passive torque {passive} N m, load {external} N m, muscles {active} N m{}",
+            opened.model.coordinates()[group.coordinate].name,
+            tenths(angle.to_degrees()),
+            group.peak_load.time,
+            if floor { " over a strength that is the floor of its curve" } else { "" }
+        )
+    };
+    let groups: Vec<&GroupAssessment> = found.groups.iter().filter(worked).collect();
+    let listed: Vec<String> = groups.iter().take(MOST_LIGAMENTS).map(told).collect();
+    let more = groups.len().saturating_sub(MOST_LIGAMENTS);
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    (!groups.is_empty()).then(|| {
+        format!(
+            "muscles work against the ligaments of their own joint; usually the zero of the angle is offset in the motion, or the joint is \
+             hyperextended: {}{more}",
+            listed.join("; ")
+        )
+    })
+}
+
+/// One decimal, without the sign of -0.
+fn tenths(value: f64) -> String {
+    let text = format!("{value:.1}");
+    if text == "-0.0" { "0.0".to_owned() } else { text }
 }
 
 /// The tables of torques and fatigue, as they grow.

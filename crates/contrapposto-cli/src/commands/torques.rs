@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use contrapposto::assessment::acceleration;
 use contrapposto::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -11,7 +12,7 @@ use contrapposto_formats::tissue::SourcedModel;
 use crate::args::TorquesArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
-use crate::motion_file::{loads_of, note_values_out_of_range, read_motion};
+use crate::motion_file::{fast_motion, loads_of, note_values_out_of_range, read_motion};
 use crate::output::{Folder, Pending, folder_and_name, print_note};
 use crate::view::residual::Residual;
 use crate::view::text::torques as text;
@@ -42,7 +43,8 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         }
     };
     let (loads, ground) = loads_of(&args.under, model, &mut notes)?;
-    note_values_out_of_range(&opened, &frames, &mut notes);
+    let warnings = note_values_out_of_range(&opened, &frames, &mut notes);
+    warnings.iter().for_each(|warning| print_note("warning", warning));
     let job = Job { opened, frames, loads, ground, gradient: args.gradient };
     job.check()?;
     notes.iter().for_each(|note| print_note("note", note));
@@ -86,7 +88,7 @@ fn json(
     sink("[")?;
     let mut before = "\n";
     job.run(order, residual, |frame| {
-        let text = serde_json::to_string(&text::json(&job.opened.model, order, frame));
+        let text = serde_json::to_string(&text::json(&job.opened, order, frame));
         sink(std::mem::replace(&mut before, ",\n"))?;
         sink(&text.map_err(|error| Fail::job("JSON", error))?)
     })?;
@@ -109,13 +111,18 @@ impl Job {
         JointTorques::with_passive_ranges(&self.opened.model, &self.opened.passive_ranges())
     }
 
-    /// Checks all frames before the first one is printed.
+    /// Checks all frames before the first one is printed, and warns of a fast motion.
     fn check(&self) -> Result<(), Fail> {
         let mut body = self.body();
+        let mut centers = vec![];
         let quantities = Quantities { passive_torque: true, ..Quantities::default() };
         for (frame, (_, posture)) in self.frames.iter().enumerate() {
             body.update(&self.opened.model, posture, &[], quantities)
                 .map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
+            centers.extend(body.kinematics().center_of_mass(&self.opened.model));
+        }
+        if let Some(warning) = fast_motion(acceleration(&self.frames, &centers)) {
+            print_note("warning", &warning);
         }
         let Some(ground) = &self.ground else { return Ok(()) };
         ground.check(self.frames.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))

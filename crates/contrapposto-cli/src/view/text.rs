@@ -8,7 +8,7 @@ mod joint;
 pub(crate) mod pose;
 pub(crate) mod relax;
 pub(crate) mod simulate;
-mod sources;
+pub(crate) mod sources;
 pub(crate) mod torques;
 
 use comfy_table::Table;

@@ -9,6 +9,7 @@ use contrapposto::model::Model;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use nalgebra::{Point3, Vector3};
 
+use super::external_loads::{ExternalForce, ExternalLoads};
 use super::text::no_segment;
 use crate::input_error::InputError;
 use crate::motion::{Table, read_table};
@@ -41,6 +42,14 @@ pub enum GroundReactionError {
         /// The column that is not.
         missing: String,
     },
+    /// A column that an ExternalLoads file names is not there.
+    #[error("{table}: there is no column `{missing}`, which the ExternalLoads file names")]
+    Named {
+        /// Name of the table.
+        table: String,
+        /// The column.
+        missing: String,
+    },
     /// Not as many segments are given as the table has plates.
     #[error("names {given} segments; {table} has {} ground reactions ({})", plates.len(), plates.join(", "))]
     Count {
@@ -69,7 +78,10 @@ pub enum GroundReactionError {
         table: String,
     },
     /// A time lies outside of the table.
-    #[error("frame {frame} at {time} s has no ground reaction: {table} goes from {first} s to {last} s")]
+    #[error(
+        "frame {frame} at {time} s has no ground reaction: {table} goes from {first} s to {last} s; --from {first} --to {last} leaves the \
+         other frames out"
+    )]
     Outside {
         /// Name of the table.
         table: String,
@@ -161,6 +173,45 @@ impl GroundReaction {
             plates.push(Plate { segment, columns: columns.columns, coupled: columns.coupled });
         }
         Ok(Self { name: table_name(), table, plates, guessed })
+    }
+
+    /// Reads a table of the name `name` with the segments and columns that an ExternalLoads file names.
+    ///
+    /// # Errors
+    /// As [`GroundReaction::read`].
+    pub fn of_external_loads(
+        name: &str,
+        bytes: &[u8],
+        loads: &ExternalLoads,
+        model: &Model,
+    ) -> Result<Self, GroundReactionError> {
+        let table = read_table(name, bytes)?;
+        if table.times.is_empty() {
+            return Err(GroundReactionError::Empty { table: name.to_owned() });
+        }
+        let column = |label: String| {
+            let found = table.columns.iter().position(|other| other.eq_ignore_ascii_case(&label));
+            found.ok_or_else(|| GroundReactionError::Named { table: name.to_owned(), missing: label })
+        };
+        let three = |stem: &str| -> Result<[usize; 3], GroundReactionError> {
+            let label = |axis| format!("{stem}{axis}");
+            Ok([column(label("x"))?, column(label("y"))?, column(label("z"))?])
+        };
+        let plate = |force: &ExternalForce| -> Result<Plate, GroundReactionError> {
+            let unknown = || GroundReactionError::Segment(no_segment(model, &force.segment));
+            let segment = model.segment(&force.segment).ok_or_else(unknown)?;
+            let (acting, point) = (three(&force.force)?, three(&force.point)?);
+            let coupled = !force.torque.is_empty();
+            let couple = if coupled { three(&force.torque)? } else { point };
+            Ok(Plate { segment, columns: [acting, point, couple], coupled })
+        };
+        let plates = loads.forces.iter().map(plate).collect::<Result<_, _>>()?;
+        Ok(Self { name: name.to_owned(), table, plates, guessed: vec![] })
+    }
+
+    /// What is wrong with the table, though it can be read.
+    pub fn warnings(&self) -> &[String] {
+        &self.table.warnings
     }
 
     /// First column and segment of every plate whose segment was guessed.

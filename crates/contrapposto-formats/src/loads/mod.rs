@@ -1,7 +1,9 @@
 //! Loads on a body from texts and measured tables: held weights, forces, and ground reactions.
 
+mod external_loads;
 mod ground_reaction;
 mod text;
 
+pub use external_loads::{ExternalForce, ExternalLoads, ExternalLoadsError, external_loads};
 pub use ground_reaction::{GroundReaction, GroundReactionError};
 pub use text::{LoadTextError, force, no_segment, patch, weight};

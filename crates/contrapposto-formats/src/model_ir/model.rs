@@ -16,7 +16,9 @@ use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, PassiveLawIr
 pub struct Imported {
     /// The model.
     pub model: Model,
-    /// Changes and ignored parts, one plain sentence each.
+    /// The kinds of things in the file that the model does not have, with their numbers: [`ModelIr::ignored`].
+    pub left_out: Vec<(String, usize)>,
+    /// Changes, one plain sentence each.
     pub notes: Vec<String>,
 }
 
@@ -43,8 +45,7 @@ impl ModelIr {
     /// # Errors
     /// [`ModelIrError`] when the model refuses a name or number.
     pub fn model(&self) -> Result<Imported, ModelIrError> {
-        let mut notes: Vec<String> =
-            self.ignored.iter().map(|(kind, count)| format!("{count} {kind} ignored")).collect();
+        let mut notes = vec![];
         let mut builder = ModelBuilder::new(&self.name, self.gravity);
         for segment in &self.segments {
             builder.segment(self.spec(segment, &mut notes)?)?;
@@ -55,7 +56,7 @@ impl ModelIr {
         }
         let model = builder.build();
         let model = if self.strength.is_empty() { model } else { model.by_coordinates() };
-        Ok(Imported { model: with_soles(model, &self.solids), notes })
+        Ok(Imported { model: with_soles(model, &self.solids), left_out: self.ignored.clone(), notes })
     }
 
     /// The two groups of a coordinate that a motor drives; none of one that follows another coordinate.

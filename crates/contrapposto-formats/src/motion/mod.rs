@@ -34,6 +34,8 @@ pub struct Table {
     pub in_degrees: Option<bool>,
     /// Labels, without time.
     pub columns: Vec<String>,
+    /// What is wrong with the file, though it can be read, a sentence each.
+    pub warnings: Vec<String>,
     /// Times, s: one a row, never falling. Row numbers where the file has no times.
     pub times: Vec<f64>,
     /// Rows: one finite number a column.

@@ -16,8 +16,8 @@ use crate::xml::shorten;
 /// CSV: labels, then rows. Without a first column `time` the rows are numbered 0, 1, 2 and so on. Columns `NAME.case` and
 /// `NAME.goal_deg` or `.goal_m` of our own runs are left out: their cells may be empty.
 ///
-/// Every number must be finite, every row complete, every label unique, and times must not fall; `nRows` and `nColumns`,
-/// where they stand, must be true. Empty lines and blanks at line ends do not matter. At most [`MOST_TABLE_BYTES`],
+/// Every number must be finite, every row complete, every label unique, and times must not fall; `nColumns`, where it
+/// stands, must be true. A wrong `nRows` is a warning of the table: OpenSim reads such files. Empty lines and blanks at line ends do not matter. At most [`MOST_TABLE_BYTES`],
 /// [`MOST_COLUMNS`], [`MOST_NUMBERS`] and [`MOST_NAME_BYTES`].
 ///
 /// # Errors
@@ -67,10 +67,11 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
         rows.push(row);
     }
     let found = rows.len();
-    if let Some((promised, place)) = header.rows.filter(|(promised, _)| *promised != found) {
-        let message = format!("the header says {promised} rows, but there are {found}");
-        let help = format!("was the file cut off? If it is complete, there should be {found} here");
-        return Err(layout.error(Some(place), message, "here", help));
+    let mut warnings = vec![];
+    if let Some((promised, _)) = header.rows.filter(|(promised, _)| *promised != found) {
+        warnings.push(format!(
+            "{name}: the header says {promised} rows, but there are {found}, which are read; was the file cut off?"
+        ));
     }
     if rows.is_empty() {
         let message = "the table has column names but no rows".to_owned();
@@ -78,7 +79,7 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
     }
     let names = columns.iter().filter(|(role, _)| *role == Role::Value).map(|(_, label)| (*label).to_owned());
     let (name, in_degrees) = (header.name.to_owned(), header.in_degrees);
-    Ok(Table { name, in_degrees, columns: names.collect(), times, rows })
+    Ok(Table { name, in_degrees, columns: names.collect(), warnings, times, rows })
 }
 
 /// The role of a column.

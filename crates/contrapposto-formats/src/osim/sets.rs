@@ -320,6 +320,7 @@ pub(super) fn stations<'a>(
         }
         stations.push((name, segment, location.coords));
     }
+    ignored.add("markers", stations.len());
     body.stations = stations;
     Ok(())
 }

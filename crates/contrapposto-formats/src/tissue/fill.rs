@@ -85,7 +85,7 @@ impl Filling<'_> {
         let name = &self.coordinate.name;
         notes.push(format!("`{name}`: strength from the built-in data, passive torque from the file"));
         (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
-        origins.twin = Some(self.found.name.clone());
+        (origins.twin, origins.turned) = (Some(self.found.name.clone()), sign < 0.0);
         model.with_groups(self.index, turned(groups, sign))
     }
 
@@ -110,7 +110,7 @@ impl Filling<'_> {
         };
         notes.push(said(coordinate, found, signs.size, sign));
         origins.passive = Origin::Library;
-        origins.twin = Some(found.name.clone());
+        (origins.twin, origins.turned) = (Some(found.name.clone()), sign < 0.0);
         origins.meant = Some(mirrored(found.range, sign));
         let model = model.with_passive_law(index, Some(law));
         let Some(groups) = found.groups.clone().filter(|_| coordinate.groups.is_none()) else { return model };

@@ -7,6 +7,7 @@ mod fatigue;
 mod fill;
 mod origin;
 mod person;
+mod plausible;
 
 pub use fatigue::{FatigueChoice, FatigueParametersText, FatigueSex, fatigue_notes};
 pub use origin::{Origin, Origins};
@@ -30,6 +31,8 @@ pub struct SourcedModel {
     pub sex: Option<Sex>,
     /// By coordinate.
     pub origins: Vec<Origins>,
+    /// The kinds of things that the file holds and this model does not, with their numbers.
+    pub left_out: Vec<(String, usize)>,
     /// The parts that were ignored, changed or filled in, one sentence each.
     pub notes: Vec<String>,
 }
@@ -65,9 +68,10 @@ impl SourcedModel {
     ) -> Result<Self, ModelFileError> {
         let (imported, format) = read_model(name, bytes, root, include)?;
         let origins = vec![Origins::default(); imported.model.coordinates().len()];
-        let mut notes = gathered(imported.notes);
+        let mut notes = imported.notes;
+        notes.splice(0..0, left_out_note(&imported.left_out));
         notes.extend(strength_note(&imported.model, format));
-        Ok(Self { model: imported.model, format, sex: None, origins, notes })
+        Ok(Self { model: imported.model, format, sex: None, origins, left_out: imported.left_out, notes })
     }
 
     /// The model without the strength that its file gives to motors; its notes no longer tell of it. For a model file as it was read.
@@ -89,10 +93,19 @@ impl SourcedModel {
         let library = Origin::Library;
         let origins = model.coordinates().iter().map(|coordinate| {
             let (twin, meant) = (Some(coordinate.name.clone()), Some(coordinate.range));
-            Origins { twin, meant, range: library, passive: library, strength: library, fatigue: library }
+            Origins {
+                twin,
+                meant,
+                turned: false,
+                range: library,
+                passive: library,
+                strength: library,
+                fatigue: library,
+            }
         });
         let origins = origins.collect();
-        Ok(Self { origins, model, format: ModelFormat::Adult, sex: Some(size.sex), notes: vec![] })
+        let (sex, left_out, notes) = (Some(size.sex), vec![], vec![]);
+        Ok(Self { origins, model, format: ModelFormat::Adult, sex, left_out, notes })
     }
 
     /// Lays the overlay in `bytes` over the model: [`overlay`].
@@ -173,12 +186,12 @@ fn strength_note(model: &Model, format: ModelFormat) -> Option<String> {
     })
 }
 
-/// One note for everything that was ignored, before the others.
-fn gathered(notes: Vec<String>) -> Vec<String> {
-    let (past, mut rest): (Vec<String>, Vec<String>) = notes.into_iter().partition(|note| note.ends_with(" ignored"));
-    if !past.is_empty() {
-        let kinds: Vec<&str> = past.iter().map(|note| note.trim_end_matches(" ignored")).collect();
-        rest.insert(0, format!("not needed at rest and ignored: {}", kinds.join(", ")));
-    }
-    rest
+/// One note for everything in the file that the model does not have.
+fn left_out_note(left_out: &[(String, usize)]) -> Option<String> {
+    let told = |(kind, count): &(String, usize)| match kind.as_str() {
+        "muscles" => format!("{count} muscles (neither their strength nor their passive torque)"),
+        _ => format!("{count} {kind}"),
+    };
+    let all: Vec<String> = left_out.iter().map(told).collect();
+    (!all.is_empty()).then(|| format!("in the file and not used: {}", all.join(", ")))
 }

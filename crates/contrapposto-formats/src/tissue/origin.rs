@@ -17,6 +17,8 @@ pub enum Origin {
 pub struct Origins {
     /// The coordinate of the built-in adult whose data are used.
     pub twin: Option<String>,
+    /// The coordinate runs against that of the adult: its positive group is the adult's negative one.
+    pub turned: bool,
     /// Range (rad) that the built-in passive law is meant for, in the coordinate's direction.
     pub meant: Option<(f64, f64)>,
     /// Of the range.

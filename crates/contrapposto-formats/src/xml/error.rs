@@ -121,7 +121,10 @@ pub enum XmlError {
         tag: String,
     },
     /// An end tag that does not belong to the open element.
-    #[error("{position}: `</{found}>` where `</{expected}>` is needed")]
+    #[error("{position}: `</{found}>` {}", match expected.as_str() {
+        "" => "closes nothing: no element is open here; remove it".to_owned(),
+        expected => format!("where `</{expected}>` is needed"),
+    })]
     Mismatched {
         /// Of the end tag.
         position: Position,

@@ -13,7 +13,7 @@ const HELD_ACCELERATION: f64 = 1.0;
 
 /// Greatest acceleration of the centre of mass (m/s^2, by second differences over [`SPAN`] to both sides at least), and the
 /// share of the instants in which it is above [`HELD_ACCELERATION`].
-pub(super) fn acceleration(motion: &[(f64, Posture)], centers: &[Vector3<f64>]) -> (Peak, f64) {
+pub fn acceleration(motion: &[(f64, Posture)], centers: &[Vector3<f64>]) -> (Peak, f64) {
     let mut peak = Peak::default();
     if centers.len() != motion.len() {
         return (peak, 0.0); // a body without mass

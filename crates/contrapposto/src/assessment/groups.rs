@@ -1,7 +1,7 @@
 //! Follows load and fatigue of every muscle group through a motion.
 
 use super::evaluation::Evaluation;
-use super::result::{GroupAssessment, Peak};
+use super::result::{GroupAssessment, Peak, PeakTorques};
 use crate::fatigue::{FatigueLaw, FatigueState, LoadHistory};
 use crate::joint_torques::relative_load;
 use crate::model::{Model, Side};
@@ -71,6 +71,7 @@ impl Groups {
             side,
             peak_load: Peak::default(),
             peak_torque: 0.0,
+            at_peak: PeakTorques::default(),
             loads: LoadHistory::default(),
             peak_fatigue: Peak::default(),
             fatigue: 0.0,
@@ -103,6 +104,8 @@ impl Groups {
             }
             if load > summary.peak_load.value {
                 summary.peak_torque = active;
+                let (external, passive) = evaluation.torques.external_and_passive(rate);
+                summary.at_peak = PeakTorques { angle, external, passive };
             }
             summary.peak_load.take(load, index, time);
             summary.loads.push(time, load);

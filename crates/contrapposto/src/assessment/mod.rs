@@ -18,11 +18,11 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::Load;
-use acceleration::acceleration;
+pub use acceleration::acceleration;
 pub use error::AssessError;
 use evaluation::Evaluation;
 use groups::Groups;
-pub use result::{Assessment, GroupAssessment, Instant, Peak, PeakKind, Proposal};
+pub use result::{Assessment, GroupAssessment, Instant, Peak, PeakKind, PeakTorques, Proposal};
 pub use settings::AssessSettings;
 
 /// Longest motion, s: more than a day.
@@ -56,13 +56,7 @@ pub fn assess(
         }
         evaluation.update(index, *time, posture, &mut loads)?;
         groups.add(&evaluation, index, *time, before.map_or(0.0, |before| time - before));
-        let (force, moment) = evaluation.residual();
-        found.residual_force.take(force, index, *time);
-        found.residual_moment.take(moment, index, *time);
-        found.unheld += usize::from(evaluation.is_out_of_balance());
-        if found.unheld == 1 && found.missing.is_none() {
-            found.missing = evaluation.missing().map(|missing| (missing, *time));
-        }
+        found.take_root(&evaluation, index, *time);
         centers.extend(evaluation.torques.kinematics().center_of_mass(model));
         record(&Instant {
             index,
@@ -87,6 +81,19 @@ pub fn assess(
     }
     sort(&mut found.groups);
     Ok(found)
+}
+
+impl Assessment {
+    /// Takes in what the root lacks at an instant.
+    fn take_root(&mut self, evaluation: &Evaluation<'_>, index: usize, time: f64) {
+        let (force, moment) = evaluation.residual();
+        self.residual_force.take(force, index, time);
+        self.residual_moment.take(moment, index, time);
+        self.unheld += usize::from(evaluation.is_out_of_balance());
+        if self.unheld == 1 && self.missing.is_none() {
+            self.missing = evaluation.missing().map(|missing| (missing, time));
+        }
+    }
 }
 
 /// Groups that fail first come first, then those of greater fatigue, then those of greater load.

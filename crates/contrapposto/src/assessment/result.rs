@@ -53,6 +53,8 @@ pub struct GroupAssessment {
     pub peak_load: Peak,
     /// Active torque at that peak, N m.
     pub peak_torque: f64,
+    /// Angle and torques at that peak.
+    pub at_peak: PeakTorques,
     /// Relative load over the motion.
     pub loads: LoadHistory,
     /// Greatest fatigue, 0..=1.
@@ -63,6 +65,29 @@ pub struct GroupAssessment {
     pub exhausted_at: Option<f64>,
     /// Where relief would lie at both peaks, by both strategies; where the group rested or has no falling passive curve, none.
     pub proposals: Vec<Proposal>,
+}
+
+/// Angle and torques of a coordinate at the greatest load of one of its groups.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PeakTorques {
+    /// The angle, rad (m).
+    pub angle: f64,
+    /// External torque, N m.
+    pub external: f64,
+    /// Passive torque, N m.
+    pub passive: f64,
+}
+
+/// Passive torque over external torque from which on a muscle that opposes it counts as working against the ligaments (assumed).
+const LIGAMENT_RATIO: f64 = 2.0;
+
+impl PeakTorques {
+    /// The muscle works against the joint's own ligaments: its torque `-(external + passive)` opposes the passive torque, which is at least
+    /// twice the external torque in size. A body at rest rarely does so: its measured angles are mostly counted from a wrong zero.
+    pub fn works_against_ligaments(&self) -> bool {
+        let active = -(self.external + self.passive);
+        active * self.passive < 0.0 && self.passive.abs() >= LIGAMENT_RATIO * self.external.abs()
+    }
 }
 
 /// Which peak a relief is proposed at.
@@ -108,4 +133,19 @@ pub struct Assessment {
     pub acceleration: Peak,
     /// Share of the instants in which it was above 1 m/s^2, so that a posture at rest says little.
     pub fast_share: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PeakTorques;
+
+    #[test]
+    fn a_muscle_against_a_passive_torque_of_twice_the_load_works_against_ligaments() {
+        let against = |external, passive| PeakTorques { angle: 0.0, external, passive }.works_against_ligaments();
+        assert!(against(-8.0, -22.9), "both push one way, mostly the ligament");
+        assert!(against(2.0, -10.0), "the load pushes the other way, and less");
+        assert!(!against(-8.0, -10.0), "mostly the load");
+        assert!(!against(-20.0, 10.0), "the ligament helps");
+        assert!(!against(0.0, 0.0));
+    }
 }

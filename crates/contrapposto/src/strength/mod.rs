@@ -37,6 +37,7 @@ impl Strength {
     /// assert_eq!(knee.torque(1.133), 203.0);
     /// assert_eq!(knee.torque(0.0), 101.5);
     /// assert_eq!(knee.torque(2.3), knee.torque(1.798));
+    /// assert!(knee.is_floor(0.0) && !knee.is_floor(1.133));
     /// ```
     pub fn torque(&self, angle: f64) -> f64 {
         self.torque_and_slope(angle).0
@@ -66,6 +67,16 @@ impl Strength {
     /// `angle` (rad) lies outside the tested angles.
     pub fn is_extrapolated(&self, angle: f64) -> bool {
         angle < self.tested.0 || angle > self.tested.1
+    }
+
+    /// The strength at `angle` (rad) is the floor: the least share of the peak, which the cosine falls below there.
+    pub fn is_floor(&self, angle: f64) -> bool {
+        self.is_floor_torque(self.torque(angle))
+    }
+
+    /// A strength of `torque` (N m) at some angle is the floor.
+    pub fn is_floor_torque(&self, torque: f64) -> bool {
+        self.narrowness > 0.0 && self.floor < 1.0 && torque <= self.peak * self.floor
     }
 
     /// Greatest torque at any angle, N m.

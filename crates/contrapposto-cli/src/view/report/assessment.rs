@@ -8,6 +8,7 @@ use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::simulation::{Contact, Standing};
 use contrapposto::statics::{Load, LoadKind};
 use contrapposto::verdict::Verdict;
+use contrapposto_formats::tissue::SourcedModel;
 use contrapposto_report::{Entry, Figure, List, Moments, Table};
 use nalgebra::Vector3;
 
@@ -18,10 +19,12 @@ use crate::view::frame::Frame;
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
+use crate::view::text::sources::StrengthAtText;
 use crate::view::words::{MOST_ROWS, group, percent, plain, sentence, value};
 
 /// Moments of a motion, as many as a page shows.
 pub(crate) struct AssessedFrames<'a> {
+    opened: &'a SourcedModel,
     model: &'a Model,
     instants: usize,
     frames: Vec<Frame>,
@@ -30,8 +33,8 @@ pub(crate) struct AssessedFrames<'a> {
 }
 
 impl<'a> AssessedFrames<'a> {
-    pub(crate) fn new(model: &'a Model, instants: usize) -> Self {
-        Self { model, instants, frames: vec![], pushed: vec![] }
+    pub(crate) fn new(opened: &'a SourcedModel, instants: usize) -> Self {
+        Self { opened, model: &opened.model, instants, frames: vec![], pushed: vec![] }
     }
 
     /// Takes in an instant, if it is one of those that are shown. `measured` adds the measured forces of the ground.
@@ -120,7 +123,7 @@ pub(crate) fn report_of_assessment(
         entries: entries(assessed_frames, &working, &shown),
         none: "None: no group fails, and no joint alone gives relief.".to_owned(),
     };
-    report.table = table(model, &working);
+    report.table = table(assessed_frames.opened, &working);
     Ok(contrapposto_report::write(&report))
 }
 
@@ -147,19 +150,22 @@ fn figures(
     figures
 }
 
-fn table(model: &Model, working: &[&GroupAssessment]) -> Table {
+fn table(opened: &SourcedModel, working: &[&GroupAssessment]) -> Table {
     let row = |group: &&GroupAssessment| {
         vec![
-            name(model, group),
+            name(&opened.model, group),
             percent(group.peak_load.value),
             format!("{:.2} s", group.peak_load.time),
+            StrengthAtText::new(opened, group).map(|strength| strength.words()).unwrap_or_default(),
             percent(group.fatigue),
             group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at {time:.1} s")),
         ]
     };
     Table {
         heading: "Over the whole motion".to_owned(),
-        columns: ["Muscle group", "Peak load", "At", "Fatigue at the end", "Fails"].map(str::to_owned).to_vec(),
+        columns: ["Muscle group", "Peak load", "At", "Of a strength of", "Fatigue at the end", "Fails"]
+            .map(str::to_owned)
+            .to_vec(),
         rows: working.iter().take(MOST_ROWS).map(row).collect(),
     }
 }

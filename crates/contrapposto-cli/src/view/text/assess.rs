@@ -5,13 +5,15 @@ use std::path::Path;
 
 use contrapposto::assessment::{Assessment, GroupAssessment, Peak, PeakKind, Proposal};
 use contrapposto::hybrid::Strategy;
-use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::model::CoordinateKind;
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::VerdictText;
+use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
 
 use super::group::GroupName;
 use super::plain_table;
+use super::sources::StrengthAtText;
 use crate::view::words::MOST_ROWS;
 
 /// Most groups whose relief is listed.
@@ -53,6 +55,11 @@ struct AssessedGroupText {
     name: GroupName,
     /// Active torque over strength.
     peak_load: PeakText,
+    /// The strength that this is a share of.
+    strength_at_peak: Option<StrengthAtText>,
+    external_at_peak_nm: f64,
+    passive_at_peak_nm: f64,
+    active_at_peak_nm: f64,
     peak_fatigue: PeakText,
     fatigue_at_end: f64,
     /// `null`: it holds.
@@ -83,7 +90,7 @@ impl From<Peak> for PeakText {
 
 impl AssessText {
     pub(crate) fn new(
-        model: &Model,
+        opened: &SourcedModel,
         motion: &Path,
         times: &[f64],
         found: &Assessment,
@@ -91,6 +98,7 @@ impl AssessText {
         warnings: Vec<String>,
         files: Vec<String>,
     ) -> Self {
+        let model = &opened.model;
         Self {
             model: model.name().to_owned(),
             motion: motion.display().to_string(),
@@ -98,7 +106,7 @@ impl AssessText {
             frames: times.len(),
             start_s: times.first().copied().unwrap_or_default(),
             end_s: times.last().copied().unwrap_or_default(),
-            groups: found.groups.iter().map(|group| AssessedGroupText::new(model, group)).collect(),
+            groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group)).collect(),
             residual_force_n: found.residual_force.into(),
             residual_moment_nm: found.residual_moment.into(),
             unheld_frames: found.unheld,
@@ -111,10 +119,15 @@ impl AssessText {
 }
 
 impl AssessedGroupText {
-    fn new(model: &Model, found: &GroupAssessment) -> Self {
+    fn new(opened: &SourcedModel, found: &GroupAssessment) -> Self {
+        let model = &opened.model;
         Self {
             name: GroupName::new(model, found.coordinate, found.side),
             peak_load: found.peak_load.into(),
+            strength_at_peak: StrengthAtText::new(opened, found),
+            external_at_peak_nm: found.at_peak.external,
+            passive_at_peak_nm: found.at_peak.passive,
+            active_at_peak_nm: found.peak_torque,
             peak_fatigue: found.peak_fatigue.into(),
             fatigue_at_end: found.fatigue,
             exhausted_at_s: found.exhausted_at,
@@ -155,12 +168,13 @@ impl ProposalText {
 pub(crate) fn report(text: &AssessText) -> String {
     let working: Vec<&AssessedGroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
     let mut table = plain_table();
-    table.set_header(["muscle group", "peak load", "at", "fatigue at the end", "fails"]);
+    table.set_header(["muscle group", "peak load", "at", "of a strength of", "fatigue at the end", "fails"]);
     for group in working.iter().take(MOST_ROWS) {
         table.add_row([
             group.name.to_string(),
             format!("{:.0} %", 100.0 * group.peak_load.value),
             format!("{:.2} s", group.peak_load.at_s),
+            group.strength_at_peak.as_ref().map(StrengthAtText::words).unwrap_or_default(),
             format!("{:.2}", group.fatigue_at_end),
             group.exhausted_at_s.map_or_else(|| "holds".to_owned(), |time| format!("at {time:.1} s")),
         ]);

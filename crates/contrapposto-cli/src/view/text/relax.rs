@@ -117,6 +117,10 @@ struct WorkText {
     name: GroupName,
     active_nm: f64,
     relative_load: f64,
+    /// At the angle of the posture.
+    strength_nm: f64,
+    /// The strength is the least share of its peak.
+    strength_is_floor: bool,
     /// How long it can hold this from a rested start; `null`: for ever.
     endurance_s: Option<f64>,
 }
@@ -165,6 +169,11 @@ impl RelaxedPostureText {
             name: GroupName::new(model, work.coordinate, work.side),
             active_nm: work.active,
             relative_load: work.relative_load(),
+            strength_nm: work.strength,
+            strength_is_floor: model.coordinates()[work.coordinate]
+                .groups
+                .as_ref()
+                .is_some_and(|groups| groups[work.side.index()].strength.is_floor_torque(work.strength)),
             endurance_s: work.endurance.is_finite().then_some(work.endurance),
         };
         let values = found.relaxed.posture.values().iter().copied();

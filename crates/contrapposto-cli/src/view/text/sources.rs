@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use contrapposto::assessment::GroupAssessment;
 use contrapposto::model::data::{self, Reference};
-use contrapposto::model::{MuscleGroup, Sex};
+use contrapposto::model::{CoordinateKind, MuscleGroup, Sex, Side};
 use contrapposto_formats::tissue::{Origin, SourcedModel};
 use serde::Serialize;
 
@@ -64,12 +65,16 @@ impl Known {
         }
         if coordinate.groups.is_some() {
             let [positive, negative] = match sources.and_then(|s| s.strength) {
+                Some([positive, negative]) if origins.turned => [Some(negative.size), Some(positive.size)],
                 Some(strength) => strength.map(|of| Some(of.size)),
                 None => [None; 2],
             };
             known.strength = [positive, negative].into_iter().filter_map(|r| pick(origins.strength, r)).collect();
             let shapes = sources.and_then(|s| s.strength).filter(|_| origins.strength == Origin::Library);
             known.shapes = shapes.map(|shapes| shapes.map(|of| Source::reference(of.shape)));
+            if let Some(shapes) = known.shapes.as_mut().filter(|_| origins.turned) {
+                shapes.reverse();
+            }
             known.strength.dedup();
             known.fatigue = coordinate.groups.iter().flatten().filter_map(|g| of_fatigue(g, origins.fatigue)).collect();
         }
@@ -84,6 +89,56 @@ fn of_fatigue(group: &MuscleGroup, origin: Origin) -> Option<Source> {
         Origin::Library => {
             data::library().fatigue_reference(&group.name, &group.fatigue).as_ref().map(Source::reference)
         }
+    }
+}
+
+/// The strength of a muscle group at an angle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct StrengthAtText {
+    /// `null` for a slide.
+    angle_deg: Option<f64>,
+    strength_nm: f64,
+    /// `measured`, `derived`, `extrapolated`, ...; `from the file`, `from the overlay`.
+    status: String,
+    /// It is the least share of the peak, below which the curve over the angle would fall.
+    floor: bool,
+}
+
+impl StrengthAtText {
+    /// At the greatest load of a group; `None` where the strength is not known.
+    pub(crate) fn new(opened: &SourcedModel, found: &GroupAssessment) -> Option<Self> {
+        Self::at(opened, found.coordinate, found.side, found.at_peak.angle)
+    }
+
+    /// Of a group at an angle (rad, m); `None` where the strength is not known.
+    pub(crate) fn at(opened: &SourcedModel, coordinate: usize, side: Side, angle: f64) -> Option<Self> {
+        let origins = &opened.origins[coordinate];
+        let coordinate = &opened.model.coordinates()[coordinate];
+        let strength = coordinate.groups.as_ref()?[side.index()].strength;
+        let of_twin = if origins.turned { 1 - side.index() } else { side.index() };
+        let status = match origins.strength {
+            Origin::File => Some("from the file".to_owned()),
+            Origin::Overlay => Some("from the overlay".to_owned()),
+            Origin::Library => {
+                let sources = origins.twin.as_deref().and_then(|twin| data::library().sources(twin));
+                let strengths = sources.and_then(|sources| sources.strength);
+                strengths.map(|of| of[of_twin].status_at(&strength, angle).to_string())
+            }
+        };
+        let angle_deg = (coordinate.kind == CoordinateKind::Rotation).then(|| angle.to_degrees());
+        let (strength_nm, floor) = (strength.torque(angle), strength.is_floor(angle));
+        Some(Self { angle_deg, strength_nm, status: status.unwrap_or_default(), floor })
+    }
+
+    /// Whether it is the floor.
+    pub(crate) fn is_floor(&self) -> bool {
+        self.floor
+    }
+
+    /// `29 N m, derived, floor`.
+    pub(crate) fn words(&self) -> String {
+        let floor = if self.floor { ", floor" } else { "" };
+        format!("{:.0} N m, {}{floor}", self.strength_nm, self.status)
     }
 }
 

@@ -2,11 +2,13 @@
 
 use std::fmt::Write;
 
-use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::model::{CoordinateKind, Model, Side};
+use contrapposto_formats::tissue::SourcedModel;
 use serde::{Serialize, Serializer};
 
 use super::joint::AxisText;
 use super::plain_table;
+use super::sources::StrengthAtText;
 use crate::view::moment::{Moment, MomentJoint};
 use crate::view::torque_rows::{Frame, Order, Row, Torques};
 
@@ -14,6 +16,9 @@ use crate::view::torque_rows::{Frame, Order, Row, Torques};
 #[derive(Serialize)]
 pub(crate) struct FrameText<'a> {
     frame: usize,
+    time_s: f64,
+    /// Always: torques of the posture at rest, without inertia.
+    quasi_static: bool,
     coordinate_order: Vec<&'a str>,
     coordinates: Named<'a, TorquesText>,
     uncoupled: Named<'a, TorquesText>,
@@ -34,6 +39,10 @@ struct TorquesText {
     external: f64,
     passive: f64,
     active: f64,
+    /// Of the positive and the negative group at this angle. Left out where it is not known, and of three-axis joints, whose muscles are
+    /// judged by their moment.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strength: Option<[StrengthAtText; 2]>,
 }
 
 /// The moment of a joint with three rotations, about axes of its distal segment.
@@ -55,18 +64,30 @@ impl<T: Serialize> Serialize for Named<'_, T> {
     }
 }
 
-pub(crate) fn json<'a>(model: &'a Model, order: &'a Order, frame: &'a Frame<'_>) -> FrameText<'a> {
+pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Frame<'_>) -> FrameText<'a> {
+    let model = &opened.model;
+    let strength = |coordinate: usize| {
+        let at = |side| StrengthAtText::at(opened, coordinate, side, frame.values[coordinate]);
+        let judged_alone = model.three_axis_joint_of(coordinate).is_none();
+        let [positive, negative] = Side::BOTH.map(|side| at(side).filter(|_| judged_alone));
+        Some([positive?, negative?])
+    };
     let named = |rows: &'a [Row], torques: &[Torques]| {
         let text = |(row, torques): (&'a Row, &Torques)| {
             let Torques { external, passive, active } = *torques;
             let angle = row.coordinate.map(|c| frame.values[c]);
-            (row.name.as_str(), TorquesText { angle, external, passive, active })
+            (
+                row.name.as_str(),
+                TorquesText { angle, external, passive, active, strength: row.coordinate.and_then(strength) },
+            )
         };
         Named(rows.iter().zip(torques).map(text).collect())
     };
     let value = |&c: &usize| (model.coordinates()[c].name.as_str(), frame.values[c]);
     FrameText {
         frame: frame.index,
+        time_s: frame.time,
+        quasi_static: true,
         coordinate_order: order.rows.iter().map(|row| row.name.as_str()).collect(),
         coordinates: named(&order.rows, &frame.rows),
         uncoupled: named(&order.coupled, &frame.coupled),
@@ -110,7 +131,9 @@ pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: cha
     let mut text = String::new();
     if separator == '\t' {
         let columns = labels.len();
-        text = format!("torques\nversion=1\nnRows={frames}\nnColumns={columns}\ninDegrees=yes\nendheader\n");
+        text = format!(
+            "torques\nPostures at rest: torques without inertia\nversion=1\nnRows={frames}\nnColumns={columns}\ninDegrees=yes\nendheader\n"
+        );
     }
     let mut between = "";
     let separator = separator.to_string();
@@ -148,7 +171,7 @@ pub(crate) fn readable(model: &Model, order: &Order, frame: &Frame<'_>) -> Strin
     for (row, torques) in order.rows.iter().zip(&frame.rows) {
         table.add_row(cells(row, torques, frame));
     }
-    let mut text = format!("{table}\n");
+    let mut text = format!("at rest, without inertia:\n{table}\n");
     if !order.coupled.is_empty() {
         let mut table = plain_table();
         table.set_header(["uncoupled", "at", "external", "passive", "active", "unit"]);

@@ -1,0 +1,228 @@
+//! Warnings about models and motions that cannot be what their author meant, and the folding of notes.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::{json, refused, run, write};
+
+fn formats(path: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../contrapposto-formats/tests").join(path).to_str().unwrap().to_owned()
+}
+
+fn woman() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/models/adult-female.osim");
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_model_without_mass_or_in_millimetres_is_told_by_name_and_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let joint = |y: f64| {
+        format!(
+            "<joint name=\"j\" type=\"revolute\"><origin xyz=\"0 0 {y}\"/><parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 1 0\"/>\
+             <limit lower=\"-1\" upper=\"1\"/></joint></robot>"
+        )
+    };
+    let mass = "<inertial><mass value=\"2\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>";
+    let light = format!("<robot name=\"paper\"><link name=\"a\"/><link name=\"b\"/>{}", joint(0.5));
+    let light = run(&["torques", &write(folder.path(), "light.urdf", &light), "default"]);
+    assert!(
+        light.stderr.starts_with("warning: `paper`: no segment has mass: all torques of weight are 0\n"),
+        "{}",
+        light.stderr
+    );
+    let large =
+        format!("<robot name=\"large\"><link name=\"a\">{mass}</link><link name=\"b\">{mass}</link>{}", joint(500.0));
+    let large = run(&["inspect", &write(folder.path(), "large.urdf", &large)]);
+    assert!(large.stderr.contains("up to 500.0 m apart"), "{}", large.stderr);
+    assert!(large.stderr.contains("millimetres?"), "{}", large.stderr);
+    assert!(!run(&["inspect", "adult"]).stderr.contains("warning"));
+}
+
+#[test]
+fn a_motion_with_the_opposite_sign_is_warned_of_first_and_in_the_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let bent = write(folder.path(), "bent.csv", "time,knee_angle_r_deg\n0,-60\n1,-70\n2,-66\n");
+    let run = run(&["assess", &woman(), &bent, "--json"]);
+    let first = run.stderr.lines().next().unwrap();
+    assert!(first.starts_with("warning: `knee_angle_r` lies outside its range"), "{}", run.stderr);
+    assert!(
+        first.contains("in 100 % of the frames (-70.0 .. -60.0 deg); opposite sign? With it 100 % of the frames"),
+        "{first}"
+    );
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert!(
+        report["warnings"][0].as_str().unwrap().starts_with("`knee_angle_r` lies outside"),
+        "{}",
+        report["warnings"]
+    );
+    let good = write(folder.path(), "good.csv", "time,knee_angle_r_deg\n0,60\n1,70\n2,66\n");
+    assert!(!support::run(&["assess", &woman(), &good]).stderr.contains("knee_angle_r` lies outside"));
+}
+
+/// At 0 degrees the adult's ligaments bend the knee, and nothing else loads it: the leg hangs.
+#[test]
+fn a_knee_that_is_held_straight_against_its_ligaments_is_warned_of_with_its_strength() {
+    let folder = tempfile::tempdir().unwrap();
+    let straight = write(folder.path(), "straight.csv", "time,knee_angle_r_deg\n0,0\n1,0\n");
+    let report = json(&["assess", "adult", &straight, "--json"]);
+    let knee =
+        |group: &&Value| group["coordinate"] == "knee_angle_r" && group["peak_load"]["value"].as_f64().unwrap() > 0.0;
+    let knee = report["groups"].as_array().unwrap().iter().find(knee).unwrap();
+    let number = |key: &str| knee[key].as_f64().unwrap();
+    let strength = knee["strength_at_peak"]["strength_nm"].as_f64().unwrap();
+    let load = number("active_at_peak_nm").abs() / strength;
+    assert!((load - knee["peak_load"]["value"].as_f64().unwrap()).abs() < 1e-12, "{knee}");
+    let sum = number("active_at_peak_nm") + number("external_at_peak_nm") + number("passive_at_peak_nm");
+    assert!(
+        sum.abs() < 1e-9 && number("passive_at_peak_nm").abs() > 2.0 * number("external_at_peak_nm").abs(),
+        "{knee}"
+    );
+    assert!(!knee["strength_at_peak"]["status"].as_str().unwrap().is_empty(), "{knee}");
+    let warned = report["warnings"].to_string();
+    assert!(
+        warned.contains("muscles work against the ligaments of their own joint")
+            && warned.contains("`knee_angle_r` at 0.0 deg (0 s): passive torque"),
+        "{warned}"
+    );
+    let table = run(&["assess", "adult", &straight]).stdout;
+    assert!(table.contains("of a strength of"), "{table}");
+}
+
+#[test]
+fn torques_of_a_fast_motion_are_warned_of_and_say_that_they_are_at_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..100)
+        .map(|i| {
+            let time = 0.01 * f64::from(i);
+            format!("{time},{}\n", 0.2 * (20.0 * time).sin())
+        })
+        .collect();
+    let shaken = write(folder.path(), "shaken.csv", &format!("time,pelvis_tx_m\n{rows}"));
+    let run = run(&["torques", "adult", &shaken, "--json"]);
+    assert!(run.stderr.contains("warning: the centre of mass accelerates by more than 1 m/s2"), "{}", run.stderr);
+    let frames: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!((&frames[7]["time_s"], &frames[7]["quasi_static"]), (&serde_json::json!(0.07), &Value::Bool(true)));
+    let elbow = &frames[7]["coordinates"]["elbow_flex_r"]["strength"];
+    assert!(elbow[0]["strength_nm"].as_f64().unwrap() > 10.0 && elbow[1]["angle_deg"] == 0.0, "{elbow}");
+    assert!(elbow[0]["status"].is_string() && elbow[0]["floor"].is_boolean(), "{elbow}");
+    assert!(frames[7]["coordinates"]["hip_flexion_r"]["strength"].is_null(), "judged by its moment");
+    let still = support::run(&["torques", "adult", "default"]);
+    assert!(still.stdout.starts_with("at rest, without inertia:") && !still.stderr.contains("accelerates"));
+}
+
+#[test]
+fn notes_are_folded_shown_or_left_out_and_warnings_never() {
+    let folder = tempfile::tempdir().unwrap();
+    let bent = write(folder.path(), "bent.csv", "time,knee_angle_r_deg\n0,-60\n1,-70\n");
+    let stderr = |more: &[&str]| run(&[&["assess", woman().as_str(), &bent], more].concat()).stderr;
+    let count = |text: &str, kind: &str| text.lines().filter(|line| line.starts_with(kind)).count();
+    let (folded, all, none) = (stderr(&[]), stderr(&["--verbose"]), stderr(&["--quiet"]));
+    assert_eq!((count(&folded, "note: "), count(&none, "note: ")), (5, 0), "{folded}");
+    let more = count(&all, "note: ") - 4;
+    assert!(more > 10 && folded.contains(&format!("note: {more} more notes; --verbose shows all of them")), "{folded}");
+    for text in [&folded, &all, &none] {
+        assert_eq!(count(text, "warning: "), count(&all, "warning: "), "{text}");
+        assert!(count(text, "warning: ") > 0, "{text}");
+    }
+}
+
+#[test]
+fn convert_counts_what_is_not_carried_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.osim");
+    let said = run(&["convert", &formats("models/joints_4x.osim"), out.to_str().unwrap()]).stdout;
+    assert!(said.contains("1 markers") && said.contains("1 muscles") && said.contains("1 wrap objects"), "{said}");
+    assert!(said.contains("not carried over"), "{said}");
+}
+
+#[test]
+fn compressed_files_and_marker_files_say_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.osim.gz");
+    std::fs::write(&path, [0x1f, 0x8b, 8, 0, 1, 2, 3]).unwrap();
+    assert!(refused(&["inspect", path.to_str().unwrap()]).contains("is compressed (gzip); unpack it first"));
+    std::fs::write(&path, b"PK\x03\x04abc").unwrap();
+    assert!(refused(&["inspect", path.to_str().unwrap()]).contains("is compressed (zip); unpack it first"));
+    for name in ["walk.trc", "walk.txt"] {
+        let markers = write(folder.path(), name, "PathFileType\t4\t(X/Y/Z)\twalk.trc\nDataRate\n60\n");
+        let said = refused(&["assess", "adult", &markers]);
+        assert!(said.contains("is a marker file; run OpenSim's inverse kinematics first"), "{said}");
+    }
+}
+
+const FORCES: &str = "ground_force_vx,ground_force_vy,ground_force_vz,ground_force_px,ground_force_py,ground_force_pz";
+
+/// An ExternalLoads file of one force on the right heel; `more` stands in the force.
+fn external(folder: &Path, more: &str) -> String {
+    let identifier = |kind: &str, name: &str| format!("<{kind}_identifier>{name}</{kind}_identifier>");
+    let force = format!(
+        "<ExternalForce name=\"right\"><applied_to_body>calcn_r</applied_to_body>{}{}{more}</ExternalForce>",
+        identifier("force", "ground_force_v"),
+        identifier("point", "ground_force_p")
+    );
+    let off = "<ExternalForce name=\"off\"><appliesForce>false</appliesForce></ExternalForce>";
+    let text = format!(
+        "<OpenSimDocument Version=\"30000\"><ExternalLoads name=\"x\"><objects>{force}{off}</objects>\
+         <datafile>forces.csv</datafile></ExternalLoads></OpenSimDocument>"
+    );
+    write(folder, "external.xml", &text)
+}
+
+#[test]
+fn external_loads_name_the_table_and_the_segments_of_ground_reactions() {
+    let folder = tempfile::tempdir().unwrap();
+    let forces =
+        write(folder.path(), "forces.csv", &format!("time,{FORCES}\n0,0,700,0,0.1,0,0.1\n1,0,700,0,0.1,0,0.1\n"));
+    let motion = write(folder.path(), "motion.csv", "time,hip_flexion_r_deg\n0,5\n1,6\n");
+    let torques = |grf: &str, more: &[&str]| run(&[&["torques", "adult", &motion, "--grf", grf], more].concat());
+    let loads = external(folder.path(), "");
+    let (named, plain) = (torques(&loads, &[]), torques(&forces, &["--grf-on", "calcn_r"]));
+    assert_eq!(named.code, 0, "{}", named.stderr);
+    assert!(named.stdout == plain.stdout && named.stdout.len() > 1000);
+    for (more, said) in [
+        ("<force_expressed_in_body>calcn_r</force_expressed_in_body>", "only forces and points in `ground` are read"),
+        ("<torque_identifier>moment_</torque_identifier>", "there is no column `moment_x`"),
+    ] {
+        let refused = torques(&external(folder.path(), more), &[]);
+        assert!(refused.code == 2 && refused.stderr.contains(said), "{}", refused.stderr);
+    }
+    let other = write(folder.path(), "other.xml", "<robot/>");
+    assert!(torques(&other, &[]).stderr.contains("holds no <ExternalLoads>"));
+}
+
+#[test]
+fn frames_outside_of_the_ground_reactions_are_left_out_by_from_and_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let forces =
+        write(folder.path(), "forces.csv", &format!("time,{FORCES}\n1,0,700,0,0.1,0,0.1\n2,0,700,0,0.1,0,0.1\n"));
+    let motion = write(folder.path(), "motion.csv", "time,hip_flexion_r_deg\n0,5\n1,6\n1.5,7\n2,8\n3,9\n");
+    let call = |more: &[&str]| {
+        run(&[&["torques", "adult", &motion, "--grf", &forces, "--grf-on", "calcn_r", "--json"], more].concat())
+    };
+    let whole = call(&[]);
+    assert!(
+        whole.code == 2 && whole.stderr.contains("--from 1 --to 2 leaves the other frames out"),
+        "{}",
+        whole.stderr
+    );
+    let frames: Value = serde_json::from_str(&call(&["--from", "1", "--to", "2"]).stdout).unwrap();
+    let times: Vec<f64> = frames.as_array().unwrap().iter().map(|frame| frame["time_s"].as_f64().unwrap()).collect();
+    assert_eq!(times, [1.0, 1.5, 2.0]);
+    let none = call(&["--from", "4"]);
+    assert!(none.code == 2 && none.stderr.contains("it goes from 0 s to 3 s"), "{}", none.stderr);
+}
+
+#[test]
+fn a_table_with_a_wrong_number_of_rows_is_read_with_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "motion\nnRows=901\nnColumns=2\ninDegrees=yes\nendheader\ntime\thip_flexion_r\n0\t5\n1\t6\n";
+    let motion = write(folder.path(), "motion.mot", text);
+    let answer = run(&["torques", "adult", &motion, "--quiet"]);
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    assert!(answer.stderr.contains("the header says 901 rows, but there are 2, which are read"), "{}", answer.stderr);
+}
