@@ -83,6 +83,11 @@ fn refuse_model(path: &Path, name: &str) -> Result<(), Fail> {
 fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<Model>, Fail> {
     let Some(file) = scenario_model(name, bytes)? else { return Ok(None) };
     let opened = open(&model_args(scenario, &file), true)?.with_fatigue(&file.fatigue);
+    if opened.model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
+        let unknown = "no strength of its joints is known: their load, fatigue and effort are unknown, not 0";
+        let model = opened.model.name();
+        print_note("warning", &format!("`{model}`: {unknown}; lay one over it with `overlay` in [model]"));
+    }
     opened.notes.iter().for_each(|note| print_note("note", note));
     Ok(Some(opened.model))
 }

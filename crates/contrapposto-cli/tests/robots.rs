@@ -80,3 +80,24 @@ fn relax_of_a_robot_on_its_soles_finds_postures() {
     let said = refused(&["relax", &without, "--json"]);
     assert!(said.contains("strength"), "{said}");
 }
+
+#[test]
+fn a_run_of_a_robot_without_strength_warns_and_prints_no_loads() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(biped(), folder.path().join("biped.urdf")).unwrap();
+    let simulated = |strength: &str| {
+        let text = format!(
+            "format = 1\n[model]\nfile = \"biped.urdf\"\nfile_strength = {strength}\n[posture]\nleft_hip_deg = -60\n[strategy]\n\
+             kind = \"passive\"\n[fatigue]\n[run]\nduration_s = 3\nstep_s = 1\n"
+        );
+        let scenario = write(folder.path(), "run.toml", &text);
+        run(&["simulate", &scenario, "--out", folder.path().join("out").to_str().unwrap()])
+    };
+    let hip = |stdout: &str| stdout.lines().find(|line| line.contains("left_hip")).unwrap().to_owned();
+    let without = simulated("false");
+    assert!(without.stderr.contains("warning: `biped`: no strength of its joints is known"), "{}", without.stderr);
+    assert!(!hip(&without.stdout).contains('%'), "{}", without.stdout);
+    let with = simulated("true");
+    assert!(!with.stderr.contains("no strength"), "{}", with.stderr);
+    assert!(hip(&with.stdout).contains('%'), "{}", with.stdout);
+}

@@ -55,6 +55,8 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, verdict: &Verdict, 
     for ((coordinate, summary), free) in all {
         let [external, passive, active] = summary.final_torques;
         let [positive, negative] = summary.peak_fatigue;
+        // Without a strength there is neither load nor fatigue.
+        let known = coordinate.groups.is_some();
         table.add_row([
             format!("{}{}", coordinate.name, if *free { "" } else { " (locked)" }),
             match coordinate.kind {
@@ -65,8 +67,8 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, verdict: &Verdict, 
             format!("{external:.2}"),
             format!("{passive:.2}"),
             format!("{active:.2}"),
-            format!("{:.0} %", 100.0 * summary.peak_load),
-            format!("{positive:.2} / {negative:.2}"),
+            if known { format!("{:.0} %", 100.0 * summary.peak_load) } else { String::new() },
+            if known { format!("{positive:.2} / {negative:.2}") } else { String::new() },
             if *free { cases(summary) } else { String::new() },
         ]);
     }
