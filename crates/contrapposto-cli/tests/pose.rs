@@ -121,8 +121,10 @@ fn out_of_reach_the_hand_gives_way_and_the_feet_do_not() {
     let scenario = folder.path().join("far.toml");
     std::fs::write(&scenario, text).unwrap();
     let run = pose(&scenario, folder.path(), &["--json"]);
-    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert_eq!(run.code, 1, "{}", run.stderr);
     let found: Value = serde_json::from_str(&run.stdout).unwrap();
+    let words = found["verdict"]["sentence"].as_str().unwrap();
+    assert!(words.starts_with("Not reached: point right hand is missed by "), "{words}");
     assert!(residuals(&found, "support").iter().all(|r| r.abs() < 1e-6));
     assert!(residuals(&found, "point hand_r")[0].abs() > 0.5);
     assert_eq!(found["reason"], "closest");

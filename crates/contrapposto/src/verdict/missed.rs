@@ -54,10 +54,11 @@ impl Missed {
     }
 }
 
-/// Whether a task names a place or a direction that the job asks for: not least effort, a posture or an upright head, which take what
-/// the targets leave.
+/// Whether a task names a place or a direction that the job asks for: not balance, which [`super::VerdictKind::CannotStand`] judges,
+/// not least effort, a posture or an upright head, which take what the targets leave.
 fn is_target(task: &Task) -> bool {
-    !is_direction(task) && !matches!(task, Task::Effort(_) | Task::Posture(_) | Task::Bounds(_) | Task::Clearance(_))
+    let condition = is_direction(task) || matches!(task, Task::CenterOfMass(_));
+    !condition && !matches!(task, Task::Effort(_) | Task::Posture(_) | Task::Bounds(_) | Task::Clearance(_))
 }
 
 /// An upright head or trunk, a direction of the gaze.
@@ -68,7 +69,7 @@ fn is_direction(task: &Task) -> bool {
 /// The unit of all errors of a level.
 fn unit(level: &PriorityLevel) -> Option<Unit> {
     let of = |task: &Task| match task {
-        Task::Point(_) | Task::Distance(_) | Task::CenterOfMass(_) => Some(Unit::Metre),
+        Task::Point(_) | Task::Distance(_) => Some(Unit::Metre),
         Task::Orientation(_) | Task::LookAt(_) => Some(Unit::Radian),
         _ => None,
     };
