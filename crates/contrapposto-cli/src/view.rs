@@ -4,6 +4,7 @@ pub(crate) mod animation;
 pub(crate) mod answer;
 pub(crate) mod axes;
 pub(crate) mod body;
+pub(crate) mod body_map;
 pub(crate) mod charts;
 pub(crate) mod decision;
 pub(crate) mod excerpt;

@@ -387,3 +387,18 @@ fn a_model_where_a_scenario_is_due_and_a_file_where_a_folder_is_due_are_named_as
     assert_eq!(told.code, 2);
     assert!(told.stderr.contains("is a file; give the name of a folder"), "{}", told.stderr);
 }
+
+#[test]
+fn a_body_is_drawn_with_the_names_of_its_joints_coordinates_and_segments() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    assert_eq!(run(&["inspect", "adult", "--out", out]).code, 0);
+    let svg = std::fs::read(folder.path().join("body.svg")).unwrap();
+    support::assert_svg(&svg);
+    support::assert_png(&std::fs::read(folder.path().join("body.png")).unwrap());
+    let svg = String::from_utf8(svg).unwrap();
+    for name in ["shoulder_r", "hip_adduction_r: adduction", "pelvis_tilt: backward tilt", "humerus_r", "calcn_r"] {
+        assert!(svg.contains(name), "{name}");
+    }
+    assert!(!svg.contains("humerus_l"), "the left side has the same names");
+}

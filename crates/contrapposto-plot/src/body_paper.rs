@@ -45,7 +45,8 @@ impl Paper<'_> {
         [across, self.center.1 - self.scale * (y - self.middle[1]), self.scale * z]
     }
 
-    fn point(&self, point: [f64; 3]) -> Option<Point> {
+    /// Place on the sheet, px; `None` where it cannot be drawn.
+    pub(crate) fn point(&self, point: [f64; 3]) -> Option<Point> {
         let [x, y, _] = self.place(point);
         point.into_iter().all(drawable).then_some((x, y))
     }

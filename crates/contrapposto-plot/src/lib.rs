@@ -5,6 +5,7 @@
 //! | Torque balance | [`torque_balance()`] | Figures 1 and 7-14 of Rodriguez & Boulic (2007): torques against the angle, the path of the active torque, the arm |
 //! | Passive curve | [`passive_curve()`] | passive torque and its slope over the range of a coordinate |
 //! | Bodies | [`body_figure()`] | one posture from three sides, or several side by side: load colours, contact forces, loads, centre of mass, targets, surfaces and things, the start as a ghost |
+//! | Body with names | [`body_map()`] | joints with their coordinates, frames of segments, patches |
 //! | Time line | [`time_line()`] | angle, torques and fatigue of one coordinate against time |
 //!
 //! Every function takes any input without panicking: numbers that are not finite (or beyond 1e9 in size) leave a gap
@@ -21,6 +22,7 @@ mod axes;
 mod body;
 mod body_figure;
 mod body_legend;
+mod body_map;
 mod body_paper;
 mod body_view;
 mod canvas;
@@ -43,6 +45,7 @@ mod torque_balance;
 
 pub use body::{BodyFigure, BodyForce, BodyPart, BodyPosture, BodyThing};
 pub use body_figure::body_figure;
+pub use body_map::{BodyMap, MapFrame, MapJoint, body_map};
 pub use figure::{Figure, PlotError};
 pub use passive_chart::{PassiveChart, passive_curve};
 pub use tags::{PostureSketch, SketchRole};

@@ -123,6 +123,9 @@ pub(crate) struct InspectArgs {
     pub(crate) model: ModelArgs,
     #[command(flatten)]
     pub(crate) fatigue: FatigueArgs,
+    /// Draw the body with the names of joints, coordinates and segments into DIR: body.svg and body.png.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// Print everything as JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use contrapposto::model::Model;
 use contrapposto_formats::read_contents;
+use contrapposto_plot::body_map;
 
 use crate::args::InspectArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
-use crate::output::{json_text, print};
+use crate::output::{Folder, json_text, print};
 use crate::scenario_file::ScenarioFile;
+use crate::view::body_map::map_of_body;
 use crate::view::text::inspect::scenario::{readable_scenario, scenario_report};
 use crate::view::text::inspect::{readable, report};
 
@@ -18,11 +21,20 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Fail> {
     }
     let opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
     let file = args.model.model.display().to_string();
+    draw(&opened.model, args)?;
     if args.json {
         let text = report(&opened, &file);
         return print(&json_text("JSON", &text)?);
     }
     print(&readable(&opened, &file))
+}
+
+/// Draws the body, where a folder is given.
+fn draw(model: &Model, args: &InspectArgs) -> Result<(), Fail> {
+    let Some(out) = &args.out else { return Ok(()) };
+    let figure = body_map(&map_of_body(model)?);
+    let png = figure.png().map_err(|error| Fail::job("PNG", error))?;
+    Folder::open(out)?.write(&[("body.svg", figure.svg().as_bytes()), ("body.png", png.as_slice())])
 }
 
 fn inspect_scenario(path: &Path, args: &InspectArgs) -> Result<(), Fail> {
@@ -33,6 +45,7 @@ fn inspect_scenario(path: &Path, args: &InspectArgs) -> Result<(), Fail> {
     }
     let ScenarioFile { name, bytes, model } = ScenarioFile::read(path)?;
     let contents = read_contents(&name, &bytes, model)?;
+    draw(&contents.model, args)?;
     let report = scenario_report(&contents, &name);
     print(&if args.json { json_text("JSON", &report)? } else { readable_scenario(&report) })
 }

@@ -23,10 +23,9 @@ pub(super) fn segment(at: &Located, model: &Model, path: &[&str], name: &str) ->
     })
 }
 
-/// The segment of the built-in adult that a word of everyday language means: `right_hand` is `hand_r`.
+/// The segment of the built-in adult that a word of everyday language means: `right_foot` is `calcn_r`.
 fn segment_of_word(word: &str) -> Option<String> {
-    const PARTS: [(&str, &str); 12] = [
-        ("hand", "hand"),
+    const PARTS: [(&str, &str); 11] = [
         ("foot", "calcn"),
         ("heel", "calcn"),
         ("forearm", "radius"),

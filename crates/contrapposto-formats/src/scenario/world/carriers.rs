@@ -29,8 +29,12 @@ pub(super) const BACKREST_DEFAULT_DEG: f64 = 100.0;
 const TABLE: [f64; 3] = [0.7, 0.03, 1.4];
 /// The same of a counter, which is open below (assumed).
 const COUNTER: [f64; 3] = [0.6, 0.04, 1.6];
-/// Lengths of a seat forward, up and sideways, m (assumed; office chairs: 0.38 to 0.44 deep, 0.40 wide and more, recalled).
-const SEAT: [f64; 3] = [0.40, 0.05, 0.40];
+/// Lengths of a seat forward and up, m (assumed; office chairs: 0.38 to 0.44 deep, recalled).
+const SEAT: [f64; 2] = [0.40, 0.05];
+/// Its width in distances of a shoulder joint from the midline (assumed: arms that hang beside it are clear of it).
+const SEAT_WIDTH: f64 = 1.5;
+/// Its width for a body without shoulders, m (assumed).
+const SEAT_WIDTH_ALONE: f64 = 0.32;
 /// Distance of a hand or the middle of a forearm behind the near edge of a table, m (assumed).
 const BEHIND_EDGE: f64 = 0.12;
 
@@ -99,8 +103,11 @@ fn read_seat(world: &mut World, word: &Word<'_>, text: &SeatText, model: &Model)
     let height = word.number("height_m", text.height_m, HEIGHTS, "m")?;
     world.sits = true;
     world.support(word, rests("pelvis", level(height)));
-    let middle = Vector3::new(0.0, height - 0.5 * SEAT[1], 0.0);
-    world.obstacle(word, block("seat", middle, SEAT));
+    let [depth, thickness] = SEAT;
+    let shoulder = model.segment("pelvis").zip(model.segment("humerus_r"));
+    let width = shoulder.map_or(SEAT_WIDTH_ALONE, |(pelvis, arm)| SEAT_WIDTH * in_segment(model, pelvis, arm).z.abs());
+    let middle = Vector3::new(0.0, height - 0.5 * thickness, 0.0);
+    world.obstacle(word, block("seat", middle, [depth, thickness, width]));
     let angle = word.number("backrest_deg", text.backrest_deg.unwrap_or(BACKREST_DEFAULT_DEG), BACKREST_DEG, "deg")?;
     if text.backrest {
         let recline = (angle - 90.0).to_radians();
