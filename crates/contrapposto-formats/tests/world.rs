@@ -50,6 +50,10 @@ fn heights(scenario: &Scenario) -> Vec<(String, f64)> {
     scenario.supports.iter().map(height).collect()
 }
 
+fn found_height(scenario: &Scenario, segment: &str) -> f64 {
+    heights(scenario).iter().find(|(name, _)| name == segment).unwrap().1
+}
+
 fn assert_heights(scenario: &Scenario, expected: &[(&str, f64)]) {
     let found = heights(scenario);
     assert_eq!(
@@ -111,8 +115,10 @@ fn a_tool_without_a_place_is_only_carried_and_a_bag_hangs_on_the_side_that_is_na
 #[test]
 fn a_seat_without_a_posture_has_the_sitter_on_it_with_both_feet_on_the_floor() {
     for height in [0.35, 0.43, 0.55] {
-        let named = read(&format!("[seat]\nheight_m = {height}\nbackrest = true\narmrests_m = {}\n", height + 0.22));
-        let arms = height + 0.22;
+        let named = read(&format!("[seat]\nheight_m = {height}\nbackrest = true\narmrests_m = {}\n", height + 0.30));
+        let bones = |name: &str| found_height(&named, name);
+        let arms = bones("radius_r");
+        assert!((0.32..0.36).contains(&(arms - height)), "half a forearm above the armrest: {arms}");
         let found = heights(&named);
         let back = found.iter().find(|(name, _)| name == "torso").unwrap().1;
         assert!(back > height + 0.2, "{back}");
@@ -194,6 +200,7 @@ fn wrong_numbers_of_things_are_refused_at_their_key_with_the_accepted_range() {
         ("[[handle]]\nat_m = [0.5, 1, 0]\npush_n = 1\npull_n = 1\n", "both pushed and pulled"),
         ("[[wall]]\ncarries = [\"back\"]\n", "is said 0 times"),
         ("[seat]\nheight_m = 0.4\nbackrest_deg = 100\n", "no backrest"),
+        ("[seat]\nheight_m = 0.43\narmrests_m = 0.6\n", "the arms of this body reach armrests of"),
         ("[[step]]\nheight_m = 0.2\nunder = \"right_hand\"\n", "unknown value `right_hand`"),
         ("[floor]\nfeet = \"both\"\n[[step]]\nheight_m = 0.2\nunder = \"left_foot\"\n", "is a support already"),
     ];

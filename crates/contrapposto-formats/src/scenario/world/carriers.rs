@@ -13,7 +13,7 @@ use crate::scenario::obstacle_text::ObstacleText;
 use crate::scenario::support::FEET;
 use crate::scenario::task_text::{GroundText, NamedPlaceText, OnText, PlaceText, PlaneText, SupportText};
 use crate::scenario::text::ScenarioText;
-use crate::toml_file::Located;
+use crate::toml_file::{Located, shown};
 
 /// Heights of tables, seats, armrests and steps above the floor, m.
 const HEIGHTS: (f64, f64) = (0.0, 2.5);
@@ -119,12 +119,42 @@ fn read_seat(world: &mut World, word: &Word<'_>, text: &SeatText, model: &Model)
         return Err(word.at.key_error(&word.keys("backrest_deg"), "the seat has no backrest", help));
     }
     if let Some(armrests) = text.armrests_m {
-        let armrests = word.number("armrests_m", armrests, (height, HEIGHTS.1), "m")?;
+        let bones = armrests + forearm(model);
+        if let Some((lowest, highest)) = elbows(model, height)
+            && !(lowest..=highest).contains(&bones)
+        {
+            let [lowest, highest] = [lowest, highest].map(|bones| (100.0 * (bones - forearm(model))).round() / 100.0);
+            let message = format!(
+                "armrests_m is {} m; on a seat of {} m the arms of this body reach armrests of {lowest} to {highest} m",
+                shown(armrests),
+                shown(height)
+            );
+            return Err(word.error("armrests_m", message, None));
+        }
         for segment in ["radius_r", "radius_l"] {
-            world.support(word, rests(segment, level(armrests)));
+            world.support(word, rests(segment, level(bones)));
         }
     }
     Ok(())
+}
+
+/// How far the bone of a forearm is above the armrest under it, m: the radius of the forearm's shape.
+pub(super) fn forearm(model: &Model) -> f64 {
+    let segment = model.segment("radius_r");
+    let shape = model.shapes().iter().find(|shape| Some(shape.capsule.segment) == segment);
+    shape.map_or(0.0, |shape| shape.capsule.radius)
+}
+
+/// Heights of the bones of level forearms of an upright sitter, m: with the arms hanging down, and with the elbows at the shoulders.
+fn elbows(model: &Model, seat: f64) -> Option<(f64, f64)> {
+    /// By so little the trunk gives way (assumed).
+    const SLUMP: f64 = 0.02;
+    let pelvis = model.segment("pelvis")?;
+    let patch = &model.segments()[pelvis].patch;
+    let buttocks = patch.iter().map(|corner| corner.y).fold(f64::INFINITY, f64::min);
+    let above = |name: &str| Some(seat - buttocks + in_segment(model, pelvis, model.segment(name)?).y);
+    (!patch.is_empty()).then_some(())?;
+    Some((above("ulna_r")? - SLUMP, above("humerus_r")?))
 }
 
 fn read_table(

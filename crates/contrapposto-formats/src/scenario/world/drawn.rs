@@ -15,7 +15,7 @@ use crate::thing::Thing;
 const TOOL: [f64; 3] = [0.05, 0.20, 0.05];
 const BAG: [f64; 3] = [0.34, 0.26, 0.12];
 const RUCKSACK: [f64; 3] = [0.20, 0.42, 0.30];
-const STEP: [f64; 2] = [0.34, 0.30];
+const STEP: [f64; 2] = [0.34, 0.24];
 const WALL: [f64; 3] = [0.02, 2.2, 1.6];
 /// Thickness of a handle, m.
 pub(super) const BAR: f64 = 0.03;

@@ -10,7 +10,7 @@ use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::carriers::BACKREST_DEFAULT_DEG;
+use super::carriers::{BACKREST_DEFAULT_DEG, forearm};
 use super::plan::{HandTarget, World};
 use super::text::{CarriedText, SeatText};
 use crate::scenario::text::ScenarioText;
@@ -125,7 +125,7 @@ impl Seeder<'_> {
             (seat.armrests_m, self.joint("humerus_r"), self.joint("ulna_r"))
         {
             // Upper arm forward until the elbow is at the armrests, forearm level.
-            let drop = pelvis + shoulder.y - origin.y - armrests;
+            let drop = pelvis + shoulder.y - origin.y - armrests - forearm(self.model);
             let forward = (drop / (shoulder - elbow).norm()).clamp(0.0, 1.0).acos();
             for side in ["r", "l"] {
                 pairs.push((format!("arm_flex_{side}"), forward));
