@@ -211,7 +211,9 @@ fn a_body_that_cannot_stand_says_by_how_much() {
     let out = folder.path().join("out");
     let run = relax(&scenario, &["--out", out.to_str().unwrap()]);
     assert_eq!(run.code, 1, "{}", run.stderr);
-    assert!(run.stdout.starts_with("Cannot stand: the supports do not hold the body") && run.stdout.contains(" N and "));
+    assert!(
+        run.stdout.starts_with("Cannot stand: the supports do not hold the body") && run.stdout.contains(" N and ")
+    );
     assert!(run.stdout.contains("with more friction they would hold it"), "{}", run.stdout);
     let names: Vec<_> = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(names, ["relax.json"]);
