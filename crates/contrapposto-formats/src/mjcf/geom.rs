@@ -88,21 +88,24 @@ pub(super) fn solid(
     Ok(Some(Solid { mass, center: frame.translation.vector, inertia }))
 }
 
-/// The shape of a geom of segment number `segment` for contact, in the segment's frame; `None` of a mesh, a plane, or a geom that
-/// touches nothing. A size that is none leaves it out: geoms without mass are not checked.
+/// The shape of a geom of segment number `segment` for contact, in the segment's frame; `None` of a mesh, a plane, a geom that touches
+/// nothing, or one without a size.
 pub(super) fn contact_shape(
     geom: &Attributes<'_, '_>,
     outer: &Isometry3<f64>,
     settings: &Settings,
     segment: usize,
-) -> Option<SolidIr> {
-    let shape = geom.get("type").map_or(Some("sphere"), |value| SHAPES.iter().copied().find(|s| *s == value.text))?;
-    let touches = |name| geom.number(name).ok().flatten() != Some(0.0);
+) -> Result<Option<SolidIr>, MjcfError> {
+    let shape = geom.get("type").map_or(Ok(2), |v| v.keyword(SHAPES)).map(|i| SHAPES[i])?;
+    let touches = |name| Ok::<_, MjcfError>(geom.number(name)? != Some(0.0));
     let solid = !matches!(shape, "plane" | "hfield" | "mesh" | "sdf") && geom.get("mesh").is_none();
-    if !solid || !(touches("contype") || touches("conaffinity")) {
-        return None;
+    if !(touches("contype")? | touches("conaffinity")?) || !solid {
+        return Ok(None);
     }
-    let (placed, [a, b, c]) = frame_and_size(geom, shape, settings).ok()?;
+    let (placed, [a, b, c]) = match frame_and_size(geom, shape, settings) {
+        Err(MjcfError::Invalid { needs: MjcfRule::Size, .. }) => return Ok(None),
+        found => found?,
+    };
     let shape = match shape {
         "sphere" => SolidShape::Ellipsoid([a; 3]),
         "capsule" => SolidShape::Capsule { radius: a, half: b },
@@ -110,7 +113,7 @@ pub(super) fn contact_shape(
         "ellipsoid" => SolidShape::Ellipsoid([a, b, c]),
         _ => SolidShape::Box([a, b, c]),
     };
-    Some(SolidIr { segment, pose: outer * placed, shape })
+    Ok(Some(SolidIr { segment, pose: outer * placed, shape }))
 }
 
 /// Frame of a geom, and the sizes that its shape needs.

@@ -185,9 +185,10 @@ impl<'a, 'w> Walk<'a, 'w> {
         let moves = !joints.is_empty() || freed;
         let carried = context.parent.is_some_and(|p| self.built.moves[p]);
         let solid = inertial::mass(item, contents.inertial, &contents.geoms, settings, moves || carried)?;
-        let solids = contents.geoms.iter().filter_map(|(geom, frame)| contact_shape(geom, frame, settings, index));
         let known = self.body.solids.len();
-        self.body.solids.extend(solids);
+        for (geom, frame) in &contents.geoms {
+            self.body.solids.extend(contact_shape(geom, frame, settings, index)?);
+        }
         if contents.inertial.is_some() && settings.mass_from != MassFrom::Geoms {
             self.ignored.add("geom", contents.geoms.len() - (self.body.solids.len() - known));
         }

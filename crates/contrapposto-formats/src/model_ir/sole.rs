@@ -67,7 +67,7 @@ fn lowest(solid: &SolidIr, down: &Unit<Vector3<f64>>) -> Vec<Vector3<f64>> {
 /// The lowest corners along `down`, at most [`SOLE_CORNERS`].
 fn sole(mut corners: Vec<Vector3<f64>>, down: &Unit<Vector3<f64>>) -> Vec<Vector3<f64>> {
     let depth = |corner: &Vector3<f64>| corner.dot(down);
-    corners.retain(|corner| corner.amax() <= LARGEST);
+    corners.retain(|corner| corner.iter().all(|x| x.abs() <= LARGEST));
     let deepest = corners.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
     corners.retain(|corner| depth(corner) >= deepest - SOLE_DEPTH);
     let mut kept: Vec<Vector3<f64>> = vec![];

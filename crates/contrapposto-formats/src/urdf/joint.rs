@@ -93,7 +93,7 @@ impl<'a> Joint<'a> {
                 return Err(UrdfError::Invalid { place: part.place(), value, needs: UrdfRule::MimicKind });
             }
         };
-        let effort = effort(node, kind, ignored);
+        let effort = effort(node, kind, ignored)?;
         Ok(Self { node, name, parent, child, origin: origin(node)?, mimic, kind, axis, range, effort })
     }
 
@@ -154,19 +154,20 @@ fn limits(limit: Node<'_>) -> Result<(f64, f64), UrdfError> {
     Ok((lower, upper))
 }
 
-/// The greatest torque of a hinge. Files that know none write 0 there, or a number without a meaning: these are counted.
-fn effort(joint: Node<'_>, kind: Kind, ignored: &mut Ignored) -> Option<f64> {
-    let limit = joint.child("limit").filter(|limit| limit.attribute("effort").is_some())?;
-    match (kind, number(limit, "effort").ok().flatten()) {
-        (Kind::Hinge, Some(effort)) if effort > 0.0 && effort <= MOST_STRENGTH => Some(effort),
-        (Kind::Hinge, _) => {
-            ignored.add("effort that is no torque above 0 and at most 1e6 N m", 1);
-            None
+/// The greatest torque of a hinge. Files that know none write 0 there: these are counted.
+fn effort(joint: Node<'_>, kind: Kind, ignored: &mut Ignored) -> Result<Option<f64>, UrdfError> {
+    let effort = joint.child("limit").map_or(Ok(None), |limit| number(limit, "effort"))?;
+    let limited = effort.filter(|effort| *effort > 0.0 && *effort <= MOST_STRENGTH);
+    match kind {
+        Kind::Hinge => {
+            let unknown = effort.is_some() && limited.is_none();
+            ignored.add("effort that is no torque above 0 and at most 1e6 N m", usize::from(unknown));
+            Ok(limited)
         }
-        (Kind::Slide, Some(effort)) if effort > 0.0 => {
-            ignored.add("effort of a slide", 1);
-            None
+        Kind::Slide => {
+            ignored.add("effort of a slide", usize::from(limited.is_some()));
+            Ok(None)
         }
-        _ => None,
+        _ => Ok(None),
     }
 }

@@ -63,28 +63,31 @@ pub(super) fn segment(link: Node<'_>, name: &str, ignored: &mut Ignored) -> Resu
 }
 
 /// The shapes for contact of a link, the segment number `segment`. Meshes, and shapes without a size above 0, are counted.
-pub(super) fn solids(link: Node<'_>, segment: usize, ignored: &mut Ignored) -> Vec<SolidIr> {
+pub(super) fn solids(link: Node<'_>, segment: usize, ignored: &mut Ignored) -> Result<Vec<SolidIr>, UrdfError> {
     let mut solids = vec![];
     for collision in link.children_named("collision") {
-        let shape = collision.child("geometry").and_then(|geometry| geometry.children().next());
-        match shape.and_then(shape_of).zip(origin(collision).ok()) {
-            Some((shape, pose)) => solids.push(SolidIr { segment, pose, shape }),
+        let node = collision.child("geometry").and_then(|geometry| geometry.children().next());
+        match node.map_or(Ok(None), shape_of)? {
+            Some(shape) => solids.push(SolidIr { segment, pose: origin(collision)?, shape }),
             None => ignored.add("collision that is no box, cylinder, capsule or sphere", 1),
         }
     }
-    solids
+    Ok(solids)
 }
 
-fn shape_of(node: Node<'_>) -> Option<SolidShape> {
-    let size = |name| number(node, name).ok().flatten().filter(|size| *size > 0.0);
-    match node.name() {
+fn shape_of(node: Node<'_>) -> Result<Option<SolidShape>, UrdfError> {
+    let size = |name| Ok::<_, UrdfError>(number(node, name)?.filter(|size| *size > 0.0));
+    let round = |radius: Option<f64>, length: Option<f64>| radius.zip(length.map(|length| length / 2.0));
+    Ok(match node.name() {
         "box" => {
-            let half = vector(node, "size").ok().flatten()? / 2.0;
-            (half.min() > 0.0).then(|| SolidShape::Box(half.into()))
+            let half = vector(node, "size")?.map(|size| size / 2.0).filter(|half| half.min() > 0.0);
+            half.map(|half| SolidShape::Box(half.into()))
         }
-        "sphere" => Some(SolidShape::Ellipsoid([size("radius")?; 3])),
-        "cylinder" => Some(SolidShape::Cylinder { radius: size("radius")?, half: size("length")? / 2.0 }),
-        "capsule" => Some(SolidShape::Capsule { radius: size("radius")?, half: size("length")? / 2.0 }),
+        "sphere" => size("radius")?.map(|radius| SolidShape::Ellipsoid([radius; 3])),
+        "cylinder" => {
+            round(size("radius")?, size("length")?).map(|(radius, half)| SolidShape::Cylinder { radius, half })
+        }
+        "capsule" => round(size("radius")?, size("length")?).map(|(radius, half)| SolidShape::Capsule { radius, half }),
         _ => None,
-    }
+    })
 }

@@ -48,7 +48,7 @@ pub(super) fn build(
         seen[link] = true;
         let mut segment = segment(links[link], links[link].attribute("name").unwrap_or_default(), ignored)?;
         let index = body.segments.len();
-        body.solids.extend(solids(links[link], index, ignored));
+        body.solids.extend(solids(links[link], index, ignored)?);
         if let Some((joint, parent)) = by {
             let first = body.coordinates.len();
             segment.parent = Some(parent);
