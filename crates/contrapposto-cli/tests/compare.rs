@@ -264,26 +264,19 @@ fn a_motion_that_is_assessed_has_figures_too() {
 fn page_and_figures_have_the_same_colours() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../contrapposto-report/page/data.js");
     let page = std::fs::read_to_string(page).unwrap();
-    let stops = page.split("colors: ").nth(1).unwrap().lines().next().unwrap();
-    let stops: Vec<[f64; 3]> = serde_json::from_str(stops.trim_end_matches(',')).unwrap();
-    let ends = page.split("largest = [").nth(1).unwrap().split(']').next().unwrap();
-    let ends: Vec<f64> = serde_json::from_str(&format!("[{ends}]")).unwrap();
+    let bands = page.split("LOAD_BANDS = ").nth(1).unwrap().split(';').next().unwrap();
+    let bands: Vec<(f64, String, String)> = serde_json::from_str(bands).unwrap();
+    assert_eq!(bands.len(), 5);
     let drawn = |load: f64| {
         let part = contrapposto_plot::BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load: Some(load) };
-        let end = contrapposto_plot::BodyPart { load: Some(0.3), ..part.clone() };
-        let posture = contrapposto_plot::BodyPosture { parts: vec![part, end], ..Default::default() };
+        let posture = contrapposto_plot::BodyPosture { parts: vec![part], ..Default::default() };
         let picture = contrapposto_plot::BodyFigure { postures: vec![posture], ..Default::default() };
         contrapposto_plot::body_figure(&picture).svg()
     };
-    for (i, stop) in stops.iter().enumerate() {
-        let colour = stop.map(|v| format!("{:02x}", (255.0 * v).round() as u8)).concat();
-        let svg = drawn(0.3 * i as f64 / (stops.len() - 1) as f64);
-        assert!(svg.contains(&format!("fill=\"#{colour}\"/>")), "{colour}");
-    }
-    for pair in ends.windows(2) {
-        let load = 0.5 * (pair[0] + pair[1]);
-        if load > 0.3 {
-            assert!(drawn(load).contains(&format!(">{:.0} % of strength<", 100.0 * pair[1])), "{load}");
+    for (k, (from, low, high)) in bands.iter().enumerate() {
+        let to = bands.get(k + 1).map_or(2.0, |(to, ..)| *to);
+        for (load, colour) in [(*from, low), (to - 1e-7, high)] {
+            assert!(drawn(load).lines().any(|l| l.contains('C') && l.contains(colour.as_str())), "{load} {colour}");
         }
     }
 }

@@ -40,7 +40,7 @@ pub fn body_figure(picture: &BodyFigure) -> Figure {
         canvas.text((0.5 * WIDTH, bottom + TEXT_LINE), "nothing to draw", LABEL_SIZE, Align::Middle, QUIET_TEXT);
         return canvas.finish(bottom + 2.0 * TEXT_LINE + MARGIN);
     }
-    let scales = [layout.scale, layout.length_per_newton * layout.scale, layout.scale_end];
+    let scales = [layout.scale, layout.length_per_newton * layout.scale];
     let bottom = legend(&mut canvas, bottom + 2.0 * COLUMN_GAP, picture, postures, scales, outside);
     canvas.finish(bottom + MARGIN)
 }
@@ -59,8 +59,6 @@ struct Layout {
     scale: f64,
     /// Length of the arrow of a force, m/N.
     length_per_newton: f64,
-    /// Load of the darkest colour.
-    scale_end: f64,
 }
 
 impl Layout {
@@ -82,8 +80,7 @@ impl Layout {
         let widest = cells.iter().flatten().map(|b| b.size()[0]).fold(1e-6, f64::max);
         let tallest = rows.iter().map(|b| b.size()[1]).fold(1e-6, f64::max);
         let scale = (width / widest).min(BODY_HEIGHT[usize::from(!single)] / tallest);
-        let largest = postures.iter().flat_map(|p| &p.parts).filter_map(|part| part.load).fold(0.0, f64::max);
-        Self { single, width, cells, rows, scale, length_per_newton, scale_end: scale_end(largest) }
+        Self { single, width, cells, rows, scale, length_per_newton }
     }
 
     /// Left end of a column, px.
@@ -120,7 +117,6 @@ impl Layout {
                     middle: [self.cells[k][i].middle()[0], row.middle()[1]],
                     scale: self.scale,
                     length_per_newton: self.length_per_newton,
-                    scale_end: self.scale_end,
                 };
                 outside = outside.max(paper.draw(canvas, posture, &self.cells[k][i]));
             }
@@ -151,10 +147,4 @@ fn posture_text(canvas: &mut Canvas, posture: &BodyPosture, (x, top): (f64, f64)
         canvas.text((x, y), &line, SMALL_SIZE, align, TEXT);
     }
     y
-}
-
-/// The scale of loads ends at the next round number above the largest, as on the report's page.
-fn scale_end(largest: f64) -> f64 {
-    const ROUND: [f64; 10] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0];
-    ROUND.into_iter().find(|end| largest <= *end).unwrap_or(1.0)
 }

@@ -7,18 +7,20 @@ use crate::canvas::Canvas;
 use crate::geometry::Point;
 use crate::shape::Align;
 use crate::style::{
-    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, HELD, Ink, MARGIN, OUTLINE_PEN, PAPER, Pen, SMALL_SIZE, SURFACE_PEN,
-    TEXT, THING_PEN, UNKNOWN, WIDTH, load_ink,
+    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, HELD, Ink, LOAD_BANDS, MARGIN, OUTLINE_PEN, PAPER, Pen, SMALL_SIZE,
+    SURFACE_PEN, TEXT, THING_PEN, UNKNOWN, WIDTH, load_ink,
 };
 use crate::text::{fit, text_width};
 
-/// Length of the sample of a line of sight, and of the scale of colours, px.
+/// Length of the sample of a line of sight, px.
 const GAZE_SAMPLE: f64 = 20.0;
-const COLOUR_SCALE: f64 = 120.0;
+/// Width of a band of load, and space beside the bound between two bands, px.
+const BAND: f64 = 24.0;
+const BOUND_GAP: f64 = 4.0;
 /// Height of a sample, and width of a square one, px.
 const SAMPLE_HEIGHT: f64 = 11.0;
-/// Pieces of the scale of colours.
-const SHADES: u32 = 60;
+/// Pieces of a band.
+const SHADES: u32 = 12;
 /// Space between two entries, px.
 const ENTRY_GAP: f64 = 20.0;
 /// Distance of two rows, px.
@@ -46,18 +48,18 @@ impl Row<'_> {
     }
 }
 
-/// Draws the legend below `top`; returns where it ends. The scales: px per metre, px per newton, load of the darkest colour.
+/// Draws the legend below `top`; returns where it ends. The scales: px per metre, px per newton.
 pub(crate) fn legend(
     canvas: &mut Canvas,
     top: f64,
     picture: &BodyFigure,
     postures: &[BodyPosture],
-    [metre, newton, scale_end]: [f64; 3],
+    [metre, newton]: [f64; 2],
     outside: usize,
 ) -> f64 {
     let any = |test: &dyn Fn(&BodyPosture) -> bool| postures.iter().any(test);
     let mut row = Row { canvas, at: (MARGIN, top) };
-    load_entries(&mut row, postures, scale_end);
+    load_entries(&mut row, postures);
     if any(&|posture| !posture.start.is_empty()) {
         row.entry("", SAMPLE_HEIGHT, "start", |canvas, (x, y)| {
             swatch(canvas, x, y, GHOST, Pen::solid(GHOST_EDGE, 1.0))
@@ -120,25 +122,39 @@ fn box_entries(row: &mut Row<'_>, postures: &[BodyPosture]) {
     }
 }
 
-/// Draws the colour scale of muscle load, and the colour of parts whose load is not known.
-fn load_entries(row: &mut Row<'_>, postures: &[BodyPosture], scale_end: f64) {
+/// Draws the bands of muscle load with their bounds, the same in every figure, and the colour of parts whose load is not known.
+fn load_entries(row: &mut Row<'_>, postures: &[BodyPosture]) {
     let any = |test: &dyn Fn(&BodyPosture) -> bool| postures.iter().any(test);
     if !any(&|posture| posture.parts.iter().any(|part| part.load.is_some())) {
         return;
     }
-    let over = any(&|posture| posture.parts.iter().any(|part| part.load.is_some_and(|load| load > scale_end)));
-    let end = format!("{:.0} % of strength{}", 100.0 * scale_end, if over { " or more" } else { "" });
-    row.entry("muscle load: 0 %", COLOUR_SCALE, &end, |canvas, (x, y)| {
-        let step = COLOUR_SCALE / f64::from(SHADES);
-        for shade in 0..SHADES {
-            let ink = load_ink((f64::from(shade) + 0.5) / f64::from(SHADES));
-            // Pieces overlap, so that no seam shows; the last one does not stand out.
-            let wide = if shade + 1 < SHADES { 1.5 * step } else { step };
-            canvas.block((x + f64::from(shade) * step, y - 0.5 * SAMPLE_HEIGHT), wide, SAMPLE_HEIGHT, ink);
+    let bounds: Vec<String> = LOAD_BANDS[1..].iter().map(|(from, ..)| format!("{:.0}", 100.0 * from)).collect();
+    let widths: Vec<f64> = bounds.iter().map(|bound| text_width(bound, SMALL_SIZE) + 2.0 * BOUND_GAP).collect();
+    let width = BAND * LOAD_BANDS.len() as f64 + widths.iter().sum::<f64>();
+    row.entry("muscle load:", width, "% of strength", |canvas, (mut x, y)| {
+        for (k, (from, ..)) in LOAD_BANDS.iter().enumerate() {
+            let to = LOAD_BANDS.get(k + 1).map_or(from + 1.0, |(to, ..)| *to);
+            shades(canvas, (x, y), [*from, to]);
+            x += BAND;
+            if let (Some(bound), Some(width)) = (bounds.get(k), widths.get(k)) {
+                canvas.text((x + 0.5 * width, y + 4.0), bound, SMALL_SIZE, Align::Middle, TEXT);
+                x += width;
+            }
         }
     });
     if any(&|posture| posture.parts.iter().any(|part| part.load.is_none())) {
         row.entry("", SAMPLE_HEIGHT, "load not known", |canvas, (x, y)| swatch(canvas, x, y, UNKNOWN, OUTLINE_PEN));
+    }
+}
+
+/// The colours of a band of loads.
+fn shades(canvas: &mut Canvas, (x, y): Point, [from, to]: [f64; 2]) {
+    let step = BAND / f64::from(SHADES);
+    for shade in 0..SHADES {
+        let ink = load_ink(from + (to - from) * (f64::from(shade) + 0.5) / f64::from(SHADES));
+        // Pieces overlap, so that no seam shows; the last one does not stand out.
+        let wide = if shade + 1 < SHADES { 1.5 * step } else { step };
+        canvas.block((x + f64::from(shade) * step, y - 0.5 * SAMPLE_HEIGHT), wide, SAMPLE_HEIGHT, ink);
     }
 }
 

@@ -33,8 +33,6 @@ pub(crate) struct Paper<'a> {
     pub(crate) scale: f64,
     /// Length of the arrow of a force, m/N.
     pub(crate) length_per_newton: f64,
-    /// Load of the darkest colour.
-    pub(crate) scale_end: f64,
 }
 
 impl Paper<'_> {
@@ -115,7 +113,7 @@ impl Paper<'_> {
             match loads.get(i) {
                 Some(load) => {
                     let known = load.filter(|load| !load.is_nan());
-                    let fill = known.map_or(UNKNOWN, |load| load_ink(load / self.scale_end));
+                    let fill = known.map_or(UNKNOWN, load_ink);
                     canvas.shape(solids[i].outline.path(), fill, OUTLINE_PEN);
                 }
                 None => {

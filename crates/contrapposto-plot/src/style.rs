@@ -27,8 +27,19 @@ pub(crate) const TRUNK: Ink = Ink(0xb0, 0xb0, 0xb0);
 pub(crate) const FLAT_ZONE: Ink = Ink(0xe6, 0xee, 0xf9);
 pub(crate) const PAPER: Ink = Ink(0xff, 0xff, 0xff);
 
-/// Bodies: colours of the report's page.
-const LOAD: [[f64; 3]; 4] = [[0.98, 0.93, 0.76], [0.98, 0.72, 0.34], [0.86, 0.36, 0.13], [0.52, 0.08, 0.12]];
+/// Bodies: bands of load, each with the share of strength from which on it is in force, and its colours at that share and at the
+/// end of the band; as on the report's page. Every colour is darker than those before it, so that the order is seen without colours.
+///
+/// Bounds: 8 and 14 % are the endurance limits of an hour of sustained (7.9 %) and of intermittent (14.0 %) holding (Björkstén &
+/// Jonsson 1977, Scand. J. Work Environ. Health 3:23-27, abstract: measured); 50 % is Jonsson's limit of peak loads (1978, J. Hum.
+/// Ergol. 7: recalled); 100 % is the strength itself (derived).
+pub(crate) const LOAD_BANDS: [(f64, Ink, Ink); 5] = [
+    (0.0, Ink(0xe9, 0xf4, 0xe1), Ink(0xc5, 0xe3, 0xb0)),
+    (0.08, Ink(0xf3, 0xd9, 0x4a), Ink(0xec, 0xc1, 0x1e)),
+    (0.14, Ink(0xe8, 0x94, 0x2a), Ink(0xcf, 0x6a, 0x12)),
+    (0.5, Ink(0xb5, 0x30, 0x1f), Ink(0x8c, 0x14, 0x18)),
+    (1.0, Ink(0x3d, 0x0a, 0x1e), Ink(0x3d, 0x0a, 0x1e)),
+];
 pub(crate) const UNKNOWN: Ink = Ink(0xb9, 0xbf, 0xc9);
 pub(crate) const FORCE: Ink = Ink(0x00, 0x9e, 0x73);
 pub(crate) const HELD: Ink = Ink(0x6a, 0x2c, 0x91);
@@ -39,15 +50,14 @@ pub(crate) const GHOST: Ink = Ink(0xec, 0xee, 0xf1);
 pub(crate) const GHOST_EDGE: Ink = Ink(0xb4, 0xbb, 0xc6);
 pub(crate) const GROUND: Ink = Ink(0xf5, 0xf6, 0xf8);
 
-/// The colour of a load, as a share of the end of the scale; shares below 0 count as 0, above 1 as 1.
-pub(crate) fn load_ink(share: f64) -> Ink {
-    let place = share.clamp(0.0, 1.0) * (LOAD.len() - 1) as f64;
-    let below = (place.floor() as usize).min(LOAD.len() - 2);
-    let [red, green, blue] = [0, 1, 2].map(|k| {
-        let (a, b) = (LOAD[below][k], LOAD[below + 1][k]);
-        (255.0 * (a + (b - a) * (place - below as f64))).round() as u8
-    });
-    Ink(red, green, blue)
+/// The colour of a load, a share of strength; below 0 it counts as 0.
+pub(crate) fn load_ink(load: f64) -> Ink {
+    let band = LOAD_BANDS.iter().rposition(|(from, ..)| *from <= load + SHARE_TOLERANCE).unwrap_or(0);
+    let (from, low, high) = LOAD_BANDS[band];
+    let to = LOAD_BANDS.get(band + 1).map_or(from + 1.0, |(to, ..)| *to);
+    let place = ((load - from) / (to - from)).clamp(0.0, 1.0);
+    let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * place).round() as u8;
+    Ink(mix(low.0, high.0), mix(low.1, high.1), mix(low.2, high.2))
 }
 
 /// Sizes of text, px.
@@ -69,6 +79,9 @@ pub(crate) const FRAME_GAP: f64 = 18.0;
 pub(crate) const BELOW_FRAME: f64 = 44.0;
 /// Free space around the whole figure.
 pub(crate) const MARGIN: f64 = 16.0;
+
+/// A load so little below a bound, as a share of strength, is in the band above it.
+const SHARE_TOLERANCE: f64 = 1e-9;
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -112,3 +125,36 @@ pub(crate) const GROUND_PEN: Pen = Pen::solid(LEADER, 1.0);
 pub(crate) const PLUMB_PEN: Pen = Pen::dashed(CENTER, 1.2, 4.0, 3.0);
 pub(crate) const TARGET_PEN: Pen = Pen::solid(EXTERNAL, 2.4);
 pub(crate) const GAZE_PEN: Pen = Pen::dashed(PASSIVE, 1.2, 5.0, 4.0);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance of a colour (IEC 61966-2-1).
+    fn luminance(Ink(red, green, blue): Ink) -> f64 {
+        let linear = |v: u8| {
+            let v = f64::from(v) / 255.0;
+            if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue)
+    }
+
+    #[test]
+    fn a_greater_load_has_a_darker_colour_and_each_band_its_own() {
+        let loads: Vec<f64> = (0..=120).map(|percent| f64::from(percent) / 100.0).collect();
+        for pair in loads.windows(2) {
+            let [before, after] = [pair[0], pair[1]].map(|load| luminance(load_ink(load)));
+            assert!(after <= before, "{pair:?}: {before} {after}");
+        }
+        for (k, (from, low, high)) in LOAD_BANDS.iter().enumerate() {
+            assert_eq!(load_ink(*from), *low);
+            if let Some((to, next, _)) = LOAD_BANDS.get(k + 1) {
+                assert_eq!(load_ink(to - 1e-6), *high);
+                let contrast = (luminance(*high) + 0.05) / (luminance(*next) + 0.05);
+                assert!(contrast > 1.1 || k == 0, "{to}: {contrast}");
+            }
+        }
+        assert_eq!(load_ink(-1.0), load_ink(0.0));
+        assert_eq!(load_ink(7.0), load_ink(1.0));
+    }
+}

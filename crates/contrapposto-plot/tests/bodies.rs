@@ -151,23 +151,25 @@ fn a_posture_of_half_the_size_is_drawn_half_as_tall_on_the_same_ground() {
 }
 
 #[test]
-fn parts_have_the_colours_of_their_loads_and_the_scale_ends_at_a_round_number() {
+fn a_load_has_the_same_colour_whatever_the_others_are_and_the_legend_names_all_bounds() {
     let with_loads = |loads: [Option<f64>; 3]| {
         let parts = loads.map(|load| BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load });
         body_figure(&figure(vec![BodyPosture { parts: parts.to_vec(), ..BodyPosture::default() }], "")).svg()
     };
-    // Ends and the second stop of the page's scale.
-    let svg = with_loads([Some(0.0), Some(0.1), Some(0.3)]);
-    for colour in ["#faedc2", "#fab857", "#85141f"] {
-        assert_eq!(
-            svg.lines().filter(|l| l.contains('C') && l.contains(&format!("fill=\"{colour}\""))).count(),
-            3,
-            "{colour}"
-        );
+    let drawn = |svg: &str, colour: &str| {
+        svg.lines().filter(|l| l.contains('C') && l.contains(&format!("fill=\"{colour}\""))).count()
+    };
+    for others in [0.02, 0.3, 4.0] {
+        let svg = with_loads([Some(0.14), Some(others), Some(1.2)]);
+        assert!(drawn(&svg, "#e8942a") == 3 && drawn(&svg, "#3d0a1e") >= 3, "{others}");
+        let words: Vec<String> = texts(&svg).into_iter().map(|(_, said)| said).collect();
+        for bound in ["8", "14", "50", "100", "% of strength"] {
+            assert!(words.iter().any(|word| word == bound), "{bound}: {words:?}");
+        }
+        assert!(!svg.contains("not known"));
     }
-    assert!(svg.contains("30 % of strength") && !svg.contains("or more") && !svg.contains("not known"));
     let svg = with_loads([Some(0.31), Some(3.0), None]);
-    assert!(svg.contains("100 % of strength or more") && svg.contains("load not known"));
+    assert!(svg.contains("load not known"));
     assert_eq!(svg.matches("fill=\"#b9bfc9\"").count(), 3 + 1, "three views and the legend");
     assert!(!with_loads([None, None, None]).contains("of strength"));
 }

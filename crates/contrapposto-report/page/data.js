@@ -38,17 +38,23 @@ const report = (() => {
   return read;
 })();
 
-// Measures that colours show: a share, 0 to 1, for a segment in a frame, or null where it is not known.
+// Bands of load, the same in every report: the share of strength from which on each is in force, and its colours at that share and
+// at its end. Bounds: 8 and 14 % limit an hour of sustained and of intermittent holding (Björkstén & Jonsson 1977: 7.9 and 14.0 %),
+// 50 % the peaks of a load (Jonsson 1978, recalled), 100 % is the strength. Every colour is darker than those before it.
+const LOAD_BANDS = [[0, "#e9f4e1", "#c5e3b0"], [0.08, "#f3d94a", "#ecc11e"], [0.14, "#e8942a", "#cf6a12"],
+  [0.5, "#b5301f", "#8c1418"], [1, "#3d0a1e", "#3d0a1e"]];
+
+// Measures that colours show: a share for a segment in a frame, or null where it is not known.
 const measures = {
   load: {
-    colors: [[0.98, 0.93, 0.76], [0.98, 0.72, 0.34], [0.86, 0.36, 0.13], [0.52, 0.08, 0.12]],
+    bands: LOAD_BANDS,
     of(segment, frame) {
       const joints = segment.joints.map((j) => report.joints[j]).filter((joint) => joint.groups);
       return joints.length ? Math.max(...joints.map((joint) => joint.load[frame])) : null;
     },
   },
   passive: {
-    colors: [[0.95, 0.94, 0.88], [0.62, 0.80, 0.88], [0.18, 0.52, 0.76], [0.03, 0.19, 0.42]],
+    bands: [[0, "#f2f0e0", "#9ecce0"], [1 / 3, "#9ecce0", "#2e85c2"], [2 / 3, "#2e85c2", "#08306b"]],
     // The part of external torque that passive torque carries; external torques below 0.5 N m count as none.
     of(segment, frame) {
       let pulled = 0, carried = 0;
@@ -61,17 +67,16 @@ const measures = {
     },
   },
 };
-{
-  // The scale of loads ends at the next round number above the largest.
-  let largest = 0;
-  for (const joint of report.joints) if (joint.groups) for (const load of joint.load) largest = Math.max(largest, load);
-  measures.load.largest = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1].find((top) => largest <= top) || 1;
-  measures.passive.largest = 1;
+
+// Red, green and blue of a colour like `#rrggbb`, each 0 to 1.
+function channels(color) {
+  return [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16) / 255);
 }
 
 // Colour of a share, red, green and blue, each 0 to 1.
-function colorOf(measure, share) {
-  const place = Math.min(1, Math.max(0, share / measure.largest)) * (measure.colors.length - 1);
-  const below = Math.min(Math.floor(place), measure.colors.length - 2);
-  return measure.colors[below].map((c, k) => c + (measure.colors[below + 1][k] - c) * (place - below));
+function colorOf({ bands }, share) {
+  const k = Math.max(0, bands.findLastIndex(([from]) => from <= share + 1e-9));
+  const [from, low, high] = bands[k], to = k + 1 < bands.length ? bands[k + 1][0] : 1;
+  const place = to > from ? Math.min(1, Math.max(0, (share - from) / (to - from))) : 0;
+  return channels(low).map((c, i) => c + (channels(high)[i] - c) * place);
 }

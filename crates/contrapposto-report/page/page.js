@@ -112,6 +112,18 @@ function fillTable() {
   for (const cells of report.table.rows) addRow(find("table").tBodies[0], "td", cells);
 }
 
+// The bands of a measure side by side, with the bounds between them.
+function fillScale({ bands }, unit) {
+  const parts = [];
+  for (const [from, low, high] of bands) {
+    const band = make("i");
+    band.style.background = `linear-gradient(to right, ${low}, ${high})`;
+    parts.push(make("span", (100 * from).toFixed(0)), band);
+  }
+  if (bands.at(-1)[0] < 1) parts.push(make("span", "100"));
+  find("scale").replaceChildren(...parts, make("span", unit));
+}
+
 // The text below the heading of the torque balance.
 function balanceHint(joint) {
   const about = " Angle and torques are those about the axis of the joint that stands for this coordinate.";
@@ -247,10 +259,8 @@ class Page {
   chooseMeasure(name) {
     this.measure = measures[name];
     for (const key of ["load", "passive"]) find(`by-${key}`).setAttribute("aria-pressed", String(key === name));
-    find("scale-low").textContent = "0 %";
-    find("scale-high").textContent = name === "load" ? `${percent(this.measure.largest)} of strength` : "100 % of the torque";
-    const stops = this.measure.colors.map((color) => `rgb(${color.map((v) => Math.round(255 * v)).join(",")})`);
-    find("scale").style.background = `linear-gradient(to right, ${stops.join(",")})`;
+    fillScale(this.measure, name === "load" ? "% of strength" : "% of the torque");
+    find("bounds").hidden = name !== "load";
     this.paintBody();
   }
 
