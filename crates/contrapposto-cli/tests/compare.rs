@@ -268,7 +268,7 @@ fn page_and_figures_have_the_same_colours() {
     let bands: Vec<(f64, String, String)> = serde_json::from_str(bands).unwrap();
     assert_eq!(bands.len(), 5);
     let drawn = |load: f64| {
-        let part = contrapposto_plot::BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load: Some(load) };
+        let part = contrapposto_plot::BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load: Some(load), hazard: false };
         let posture = contrapposto_plot::BodyPosture { parts: vec![part], ..Default::default() };
         let picture = contrapposto_plot::BodyFigure { postures: vec![posture], ..Default::default() };
         contrapposto_plot::body_figure(&picture).svg()

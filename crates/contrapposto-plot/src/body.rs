@@ -56,6 +56,8 @@ pub struct BodyPart {
     pub balls: Vec<[f64; 4]>,
     /// Load of the muscles that move the part, as a share of their strength, not negative; `None` where it is not known.
     pub load: Option<f64>,
+    /// Whether ligaments carry it where that is a hazard: it then has a colour of its own.
+    pub hazard: bool,
 }
 
 /// A thing, drawn as a box.

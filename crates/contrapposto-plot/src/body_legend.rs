@@ -7,8 +7,8 @@ use crate::canvas::Canvas;
 use crate::geometry::Point;
 use crate::shape::Align;
 use crate::style::{
-    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, HELD, Ink, LOAD_BANDS, MARGIN, OUTLINE_PEN, PAPER, Pen, SMALL_SIZE,
-    SURFACE_PEN, TEXT, THING_PEN, UNKNOWN, WIDTH, load_ink,
+    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, HAZARD, HELD, Ink, LOAD_BANDS, MARGIN, OUTLINE_PEN, PAPER, Pen,
+    SMALL_SIZE, SURFACE_PEN, TEXT, THING_PEN, UNKNOWN, WIDTH, load_ink,
 };
 use crate::text::{fit, text_width};
 
@@ -144,6 +144,11 @@ fn load_entries(row: &mut Row<'_>, postures: &[BodyPosture]) {
     });
     if any(&|posture| posture.parts.iter().any(|part| part.load.is_none())) {
         row.entry("", SAMPLE_HEIGHT, "load not known", |canvas, (x, y)| swatch(canvas, x, y, UNKNOWN, OUTLINE_PEN));
+    }
+    if any(&|posture| posture.parts.iter().any(|part| part.hazard)) {
+        row.entry("", SAMPLE_HEIGHT, "held by ligaments: hazard", |canvas, (x, y)| {
+            swatch(canvas, x, y, HAZARD, OUTLINE_PEN)
+        });
     }
 }
 

@@ -8,8 +8,8 @@ use crate::depth::{Solid, order};
 use crate::geometry::{Point, Rect, clip, clip_polygon};
 use crate::path::Path;
 use crate::style::{
-    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, GROUND, GROUND_PEN, HELD, Ink, OUTLINE_PEN, PAPER, PLUMB_PEN, Pen,
-    SURFACE_PEN, TARGET_PEN, THING_PEN, UNKNOWN, load_ink,
+    CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, GROUND, GROUND_PEN, HAZARD, HELD, Ink, OUTLINE_PEN, PAPER, PLUMB_PEN,
+    Pen, SURFACE_PEN, TARGET_PEN, THING_PEN, UNKNOWN, load_ink,
 };
 
 /// Half the width of a cross, px.
@@ -83,14 +83,15 @@ impl Paper<'_> {
         outside
     }
 
-    fn solids(&self, parts: &[BodyPart]) -> Vec<(Solid, Option<f64>)> {
+    /// Parts that are seen, each with its colour.
+    fn solids(&self, parts: &[BodyPart]) -> Vec<(Solid, Ink)> {
         let ball = |[x, y, z, r]: [f64; 4]| {
             let [x, y, z] = self.place([x, y, z]);
             [x, y, z, self.scale * r]
         };
         let parts = parts.iter().take(MOST_PARTS);
-        let seen = parts.map(|part| (balls(part).map(ball).collect::<Vec<_>>(), part.load));
-        seen.filter(|(balls, _)| !balls.is_empty()).map(|(balls, load)| (Solid::new(&balls), load)).collect()
+        let seen = parts.map(|part| (balls(part).map(ball).collect::<Vec<_>>(), ink(part)));
+        seen.filter(|(balls, _)| !balls.is_empty()).map(|(balls, ink)| (Solid::new(&balls), ink)).collect()
     }
 
     /// One outline about all parts together.
@@ -103,21 +104,17 @@ impl Paper<'_> {
 
     /// Parts of the body, which hide what is behind them, and surfaces and things, which do not.
     fn solids_in_order(&self, canvas: &mut Canvas, posture: &BodyPosture, bounds: &Bounds) {
-        let (mut solids, loads): (Vec<Solid>, Vec<Option<f64>>) = self.solids(&posture.parts).into_iter().unzip();
+        let (mut solids, inks): (Vec<Solid>, Vec<Ink>) = self.solids(&posture.parts).into_iter().unzip();
         let boxes: Vec<(Corners, bool)> = posture.boxes().collect();
         for (corners, _) in &boxes {
             let points = corners.map(|corner| self.place(corner)).map(|[x, y, z]| [x, y, z, 0.0]);
             solids.push(Solid::new(&points));
         }
         for i in order(&solids) {
-            match loads.get(i) {
-                Some(load) => {
-                    let known = load.filter(|load| !load.is_nan());
-                    let fill = known.map_or(UNKNOWN, load_ink);
-                    canvas.shape(solids[i].outline.path(), fill, OUTLINE_PEN);
-                }
+            match inks.get(i) {
+                Some(ink) => canvas.shape(solids[i].outline.path(), *ink, OUTLINE_PEN),
                 None => {
-                    let (corners, is_thing) = &boxes[i - loads.len()];
+                    let (corners, is_thing) = &boxes[i - inks.len()];
                     let pen = if *is_thing { THING_PEN } else { SURFACE_PEN };
                     self.glass_box(canvas, corners, &solids[i], pen, bounds);
                 }
@@ -149,6 +146,12 @@ impl Paper<'_> {
             arrow(canvas, foot, tip, ink);
         }
     }
+}
+
+/// The colour of a part.
+fn ink(part: &BodyPart) -> Ink {
+    let known = part.load.filter(|load| !load.is_nan());
+    if part.hazard { HAZARD } else { known.map_or(UNKNOWN, load_ink) }
 }
 
 fn within(bounds: &Bounds, view: &View, point: [f64; 3]) -> bool {

@@ -15,7 +15,7 @@ fn thing(label: &str, edge: f64) -> BodyThing {
 
 /// A standing body of a few parts: trunk, head, two arms, two legs.
 fn body(load: f64) -> BodyPosture {
-    let part = |balls: &[[f64; 4]], load: Option<f64>| BodyPart { balls: balls.to_vec(), load };
+    let part = |balls: &[[f64; 4]], load: Option<f64>| BodyPart { balls: balls.to_vec(), load, hazard: false };
     let limb = |z: f64, top: f64, bottom: f64| part(&[[0.0, top, z, 0.07], [0.05, bottom, z, 0.05]], Some(load));
     BodyPosture {
         title: "A: standing".to_owned(),
@@ -153,7 +153,7 @@ fn a_posture_of_half_the_size_is_drawn_half_as_tall_on_the_same_ground() {
 #[test]
 fn a_load_has_the_same_colour_whatever_the_others_are_and_the_legend_names_all_bounds() {
     let with_loads = |loads: [Option<f64>; 3]| {
-        let parts = loads.map(|load| BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load });
+        let parts = loads.map(|load| BodyPart { balls: vec![[0.0, 0.0, 0.0, 1.0]], load, hazard: false });
         body_figure(&figure(vec![BodyPosture { parts: parts.to_vec(), ..BodyPosture::default() }], "")).svg()
     };
     let drawn = |svg: &str, colour: &str| {
@@ -172,6 +172,16 @@ fn a_load_has_the_same_colour_whatever_the_others_are_and_the_legend_names_all_b
     assert!(svg.contains("load not known"));
     assert_eq!(svg.matches("fill=\"#b9bfc9\"").count(), 3 + 1, "three views and the legend");
     assert!(!with_loads([None, None, None]).contains("of strength"));
+}
+
+#[test]
+fn a_part_in_hazard_has_a_colour_of_its_own_and_a_key() {
+    let mut posture = body(0.02);
+    assert!(!body_figure(&figure(vec![posture.clone()], "")).svg().contains("#c2188f"));
+    posture.parts[1].hazard = true;
+    let svg = body_figure(&figure(vec![posture], "")).svg();
+    assert_eq!(svg.matches("fill=\"#c2188f\"").count(), 3 + 1, "three views and the legend");
+    assert!(svg.contains("held by ligaments: hazard"));
 }
 
 #[test]
@@ -230,8 +240,8 @@ fn extreme_numbers_and_texts_with_markup_give_well_formed_figures() {
     for &a in &odd {
         for &b in &odd {
             let parts = vec![
-                BodyPart { balls: vec![[a, b, a, b], [b, a, b, a], [0.0, 0.0, 0.0, 0.1]], load: Some(a) },
-                BodyPart { balls: vec![], load: Some(b) },
+                BodyPart { balls: vec![[a, b, a, b], [b, a, b, a], [0.0, 0.0, 0.0, 0.1]], load: Some(a), hazard: true },
+                BodyPart { balls: vec![], load: Some(b), hazard: false },
             ];
             postures.push(BodyPosture {
                 title: HOSTILE_TEXT.to_owned(),
@@ -263,7 +273,8 @@ fn extreme_numbers_and_texts_with_markup_give_well_formed_figures() {
 
 #[test]
 fn empty_figures_say_nothing_to_draw_and_equal_input_gives_equal_bytes() {
-    let part = BodyPart { balls: vec![[0.0, 0.0, 0.0, -0.1], [f64::NAN, 0.0, 0.0, 0.1]], load: Some(0.1) };
+    let part =
+        BodyPart { balls: vec![[0.0, 0.0, 0.0, -0.1], [f64::NAN, 0.0, 0.0, 0.1]], load: Some(0.1), hazard: false };
     let unreal = BodyPosture { parts: vec![part], ..BodyPosture::default() };
     for postures in [vec![], vec![BodyPosture::default()], vec![BodyPosture::default(); 3], vec![unreal]] {
         let drawn = body_figure(&figure(postures, ""));

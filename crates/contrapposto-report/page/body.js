@@ -1,6 +1,6 @@
 // The body in three dimensions: every segment is the hull of a few balls, coloured by a measure; with contact forces, loads, centre
 // of mass, targets, surfaces, things, and the start as a ghost.
-const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.16, ARROW_HEAD = 0.09; // m
+const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.16, ARROW_HEAD = 0.09, LEAST_DRAG = 4; // m; px
 
 // Largest sum of contact forces in any frame, N; of a body without supports, of loads.
 function largestWeight() {
@@ -14,9 +14,9 @@ function largestWeight() {
 }
 
 class Body {
-  // `onTurn` is called with the name of a view, or with null, when the camera has moved.
-  constructor(canvas, gl, onTurn) {
-    [this.canvas, this.gl, this.onTurn] = [canvas, gl, onTurn];
+  // `onTurn` is called with the name of a view, or with null, when the camera has moved; `onPick` with a segment that was clicked.
+  constructor(canvas, gl, onTurn, onPick) {
+    [this.canvas, this.gl, this.onTurn, this.onPick] = [canvas, gl, onTurn, onPick];
     this.painter = new Painter(gl);
     this.camera = new Camera(sceneBounds());
     this.weight = largestWeight() || 1;
@@ -26,9 +26,9 @@ class Body {
   }
 
   // A body on a canvas, or null where the browser has no WebGL.
-  static on(canvas, onTurn) {
+  static on(canvas, onTurn, onPick) {
     const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: true });
-    return gl && new Body(canvas, gl, onTurn);
+    return gl && new Body(canvas, gl, onTurn, onPick);
   }
 
   makeMeshes() {
@@ -50,6 +50,7 @@ class Body {
     const { canvas, gl, painter } = this;
     const scale = window.devicePixelRatio || 1;
     const [width, height] = [Math.round(canvas.clientWidth * scale), Math.round(canvas.clientHeight * scale)];
+    this.frame = frame;
     if (!width || !height) return;
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
     painter.clear(width, height, styleColor("--scene"), this.camera);
@@ -73,12 +74,27 @@ class Body {
     gl.enable(gl.DEPTH_TEST);
   }
 
+  // The segment at a place of the canvas, px, in the frame that was drawn last; undefined beside the body. It draws every segment in a
+  // colour of its own and reads one point back: afterwards the body must be drawn anew.
+  pick(x, y) {
+    const { canvas, gl, painter } = this, scale = canvas.width / canvas.clientWidth;
+    painter.clear(canvas.width, canvas.height, [0, 0, 0], this.camera);
+    painter.flatness(1);
+    report.segments.forEach((segment, i) => {
+      const color = [((i + 1) >> 8) / 255, ((i + 1) & 255) / 255, 1];
+      painter.hull(this.parts[i], placement(segment.places, this.frame), color);
+    });
+    const seen = new Uint8Array(4);
+    gl.readPixels(Math.round(x * scale), Math.round(canvas.height - y * scale), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, seen);
+    return seen[2] === 255 ? report.segments[256 * seen[0] + seen[1] - 1] : undefined;
+  }
+
   drawSegments(frame, measure) {
-    const unknown = styleColor("--none");
+    const unknown = styleColor("--none"), hazard = styleColor("--hazard");
     this.painter.flatness(0);
     report.segments.forEach((segment, i) => {
       const share = measure.of(segment, frame);
-      const color = share === null ? unknown : colorOf(measure, share);
+      const color = inHazard(segment, frame) ? hazard : share === null ? unknown : colorOf(measure, share);
       this.painter.hull(this.parts[i], placement(segment.places, frame), color);
     });
   }
@@ -137,9 +153,11 @@ class Body {
     this.onTurn(view);
   }
 
-  // One finger or the mouse turns the body, two fingers or the wheel magnify it.
+  // One finger or the mouse turns the body, two fingers or the wheel magnify it; a click, which moves nothing, picks a segment.
   listen() {
     const { canvas, camera, onTurn } = this, fingers = new Map();
+    let pressed = null;
+    const moved = (event) => Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY);
     const spread = () => {
       const [a, b] = [...fingers.values()];
       return Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
@@ -147,22 +165,31 @@ class Body {
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, event);
+      pressed = fingers.size === 1 ? event : null;
     });
     canvas.addEventListener("pointermove", (event) => {
       const before = fingers.get(event.pointerId);
       if (!before) return;
       const spreadBefore = fingers.size === 2 ? spread() : 0;
       fingers.set(event.pointerId, event);
+      if (pressed && moved(event) < LEAST_DRAG) return;
+      pressed = null;
       if (fingers.size === 2) camera.magnify(spread() / (spreadBefore || 1) || 1);
       else camera.turn((event.clientX - before.clientX) * 0.008, (event.clientY - before.clientY) * 0.006);
       onTurn(null);
     });
     for (const end of ["pointerup", "pointercancel"]) {
-      canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
+      canvas.addEventListener(end, (event) => {
+        fingers.delete(event.pointerId);
+        if (end === "pointerup" && pressed) this.onPick(this.pick(event.offsetX, event.offsetY));
+        pressed = null;
+      });
     }
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      camera.magnify(Math.exp(-event.deltaY * 0.0012));
+      const { clientWidth: width, clientHeight: height } = canvas;
+      const place = [(2 * event.offsetX - width) / height, 1 - 2 * event.offsetY / height];
+      camera.magnify(Math.exp(-event.deltaY * 0.0012), place, width / height);
       onTurn(null);
     }, { passive: false });
   }

@@ -71,7 +71,7 @@ class Camera {
     this.height = Math.max(0.3, high[1] - low[1]) || 1;
     this.width = Math.max(0.2, Math.hypot(high[0] - low[0], high[2] - low[2])) || 1;
     [this.yaw, this.pitch] = VIEWS.between;
-    this.zoom = 1;
+    [this.zoom, this.pan] = [1, [0, 0]]; // the pan to the right and up, m
   }
 
   turn(yaw, pitch) {
@@ -79,12 +79,28 @@ class Camera {
     this.pitch = Math.min(1.5, Math.max(-0.4, this.pitch + pitch));
   }
 
-  magnify(factor) {
+  // Magnifies about a place of the picture, in half heights from its middle, so that this place stays where it is: a head under the
+  // pointer does not leave the picture. What is not magnified is in the middle.
+  magnify(factor, [x, y] = [0, 0], aspect = 1) {
+    const before = this.halfHeight(aspect);
     this.zoom = Math.min(6, Math.max(0.4, this.zoom * factor));
+    const change = before - this.halfHeight(aspect);
+    this.pan = this.zoom > 1 ? [this.pan[0] + x * change, this.pan[1] + y * change] : [0, 0];
+  }
+
+  distance(aspect) {
+    const fit = Math.max(this.height / 1.75, this.width / (1.85 * aspect));
+    return fit / Math.tan(FIELD_OF_VIEW / 2) / this.zoom + this.width / 3;
+  }
+
+  // Half the height of the picture at the middle of the scene, m.
+  halfHeight(aspect) {
+    return this.distance(aspect) * Math.tan(FIELD_OF_VIEW / 2);
   }
 
   lookFrom(view) {
     [this.yaw, this.pitch] = VIEWS[view];
+    [this.zoom, this.pan] = [1, [0, 0]];
   }
 
   // Unit vectors of the picture in ground axes: right, up, and back towards the camera.
@@ -97,10 +113,11 @@ class Camera {
   projection(aspect) {
     const { right, up, back } = this.axes();
     const spread = Math.tan(FIELD_OF_VIEW / 2), f = 1 / spread;
-    const distance = Math.max(this.height / 1.75, this.width / (1.85 * aspect)) / spread / this.zoom + this.width / 3;
+    const distance = this.distance(aspect);
     const nearest = 0.05, farthest = distance + 20, depth = nearest - farthest;
     const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    const shift = [-dot(right, this.middle), -dot(up, this.middle), -dot(back, this.middle) - distance];
+    const [across, above] = this.pan;
+    const shift = [-dot(right, this.middle) - across, -dot(up, this.middle) - above, -dot(back, this.middle) - distance];
     const matrix = [];
     for (let k = 0; k < 4; k++) {
       const [x, y, z] = k < 3 ? [right, up, back].map((axis) => axis[k]) : shift;

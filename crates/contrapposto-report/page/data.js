@@ -30,6 +30,7 @@ const report = (() => {
     joint.active = joint.external.map((external, i) => -(external + joint.passive[i]) || 0);
     joint.unit = joint.slides ? "m" : "°";
     joint.torque = joint.slides ? "N" : "N m";
+    joint.hazard = list(joint.hazard);
     for (const group of joint.groups || []) {
       group.fatigue = list(group.fatigue);
       group.left = list(group.left);
@@ -41,7 +42,7 @@ const report = (() => {
 // Bands of load, the same in every report: the share of strength from which on each is in force, and its colours at that share and
 // at its end. Bounds: 8 and 14 % limit an hour of sustained and of intermittent holding (Björkstén & Jonsson 1977: 7.9 and 14.0 %),
 // 50 % the peaks of a load (Jonsson 1978, recalled), 100 % is the strength. Every colour is darker than those before it.
-const LOAD_BANDS = [[0, "#e9f4e1", "#c5e3b0"], [0.08, "#f3d94a", "#ecc11e"], [0.14, "#e8942a", "#cf6a12"],
+const LOAD_BANDS = [[0, "#e2f5d3", "#bfe39f"], [0.08, "#efcf3a", "#e3b516"], [0.14, "#e8942a", "#cf6a12"],
   [0.5, "#b5301f", "#8c1418"], [1, "#3d0a1e", "#3d0a1e"]];
 
 // Measures that colours show: a share for a segment in a frame, or null where it is not known.
@@ -67,6 +68,11 @@ const measures = {
     },
   },
 };
+
+// Whether ligaments carry a joint of a segment where that is a hazard.
+function inHazard(segment, frame) {
+  return segment.joints.some((j) => report.joints[j].hazard && report.joints[j].hazard[frame] > 0.5);
+}
 
 // Red, green and blue of a colour like `#rrggbb`, each 0 to 1.
 function channels(color) {

@@ -1,5 +1,8 @@
 // Ties the page together: one frame, one joint, one measure; everything shown follows from these three.
 const HARDEST_GROUPS = 8, LONGEST_PLAY = 12, MOST_LOADS = 3; // rows; s; named in the key
+const MOST_REASONS = 4, MOST_ENTRIES = 6; // shown before the rest is folded
+const NARROW = matchMedia("(max-width: 52rem)"), SMALLEST_BODY = 300, LARGEST_BODY = 680; // px
+const RESTING = 0.005, TIRED = (report.levels || [0, 0.3])[1]; // load; fatigue
 const LAST_FRAME = Math.max(0, report.frames - 1), TIMES = report.times || [], END = TIMES[LAST_FRAME] || 0;
 const MOVES = TIMES.length > 1, SEVERAL = LAST_FRAME > 0;
 const TIRES = report.joints.some((joint) => (joint.groups || []).some((group) => group.fatigue));
@@ -65,7 +68,10 @@ function fillHeader() {
   document.title = report.title || "contrapposto";
   find("title").textContent = [report.title, report.body].filter(Boolean).join(" · ");
   find("headline").textContent = report.headline;
-  for (const reason of report.reasons) find("reasons").append(make("p", reason));
+  report.reasons.forEach((reason, i) => {
+    find(i < MOST_REASONS ? "reasons" : "more-reasons").append(make("p", reason));
+  });
+  showMore("more-reasons", report.reasons.length - MOST_REASONS);
   for (const [label, value, note] of report.figures) {
     const item = make("li");
     item.append(make("span", label), make("b", value));
@@ -74,11 +80,17 @@ function fillHeader() {
   }
 }
 
+// Names how many texts a fold contains; one without any is hidden.
+function showMore(id, count) {
+  find(id).hidden = count <= 0;
+  find(id).querySelector("summary").textContent = `${count} more`;
+}
+
 // Hides every part about which the report says nothing.
 function hideUnknown() {
   const known = {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
-    "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
+    "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
     postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
     overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
@@ -90,7 +102,7 @@ function hideUnknown() {
   if (!TIRES) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
   const postureKeys = SEVERAL ? "Arrow keys go from posture to posture. " : "";
   const keys = MOVES ? "Space plays. Arrow keys step (with Shift by ten), Home and End jump. " : postureKeys;
-  find("keys").textContent = `${keys}Drag the body to turn it.`;
+  find("keys").textContent = keys;
 }
 
 function fillChooser() {
@@ -153,7 +165,9 @@ class Page {
     this.body = Body.on(find("body"), (view) => {
       press("[data-view]", (button) => button.dataset.view === view);
       this.paintBody();
-    });
+    }, (segment) => this.chooseLimb(segment));
+    find("handling").hidden = !this.body;
+    for (const fold of document.querySelectorAll(".fold")) fold.open = !NARROW.matches;
     if (!this.body) find("no-body").hidden = false;
     this.charts = new Charts((time) => this.showFrame(frameAt(time)));
     this.listen();
@@ -161,17 +175,19 @@ class Page {
   }
 
   fillList() {
+    const more = find("more-decisions").querySelector("ol");
     find("list-heading").textContent = report.list.heading;
     for (const entry of report.list.entries) {
       const time = MOVES || report.names ? [make("time", frameName(entry.frame))] : [];
       const button = makeButton(...time, make("span", entry.text)), item = make("li");
       button.addEventListener("click", () => {
-        this.chooseJoint(entry.joint);
+        if (entry.joint !== null) this.chooseJoint(entry.joint);
         this.showFrame(entry.frame);
       });
       item.append(button);
-      find("decisions").append(item);
+      (find("decisions").children.length < MOST_ENTRIES ? find("decisions") : more).append(item);
     }
+    showMore("more-decisions", report.list.entries.length - MOST_ENTRIES);
     if (!report.list.entries.length) find("decisions").append(make("li", report.list.none, "hint"));
   }
 
@@ -200,7 +216,7 @@ class Page {
     this.describeJoint();
     this.listGroups(name);
     const current = report.list.entries.findLastIndex((entry) => entry.frame <= this.frame);
-    document.querySelectorAll("#decisions button").forEach((b, i) => b.classList.toggle("current", i === current));
+    document.querySelectorAll("#list button").forEach((b, i) => b.classList.toggle("current", i === current));
   }
 
   // One sentence about the torques of the joint.
@@ -222,10 +238,16 @@ class Page {
     groups.forEach(({ place, group, load, fatigue }, k) => {
       const row = rows.rows[k] || this.addGroupRow(rows);
       row.dataset.joint = place;
-      const endurance = load < 0.005 ? "rests" : duration(group.left[this.frame]);
+      const endurance = (load < RESTING ? "rests" : duration(group.left[this.frame])) + this.whyTired(group, load, fatigue);
       [group.label, percent(load), percent(fatigue), endurance].forEach((text, c) => { row.cells[c].textContent = text; });
       row.cells[2].classList.toggle("tired", fatigue >= (report.levels || [1])[0]);
     });
+  }
+
+  // A group that is tired although it rests, or could hold its load without limit, is tired from before.
+  whyTired(group, load, fatigue) {
+    const easy = load < RESTING || group.left[this.frame] < 0;
+    return easy && fatigue >= TIRED ? "; tired from before" : "";
   }
 
   // Groups with load or fatigue, the greatest load first.
@@ -254,6 +276,22 @@ class Page {
     find("balance-hint").textContent = balanceHint(report.joints[index]);
     this.describeJoint();
     return this.charts.drawJoint(index, this.frame);
+  }
+
+  // Of the joints that move a limb, the one with the greatest load.
+  chooseLimb(segment) {
+    const load = (j) => report.joints[j].load[this.frame];
+    const joints = segment ? [...segment.joints].sort((a, b) => load(b) - load(a)) : [];
+    if (joints.length) this.chooseJoint(joints[0]);
+    this.paintBody();
+  }
+
+  // Makes the body as tall as the window has room for below the words, with slider and key.
+  fitBody() {
+    const canvas = find("body"), below = find("legend").getBoundingClientRect().bottom - canvas.getBoundingClientRect().bottom;
+    const top = canvas.getBoundingClientRect().top + scrollY;
+    const room = NARROW.matches ? 0.5 * innerHeight : innerHeight - top - below - 10;
+    canvas.style.height = `${Math.round(Math.min(LARGEST_BODY, Math.max(SMALLEST_BODY, room)))}px`;
   }
 
   chooseMeasure(name) {
@@ -334,6 +372,7 @@ class Page {
   listenToMedia() {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
     new ResizeObserver(() => this.paintBody()).observe(find("stage"));
+    addEventListener("resize", () => this.fitBody());
     addEventListener("beforeprint", () => this.print(true));
     addEventListener("afterprint", () => this.print(false));
     matchMedia("print").addEventListener("change", (change) => {
@@ -350,6 +389,7 @@ class Page {
   // A WebGL canvas is not printed; an image of it is.
   print(begins) {
     document.documentElement.toggleAttribute("data-paper", begins);
+    if (begins) document.querySelectorAll(".fold").forEach((fold) => { fold.open = true; });
     this.redraw();
     if (begins && this.body) find("printed").src = find("body").toDataURL();
   }
@@ -360,6 +400,7 @@ class Page {
     this.chooseMeasure(hasLoads ? "load" : "passive");
     this.chooseJoint(this.joint);
     this.showFrame(report.names ? 0 : LAST_FRAME);
+    this.fitBody();
   }
 }
 

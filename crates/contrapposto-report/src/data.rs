@@ -89,6 +89,7 @@ fn joint(joint: &Joint, n: usize) -> Value {
         "external": list(&joint.external, TORQUE),
         "passive": list(&joint.passive, TORQUE),
         "load": list(&joint.load, SHARE),
+        "hazard": known(&joint.hazard, || list(&joint.hazard.iter().map(|is| f64::from(u8::from(*is))).collect::<Vec<_>>(), 1.0)),
         "balance": joint.balance.iter().map(|b| balance(b, angle)).collect::<Value>(),
     })
 }

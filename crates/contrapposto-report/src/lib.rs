@@ -136,6 +136,8 @@ pub struct Joint {
     pub passive: Vec<f64>,
     /// |Active torque| over strength in every frame.
     pub load: Vec<f64>,
+    /// Whether ligaments carry it in every frame where that is a hazard; empty for never.
+    pub hazard: Vec<bool>,
     /// Its torques over its range: one for all frames, one for each, or none.
     pub balance: Vec<Balance>,
 }
@@ -208,13 +210,13 @@ pub struct List {
     pub none: String,
 }
 
-/// A text about a frame and a joint; a click shows both.
+/// A text about a frame and perhaps a joint; a click shows both.
 #[derive(Clone, Debug, Default)]
 pub struct Entry {
     /// Number of the frame.
     pub frame: usize,
-    /// Index in [`Report::joints`].
-    pub joint: usize,
+    /// Index in [`Report::joints`]; `None` for a text about no joint.
+    pub joint: Option<usize>,
     /// In plain words.
     pub text: String,
 }

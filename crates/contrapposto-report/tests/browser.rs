@@ -7,6 +7,8 @@ mod support;
 
 use std::path::PathBuf;
 
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
     Balance, Entry, Figure, Group, Joint, List, Moments, Push, Report, Segment, Support, Table, Thing, balls_of, write,
 };
@@ -37,7 +39,7 @@ fn report() -> Report {
         balance: vec![Balance { angle: vec![-10.0, 90.0], minus_passive: vec![-1.0, 9.0], external: vec![2.0, 3.0] }],
         ..Joint::default()
     };
-    let entry = |frame, joint, text: &str| Entry { frame, joint, text: text.to_owned() };
+    let entry = |frame, joint, text: &str| Entry { frame, joint: Some(joint), text: text.to_owned() };
     Report {
         title: HOSTILE.to_owned(),
         body: HOSTILE.to_owned(),
@@ -98,7 +100,8 @@ fn postures(count: usize) -> Report {
     for segment in &mut report.segments {
         segment.places = segment.places.iter().step_by(20).copied().collect();
     }
-    report.list.entries = (0..count).map(|frame| Entry { frame, joint: frame % 2, text: HOSTILE.to_owned() }).collect();
+    report.list.entries =
+        (0..count).map(|frame| Entry { frame, joint: Some(frame % 2), text: HOSTILE.to_owned() }).collect();
     report.targets = vec![[0.2, 0.5, 0.1]];
     report
 }
@@ -154,7 +157,7 @@ fn slider_keys_and_decisions_move_body_and_charts() {
     std::thread::sleep(std::time::Duration::from_millis(300));
     assert_eq!(page.evaluate(FRAME), paused, "space did not pause");
 
-    page.evaluate("document.querySelectorAll('#decisions button')[1].click()");
+    page.evaluate("document.querySelectorAll('#list button')[1].click()");
     assert_eq!(page.evaluate(FRAME).as_f64(), Some(6.0));
     assert_eq!(page.evaluate("document.getElementById('chooser').selectedOptions[0].textContent"), "second");
     assert!((page.evaluate(POINT).as_f64().unwrap() - 0.48f64.to_degrees()).abs() < 0.02);
@@ -178,7 +181,7 @@ fn slider_keys_and_decisions_move_body_and_charts() {
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
 fn buttons_keys_and_list_choose_a_posture() {
     let mut page = open_page("postures.html", &postures(3));
-    let parts = "scene key-ghost key-force key-center key-target postures list joint muscles overview";
+    let parts = "scene postures key-ghost key-force key-center key-target list joint muscles overview";
     assert_eq!(page.evaluate(SHOWN), parts, "no time, no fatigue");
     let name = "document.querySelector('#postures [aria-pressed=true]').textContent";
     let top = "Math.max(...document.getElementById('balance').data.at(-1).y)";
@@ -191,7 +194,7 @@ fn buttons_keys_and_list_choose_a_posture() {
     for (what, before) in [PICTURE, POINT].into_iter().zip(&start) {
         assert_ne!(page.evaluate(what), *before, "{what} has not moved");
     }
-    page.evaluate("document.querySelectorAll('#decisions button')[1].click()");
+    page.evaluate("document.querySelectorAll('#list button')[1].click()");
     assert_eq!(page.evaluate("document.getElementById('chooser').selectedOptions[0].textContent"), "second");
     page.evaluate("document.querySelectorAll('#postures button')[2].click()");
     assert_eq!(page.evaluate(name), format!("3 {HOSTILE}"));
@@ -249,6 +252,113 @@ fn a_thing_and_a_load_change_the_picture_and_have_a_key() {
     page.open(&file("load.html", &write(&report)));
     assert_ne!(page.evaluate(PICTURE), with_thing);
     assert_eq!(page.evaluate("document.getElementById('key-load').hidden"), false);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn a_click_on_a_limb_chooses_its_hardest_joint_and_a_drag_does_not() {
+    let mut page = open("click.html");
+    page.evaluate("document.getElementById('stage').scrollIntoView({ block: 'center' })");
+    let chosen = "document.getElementById('chooser').selectedOptions[0].textContent";
+    let [x, y] = ["left", "top"].map(|side| {
+        let middle = if side == "left" { "width" } else { "height" };
+        let place = format!("(() => {{ const r = document.getElementById('body').getBoundingClientRect(); return r.{side} + r.{middle} / 2; }})()");
+        page.evaluate(&place).as_f64().unwrap()
+    });
+    let mouse = |kind: &str, x: f64, y: f64| json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
+    for event in [mouse("mousePressed", x, y), mouse("mouseMoved", x + 40.0, y), mouse("mouseReleased", x + 40.0, y)] {
+        page.call("Input.dispatchMouseEvent", event);
+    }
+    assert_ne!(page.evaluate(chosen), "second", "a drag turns the body");
+    page.evaluate("document.querySelector('[data-view=side]').click()");
+    // The bar crosses the middle of the picture somewhere, and its second joint has twice the load of the first.
+    for across in -20..=20 {
+        let x = x + 12.0 * f64::from(across);
+        for event in [mouse("mousePressed", x, y), mouse("mouseReleased", x, y)] {
+            page.call("Input.dispatchMouseEvent", event);
+        }
+    }
+    assert_eq!(page.evaluate(chosen), "second");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn words_body_slider_and_key_are_above_the_fold_at_1400_by_900() {
+    let mut report = report();
+    report.headline = "Can be held 19.8 min (14 to 27 min), then right shoulder flexion fails first.".to_owned();
+    report.reasons =
+        vec!["A reason in one sentence that fills a line of the page and says why it is so.".to_owned(); 9];
+    let figure = || Figure {
+        label: "Weight on right foot".to_owned(),
+        value: "50 %".to_owned(),
+        note: "of body and load".to_owned(),
+    };
+    report.figures = (0..6).map(|_| figure()).collect();
+    report.title = "Overhead".to_owned();
+    report.body = "adult".to_owned();
+    report.supports[0].label = "right foot".to_owned();
+    let mut page = open_page("fold.html", &report);
+    page.call(
+        "Emulation.setDeviceMetricsOverride",
+        json!({ "width": 1400, "height": 900, "deviceScaleFactor": 1, "mobile": false }),
+    );
+    page.wait_for("document.getElementById('legend').getBoundingClientRect().bottom <= 900");
+    let tall = "document.getElementById('body').getBoundingClientRect().height";
+    assert!(page.evaluate(tall).as_f64().unwrap() >= 300.0);
+    assert_eq!(page.evaluate("document.getElementById('slider').getBoundingClientRect().bottom <= 900"), true);
+    assert_eq!(page.evaluate("document.querySelector('#more-reasons summary').textContent"), "5 more");
+    assert_eq!(page.evaluate("document.querySelectorAll('#scale i').length"), 5);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn a_long_report_is_five_screens_of_a_phone_and_two_pages_of_paper() {
+    let mut report = report();
+    let text = || {
+        "Right hip adduction: muscles of right hip abduction are at 70 % fatigue. It goes from 3° to 24°.".to_owned()
+    };
+    report.title = "A long day".to_owned();
+    report.body = "adult".to_owned();
+    report.headline = "Can be held 19.8 min, then right shoulder flexion fails first.".to_owned();
+    report.reasons = vec![text(); 8];
+    report.figures = vec![Figure { label: "Load".to_owned(), value: "5 %".to_owned(), note: "a note".to_owned() }; 6];
+    report.list.entries = (0..120).map(|i| Entry { frame: i % 50, joint: Some(0), text: text() }).collect();
+    report.list.heading = "Decisions".to_owned();
+    report.table.heading = "Table".to_owned();
+    report.table.rows = vec![vec!["a cell".to_owned(); 6]; 10];
+    let mut page = open_page("long.html", &report);
+    let paper = json!({ "printBackground": true, "preferCSSPageSize": true });
+    let pdf = page.call("Page.printToPDF", paper);
+    assert_eq!(pages(pdf["data"].as_str().unwrap()), 2);
+    let phone = json!({ "width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": true });
+    page.call("Emulation.setDeviceMetricsOverride", phone);
+    page.open(&file("long.html", &write(&report)));
+    let height = page.evaluate("document.documentElement.scrollHeight").as_f64().unwrap();
+    assert!(height <= 5.0 * 844.0, "{height} px");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+/// Number of pages of a PDF in Base64.
+fn pages(pdf: &str) -> usize {
+    let bytes = BASE64_STANDARD.decode(pdf).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    text.matches("/Type /Page\n").count() + text.matches("/Type /Page /").count()
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn a_joint_in_hazard_changes_the_picture_and_has_a_key() {
+    let mut report = report();
+    let mut page = open_page("safe.html", &report);
+    let without = page.evaluate(PICTURE);
+    assert_eq!(page.evaluate("document.getElementById('key-hazard').hidden"), true);
+    report.joints[0].hazard = vec![true; 50];
+    page.open(&file("hazard.html", &write(&report)));
+    assert_ne!(page.evaluate(PICTURE), without);
+    assert_eq!(page.evaluate("document.getElementById('key-hazard').hidden"), false);
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
 

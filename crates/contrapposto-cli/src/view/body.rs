@@ -10,6 +10,7 @@ use nalgebra::Point3;
 
 use super::axes::pelvis_list;
 use super::frame::Frame;
+use super::hazard::hazard;
 use super::held::Held;
 use super::selection::shown;
 use super::stage::{Stage, place, push};
@@ -21,8 +22,8 @@ use crate::fail::Fail;
 /// Most supports whose share is listed.
 const MOST_SHARES: usize = 4;
 
-/// The parts of a body in a posture, in the colours of `load` (by coordinate) where it is known.
-pub(crate) fn parts(model: &Model, posture: &[f64], load: Option<&[f64]>) -> Result<Vec<BodyPart>, Fail> {
+/// The parts of a body in a posture, with the loads and hazards of its frame where it is known.
+pub(crate) fn parts(model: &Model, posture: &[f64], frame: Option<&Frame>) -> Result<Vec<BodyPart>, Fail> {
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("picture", error))?;
     let (shown, turn) = (shown(model), axes::turn(model));
@@ -31,13 +32,14 @@ pub(crate) fn parts(model: &Model, posture: &[f64], load: Option<&[f64]>) -> Res
         let place = kinematics.placement(model, s);
         let moved_by = solid::joined_by(model, s);
         let moves = shown.iter().filter(|i| moved_by.contains(i) && model.coordinates()[**i].groups.is_some());
-        let load = load.and_then(|load| moves.map(|&i| load[i]).reduce(f64::max));
+        let load = frame.and_then(|frame| moves.map(|&i| frame.load[i]).reduce(f64::max));
+        let hazard = frame.is_some_and(|frame| moved_by.clone().any(|i| hazard(model, frame, i).is_some()));
         for balls in solid::parts(model, s) {
             let ball = |[x, y, z, r]: [f64; 4]| {
                 let [x, y, z] = turn.point((place * Point3::new(x, y, z)).coords);
                 [x, y, z, r]
             };
-            parts.push(BodyPart { balls: balls.into_iter().map(ball).collect(), load });
+            parts.push(BodyPart { balls: balls.into_iter().map(ball).collect(), load, hazard });
         }
     }
     Ok(parts)
@@ -53,7 +55,7 @@ pub(crate) fn body(model: &Model, stage: &Stage<'_>, frame: &Frame) -> Result<Bo
         Some(BodyForce { at: turn.point(at), force: turn.point(contact.force) })
     };
     Ok(BodyPosture {
-        parts: parts(model, &frame.posture, (!frame.load.is_empty()).then_some(&frame.load))?,
+        parts: parts(model, &frame.posture, (!frame.load.is_empty()).then_some(frame))?,
         forces: standing.iter().flat_map(|standing| &standing.contacts).filter_map(force).collect(),
         center_of_mass: standing
             .filter(|_| !stage.supports.is_empty())
@@ -98,11 +100,10 @@ fn around(model: &Model, stage: &Stage<'_>, frame: &Frame) -> Result<BodyPosture
 /// The few numbers that say most of how it stands: `effort 0.0590`, `left foot 15 %`, `pelvis 6.2° down to the right`.
 pub(crate) fn key_numbers(model: &Model, supports: &[Support], frame: &Frame) -> Vec<String> {
     let mut numbers = vec![format!("effort {:.4}", frame.effort())];
-    let contacts = frame.standing.iter().flat_map(|standing| &standing.contacts);
-    let share = |(support, contact): (&Support, &Contact)| {
-        format!("{} {}", plain(&model.segments()[support.segment].name), percent(contact.share))
+    let share = |(support, share): (&Support, f64)| {
+        format!("{} {}", plain(&model.segments()[support.segment].name), percent(share))
     };
-    numbers.extend(supports.iter().zip(contacts).take(MOST_SHARES).map(share));
+    numbers.extend(supports.iter().zip(frame.shares()).take(MOST_SHARES).map(share));
     if let Some(list) = pelvis_list(model, &frame.posture).filter(|_| !supports.is_empty()) {
         let side = if list > 0.0 { "right" } else { "left" };
         numbers.push(if list.abs() < 0.05 {

@@ -107,6 +107,14 @@ impl Frame {
         effort(&self.load)
     }
 
+    /// Shares of the weight of body and loads that the supports carry, each a share of what all of them carry upwards.
+    pub(crate) fn shares(&self) -> Vec<f64> {
+        let contacts = self.standing.iter().flat_map(|standing| &standing.contacts);
+        let shares: Vec<f64> = contacts.map(|contact| contact.share).collect();
+        let all: f64 = shares.iter().sum();
+        if all > 0.0 { shares.iter().map(|share| share / all).collect() } else { shares }
+    }
+
     /// Share of the external torque of a coordinate that passive tissue carries, 0..=1; `None` below 0.5 N m.
     pub(crate) fn carried(&self, i: usize) -> Option<f64> {
         let external = self.external[i];

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use super::axes::{Turn, turn, visible};
 use super::charts::Sweep;
 use super::frame::Frame;
+use super::hazard::hazard;
 use super::selection::shown;
 use super::stage::{Stage, load_in_words, place, push};
 use super::{solid, surfaces, words};
@@ -175,8 +176,15 @@ impl<'a> Scene<'a> {
             external: over(&|frame| frame.external[i]),
             passive: over(&|frame| frame.passive[i]),
             load: over(&|frame| frame.load[i]),
+            hazard: self.hazard(i),
             balance: bent.iter().filter_map(|frame| self.balance(i, frame).transpose()).collect::<Result<_, _>>()?,
         })
+    }
+
+    /// Where a coordinate is in hazard; empty for nowhere.
+    fn hazard(&self, i: usize) -> Vec<bool> {
+        let all: Vec<bool> = self.frames.iter().map(|frame| hazard(self.model, frame, i).is_some()).collect();
+        if all.contains(&true) { all } else { vec![] }
     }
 
     /// Torques over the range, in the posture of a frame; none of a joint without passive tissue.

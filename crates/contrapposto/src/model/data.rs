@@ -6,6 +6,7 @@
 mod body_rows;
 mod fatigue_parameters;
 mod fatigue_rows;
+mod hazard_rows;
 mod passive_rows;
 mod reference;
 mod shape_rows;
@@ -19,6 +20,8 @@ use body_rows::{AdultFile, AnthropometryFile};
 pub(super) use body_rows::{Along, CoordinateRow, InRightArm, SegmentRow};
 pub use fatigue_parameters::FatigueSet;
 use fatigue_rows::FatigueFile;
+use hazard_rows::HazardFile;
+pub use hazard_rows::HazardRow;
 use passive_rows::PassiveFile;
 pub use passive_rows::{CurveRow, reshaped};
 pub use reference::{Reference, Status};
@@ -37,6 +40,7 @@ pub struct Library {
     pub(super) anthropometry: AnthropometryFile,
     pub(super) adult: AdultFile,
     pub(super) shapes: ShapeFile,
+    hazards: HazardFile,
 }
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
@@ -51,6 +55,7 @@ static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
         anthropometry: parse("anthropometry", include_str!("../../data/anthropometry.toml")),
         adult: parse("adult", include_str!("../../data/adult.toml")),
         shapes: parse("shapes", include_str!("../../data/shapes.toml")),
+        hazards: parse("hazards", include_str!("../../data/hazards.toml")),
     }
 });
 
@@ -81,6 +86,11 @@ impl Library {
         let row = &self.passive.reshape;
         let reference = Reference { status: row.status, source: row.source.clone(), note: String::new() };
         (row.zone_deg.to_radians(), row.end_torque_nm, reference)
+    }
+
+    /// Angles at which passive tissue that carries a joint is a hazard.
+    pub fn hazards(&self) -> &[HazardRow] {
+        &self.hazards.hazard
     }
 
     /// Strength of a movement for an adult, with its sources; `sign` -1 where the coordinate runs against the data.

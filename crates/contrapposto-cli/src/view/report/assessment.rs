@@ -16,6 +16,7 @@ use crate::fail::Fail;
 use crate::view::decision::answer;
 use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
+use crate::view::hazard::{hazards, tell};
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
@@ -123,6 +124,7 @@ pub(crate) fn report_of_assessment(
         entries: entries(assessed_frames, &working, &shown),
         none: "None: no group fails, and no joint alone gives relief.".to_owned(),
     };
+    tell(&mut report, hazards(model, frames, true));
     report.table = table(assessed_frames.opened, &working);
     Ok(contrapposto_report::write(&report))
 }
@@ -178,7 +180,7 @@ fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], s
         let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
         if let Some(time) = found.exhausted_at {
             let text = format!("{} fails: it cannot give the torque that is needed.", name(model, found));
-            entries.push(Entry { frame: assessed_frames.nearest(time), joint, text });
+            entries.push(Entry { frame: assessed_frames.nearest(time), joint: Some(joint), text });
         }
         if model.coordinates()[found.coordinate].kind != CoordinateKind::Rotation {
             continue;
@@ -188,7 +190,7 @@ fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], s
             if peak.iter().any(moves) {
                 entries.push(Entry {
                     frame: assessed_frames.nearest(peak[0].time),
-                    joint,
+                    joint: Some(joint),
                     text: relief(model, found, peak),
                 });
             }

@@ -12,6 +12,7 @@ use crate::fail::Fail;
 use crate::view::answer::also_missed;
 use crate::view::figures::figures_of_postures;
 use crate::view::frame::{Frame, frame_of_posture};
+use crate::view::hazard::{hazards, tell};
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
 use crate::view::selection::shown;
@@ -52,7 +53,7 @@ pub(crate) fn report_of_equilibria(
     let supports = carriers(&scene);
     let entry = |(frame, posture): (usize, &RelaxedPosture)| Entry {
         frame,
-        joint: shown.iter().position(|&i| i == main_coordinate_of(posture)).unwrap_or(0),
+        joint: shown.iter().position(|&i| i == main_coordinate_of(posture)),
         text: description(model, posture, &frames[frame], &supports),
     };
     report.list = List {
@@ -91,6 +92,7 @@ pub(crate) fn report_of_equilibria(
         columns: ["Posture", "Effort", "Weight on", "Held by", "Highest load"].map(str::to_owned).to_vec(),
         rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
     };
+    tell(&mut report, hazards(model, &frames, false));
     Ok(contrapposto_report::write(&report))
 }
 
@@ -187,4 +189,19 @@ fn description(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &
         None => "Endurance: no limit by muscles.".to_owned(),
     });
     sentences.join(" ")
+}
+
+/// How many starts were tried, and what became of them.
+fn searched(found: &Equilibria) -> String {
+    let mut searched = format!("{} starts were tried", found.starts);
+    for (count, what) in [
+        (found.fell, "fell"),
+        (found.yielded, "were left out because tasks or supports were kept less well"),
+        (found.alike, "were left out as the same way to stand as a better one, or too heavy"),
+    ] {
+        if count > 0 {
+            searched += &format!(", {count} {what}");
+        }
+    }
+    searched + "."
 }

@@ -15,8 +15,7 @@ pub(super) fn carriers(scene: &Scene<'_>) -> Vec<String> {
 
 /// `right foot 85 %, left foot 15 %`.
 pub(super) fn weight(frame: &Frame, supports: &[String]) -> String {
-    let contacts = frame.standing.iter().flat_map(|standing| &standing.contacts);
-    let shares = contacts.zip(supports).map(|(contact, name)| format!("{name} {}", percent(contact.share)));
+    let shares = frame.shares().into_iter().zip(supports).map(|(share, name)| format!("{name} {}", percent(share)));
     shares.collect::<Vec<_>>().join(", ")
 }
 
@@ -26,9 +25,8 @@ pub(super) fn figure(label: &str, value: String, note: &str) -> Figure {
 
 /// Shares of the supports, the highest load, and the endurance.
 pub(super) fn figures_of(model: &Model, frame: &Frame, supports: &[String], report: &mut Report) {
-    let contacts = frame.standing.iter().flat_map(|standing| &standing.contacts);
-    for (contact, name) in contacts.zip(supports).take(4) {
-        report.figures.push(figure(&format!("Weight on {name}"), percent(contact.share), ""));
+    for (share, name) in frame.shares().into_iter().zip(supports).take(4) {
+        report.figures.push(figure(&format!("Weight on {name}"), percent(share), "of body and load"));
     }
     if let Some((name, load)) = hardest(model, frame).filter(|(_, load)| *load > 0.0) {
         report.figures.push(figure("Highest load", percent(load), &sentence(&name)));

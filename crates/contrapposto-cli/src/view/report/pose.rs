@@ -9,6 +9,7 @@ use super::figure::{carriers, figure, figures_of};
 use crate::fail::Fail;
 use crate::view::axes::turn;
 use crate::view::figures::figures_of_postures;
+use crate::view::hazard::{hazards, tell};
 use crate::view::held::{Held, held};
 use crate::view::pose_picture::targets;
 use crate::view::scene::Scene;
@@ -61,6 +62,7 @@ pub(crate) fn report_of_pose(
         columns: ["Priority", "Task", "Remaining error", ""].map(str::to_owned).to_vec(),
         rows: all.iter().map(row).collect(),
     };
+    tell(&mut report, hazards(model, &frames, false));
     Ok(contrapposto_report::write(&report))
 }
 
