@@ -190,18 +190,3 @@ fn description(model: &Model, found: &RelaxedPosture, frame: &Frame, supports: &
     });
     sentences.join(" ")
 }
-
-/// How many starts were tried, and what became of them.
-fn searched(found: &Equilibria) -> String {
-    let mut searched = format!("{} starts were tried", found.starts);
-    for (count, what) in [
-        (found.fell, "fell"),
-        (found.yielded, "were left out because tasks or supports were kept less well"),
-        (found.alike, "were left out as the same way to stand as a better one, or too heavy"),
-    ] {
-        if count > 0 {
-            searched += &format!(", {count} {what}");
-        }
-    }
-    searched + "."
-}
