@@ -81,7 +81,6 @@ pub fn body_map(map: &BodyMap) -> Figure {
             middle: bounds.middle(),
             scale: (MAP_HEIGHT / height).min(MAP_WIDTH / width),
             length_per_newton: 0.0,
-            scale_end: 1.0,
         };
         let name =
             if frames { "from the right: segments and patches" } else { "from the front: joints and coordinates" };
@@ -191,7 +190,7 @@ mod tests {
 
     #[test]
     fn names_of_joints_stand_in_the_picture_and_odd_numbers_leave_them_out() {
-        let part = BodyPart { balls: vec![[0.0, 0.0, 0.0, 0.1], [0.0, 1.0, 0.0, 0.1]], load: None };
+        let part = BodyPart { balls: vec![[0.0, 0.0, 0.0, 0.1], [0.0, 1.0, 0.0, 0.1]], load: None, hazard: false };
         let joint =
             |at, name: &str| MapJoint { at, name: name.to_owned(), lines: vec!["hip_flexion_r: flexion".to_owned()] };
         let joints = vec![joint([0.0, 0.5, 0.1], "hip_r"), joint([f64::NAN, 0.0, 0.0], "odd")];
