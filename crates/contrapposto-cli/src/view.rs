@@ -10,7 +10,6 @@ pub(crate) mod decision;
 pub(crate) mod excerpt;
 pub(crate) mod figures;
 pub(crate) mod frame;
-pub(crate) mod hazard;
 pub(crate) mod held;
 pub(crate) mod moment;
 pub(crate) mod muscles;

@@ -10,8 +10,8 @@ use nalgebra::Point3;
 
 use super::axes::pelvis_list;
 use super::frame::Frame;
-use super::hazard::hazard;
 use super::held::Held;
+use super::scene::hazard::hazard;
 use super::selection::shown;
 use super::stage::{Stage, place, push};
 use super::surfaces::surroundings;

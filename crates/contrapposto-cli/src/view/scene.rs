@@ -1,5 +1,7 @@
 //! The numbers that all pages share: the body, its joints and its supports in every moment.
 
+pub(crate) mod hazard;
+
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
@@ -7,10 +9,10 @@ use contrapposto::statics::Load;
 use contrapposto_report::{Balance, Group, Joint, Moments, Push, Report, Segment, Thing};
 use nalgebra::Vector3;
 
+use self::hazard::hazard;
 use super::axes::{Turn, turn, visible};
 use super::charts::Sweep;
 use super::frame::Frame;
-use super::hazard::hazard;
 use super::selection::shown;
 use super::stage::{Stage, load_in_words, place, push};
 use super::{solid, surfaces, words};

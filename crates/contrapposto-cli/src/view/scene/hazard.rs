@@ -5,8 +5,8 @@ use contrapposto::model::Model;
 use contrapposto::model::data::{HazardRow, library};
 use contrapposto_report::Report;
 
-use super::frame::Frame;
-use super::words::{how_long, list, percent, plain, value};
+use crate::view::frame::Frame;
+use crate::view::words::{how_long, list, percent, plain, value};
 
 /// The hazard that a coordinate is in.
 pub(crate) fn hazard(model: &Model, frame: &Frame, i: usize) -> Option<&'static HazardRow> {
