@@ -54,7 +54,7 @@ impl SourcedModel {
     /// let filled = file.fill(&Person::default())?;
     /// // A URDF file has gravity along -z, so that its axes are not known to be OpenSim's.
     /// assert!(filled.model.coordinates()[0].passive.is_none());
-    /// assert!(filled.notes[0].contains("the built-in one is not applied"));
+    /// assert!(filled.notes.iter().any(|note| note.contains("the built-in one is not applied")));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
