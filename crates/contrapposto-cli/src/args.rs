@@ -33,7 +33,7 @@ pub(crate) enum Verb {
     New(NewArgs),
     /// Run a scenario over time: fatigue, relief, a table and charts.
     Simulate(SimulateArgs),
-    /// Run a built-in scenario (the paper's Figure 8); needs no file.
+    /// Show a person who waits, tires and rests a leg; needs no file.
     Demo(DemoArgs),
     /// Solve one posture: supports and tasks in order of priority in, posture out.
     Pose(PoseArgs),

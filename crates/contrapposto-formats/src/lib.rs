@@ -45,4 +45,4 @@ pub use scenario::{
 pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
 pub use thing::Thing;
 pub use trajectory_csv::{TableRow, csv_header, csv_row};
-pub use verdict::{MissedText, VerdictText};
+pub use verdict::{MissedText, SuggestionText, VerdictText};

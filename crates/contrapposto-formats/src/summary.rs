@@ -6,11 +6,12 @@ use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::{CoordinateKind, Side};
 use contrapposto::simulation::{Contact, FootStep, Scenario, Standing, StopReason, Summary};
+use contrapposto::suggestions::Suggestion;
 use contrapposto::verdict::Verdict;
 use serde::Serialize;
 
-use crate::VerdictText;
 use crate::tissue::FatigueParametersText;
+use crate::{SuggestionText, VerdictText};
 
 /// The whole file.
 #[derive(Clone, Debug, Serialize)]
@@ -21,6 +22,9 @@ pub struct SummaryText {
     pub model: String,
     /// The answer.
     pub verdict: VerdictText,
+    /// Changes of the job that were tried and help, the one that helps most first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub suggestions: Vec<SuggestionText>,
     /// `duration`, `settled`, `interrupted` or `fell`.
     pub stopped: &'static str,
     /// The event that threw the body off balance, if one did.
@@ -171,8 +175,14 @@ pub struct GroupText {
 }
 
 impl SummaryText {
-    /// From a finished run and the verdict on it. `files`: names of the files written beside it.
-    pub fn new(scenario: &Scenario, summary: &Summary, verdict: &Verdict, files: Vec<String>) -> Self {
+    /// From a finished run, the verdict on it and the changes that help. `files`: names of the files written beside it.
+    pub fn new(
+        scenario: &Scenario,
+        summary: &Summary,
+        verdict: &Verdict,
+        suggestions: &[Suggestion],
+        files: Vec<String>,
+    ) -> Self {
         let model = &scenario.model;
         let names = model.coordinates().iter().map(|c| c.name.clone());
         let coordinates = model.coordinates().iter().zip(&summary.coordinates).enumerate().map(|(i, (c, s))| {
@@ -210,6 +220,7 @@ impl SummaryText {
             title: scenario.title.clone(),
             model: model.name().to_owned(),
             verdict: VerdictText::new(model, verdict),
+            suggestions: suggestions.iter().map(SuggestionText::from).collect(),
             failed_first: failed.min_by(|a, b| a.at_s.total_cmp(&b.at_s)),
             stopped: summary.reason.word(),
             fell: summary.fall.map(|fall| FallText {

@@ -1,6 +1,7 @@
 //! Writes a verdict as it stands in every JSON file.
 
 use contrapposto::model::{Model, plain_group_name, plain_name};
+use contrapposto::suggestions::Suggestion;
 use contrapposto::tasks::Unit;
 use contrapposto::verdict::{Missed, Verdict};
 use serde::Serialize;
@@ -22,6 +23,30 @@ pub struct VerdictText {
     pub sentence: String,
     /// Targets that are missed, the most important first.
     pub missed: Vec<MissedText>,
+}
+
+/// A change of the job that was tried, and that helps.
+#[derive(Clone, Debug, Serialize)]
+pub struct SuggestionText {
+    /// The change in words.
+    pub change: String,
+    /// The kind of verdict with it.
+    pub kind: &'static str,
+    /// How long the job can be done with it, min; `null`: muscles set no limit.
+    pub minutes: Option<f64>,
+    /// Load of the group that works hardest or fails first.
+    pub load: Option<f64>,
+}
+
+impl From<&Suggestion> for SuggestionText {
+    fn from(suggestion: &Suggestion) -> Self {
+        Self {
+            change: suggestion.change.clone(),
+            kind: suggestion.kind.word(),
+            minutes: suggestion.seconds.map(|seconds| seconds / 60.0),
+            load: suggestion.load,
+        }
+    }
 }
 
 /// A target that is missed.

@@ -25,7 +25,7 @@ fn held(height: f64, ahead: f64) -> Option<(String, f64)> {
     let scenario = read_scenario("scenario.toml", text.as_bytes(), None).unwrap();
     let summary = run(&scenario, |_| {}).unwrap();
     let verdict = contrapposto::verdict::Verdict::of_run(&scenario, &summary);
-    let text = SummaryText::new(&scenario, &summary, &verdict, vec![]);
+    let text = SummaryText::new(&scenario, &summary, &verdict, &[], vec![]);
     println!("{height} m, {ahead} m: {:?}", text.failed_first);
     assert!(text.standing.unwrap().task_errors.iter().take(2).all(|error| *error < 1e-3));
     text.failed_first.map(|failed| (failed.group.unwrap(), failed.at_s / 60.0))

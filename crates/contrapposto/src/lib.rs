@@ -49,5 +49,6 @@ pub mod posture_solver;
 pub mod simulation;
 pub mod statics;
 pub mod strength;
+pub mod suggestions;
 pub mod tasks;
 pub mod verdict;

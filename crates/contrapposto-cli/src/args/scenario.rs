@@ -30,6 +30,9 @@ pub(crate) struct SimulateArgs {
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    /// Do not try changes of a job that cannot be done to its end. Each change is a run of its own, until a muscle group fails.
+    #[arg(long)]
+    pub(crate) no_suggest: bool,
 }
 
 #[derive(Debug, Parser)]
@@ -72,6 +75,9 @@ pub(crate) struct DemoArgs {
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    /// The elbow of the paper's Figure 8 instead of a whole person.
+    #[arg(long = "figure-8")]
+    pub(crate) figure_8: bool,
 }
 
 #[derive(Debug, Parser)]

@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
-use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 
@@ -17,15 +16,16 @@ use crate::fail::Fail;
 use crate::output::{Folder, json_text, print, print_note};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
-use crate::view::answer::{answered, without_posture};
+use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::figures::{figures_of_run, pictures_of_run};
 use crate::view::recording::Recording;
 use crate::view::report::run::report_of_run;
 use crate::view::text::simulate::report;
 use crate::view::{animation, tables};
 
-/// The scenario of `contrapposto demo`.
-const DEMO: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../../scenarios/figure-08.toml"));
+/// The scenarios of `contrapposto demo`: a person who waits, and the paper's Figure 8.
+const DEMO: (&str, &str) = ("scenarios/stand-relaxed.toml", include_str!("../../../../scenarios/stand-relaxed.toml"));
+const FIGURE_8: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../../scenarios/figure-08.toml"));
 
 /// A run that takes longer is saved so often, so that a crash of the machine loses little.
 const BETWEEN_SAVES: Duration = Duration::from_secs(20);
@@ -38,21 +38,36 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let run = read_run(&name, &bytes, model)?;
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
-    carry_out(&run, &args.out, args.resume, args.figures, args.json)
+    let SimulateArgs { resume, figures, json, no_suggest, .. } = *args;
+    carry_out(&run, &args.out, How { resume, figures, json, suggest: !no_suggest })
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
-    let run = read_run(DEMO.0, DEMO.1.as_bytes(), None)?;
-    carry_out(&run, &args.out, false, false, args.json)
+    let (name, text) = if args.figure_8 { FIGURE_8 } else { DEMO };
+    let run = read_run(name, text.as_bytes(), None)?;
+    carry_out(&run, &args.out, How { resume: false, figures: false, json: args.json, suggest: true })?;
+    if args.json {
+        return Ok(());
+    }
+    let page = args.out.join("report.html");
+    print(&format!(
+        "\nOpen {} in a browser. Then: `contrapposto new lift --out job.toml` writes a job of your own, `contrapposto simulate job.toml \
+         --out out` answers it; README.md lists all commands.\n",
+        page.display()
+    ))
 }
 
-fn carry_out(
-    RunScenario { scenario, things, .. }: &RunScenario,
-    out: &Path,
+/// How a scenario is carried out.
+#[derive(Clone, Copy)]
+struct How {
     resume: bool,
     figures: bool,
     json: bool,
-) -> Result<(), Fail> {
+    suggest: bool,
+}
+
+fn carry_out(run: &RunScenario, out: &Path, how: How) -> Result<(), Fail> {
+    let (RunScenario { scenario, things, .. }, How { resume, figures, json, suggest }) = (run, how);
     let folder = Folder::open(out)?;
     // A second handler is refused, which only happens if there is one already.
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
@@ -86,15 +101,18 @@ fn carry_out(
     progress.finish_and_clear();
     let summary = run.summary();
     let figures = if figures { figures_of_run(scenario, things, &recording, &summary)? } else { vec![] };
-    let verdict = Verdict::of_run(scenario, &summary);
-    let json_text = write((scenario, things), &summary, &verdict, &recording, &figures, &folder)?;
+    let mut answer = Answer::of_run(scenario, &summary);
+    if suggest && summary.reason != StopReason::Interrupted {
+        answer.try_changes(scenario, &summary, || !INTERRUPTED.load(Ordering::Relaxed));
+    }
+    let json_text = write((scenario, things), &summary, &answer, &recording, &figures, &folder)?;
     let partial = summary.reason == StopReason::Interrupted;
     if partial {
         save(scenario, &run, &recording, &folder)?;
     } else {
         folder.remove(SNAPSHOT)?;
     }
-    print(&if json { json_text } else { report(scenario, &summary, &verdict, &folder) })?;
+    print(&if json { json_text } else { report(scenario, &summary, &answer, &folder) })?;
     match partial {
         true => Err(Fail::Job(format!(
             "interrupted at {:.2} of {} s: the results so far are in {}; the same command with --resume continues",
@@ -102,7 +120,7 @@ fn carry_out(
             scenario.run.duration,
             out.display()
         ))),
-        false => answered(&verdict),
+        false => answered(&answer.verdict),
     }
 }
 
@@ -110,7 +128,7 @@ fn carry_out(
 fn write(
     (scenario, things): (&Scenario, &[Thing]),
     summary: &Summary,
-    verdict: &Verdict,
+    answer: &Answer,
     recording: &Recording,
     figures: &[(String, Vec<u8>)],
     folder: &Folder,
@@ -120,7 +138,7 @@ fn write(
         ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
         ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
         ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
-        ("report.html", report_of_run((scenario, things), recording, summary, verdict)?.into_bytes()),
+        ("report.html", report_of_run((scenario, things), recording, summary, answer)?.into_bytes()),
         ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
     ];
     contents.extend(animation::bodies(scenario, recording)?);
@@ -139,7 +157,7 @@ fn write(
     }
     contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
     let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
-    let text = SummaryText::new(scenario, summary, verdict, files);
+    let text = SummaryText::new(scenario, summary, &answer.verdict, &answer.helping, files);
     let json = json_text("summary.json", &text)?;
     contents.push(("summary.json", json.clone().into_bytes()));
     folder.write(&contents)?;

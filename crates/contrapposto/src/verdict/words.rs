@@ -74,6 +74,10 @@ impl Findings {
         let worked =
             hardest.map(|(group, _)| format!("{} at {} of its strength", name(model, &group), percent(group.load)));
         let worked = worked.unwrap_or_else(|| "no muscle works".to_owned());
+        if model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
+            return "In balance; no strength of this body is known, so nothing can be said of load and time."
+                .to_owned();
+        }
         match self.asked {
             Some(time) => format!("Holds through the run ({}); hardest worked: {worked}.", how_long(time)),
             None => format!("Holds without a limit by muscles; hardest worked: {worked}."),

@@ -1,10 +1,9 @@
 //! The words of a run's page: a headline, the reasons, and the few numbers that say most.
 
 use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
-use contrapposto::verdict::Verdict;
 use contrapposto_report::{Figure, Report};
 
-use crate::view::answer::also_missed;
+use crate::view::answer::{Answer, also_missed};
 use crate::view::axes::pelvis_list;
 use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
@@ -21,7 +20,7 @@ pub(super) fn write(
     scenario: &Scenario,
     excerpt: &RunExcerpt,
     summary: &Summary,
-    verdict: &Verdict,
+    answer: &Answer,
     shown: &[usize],
     report: &mut Report,
 ) {
@@ -41,8 +40,8 @@ pub(super) fn write(
         Some((_, list)) => narrative.of_level(list),
         None => narrative.of_joint(),
     };
-    report.headline.clone_from(&verdict.sentence);
-    report.reasons = also_missed(verdict).into_iter().chain([happened]).collect();
+    report.headline.clone_from(&answer.verdict.sentence);
+    report.reasons = also_missed(&answer.verdict).into_iter().chain(answer.advice.clone()).chain([happened]).collect();
     report.reasons.extend(narrative.reasons(standing.is_some()));
     report.reasons.extend(summary.foot_steps.iter().map(|step| narrative.of_step(step)));
     report.reasons.push(narrative.end(excerpt, summary));

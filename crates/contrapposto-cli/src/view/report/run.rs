@@ -1,12 +1,12 @@
 //! The page of a run over time.
 
 use contrapposto::simulation::{Scenario, Summary};
-use contrapposto::verdict::Verdict;
 use contrapposto_formats::Thing;
 use contrapposto_report::{Entry, List, Moments};
 
 use super::narrative;
 use crate::fail::Fail;
+use crate::view::answer::Answer;
 use crate::view::decision::decision;
 use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::recording::Recording;
@@ -19,7 +19,7 @@ pub(crate) fn report_of_run(
     (scenario, things): (&Scenario, &[Thing]),
     recording: &Recording,
     summary: &Summary,
-    verdict: &Verdict,
+    answer: &Answer,
 ) -> Result<String, Fail> {
     let excerpt = RunExcerpt::new(scenario, recording, summary);
     let shown = shown(&scenario.model);
@@ -36,7 +36,7 @@ pub(crate) fn report_of_run(
         entries: entries(scenario, &excerpt, &shown),
         none: "None: no muscle group needed relief.".to_owned(),
     };
-    narrative::write(scenario, &excerpt, summary, verdict, &shown, &mut report);
+    narrative::write(scenario, &excerpt, summary, answer, &shown, &mut report);
     Ok(contrapposto_report::write(&report))
 }
 

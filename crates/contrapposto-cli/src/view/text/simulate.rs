@@ -5,11 +5,10 @@ use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
 use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, StopReason, Summary, TaskSettings};
 use contrapposto::tasks::Task;
-use contrapposto::verdict::Verdict;
 
 use super::plain_table;
 use crate::output::Folder;
-use crate::view::answer::first_lines;
+use crate::view::answer::Answer;
 use crate::view::words::MOST_ROWS;
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
@@ -42,7 +41,7 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
     format!("cases {}", list.join(", "))
 }
 
-pub(crate) fn report(scenario: &Scenario, summary: &Summary, verdict: &Verdict, folder: &Folder) -> String {
+pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: &Folder) -> String {
     let mut table = plain_table();
     table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
     let all = scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free);
@@ -87,7 +86,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, verdict: &Verdict, 
     };
     format!(
         "{}{}\n{table}\n{more}{standing}{reason} after {:.2} s ({} samples)\nreport: {}\npictures: {}, {}\n",
-        first_lines(verdict),
+        answer.first_lines(),
         scenario.title,
         summary.end_time,
         summary.samples,

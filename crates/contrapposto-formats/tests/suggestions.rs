@@ -1,0 +1,124 @@
+//! Every change that is suggested, written into the scenario file by hand and run on its own, gives the time that was promised.
+
+use contrapposto::fatigue::FatigueLaw;
+use contrapposto::simulation::{Run, Scenario, Summary};
+use contrapposto::suggestions::{BREAK, BREAK_EVERY, Change, changes, suggestion, with_breaks};
+use contrapposto::verdict::{Verdict, VerdictKind};
+use contrapposto_formats::read_scenario;
+
+/// An arm that holds a weight before the body.
+fn text(target: [f64; 3], kilograms: f64, strategy: &str) -> String {
+    format!(
+        r#"
+format = 1
+title = "a weight held out"
+[model]
+adult = {{ sex = "male", stature_m = 1.75, mass_kg = 75, part = "right_arm" }}
+[posture]
+arm_flex_r_deg = 40
+elbow_flex_r_deg = 60
+[[load]]
+segment = "hand_r"
+mass_kg = {kilograms}
+[[task]]
+kind = "point"
+segment = "hand_r"
+target_m = [{}, {}, {}]
+above_relief = true
+[[task]]
+kind = "effort"
+[strategy]
+kind = "{strategy}"
+[run]
+duration_s = 1500
+step_s = 0.1
+"#,
+        target[0], target[1], target[2]
+    )
+}
+
+/// The hand at the start of the body that holds nothing, forward by 0.1 m.
+const TARGET: [f64; 3] = [0.45, 1.2, 0.2];
+const KILOGRAMS: f64 = 5.0;
+
+fn read(text: &str) -> Scenario {
+    read_scenario("held.toml", text.as_bytes(), None).unwrap()
+}
+
+/// The whole run.
+fn ran(scenario: &Scenario) -> (Summary, Verdict) {
+    let mut run = Run::new(scenario).unwrap();
+    while run.next_sample().unwrap().is_some() {}
+    let summary = run.summary();
+    let verdict = Verdict::of_run(scenario, &summary);
+    (summary, verdict)
+}
+
+#[test]
+fn every_change_gives_the_time_that_a_whole_run_of_the_changed_file_gives() {
+    let scenario = read(&text(TARGET, KILOGRAMS, "active"));
+    let (_, before) = ran(&scenario);
+    assert_eq!(before.kind, VerdictKind::HeldUntil, "{}", before.sentence);
+    let all = changes(&scenario);
+    assert_eq!(all.len(), 5, "{all:?}");
+    let mut seen = 0;
+    for change in &all {
+        let moved = |by: f64| [TARGET[0], TARGET[1] + by, TARGET[2]];
+        let by_hand = match change {
+            Change::Targets(by, _) if by.y < -0.05 => text(moved(-0.1), KILOGRAMS, "active"),
+            Change::Targets(by, _) if by.y > 0.05 => text(moved(0.1), KILOGRAMS, "active"),
+            Change::Targets(by, _) => {
+                assert!((by.norm() - 0.1).abs() < 1e-12 && by.y.abs() < 1e-12 && by.x < 0.0, "nearer: {by}");
+                text([TARGET[0] + by.x, TARGET[1], TARGET[2] + by.z], KILOGRAMS, "active")
+            }
+            Change::Loads(_) => text(TARGET, 0.8 * KILOGRAMS, "active"),
+            Change::Strategy(_) => text(TARGET, KILOGRAMS, "passive"),
+            Change::OtherFoot => panic!("an arm has no feet"),
+        };
+        let promised = suggestion(&scenario, change, || true).unwrap();
+        let (_, found) = ran(&read(&by_hand));
+        println!("{}: {:?} {:?}", promised.change, promised.kind, promised.seconds);
+        assert_eq!(promised.kind, found.kind, "{}", promised.change);
+        if let (Some(promised), Some(found)) = (promised.seconds, found.seconds) {
+            assert!((promised - found).abs() <= 0.1 + 1e-3 * found, "{change:?}: {promised} s promised, {found} s");
+        }
+        seen += 1;
+    }
+    assert_eq!(seen, all.len());
+}
+
+#[test]
+fn a_break_a_minute_every_ten_gives_the_time_of_small_steps_of_the_law() {
+    let scenario = read(&text(TARGET, 0.17 * KILOGRAMS, "active"));
+    let (summary, verdict) = ran(&scenario);
+    let promised = with_breaks(&scenario, &summary).unwrap();
+    // The group that fails first without breaks, or is worked hardest: its load and its law in steps of 0.05 s.
+    let who = verdict.who.unwrap();
+    let groups = scenario.model.coordinates()[who.coordinate].groups.as_ref().unwrap();
+    let FatigueLaw::ThreeCompartment(law) = &groups[who.side.index()].fatigue else { panic!("another law") };
+    let loads = &summary.coordinates[who.coordinate].loads[who.side.index()];
+    let (mut fatigued, mut work, mut time, mut fails) = (0.0, 0.0, 0.0, f64::INFINITY);
+    let h = 0.05;
+    while time < 1500.0 {
+        let rests = time % (BREAK_EVERY + BREAK) >= BREAK_EVERY;
+        let load = if rests { 0.0 } else { loads.at(work) };
+        let recovery = if rests { law.rest_multiplier * law.recovery_rate } else { law.recovery_rate };
+        fatigued += h * (law.fatigue_rate * load - recovery * fatigued);
+        time += h;
+        work += if rests { 0.0 } else { h };
+        if !rests && fatigued >= 1.0 - load {
+            fails = time;
+            break;
+        }
+    }
+    // Without breaks the group fails before the end, and only after the first break.
+    assert!(verdict.seconds.unwrap() > BREAK_EVERY && verdict.kind == VerdictKind::HeldUntil, "{}", verdict.sentence);
+    println!(
+        "promised {:?} {:?}, by small steps {fails} s; without breaks {:?}",
+        promised.kind, promised.seconds, verdict.seconds
+    );
+    match promised.kind {
+        VerdictKind::Holds => assert!(fails.is_infinite(), "{fails}"),
+        _ => assert!((promised.seconds.unwrap() - fails).abs() < 3.0 + 0.01 * fails, "{:?} {fails}", promised.seconds),
+    }
+}
