@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
-use contrapposto::model::{CoordinateKind, Side};
-use contrapposto::simulation::{Contact, FootStep, Scenario, Standing, StopReason, Summary};
+use contrapposto::model::{Coordinate, CoordinateKind, Side};
+use contrapposto::simulation::{Contact, CoordinateSummary, FootStep, Scenario, Standing, StopReason, Summary};
 use contrapposto::suggestions::Suggestion;
 use contrapposto::verdict::Verdict;
 use serde::Serialize;
@@ -185,30 +185,8 @@ impl SummaryText {
     ) -> Self {
         let model = &scenario.model;
         let names = model.coordinates().iter().map(|c| c.name.clone());
-        let coordinates = model.coordinates().iter().zip(&summary.coordinates).enumerate().map(|(i, (c, s))| {
-            let [external, passive, active] = s.final_torques;
-            let group = |side: Side| GroupText {
-                name: c.groups.as_ref().map(|groups| groups[side.index()].name.clone()),
-                fatigue: c.groups.as_ref().map(|groups| FatigueParametersText::new(&groups[side.index()])),
-                peak_fatigue: s.peak_fatigue[side.index()],
-                exhausted_s: s.exhausted_at[side.index()],
-            };
-            let text = CoordinateText {
-                free: scenario.free[i],
-                cases: s.cases.iter().map(|case| case.number()).collect(),
-                case_changes: s.case_changes,
-                iterations: iterations(&s.iterations),
-                final_deg: if c.kind == CoordinateKind::Rotation { s.final_value.to_degrees() } else { s.final_value },
-                final_external_nm: external,
-                final_passive_nm: passive,
-                final_active_nm: active,
-                peak_relative_load: s.peak_load,
-                positive: group(Side::Positive),
-                negative: group(Side::Negative),
-                last_outcome: s.last_decision.map(|decision| decision.outcome.word()),
-            };
-            (c.name.clone(), text)
-        });
+        let coordinates = model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free);
+        let coordinates = coordinates.map(|((c, s), free)| (c.name.clone(), CoordinateText::new(c, s, *free)));
         let failed = model.coordinates().iter().zip(&summary.coordinates).flat_map(|(c, s)| {
             let failure = |side: Side| {
                 let group = c.groups.as_ref().map(|groups| groups[side.index()].name.clone());
@@ -238,6 +216,32 @@ impl SummaryText {
             coordinate_order: names.collect(),
             coordinates: coordinates.collect(),
             files,
+        }
+    }
+}
+
+impl CoordinateText {
+    fn new(c: &Coordinate, s: &CoordinateSummary, free: bool) -> Self {
+        let [external, passive, active] = s.final_torques;
+        let group = |side: Side| GroupText {
+            name: c.groups.as_ref().map(|groups| groups[side.index()].name.clone()),
+            fatigue: c.groups.as_ref().map(|groups| FatigueParametersText::new(&groups[side.index()])),
+            peak_fatigue: s.peak_fatigue[side.index()],
+            exhausted_s: s.exhausted_at[side.index()],
+        };
+        Self {
+            free,
+            cases: s.cases.iter().map(|case| case.number()).collect(),
+            case_changes: s.case_changes,
+            iterations: iterations(&s.iterations),
+            final_deg: if c.kind == CoordinateKind::Rotation { s.final_value.to_degrees() } else { s.final_value },
+            final_external_nm: external,
+            final_passive_nm: passive,
+            final_active_nm: active,
+            peak_relative_load: s.peak_load,
+            positive: group(Side::Positive),
+            negative: group(Side::Negative),
+            last_outcome: s.last_decision.map(|decision| decision.outcome.word()),
         }
     }
 }
