@@ -215,8 +215,8 @@ pub struct List {
 pub struct Entry {
     /// Number of the frame.
     pub frame: usize,
-    /// Index in [`Report::joints`].
-    pub joint: usize,
+    /// Index in [`Report::joints`]; `None` for a text about no joint.
+    pub joint: Option<usize>,
     /// In plain words.
     pub text: String,
 }

@@ -39,7 +39,7 @@ fn report() -> Report {
         balance: vec![Balance { angle: vec![-10.0, 90.0], minus_passive: vec![-1.0, 9.0], external: vec![2.0, 3.0] }],
         ..Joint::default()
     };
-    let entry = |frame, joint, text: &str| Entry { frame, joint, text: text.to_owned() };
+    let entry = |frame, joint, text: &str| Entry { frame, joint: Some(joint), text: text.to_owned() };
     Report {
         title: HOSTILE.to_owned(),
         body: HOSTILE.to_owned(),
@@ -100,7 +100,8 @@ fn postures(count: usize) -> Report {
     for segment in &mut report.segments {
         segment.places = segment.places.iter().step_by(20).copied().collect();
     }
-    report.list.entries = (0..count).map(|frame| Entry { frame, joint: frame % 2, text: HOSTILE.to_owned() }).collect();
+    report.list.entries =
+        (0..count).map(|frame| Entry { frame, joint: Some(frame % 2), text: HOSTILE.to_owned() }).collect();
     report.targets = vec![[0.2, 0.5, 0.1]];
     report
 }
@@ -324,7 +325,7 @@ fn a_long_report_is_five_screens_of_a_phone_and_two_pages_of_paper() {
     report.headline = "Can be held 19.8 min, then right shoulder flexion fails first.".to_owned();
     report.reasons = vec![text(); 8];
     report.figures = vec![Figure { label: "Load".to_owned(), value: "5 %".to_owned(), note: "a note".to_owned() }; 6];
-    report.list.entries = (0..120).map(|i| Entry { frame: i % 50, joint: 0, text: text() }).collect();
+    report.list.entries = (0..120).map(|i| Entry { frame: i % 50, joint: Some(0), text: text() }).collect();
     report.list.heading = "Decisions".to_owned();
     report.table.heading = "Table".to_owned();
     report.table.rows = vec![vec!["a cell".to_owned(); 6]; 10];

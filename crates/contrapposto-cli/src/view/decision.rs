@@ -6,7 +6,36 @@ use contrapposto::model::Model;
 use super::excerpt::{Event, EventKind};
 use super::frame::Frame;
 use super::muscles::tired;
-use super::words::{percent, plain, sentence, value};
+use super::words::{how_long, percent, plain, sentence, value};
+
+/// A decision in plain words that stands for all of its kind: those of one joint and one sentence.
+pub(crate) fn merged(model: &Model, events: &[(&Event, &Frame)]) -> Option<String> {
+    let (&(first, frame), &(last, _)) = events.first().zip(events.last())?;
+    let text = decision(model, first, frame);
+    if events.len() == 1 {
+        return Some(text);
+    }
+    let goals = events.iter().filter_map(|(event, _)| match &event.kind {
+        EventKind::Decided(decision) => decision.goal,
+        _ => None,
+    });
+    let (low, high) =
+        goals.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), goal| (low.min(goal), high.max(goal)));
+    let [from, to] = [low, high].map(|goal| value(model, first.coordinate, goal));
+    let goals = if low < high && from != to { format!(", to goals from {from} to {to}") } else { String::new() };
+    Some(format!("{text} ({} times until {}{goals})", events.len(), how_long(last.time)))
+}
+
+/// Whether two events are told by one sentence pattern.
+pub(crate) fn alike(a: &Event, b: &Event) -> bool {
+    let stays = |decision: &Decision| matches!(decision.outcome, Outcome::Stay | Outcome::None);
+    a.coordinate == b.coordinate
+        && match (&a.kind, &b.kind) {
+            (EventKind::Decided(a), EventKind::Decided(b)) => stays(a) == stays(b),
+            (EventKind::Waits, EventKind::Waits) | (EventKind::Recovered, EventKind::Recovered) => true,
+            _ => false,
+        }
+}
 
 /// An event of a run in one or two sentences.
 pub(crate) fn decision(model: &Model, event: &Event, frame: &Frame) -> String {

@@ -180,7 +180,7 @@ fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], s
         let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
         if let Some(time) = found.exhausted_at {
             let text = format!("{} fails: it cannot give the torque that is needed.", name(model, found));
-            entries.push(Entry { frame: assessed_frames.nearest(time), joint, text });
+            entries.push(Entry { frame: assessed_frames.nearest(time), joint: Some(joint), text });
         }
         if model.coordinates()[found.coordinate].kind != CoordinateKind::Rotation {
             continue;
@@ -190,7 +190,7 @@ fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], s
             if peak.iter().any(moves) {
                 entries.push(Entry {
                     frame: assessed_frames.nearest(peak[0].time),
-                    joint,
+                    joint: Some(joint),
                     text: relief(model, found, peak),
                 });
             }

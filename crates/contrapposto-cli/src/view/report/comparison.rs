@@ -44,7 +44,7 @@ pub(crate) fn report_of_comparison(postures: &[ComparedPosture], text: &CompareT
         .collect();
     let entry = |(frame, compared): (usize, &ComparedPosture)| Entry {
         frame,
-        joint: report.main,
+        joint: Some(report.main),
         text: format!("{}: {} {}", compared.letter, compared.title, compared.verdict.sentence),
     };
     report.list = List {

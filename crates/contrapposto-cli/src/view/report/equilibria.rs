@@ -53,7 +53,7 @@ pub(crate) fn report_of_equilibria(
     let supports = carriers(&scene);
     let entry = |(frame, posture): (usize, &RelaxedPosture)| Entry {
         frame,
-        joint: shown.iter().position(|&i| i == main_coordinate_of(posture)).unwrap_or(0),
+        joint: shown.iter().position(|&i| i == main_coordinate_of(posture)),
         text: description(model, posture, &frames[frame], &supports),
     };
     report.list = List {

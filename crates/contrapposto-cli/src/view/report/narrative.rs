@@ -99,10 +99,9 @@ impl Narrative<'_> {
 
     /// The support that carries most at the end, and its share.
     fn heaviest(&self) -> Option<(String, f64)> {
-        let contacts = &self.last.standing.as_ref()?.contacts;
         let name = |i: usize| plain(&self.scenario.model.segments()[self.scenario.supports[i].segment].name);
-        let (i, contact) = contacts.iter().enumerate().max_by(|a, b| a.1.share.total_cmp(&b.1.share))?;
-        Some((name(i), contact.share))
+        let (i, share) = self.last.shares().into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some((name(i), share))
     }
 
     fn reasons(&self, standing: bool) -> Vec<String> {
@@ -180,11 +179,7 @@ impl Narrative<'_> {
             let note = format!("{down}; {:.1}° at the start", before.abs());
             figures.push(figure("Pelvis drops", format!("{:.1}°", after.abs()), note));
         }
-        let shares =
-            |frame: &Frame| frame.standing.as_ref().map(|s| s.contacts.iter().map(|c| c.share).collect::<Vec<_>>());
-        for (i, (before, after)) in
-            shares(first).into_iter().flatten().zip(shares(last).into_iter().flatten()).enumerate().take(4)
-        {
+        for (i, (before, after)) in first.shares().into_iter().zip(last.shares()).enumerate().take(4) {
             let name = plain(&scenario.model.segments()[scenario.supports[i].segment].name);
             figures.push(figure(
                 &format!("Weight on {name}"),

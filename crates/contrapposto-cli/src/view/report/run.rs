@@ -1,18 +1,22 @@
 //! The page of a run over time.
 
-use contrapposto::simulation::{Scenario, Summary};
+use contrapposto::hybrid::Strategy;
+use contrapposto::simulation::{FootStep, Scenario, Summary};
 use contrapposto_formats::Thing;
 use contrapposto_report::{Entry, List, Moments};
 
 use super::narrative;
 use crate::fail::Fail;
 use crate::view::answer::Answer;
-use crate::view::decision::decision;
+use crate::view::decision::{alike, merged};
 use crate::view::excerpt::{Event, RunExcerpt};
+use crate::view::frame::Frame;
 use crate::view::recording::Recording;
 use crate::view::scene::Scene;
+use crate::view::scene::hazard::{hazards, tell};
 use crate::view::selection::{main_coordinate, shown};
-use crate::view::stage::Stage;
+use crate::view::stage::{Stage, load_in_words};
+use crate::view::words::{how_long, list, plain};
 
 /// The page of a run.
 pub(crate) fn report_of_run(
@@ -32,19 +36,75 @@ pub(crate) fn report_of_run(
     let mut report = scene.report(Moments::Times(times), main_coordinate(scenario, summary))?;
     report.levels = Some([scenario.hysteresis.critical_level, scenario.hysteresis.recovery_level]);
     report.list = List {
-        heading: "Decisions".to_owned(),
-        entries: entries(scenario, &excerpt, &shown),
+        heading: "Decisions, changes and steps".to_owned(),
+        entries: entries(scenario, summary, &excerpt, &shown),
         none: "None: no muscle group needed relief.".to_owned(),
     };
+    let hazards = hazards(&scenario.model, &excerpt.frames, true);
     narrative::write(scenario, &excerpt, summary, answer, &shown, &mut report);
+    tell(&mut report, hazards);
     Ok(contrapposto_report::write(&report))
 }
 
-fn entries(scenario: &Scenario, excerpt: &RunExcerpt, shown: &[usize]) -> Vec<Entry> {
-    let entry = |event: &Event| {
-        let joint = shown.iter().position(|&i| i == event.coordinate)?;
-        let frame = excerpt.frames.iter().position(|frame| frame.time >= event.time)?;
-        Some(Entry { frame, joint, text: decision(&scenario.model, event, &excerpt.frames[frame]) })
-    };
-    excerpt.events.iter().filter_map(entry).collect()
+/// Decisions, those that repeat told once; changes of the scenario; and steps of feet. In the order of time.
+fn entries(scenario: &Scenario, summary: &Summary, excerpt: &RunExcerpt, shown: &[usize]) -> Vec<Entry> {
+    let frame_at = |time: f64| excerpt.frames.iter().position(|frame| frame.time >= time);
+    let mut kinds: Vec<Vec<(&Event, &Frame)>> = vec![];
+    for event in &excerpt.events {
+        let Some(frame) = frame_at(event.time).map(|i| &excerpt.frames[i]) else { continue };
+        match kinds.iter_mut().find(|kind| alike(kind[0].0, event)) {
+            Some(kind) => kind.push((event, frame)),
+            None => kinds.push(vec![(event, frame)]),
+        }
+    }
+    let decided = kinds.iter().filter_map(|kind| {
+        let joint = shown.iter().position(|&i| i == kind[0].0.coordinate)?;
+        Some((kind[0].0.time, Some(joint), merged(&scenario.model, kind)?))
+    });
+    let changed = scenario
+        .events
+        .iter()
+        .flat_map(|event| changes(scenario, event).into_iter().map(|text| (event.time, None, text)));
+    let stepped = summary.foot_steps.iter().map(|step| {
+        let joint = shown.iter().position(|&i| i == step.coordinate);
+        (step.time.0, joint, step_in_words(scenario, step))
+    });
+    let mut told: Vec<(f64, Option<usize>, String)> = decided.chain(changed).chain(stepped).collect();
+    told.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let entry = |(time, joint, text): (f64, Option<usize>, String)| Some(Entry { frame: frame_at(time)?, joint, text });
+    told.into_iter().filter_map(entry).collect()
+}
+
+/// What an event of the scenario changes, a sentence each.
+fn changes(scenario: &Scenario, event: &contrapposto::simulation::Event) -> Vec<String> {
+    let mut texts = vec![];
+    if let Some(loads) = &event.loads {
+        let loads: Vec<String> = loads.iter().map(|load| load_in_words(&scenario.model, load)).collect();
+        let loads = if loads.is_empty() { "none".to_owned() } else { list(&loads) };
+        texts.push(format!("Loads from now on: {loads}."));
+    }
+    if let Some(strategies) = &event.strategies {
+        let named = |strategy: Strategy| match strategy {
+            Strategy::Active => "active",
+            Strategy::Passive => "passive",
+        };
+        let same = strategies.iter().all(|strategy| strategies.first() == Some(strategy));
+        texts.push(match strategies.first().filter(|_| same) {
+            Some(&strategy) => format!("Strategy from now on: {}.", named(strategy)),
+            None => "Strategy from now on: active for some joints, passive for others.".to_owned(),
+        });
+    }
+    if !event.tasks.is_empty() {
+        texts.push("The target of a task changes.".to_owned());
+    }
+    texts
+}
+
+/// A support that is put elsewhere.
+fn step_in_words(scenario: &Scenario, step: &FootStep) -> String {
+    let support = plain(&scenario.model.segments()[scenario.supports[step.support].segment].name);
+    let ([from_x, _, from_z], [x, _, z]) = step.place;
+    let far = 100.0 * (x - from_x).hypot(z - from_z);
+    let why = plain(&scenario.model.coordinates()[step.coordinate].name);
+    format!("Step: {support} is put {far:.0} cm away, to relieve {why}; it is there at {}.", how_long(step.time.1))
 }
