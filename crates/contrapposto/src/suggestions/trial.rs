@@ -96,7 +96,7 @@ impl Suggestion {
             [best] => Some(format!("What would help: {}.", best.in_words())),
             [best, rest @ ..] => {
                 let rest: Vec<String> = rest.iter().map(Self::in_words).collect();
-                Some(format!("What would help most: {}. Less: {}.", best.in_words(), rest.join("; ")))
+                Some(format!("What would help most: {}. Also: {}.", best.in_words(), rest.join("; ")))
             }
         }
     }

@@ -1,7 +1,8 @@
 //! The terminal table of a solved pose.
 
 use contrapposto::posture_solver::{Reason, SolvedPosture};
-use contrapposto::verdict::Verdict;
+use contrapposto::tasks::Task;
+use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 
 use super::plain_table;
@@ -41,6 +42,18 @@ fn remaining(level: &PoseLevelText) -> String {
     if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
 }
 
+/// What keeps a posture in balance, where nothing asks for it and the body would fall.
+fn unbalanced(scenario: &PoseScenario, verdict: &Verdict) -> String {
+    let asks = |task: &Task| matches!(task, Task::CenterOfMass(_));
+    let asked = scenario.goals.iter().flat_map(|goal| &goal.tasks).any(asks);
+    if verdict.kind != VerdictKind::CannotStand || asked {
+        return String::new();
+    }
+    "`pose` keeps balance only where it is asked to: a task of kind `center_of_mass` keeps the body over its supports; `relax` and \
+     `simulate` always keep balance.\n"
+        .to_owned()
+}
+
 pub(crate) fn report(
     scenario: &PoseScenario,
     pose: &SolvedPosture,
@@ -68,6 +81,6 @@ pub(crate) fn report(
     format!(
         "{first}{title}{table}\n{reason} ({steps})\nreport: {}\n",
         folder.path("report.html").display(),
-        first = first_lines(verdict)
+        first = first_lines(verdict) + &unbalanced(scenario, verdict)
     )
 }
