@@ -50,7 +50,7 @@ fn look(page: &Path, pictures: &Path) {
     let mut times = vec![];
     for _ in 0..OPENINGS {
         let mut browser = Chromium::start_quietly();
-        size(&mut browser, 1280, 900, 1);
+        size(&mut browser, 1400, 900, 1);
         // Besides the clock, the processor time of the page's own thread: it hardly depends on who else uses the machine.
         browser.call("Performance.enable", json!({ "timeDomain": "threadTicks" }));
         browser.open(page);
@@ -60,7 +60,7 @@ fn look(page: &Path, pictures: &Path) {
     }
     let [drawn, ready, opening] = [0, 1, 2].map(|k| middle(times.iter().map(|time| time[k])));
     let mut browser = Chromium::start();
-    size(&mut browser, 1280, 900, 1);
+    size(&mut browser, 1400, 900, 1);
     browser.call("Performance.enable", json!({ "timeDomain": "threadTicks" }));
     browser.open(page);
     let before = busy(&mut browser);
@@ -79,15 +79,15 @@ fn look(page: &Path, pictures: &Path) {
         std::fs::read_to_string("/proc/loadavg").unwrap_or_default().split(' ').next().unwrap_or_default(),
     );
     browser.press("End");
-    for (kind, scheme, width) in [("light", "light", 1280), ("dark", "dark", 1280), ("phone", "light", 360)] {
-        size(&mut browser, width, if width < 500 { 740 } else { 900 }, if width < 500 { 2 } else { 1 });
+    for (kind, scheme, width) in [("light", "light", 1400), ("dark", "dark", 1400), ("phone", "light", 390)] {
+        size(&mut browser, width, if width < 500 { 844 } else { 900 }, if width < 500 { 2 } else { 1 });
         let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
         browser.call("Emulation.setEmulatedMedia", json!({ "media": "", "features": features }));
         settle(&mut browser);
         let shot = browser.call("Page.captureScreenshot", json!({ "captureBeyondViewport": true }));
         save(&pictures.join(format!("{name}-{kind}.png")), &shot);
     }
-    size(&mut browser, 1280, 900, 1);
+    size(&mut browser, 1400, 900, 1);
     browser.call("Emulation.setEmulatedMedia", json!({ "media": "", "features": [] }));
     settle(&mut browser);
     let paper = json!({ "printBackground": true, "preferCSSPageSize": true, "paperWidth": 8.27, "paperHeight": 11.69 });

@@ -46,7 +46,7 @@ impl Verdict {
     /// let posture = HeldPosture { groups: vec![elbow], ..HeldPosture::default() };
     /// let verdict = Verdict::of_posture(&model, &posture);
     /// assert_eq!(verdict.kind, VerdictKind::HeldUntil);
-    /// assert!(verdict.sentence.starts_with("Can be held 8"), "{}", verdict.sentence);
+    /// assert!(verdict.sentence.starts_with("Can be held 1.9"), "{}", verdict.sentence);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn of_posture(model: &Model, posture: &HeldPosture) -> Self {
