@@ -585,7 +585,7 @@ fn files_follow_the_mask_of_the_user() {
     for (mask, mode) in [("022", 0o644), ("077", 0o600), ("002", 0o664)] {
         let out = folder.path().join(mask);
         let script =
-            format!("umask {mask}; exec '{}' demo --out '{}'", env!("CARGO_BIN_EXE_contrapposto"), out.display());
+            format!("umask {mask}; exec '{}' demo --figure-8 --out '{}'", env!("CARGO_BIN_EXE_contrapposto"), out.display());
         assert!(Command::new("sh").args(["-c", &script]).output().unwrap().status.success());
         for name in FILES {
             let found = out.join(name).metadata().unwrap().permissions().mode() & 0o777;

@@ -1,5 +1,7 @@
 //! Every change that is suggested, written into the scenario file by hand and run on its own, gives the time that was promised.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::simulation::{Run, Scenario, Summary};
 use contrapposto::suggestions::{BREAK, BREAK_EVERY, Change, changes, suggestion, with_breaks};

@@ -1,5 +1,7 @@
 //! Every kind of verdict against numbers that are computed here in another way: levers, polygons, distances, Euler's method.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Side};
 use contrapposto::posture::Posture;

@@ -92,7 +92,7 @@ function hideUnknown() {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
     "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
     postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
-    overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
+    scene: report.segments.length, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
   find("things").textContent = [...new Set(report.things.map((thing) => thing.label))].join(", ");
