@@ -584,8 +584,11 @@ fn files_follow_the_mask_of_the_user() {
     let folder = tempfile::tempdir().unwrap();
     for (mask, mode) in [("022", 0o644), ("077", 0o600), ("002", 0o664)] {
         let out = folder.path().join(mask);
-        let script =
-            format!("umask {mask}; exec '{}' demo --figure-8 --out '{}'", env!("CARGO_BIN_EXE_contrapposto"), out.display());
+        let script = format!(
+            "umask {mask}; exec '{}' demo --figure-8 --out '{}'",
+            env!("CARGO_BIN_EXE_contrapposto"),
+            out.display()
+        );
         assert!(Command::new("sh").args(["-c", &script]).output().unwrap().status.success());
         for name in FILES {
             let found = out.join(name).metadata().unwrap().permissions().mode() & 0o777;
@@ -905,4 +908,32 @@ fn the_schema_is_one() {
         }
     }
     assert_eq!(schema["additionalProperties"], false);
+}
+
+/// A weight held out by an arm, until the shoulder fails.
+const HELD_OUT: &str = "format = 1\ntitle = \"Held out\"\n\
+    [model]\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75, part = \"right_arm\" }\n\
+    [posture]\narm_flex_r_deg = 40\nelbow_flex_r_deg = 60\n[[load]]\nsegment = \"hand_r\"\nmass_kg = 5\n\
+    [[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [0.45, 1.2, 0.2]\nabove_relief = true\n\
+    [[task]]\nkind = \"effort\"\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 300\nstep_s = 0.1\n";
+
+#[test]
+fn a_job_that_is_held_for_a_time_says_who_fails_first_and_what_helps_most() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = contrapposto(["simulate", "-", "--out"]).arg(folder.path()).stdin(HELD_OUT).run();
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert!(lines[0].starts_with("Can be held ") && lines[0].ends_with(" fails first."), "{}", lines[0]);
+    assert!(lines[1].starts_with("What would help most: with "), "{}", lines[1]);
+    let summary: Value = serde_json::from_slice(&std::fs::read(folder.path().join("summary.json")).unwrap()).unwrap();
+    let minutes = summary["verdict"]["minutes"].as_f64().unwrap();
+    assert!((60.0 * minutes - summary["failed_first"]["at_s"].as_f64().unwrap()).abs() < 1e-9);
+    let suggested = summary["suggestions"].as_array().unwrap();
+    assert!(!suggested.is_empty() && suggested.iter().all(|one| one["minutes"].as_f64().unwrap() > minutes));
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains(lines[0]) && page.contains("What would help most"));
+    // Without the changes the answer is the same.
+    let bare = contrapposto(["simulate", "-", "--no-suggest", "--out"]).arg(folder.path()).stdin(HELD_OUT).run();
+    assert_eq!(bare.stdout.lines().next(), Some(lines[0]));
+    assert!(!bare.stdout.contains("What would help"));
 }

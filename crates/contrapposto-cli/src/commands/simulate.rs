@@ -70,7 +70,7 @@ fn carry_out(run: &RunScenario, out: &Path, how: How) -> Result<(), Fail> {
     let (RunScenario { scenario, things, .. }, How { resume, figures, json, suggest }) = (run, how);
     let folder = Folder::open(out)?;
     // A second handler is refused, which only happens if there is one already.
-    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    let _ = ctrlc::set_handler(interrupt);
     let failed = |error| Fail::job("simulation", error);
     let (mut run, mut recording) = match resume {
         true => go_on(scenario, &folder.path(SNAPSHOT))?,
@@ -122,6 +122,14 @@ fn carry_out(run: &RunScenario, out: &Path, how: How) -> Result<(), Fail> {
         ))),
         false => answered(&answer.verdict),
     }
+}
+
+/// The first Ctrl-C ends the run as soon as a search that is under way is over; the second one ends the program.
+fn interrupt() {
+    if INTERRUPTED.swap(true, Ordering::Relaxed) {
+        std::process::exit(1);
+    }
+    print_note("note", "interrupted: the results so far are being written; Ctrl-C again leaves without them");
 }
 
 /// All files but the snapshot; gives the text of `summary.json`.

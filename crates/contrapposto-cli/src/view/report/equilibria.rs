@@ -1,5 +1,7 @@
 //! The page of the postures of least effort.
 
+use std::f64::consts::LN_2;
+
 use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture};
 use contrapposto::hybrid::{Carrier, Equilibrium};
 use contrapposto::model::Model;
@@ -150,7 +152,8 @@ fn stability_in_words(model: &Model, found: &RelaxedPosture) -> String {
             let name = |&(i, _): &(usize, f64)| plain(&model.coordinates()[i].name);
             let direction = |direction: &Direction| {
                 let joints: Vec<String> = direction.joints.iter().take(MOST_JOINTS_SHOWN).map(name).collect();
-                let grows = direction.growth_time().map(|time| format!(" (a sway grows e-fold in {time:.2} s)"));
+                let grows =
+                    direction.growth_time().map(|time| format!(" (a small sway doubles in {:.2} s)", LN_2 * time));
                 format!("{}{}", list(&joints), grows.unwrap_or_default())
             };
             let worst: Vec<String> = found.stability.unstable().iter().take(1).map(direction).collect();

@@ -1,6 +1,7 @@
 //! `relax.json`, and the terminal table of the postures of least effort.
 
 use std::collections::BTreeMap;
+use std::f64::consts::LN_2;
 use std::fmt::Write;
 
 use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture, Work};
@@ -298,7 +299,7 @@ impl RelaxedPostureText {
             let joints = direction.joints.iter().take(MOST_JOINTS_SHOWN);
             let joints: Vec<String> =
                 joints.map(|joint| format!("{} {}", joint.coordinate, percent(joint.share))).collect();
-            let grows = direction.growth_time_s.map(|time| format!(" (grows by e in {time:.2} s)"));
+            let grows = direction.growth_time_s.map(|time| format!(" (doubles in {:.2} s)", LN_2 * time));
             joints.join(", ") + grows.as_deref().unwrap_or_default()
         });
         line("unstable", unstable.collect());
