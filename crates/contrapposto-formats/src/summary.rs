@@ -150,7 +150,7 @@ pub struct CoordinateText {
     pub final_passive_nm: f64,
     /// See above.
     pub final_active_nm: f64,
-    /// Greatest |active torque| over strength.
+    /// Greatest |active torque| over strength while no support was put elsewhere.
     pub peak_relative_load: f64,
     /// The positive group.
     pub positive: GroupText,

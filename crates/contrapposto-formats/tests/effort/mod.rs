@@ -58,8 +58,9 @@ impl Problem {
         let text = std::fs::read(shared("vectors/ik_targets_human48.json")).unwrap();
         let root = if standing { RootAttachment::Free } else { RootAttachment::Fixed };
         let options = urdf::Options { root, ..urdf::Options::default() };
-        // The peer minimises the torques of the coordinates.
-        let mut model = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model.by_coordinates();
+        // The peer minimises the torques of the coordinates, and knows nothing of the file's effort limits.
+        let read = urdf::read(&bytes, "human48", &options).unwrap().model().unwrap().model;
+        let mut model = read.without_groups().by_coordinates();
         let file: Value = serde_json::from_slice(&text).unwrap();
         let rest = rest(&model, &file);
         let mut locked = vec![];

@@ -71,7 +71,7 @@ pub struct CoordinateSummary {
     pub final_value: f64,
     /// Last torques: external, passive, active, N m.
     pub final_torques: [f64; 3],
-    /// Greatest relative load.
+    /// Greatest relative load while no support was put elsewhere.
     pub peak_load: f64,
     /// Greatest fatigue of the positive and negative group.
     pub peak_fatigue: [f64; 2],
@@ -115,7 +115,9 @@ impl CoordinateSummary {
     pub(super) fn take(&mut self, i: usize, sample: &Sample) {
         self.final_value = sample.posture[i];
         self.final_torques = [sample.external[i], sample.passive[i], sample.active[i]];
-        self.peak_load = self.peak_load.max(sample.load[i]);
+        if !sample.stepping {
+            self.peak_load = self.peak_load.max(sample.load[i]);
+        }
         for side in Side::BOTH.map(Side::index) {
             let works = Side::of(sample.active[i]).index() == side;
             self.loads[side].push(sample.time, if works { sample.load[i] } else { 0.0 });
