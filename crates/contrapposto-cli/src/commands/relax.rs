@@ -63,8 +63,8 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         Ok(found) => found,
         Err(SearchError::CannotStand(missing)) => {
             let folder = args.out.as_deref().map(Folder::open).transpose()?;
-            let (title, model) = (&scenario.title, &scenario.model);
-            return without_posture("relax.json", title, model, missing, folder.as_ref(), args.json);
+            let (title, body) = (&scenario.title, (&scenario.model, scenario.loads.as_slice()));
+            return without_posture("relax.json", title, body, missing, folder.as_ref(), args.json);
         }
         Err(SearchError::Relax(error)) => return Err(Fail::Refused(format!("{name}: {error}"))),
         Err(error) => return Err(Fail::Job(format!("{name}: {error}"))),

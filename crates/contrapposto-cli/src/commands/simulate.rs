@@ -77,7 +77,8 @@ fn carry_out(run: &RunScenario, out: &Path, how: How) -> Result<(), Fail> {
         false => match Run::new(scenario) {
             Ok(run) => (run, Recording::new(scenario)),
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
-                return without_posture("summary.json", &scenario.title, &scenario.model, missing, Some(&folder), json);
+                let body = (&scenario.model, scenario.loads.as_slice());
+                return without_posture("summary.json", &scenario.title, body, missing, Some(&folder), json);
             }
             Err(error) => return Err(failed(error)),
         },

@@ -3,6 +3,7 @@
 use contrapposto::contact::Missing;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
+use contrapposto::statics::{Load, LoadKind};
 use contrapposto::suggestions::{Change, Suggestion, changes, suggestion, with_breaks};
 use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::VerdictText;
@@ -89,7 +90,7 @@ pub(crate) fn answered(verdict: &Verdict) -> Result<(), Fail> {
 pub(crate) fn without_posture(
     name: &str,
     title: &str,
-    model: &Model,
+    (model, loads): (&Model, &[Load]),
     missing: Missing,
     folder: Option<&Folder>,
     json: bool,
@@ -98,6 +99,15 @@ pub(crate) fn without_posture(
     let text = AnswerText { title, model: model.name(), verdict: VerdictText::new(model, &verdict) };
     let text = json_text(name, &text)?;
     folder.map(|folder| folder.write(&[(name, text.as_bytes())])).transpose()?;
-    print(&if json { text } else { first_lines(&verdict) })?;
+    let heavy = heavy(model, loads).map_or(String::new(), |heavy| heavy + "\n");
+    print(&if json { text } else { first_lines(&verdict) + &heavy })?;
     Err(Fail::Answered)
+}
+
+/// Says that the held weights are heavier than the body.
+fn heavy(model: &Model, loads: &[Load]) -> Option<String> {
+    let weight = |load: &Load| if let LoadKind::Weight(mass) = load.kind { mass } else { 0.0 };
+    let held: f64 = loads.iter().map(weight).sum();
+    (held > model.mass())
+        .then(|| format!("The loads weigh {held} kg, the body {:.0} kg: are kilograms meant?", model.mass()))
 }

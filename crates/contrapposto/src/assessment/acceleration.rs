@@ -11,8 +11,8 @@ const SPAN: f64 = 0.05;
 /// Acceleration up to which a posture counts as held, m/s^2: a tenth of gravity.
 const HELD_ACCELERATION: f64 = 1.0;
 
-/// Greatest acceleration of the centre of mass (m/s^2, by second differences over [`SPAN`] to both sides at least), and the
-/// share of the instants in which it is above [`HELD_ACCELERATION`].
+/// Greatest acceleration of the centre of mass (m/s^2, by second differences over `SPAN` to both sides at least), and the
+/// share of the instants in which it is above `HELD_ACCELERATION`.
 pub fn acceleration(motion: &[(f64, Posture)], centers: &[Vector3<f64>]) -> (Peak, f64) {
     let mut peak = Peak::default();
     if centers.len() != motion.len() {
