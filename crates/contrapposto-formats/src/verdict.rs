@@ -1,6 +1,6 @@
 //! Writes a verdict as it stands in every JSON file.
 
-use contrapposto::model::{Model, plain_group_name, plain_name};
+use contrapposto::model::Model;
 use contrapposto::suggestions::Suggestion;
 use contrapposto::tasks::Unit;
 use contrapposto::verdict::{Missed, Verdict};
@@ -63,19 +63,12 @@ pub struct MissedText {
 impl VerdictText {
     /// Of a verdict on a body.
     pub fn new(model: &Model, verdict: &Verdict) -> Self {
-        let who = verdict.who.map(|group| {
-            let coordinate = &model.coordinates()[group.coordinate];
-            match &coordinate.groups {
-                Some(groups) => plain_group_name(&groups[group.side.index()].name, &coordinate.name),
-                None => plain_name(&coordinate.name),
-            }
-        });
         let minutes = |seconds: f64| seconds.is_finite().then_some(seconds / 60.0);
         Self {
             kind: verdict.kind.word(),
             minutes: verdict.seconds.and_then(minutes),
             minutes_range: verdict.range.map(|(least, greatest)| [least, greatest].map(minutes)),
-            who,
+            who: verdict.who.map(|who| who.name(model)),
             load: verdict.who.map(|group| group.load),
             sentence: verdict.sentence.clone(),
             missed: verdict.missed.iter().map(MissedText::from).collect(),

@@ -55,8 +55,9 @@ impl Answer {
             }));
         }
         let breaks = (verdict.kind == VerdictKind::HeldUntil).then(|| with_breaks(scenario, summary)).flatten();
-        let number = tried.len() + usize::from(breaks.is_some());
-        let helping = Suggestion::that_help(tried.into_iter().flatten().chain(breaks).collect(), verdict);
+        let tried: Vec<Suggestion> = tried.into_iter().flatten().chain(breaks).collect();
+        let number = tried.len();
+        let helping = Suggestion::that_help(tried, verdict);
         self.advice = Suggestion::sentence(&helping, number, verdict);
         self.helping = helping;
     }

@@ -39,11 +39,6 @@ impl Side {
         if torque < 0.0 { Self::Negative } else { Self::Positive }
     }
 
-    /// `size` with the sign of the group's torque.
-    pub(crate) fn signed(self, size: f64) -> f64 {
-        if self == Self::Positive { size } else { -size }
-    }
-
     /// `positive` or `negative`, as in output columns.
     pub fn word(self) -> &'static str {
         if self == Self::Positive { "positive" } else { "negative" }

@@ -79,7 +79,7 @@ pub struct CoordinateSummary {
     pub exhausted_at: [Option<f64>; 2],
     /// The last decision.
     pub last_decision: Option<Decision>,
-    /// Relative load of the positive and negative group over the run.
+    /// Relative load of the positive and negative group over the run; while a support is put elsewhere the load before goes on.
     pub loads: [LoadHistory; 2],
 }
 
@@ -116,16 +116,11 @@ impl CoordinateSummary {
         self.final_value = sample.posture[i];
         self.final_torques = [sample.external[i], sample.passive[i], sample.active[i]];
         if !sample.stepping {
-            self.peak_load = self.peak_load.max(sample.load[i]);
+            self.take_load(i, sample);
         }
         for side in Side::BOTH.map(Side::index) {
-            let works = Side::of(sample.active[i]).index() == side;
-            self.loads[side].push(sample.time, if works { sample.load[i] } else { 0.0 });
             let fatigue = sample.fatigue[i][side];
             self.peak_fatigue[side] = self.peak_fatigue[side].max(fatigue);
-            if sample.exhausted[i][side] && !sample.stepping && self.exhausted_at[side].is_none() {
-                self.exhausted_at[side] = Some(sample.time);
-            }
         }
         let Some(decision) = &sample.decisions[i] else { return };
         self.iterations[decision.case as usize] += 1;
@@ -136,5 +131,17 @@ impl CoordinateSummary {
             }
         }
         self.last_decision = Some(*decision);
+    }
+
+    /// Loads and exhaustion; not of a sample in which a support is put elsewhere.
+    fn take_load(&mut self, i: usize, sample: &Sample) {
+        self.peak_load = self.peak_load.max(sample.load[i]);
+        for side in Side::BOTH.map(Side::index) {
+            let works = Side::of(sample.active[i]).index() == side;
+            self.loads[side].push(sample.time, if works { sample.load[i] } else { 0.0 });
+            if sample.exhausted[i][side] && self.exhausted_at[side].is_none() {
+                self.exhausted_at[side] = Some(sample.time);
+            }
+        }
     }
 }

@@ -10,11 +10,11 @@ use crate::verdict::VerdictKind;
 pub const BREAK_EVERY: f64 = 600.0;
 /// A break lasts so long, s.
 pub const BREAK: f64 = 60.0;
-/// Longest piece of work under one load, s.
+/// Piece of work under one load, s.
 const WORK_PIECE: f64 = 1.0;
 
 /// The job of a run with a break of a minute after every ten minutes of work: in a break no group has a load; between breaks each has
-/// that of the run. Time counts work and breaks. `None` where the run is too short for a break, or nobody fails.
+/// that of the run. Time counts work and breaks. `None` where the run is too short for a break.
 pub fn with_breaks(scenario: &Scenario, summary: &Summary) -> Option<Suggestion> {
     let asked = scenario.run.end();
     if asked <= BREAK_EVERY {

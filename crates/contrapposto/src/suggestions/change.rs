@@ -35,14 +35,8 @@ pub enum Change {
 pub fn changes(scenario: &Scenario) -> Vec<Change> {
     let model = &scenario.model;
     let mut changes = vec![];
-    let carries = |segment: usize| scenario.supports.iter().any(|support| support.segment == segment);
-    let target = scenario.tasks.iter().flat_map(|task| &task.goal.tasks).find_map(|task| match task {
-        Task::Point(point) if !carries(point.segment) => Some(point.target),
-        Task::Placement(placement) if !carries(placement.segment) => Some(placement.target.translation.vector),
-        _ => None,
-    });
     let up = (-model.gravity()).try_normalize(1e-9);
-    if let (Some(target), Some(up)) = (target, up) {
+    if let (Some(&(_, target)), Some(up)) = (targets(scenario).first(), up) {
         changes.push(Change::Targets(-MOVED * up, "10 cm lower"));
         changes.push(Change::Targets(MOVED * up, "10 cm higher"));
         let mut kinematics = Kinematics::new(model);
@@ -65,6 +59,18 @@ pub fn changes(scenario: &Scenario) -> Vec<Change> {
     }
     changes.extend(one_foot_is_ahead(scenario).then_some(Change::OtherFoot));
     changes
+}
+
+/// Segments that carry nothing and are asked to a place, and these places, ground, m.
+fn targets(scenario: &Scenario) -> Vec<(usize, Vector3<f64>)> {
+    let carries = |segment: usize| scenario.supports.iter().any(|support| support.segment == segment);
+    let tasks = scenario.tasks.iter().flat_map(|task| &task.goal.tasks);
+    let target = |task: &Task| match task {
+        Task::Point(point) => Some((point.segment, point.target)),
+        Task::Placement(placement) => Some((placement.segment, placement.target.translation.vector)),
+        _ => None,
+    };
+    tasks.filter_map(target).filter(|(segment, _)| !carries(*segment)).collect()
 }
 
 /// Whether the body stands on two segments of both sides alone, one ahead of the other, and has a mirror image.
@@ -112,19 +118,13 @@ impl Change {
     }
 
     /// `the target of right hand 10 cm lower`.
-    pub fn in_words(&self, model: &Model, scenario: &Scenario) -> String {
+    pub fn in_words(&self, scenario: &Scenario) -> String {
         match self {
             Self::Targets(_, how) => {
-                let carries = |segment: usize| scenario.supports.iter().any(|support| support.segment == segment);
                 let mut names: Vec<String> = vec![];
-                for task in scenario.tasks.iter().flat_map(|task| &task.goal.tasks) {
-                    let segment = match task {
-                        Task::Point(point) => point.segment,
-                        Task::Placement(placement) => placement.segment,
-                        _ => continue,
-                    };
-                    let name = plain_name(&model.segments()[segment].name);
-                    if !carries(segment) && !names.contains(&name) {
+                for (segment, _) in targets(scenario) {
+                    let name = plain_name(&scenario.model.segments()[segment].name);
+                    if !names.contains(&name) {
                         names.push(name);
                     }
                 }

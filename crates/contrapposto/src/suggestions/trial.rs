@@ -24,7 +24,7 @@ pub struct Suggestion {
 ///
 /// # Errors
 /// [`ScenarioError`], but for a body that cannot stand, which is a verdict.
-pub fn trial(scenario: &Scenario, go_on: impl Fn() -> bool) -> Result<Option<Verdict>, ScenarioError> {
+fn trial(scenario: &Scenario, go_on: impl Fn() -> bool) -> Result<Option<Verdict>, ScenarioError> {
     let mut run = match Run::new(scenario) {
         Ok(run) => run,
         Err(ScenarioError::CannotStand(missing)) => return Ok(Some(Verdict::of_fall(&scenario.model, missing))),
@@ -54,7 +54,7 @@ pub fn trial(scenario: &Scenario, go_on: impl Fn() -> bool) -> Result<Option<Ver
 pub fn suggestion(scenario: &Scenario, change: &Change, go_on: impl Fn() -> bool) -> Option<Suggestion> {
     let verdict = trial(&change.apply(scenario), go_on).ok()??;
     Some(Suggestion {
-        change: change.in_words(&scenario.model, scenario),
+        change: change.in_words(scenario),
         kind: verdict.kind,
         seconds: verdict.seconds,
         load: verdict.who.map(|group| group.load),

@@ -1,12 +1,13 @@
 //! Finds the muscle group that fails first in one posture that is held.
 
+use super::Failure;
 use super::spread::spread;
 use crate::fatigue::LoadHistory;
 use crate::joint_torques::GroupLoad;
 use crate::model::Model;
 
-/// The group that fails first when everybody was rested, its time (s) and the spread of that time; `None` where all hold for ever.
-pub(super) fn fails_first(model: &Model, groups: &[GroupLoad]) -> Option<(GroupLoad, f64, (f64, f64))> {
+/// The group that fails first when all groups were rested; `None` where all hold for ever.
+pub(super) fn fails_first(model: &Model, groups: &[GroupLoad]) -> Option<Failure> {
     let group_of = |group: &GroupLoad| {
         let groups = model.coordinates().get(group.coordinate)?.groups.as_ref()?;
         Some(&groups[group.side.index()])
@@ -15,7 +16,7 @@ pub(super) fn fails_first(model: &Model, groups: &[GroupLoad]) -> Option<(GroupL
         let seconds = group_of(group)?.fatigue.endurance_time(group.load);
         seconds.is_finite().then_some((*group, seconds))
     });
-    let (group, seconds) = tires.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (group, time) = tires.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let history = LoadHistory::constant(group.load);
-    Some((group, seconds, spread(group_of(&group)?, &history, 0.0, 0.0)))
+    Some(Failure { who: group.into(), time, range: spread(group_of(&group)?, &history, 0.0) })
 }

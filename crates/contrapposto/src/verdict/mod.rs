@@ -17,15 +17,17 @@ mod missed;
 mod motion;
 mod posture;
 mod run;
-pub mod spread;
+mod spread;
 mod words;
 
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed};
 pub use posture::HeldPosture;
+pub use spread::spread;
 pub use words::how_long;
 
 use crate::contact::Missing;
 use crate::joint_torques::GroupLoad;
+use crate::model::Side;
 
 /// The kinds of verdicts, the first that applies first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,6 +65,33 @@ impl VerdictKind {
     }
 }
 
+/// A muscle group that a verdict names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Who {
+    /// Its coordinate.
+    pub coordinate: usize,
+    /// Which of the two groups of the coordinate.
+    pub side: Side,
+    /// Active torque over strength: the greatest, or where the group fails that at this time.
+    pub load: f64,
+}
+
+impl From<GroupLoad> for Who {
+    fn from(GroupLoad { coordinate, side, load, .. }: GroupLoad) -> Self {
+        Self { coordinate, side, load }
+    }
+}
+
+/// The group that fails first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Failure {
+    pub(crate) who: Who,
+    /// When, s.
+    pub(crate) time: f64,
+    /// Least and greatest of that time, s.
+    pub(crate) range: (f64, f64),
+}
+
 /// The answer to a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
@@ -74,7 +103,7 @@ pub struct Verdict {
     /// Least and greatest time until `who` fails, s, over published laws and two of three people; infinite where it never fails.
     pub range: Option<(f64, f64)>,
     /// The muscle group that is too weak or fails first; of a job that holds, the one with the greatest load.
-    pub who: Option<GroupLoad>,
+    pub who: Option<Who>,
     /// The first sentence of every result.
     pub sentence: String,
     /// Targets that are missed, the most important first.
@@ -92,8 +121,8 @@ pub(crate) struct Findings {
     pub(crate) missing: Option<(Missing, Option<f64>)>,
     /// All targets that are missed, the most important first.
     pub(crate) missed: Vec<Missed>,
-    /// The group that fails first, its time (s) and the spread of that time.
-    pub(crate) fails: Option<(GroupLoad, f64, (f64, f64))>,
+    /// The group that fails first.
+    pub(crate) fails: Option<Failure>,
     /// The run was left before its end, at that time, s.
     pub(crate) interrupted: Option<f64>,
 }

@@ -1,7 +1,7 @@
 //! Judges a recorded motion.
 
 use super::spread::spread;
-use super::{Findings, Verdict};
+use super::{Failure, Findings, Verdict, Who};
 use crate::assessment::{Assessment, GroupAssessment};
 use crate::joint_torques::GroupLoad;
 use crate::model::Model;
@@ -13,8 +13,9 @@ impl Verdict {
         let failed = found.groups.iter().filter_map(|group| Some((group, group.exhausted_at?)));
         let fails = failed.min_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(group, time)| {
             let muscles = &model.coordinates()[group.coordinate].groups.as_ref()?[group.side.index()];
-            let (least, greatest) = spread(muscles, &group.loads, 0.0, seconds);
-            Some((load_of(group), time, (least.min(time), greatest.max(time))))
+            let (least, greatest) = spread(muscles, &group.loads, 0.0);
+            let who = Who { coordinate: group.coordinate, side: group.side, load: group.loads.at(time) };
+            Some(Failure { who, time, range: (least.min(time), greatest.max(time)) })
         });
         Findings {
             asked: Some(seconds),

@@ -1,8 +1,7 @@
 //! Judges a run over time.
 
 use super::spread::spread;
-use super::{Findings, Missed, Verdict};
-use crate::joint_torques::GroupLoad;
+use super::{Failure, Findings, Missed, Verdict, Who};
 use crate::model::Side;
 use crate::simulation::{Scenario, StopReason, Summary};
 
@@ -24,8 +23,8 @@ impl Verdict {
     }
 }
 
-/// The group that fails first in a run, its time (s) and the spread of that time.
-fn fails(scenario: &Scenario, summary: &Summary) -> Option<(GroupLoad, f64, (f64, f64))> {
+/// The group that fails first in a run.
+fn fails(scenario: &Scenario, summary: &Summary) -> Option<Failure> {
     let failures = summary.coordinates.iter().enumerate().flat_map(|(coordinate, course)| {
         Side::BOTH.into_iter().filter_map(move |side| Some((coordinate, side, course.exhausted_at[side.index()]?)))
     });
@@ -33,9 +32,7 @@ fn fails(scenario: &Scenario, summary: &Summary) -> Option<(GroupLoad, f64, (f64
     let group = &scenario.model.coordinates()[coordinate].groups.as_ref()?[side.index()];
     let history = &summary.coordinates[coordinate].loads[side.index()];
     let start = scenario.start_fatigue[coordinate][side.index()];
-    let (least, greatest) = spread(group, history, start, summary.end_time);
-    let load = history.at(time);
-    let angle = summary.coordinates[coordinate].final_value;
-    let torque = side.signed(load * group.strength.torque(angle));
-    Some((GroupLoad { coordinate, side, torque, load }, time, (least.min(time), greatest.max(time))))
+    let (least, greatest) = spread(group, history, start);
+    let who = Who { coordinate, side, load: history.at(time) };
+    Some(Failure { who, time, range: (least.min(time), greatest.max(time)) })
 }

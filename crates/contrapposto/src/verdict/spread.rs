@@ -13,20 +13,20 @@ use crate::model::data::library;
 const HALVINGS: usize = 20;
 
 /// Least and greatest time (s) at which a group fails under the loads of `history`, with fatigue `start` (0..=1) at first;
-/// the last load lasts for ever. `end`: time of the end of the history, s.
-pub fn spread(group: &MuscleGroup, history: &LoadHistory, start: f64, end: f64) -> (f64, f64) {
+/// the last load lasts for ever.
+pub fn spread(group: &MuscleGroup, history: &LoadHistory, start: f64) -> (f64, f64) {
     let library = library();
     let variation = library.strength_variation(&group.name).map_or(0.0, |(coefficient, _)| coefficient);
     let mut laws = library.published_laws(&group.name);
     laws.push(group.fatigue.clone());
-    let times = laws.iter().flat_map(|law| {
-        [1.0 - variation, 1.0, 1.0 + variation].map(|strength| failure(law, history, strength, start, end))
-    });
+    let times = laws
+        .iter()
+        .flat_map(|law| [1.0 - variation, 1.0, 1.0 + variation].map(|strength| failure(law, history, strength, start)));
     times.fold((f64::INFINITY, 0.0), |(least, greatest), time| (time.min(least), time.max(greatest)))
 }
 
 /// When a group of `strength` times the mean fails, s; infinite if never.
-fn failure(law: &FatigueLaw, history: &LoadHistory, strength: f64, start: f64, end: f64) -> f64 {
+fn failure(law: &FatigueLaw, history: &LoadHistory, strength: f64, start: f64) -> f64 {
     let pieces: Vec<(f64, f64)> = history.pieces().iter().map(|(from, load)| (*from, load / strength)).collect();
     let Some(&(_, first)) = pieces.first() else { return f64::INFINITY };
     let mut state = law.start(start, first);
@@ -37,10 +37,9 @@ fn failure(law: &FatigueLaw, history: &LoadHistory, strength: f64, start: f64, e
         let Some(&(next, _)) = pieces.get(i + 1) else {
             return from + law.time_left(state.level(load), load);
         };
-        let to = next.min(end.max(from));
-        let after = law.advance(state, load, to - from);
+        let after = law.advance(state, load, next - from);
         if after.level(load) >= 1.0 {
-            return from + time_of_failure(law, state, load, to - from);
+            return from + time_of_failure(law, state, load, next - from);
         }
         state = after;
     }

@@ -1,7 +1,6 @@
 //! Says a verdict in one sentence.
 
-use super::{Findings, Missed, Verdict, VerdictKind};
-use crate::joint_torques::GroupLoad;
+use super::{Failure, Findings, Missed, Verdict, VerdictKind, Who};
 use crate::model::{Model, plain_group_name, plain_name};
 use crate::tasks::Unit;
 
@@ -27,9 +26,9 @@ impl Findings {
         let hardest = self.hardest.filter(|_| matches!(kind, VerdictKind::CannotBeDone | VerdictKind::Holds));
         Verdict {
             kind,
-            seconds: fails.map(|(_, time, _)| time).or(self.asked.filter(|_| kind == VerdictKind::Holds)),
-            range: fails.map(|(_, _, range)| range),
-            who: fails.map(|(group, ..)| group).or(hardest.map(|(group, _)| group)),
+            seconds: fails.map(|failure| failure.time).or(self.asked.filter(|_| kind == VerdictKind::Holds)),
+            range: fails.map(|failure| failure.range),
+            who: fails.map(|failure| failure.who).or(hardest.map(|(group, _)| group.into())),
             sentence,
             missed: self.missed,
         }
@@ -40,7 +39,7 @@ impl Findings {
         let when = time.filter(|time| *time > 0.0).map(|time| format!(" at {}", how_long(time)));
         format!(
             "Cannot be done: {} would need {} of its strength{} ({:.0} of {:.0} N m).",
-            name(model, &group),
+            Who::from(group).name(model),
             percent(group.load),
             when.unwrap_or_default(),
             group.torque.abs(),
@@ -60,8 +59,8 @@ impl Findings {
     }
 
     fn held_until(&self, model: &Model) -> String {
-        let Some((group, time, range)) = self.fails else { return String::new() };
-        let who = name(model, &group);
+        let Some(Failure { who, time, range }) = self.fails else { return String::new() };
+        let who = who.name(model);
         let range = in_words(range);
         if time <= 0.0 {
             return format!("Cannot be held: {who} fails at once ({range}).");
@@ -71,8 +70,8 @@ impl Findings {
 
     fn holds(&self, model: &Model) -> String {
         let hardest = self.hardest.filter(|(group, _)| group.load >= 0.005);
-        let worked =
-            hardest.map(|(group, _)| format!("{} at {} of its strength", name(model, &group), percent(group.load)));
+        let worked = hardest
+            .map(|(group, _)| format!("{} at {} of its strength", Who::from(group).name(model), percent(group.load)));
         let worked = worked.unwrap_or_else(|| "no muscle works".to_owned());
         if model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
             return "In balance; no strength of this body is known, so nothing can be said of load and time."
@@ -97,12 +96,14 @@ impl Missed {
     }
 }
 
-/// `right shoulder flexion`.
-fn name(model: &Model, group: &GroupLoad) -> String {
-    let coordinate = &model.coordinates()[group.coordinate];
-    match &coordinate.groups {
-        Some(groups) => plain_group_name(&groups[group.side.index()].name, &coordinate.name),
-        None => plain_name(&coordinate.name),
+impl Who {
+    /// `right shoulder flexion`.
+    pub fn name(&self, model: &Model) -> String {
+        let coordinate = &model.coordinates()[self.coordinate];
+        match &coordinate.groups {
+            Some(groups) => plain_group_name(&groups[self.side.index()].name, &coordinate.name),
+            None => plain_name(&coordinate.name),
+        }
     }
 }
 
