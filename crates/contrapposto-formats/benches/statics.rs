@@ -1,5 +1,6 @@
 //! Times kinematics, centre of mass, gravity torque and the full gradient: on the published humans beside the
-//! project (the models of the peers' benchmark; left out where they are not there), and on chains of 10 to 1,000 hinges.
+//! project (the models of the peers' benchmark; left out where they are not there), and on chains of 10 to 1,000 hinges. Batches of
+//! postures are timed in one thread and in two.
 //!
 //! The peer's figures come from its own program in the same run: see docs/benchmarks.md.
 
@@ -8,19 +9,22 @@
 use std::hint::black_box;
 use std::path::PathBuf;
 
+use contrapposto::batch::{Statics, Table, Wanted};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec};
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::urdf;
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Unit, Vector3};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 /// Number of random postures, as in the peer's program.
 const POSTURES: usize = 256;
+/// Postures of a batch, and of one that a thread more is worth its start for.
+const BATCHES: [usize; 2] = [256, 65_536];
 
 fn postures(model: &Model) -> Vec<Posture> {
     let mut random = Pcg64Mcg::new(7);
@@ -58,6 +62,37 @@ fn bench_model(c: &mut Criterion, name: &str, model: &Model, loads: &[Load]) {
             black_box(gradient.get(0, 0))
         });
     });
+    group.finish();
+    bench_batch(c, name, model, loads);
+}
+
+/// The throughput is that of postures.
+fn bench_batch(c: &mut Criterion, name: &str, model: &Model, loads: &[Load]) {
+    let single = postures(model);
+    let mut group = c.benchmark_group(format!("statics/{name}/batch"));
+    for count in BATCHES {
+        let mut table = Table::of_postures(model, count);
+        (0..count).for_each(|i| table.set_posture(i, single[i % POSTURES].values()));
+        group.throughput(Throughput::Elements(count as u64));
+        let mut bench = |what: &str, wanted: Wanted, loads: &[Load], threads: usize| {
+            let mut statics = Statics::new(model, wanted).expect("segments of the model");
+            let id = BenchmarkId::new(format!("{what}, {threads} threads"), count);
+            group.bench_function(id, |b| {
+                b.iter(|| {
+                    statics.update(model, black_box(&table), loads, threads).expect("postures of the model");
+                    black_box(statics.center_of_mass(count - 1))
+                });
+            });
+        };
+        for threads in [1, 2] {
+            bench("kinematics + centre of mass + gravity torque", Wanted::default(), &[], threads);
+        }
+        bench("the same with two forces", Wanted::default(), loads, 1);
+        if count == POSTURES {
+            bench("with active torque", Wanted { active_torque: true, ..Wanted::default() }, &[], 1);
+            bench("with two forces + full gradient", Wanted { gradient: true, ..Wanted::default() }, loads, 1);
+        }
+    }
     group.finish();
 }
 

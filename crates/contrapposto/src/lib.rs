@@ -5,7 +5,7 @@
 //! muscles work well (the active strategy: ready postures) or where ligaments carry the load (the passive strategy:
 //! relaxed ones). [`hybrid::minimise`] decides for one joint, [`simulation::run`] for a body over time.
 //!
-//! Pure functions on plain values: this crate reads no files, prints nothing and starts no threads. Units are rad, m, kg,
+//! Pure functions on plain values: this crate reads no files and prints nothing; only [`batch`] starts threads, as many as it is asked to. Units are rad, m, kg,
 //! N, N m and s; torques act in the direction of their coordinate.
 //!
 //! ```
@@ -33,6 +33,7 @@
 extern crate self as contrapposto;
 
 pub mod assessment;
+pub mod batch;
 pub mod constraint;
 pub mod contact;
 mod effort;

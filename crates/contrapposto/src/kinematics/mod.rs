@@ -135,8 +135,8 @@ impl Kinematics {
         }
     }
 
-    /// Coordinates, the dependent ones from their independent ones.
-    fn fill_values(&mut self, model: &Model, posture: &[f64]) {
+    /// Coordinates, the dependent ones from their independent ones; frames stay where they are.
+    pub(crate) fn fill_values(&mut self, model: &Model, posture: &[f64]) {
         self.values.copy_from_slice(posture);
         for (coupling, derivatives) in model.couplings.iter().zip(&mut self.couplings) {
             let [value, slope, curvature] = coupling.function.value_slope_curvature(self.values[coupling.independent]);
