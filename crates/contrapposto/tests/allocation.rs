@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
+use contrapposto::batch::{Statics, Table, Wanted};
 use contrapposto::contact::{ContactForces, Support};
 use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
 use contrapposto::joint_torques::{JointTorques, Quantities};
@@ -87,6 +88,22 @@ fn statics_allocate_nothing() {
         folded.copy_from_slice(external.torques());
     });
     assert!(folded.iter().any(|&torque| torque != 0.0) && gradient.row(0).len() == folded.len());
+}
+
+/// In one thread; more threads are started anew in every call.
+#[test]
+fn batches_allocate_nothing() {
+    let (model, postures) = body();
+    let loads = loads(&model);
+    let mut table = Table::of_postures(&model, CALLS);
+    let hand = model.segment("hand_r").unwrap();
+    let wanted = Wanted { placements: vec![hand], active_torque: true, gradient: true };
+    let mut statics = Statics::new(&model, wanted).unwrap();
+    assert_silent("batch", 1, |i| {
+        postures.iter().enumerate().for_each(|(k, posture)| table.set_posture((i + k) % CALLS, posture.values()));
+        statics.update(&model, &table, &loads, 1).unwrap();
+    });
+    assert!(statics.effort().all(|effort| effort > 0.0));
 }
 
 /// Torques about the axes of three-axis joints, passive ones included, with derivatives, on supports, and the rows of effort.

