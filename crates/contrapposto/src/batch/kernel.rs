@@ -26,9 +26,9 @@ pub(super) struct Frames {
     /// By elementary rate.
     pub(super) axes: Vec<Vectors>,
     /// By node: mass times centre at and beyond it, once the inward pass is done.
-    moments: Vec<Vectors>,
+    pub(super) moments: Vec<Vectors>,
     /// By node: force, and moment about the ground origin, of the loads at and beyond it.
-    forces: Vec<[Vectors; 2]>,
+    pub(super) forces: Vec<[Vectors; 2]>,
     /// By function that drives a motion: its value.
     pub(super) driven: Vec<Lanes>,
 }

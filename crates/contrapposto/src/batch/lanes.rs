@@ -175,7 +175,7 @@ impl Vectors {
     }
 }
 
-/// A rotation of each posture, by its columns.
+/// A rotation or another matrix of each posture, by its columns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rotations(pub(super) [Vectors; 3]);
 
@@ -185,6 +185,27 @@ impl Rotations {
         Vectors([Lanes::ZERO, Lanes::ONE, Lanes::ZERO]),
         Vectors([Lanes::ZERO, Lanes::ZERO, Lanes::ONE]),
     ]);
+
+    pub(super) const ZERO: Self = Self([Vectors::ZERO; 3]);
+
+    #[inline(always)]
+    pub(super) fn plus(&self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([a + x, b + y, c + z])
+    }
+
+    #[inline(always)]
+    pub(super) fn trace(&self) -> Lanes {
+        let [x, y, z] = self.0;
+        x.0[0] + y.0[1] + z.0[2]
+    }
+
+    /// The product with a vector.
+    #[inline(always)]
+    pub(super) fn turn(&self, vector: Vectors) -> Vectors {
+        let ([a, b, c], [x, y, z]) = (self.0, vector.0);
+        a * x + b * y + c * z
+    }
 
     /// The rotated vector, which is the same in every posture before.
     #[inline(always)]
@@ -200,8 +221,7 @@ impl Rotations {
 
     #[inline(always)]
     pub(super) fn times(&self, other: Self) -> Self {
-        let [x, y, z] = self.0;
-        let turned = |column: Vectors| x * column.0[0] + y * column.0[1] + z * column.0[2];
-        Self([turned(other.0[0]), turned(other.0[1]), turned(other.0[2])])
+        let [x, y, z] = other.0;
+        Self([self.turn(x), self.turn(y), self.turn(z)])
     }
 }

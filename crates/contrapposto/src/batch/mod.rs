@@ -4,8 +4,8 @@
 //! Statics need about a tenth of the time of one posture after another ([`Statics`]), because one instruction computes a number of up to
 //! eight postures. A result is the same to the bit whatever stands beside it: for any number of postures, any place among them, any
 //! number of threads, and any width of the processor's registers. The results agree with [`crate::kinematics::Kinematics`],
-//! [`crate::statics::ExternalTorque`] and [`crate::joint_torques::JointTorques`] to rounding, `1e-12` of the largest torque or position,
-//! because sine and cosine are computed in another way; gradients are the same to the bit.
+//! [`crate::statics::ExternalTorque`] and [`crate::joint_torques::JointTorques`] to rounding, `1e-12` of the largest of their kind,
+//! because sine and cosine are computed in another way.
 //!
 //! Contact forces are none of the statics of a batch: a body on supports is computed posture by posture through [`over`].
 //!
@@ -29,6 +29,7 @@
 
 mod coordinates;
 mod error;
+mod gradient;
 mod kernel;
 mod lanes;
 mod loads;

@@ -25,8 +25,9 @@ pub struct Wanted {
 
 /// Statics of many postures of one model under the same loads. Filled by [`Statics::update`].
 ///
-/// External torque, centre of mass and placements are computed for eight postures at a time, whatever the motions of the model;
-/// functions that drive motions or couple coordinates, passive laws, strengths and gradients posture by posture.
+/// External torque, centre of mass and placements are computed for eight postures at a time, whatever the motions of the model; so is
+/// the gradient, unless functions drive motions, coordinates are coupled, or a load is a couple or fixed in a segment. All functions,
+/// passive laws, strengths and other gradients are computed posture by posture.
 #[derive(Clone, Debug)]
 pub struct Statics {
     wanted: Wanted,

@@ -2,6 +2,7 @@
 
 use super::coordinates::{Driven, are_fine};
 use super::error::BatchError;
+use super::gradient::{Virials, gradient};
 use super::kernel::{self, Frames, Results};
 use super::lanes::{LANES, Lanes};
 use super::loads::Pulls;
@@ -39,6 +40,7 @@ pub(super) struct Worker {
     kinematics: Kinematics,
     passive: Option<PassiveTorque>,
     axes: Option<AboutAxes>,
+    virials: Virials,
     gradient: Option<(ExternalTorque, Gradient)>,
 }
 
@@ -55,6 +57,7 @@ impl Worker {
             kinematics: Kinematics::new(model),
             passive: rows.active_torque.then(|| PassiveTorque::new(model)),
             axes: rows.active_torque.then(|| AboutAxes::new(model)),
+            virials: Virials::new(plan),
             gradient: rows.gradient.then(|| (ExternalTorque::new(model), Gradient::new(model))),
         }
     }
@@ -62,6 +65,7 @@ impl Worker {
     /// Fits the workspace to another plan of the same model.
     pub(super) fn set_plan(&mut self, model: &Model, plan: &Plan) {
         self.frames = Frames::new(plan, model.elements.len());
+        self.virials = Virials::new(plan);
     }
 
     /// Computes the blocks from the values of their coordinates, of which the first `count` postures count; the first of them has
@@ -116,12 +120,19 @@ impl Worker {
         if !model.direct {
             self.driven.fold(model, &self.elements, torques);
         }
+        let one_by_one = given.rows.gradient && (!model.direct || given.pulls.twisted);
+        if given.rows.gradient && !one_by_one {
+            let entries = given.rows.split_gradient(rest);
+            gradient(model, plan, given.pulls, &self.frames, &mut self.virials, entries);
+        }
         for lane in 0..lanes {
-            if given.rows.active_torque || given.rows.gradient {
+            if given.rows.active_torque || one_by_one {
                 self.take_posture(values, lane);
             }
             self.add_active_torque(given, lane, torques, rest).map_err(|problem| (lane, problem))?;
-            self.add_gradient(given, lane, rest).map_err(|problem| (lane, problem))?;
+            if one_by_one {
+                self.add_gradient(given, lane, rest).map_err(|problem| (lane, problem))?;
+            }
         }
         Ok(())
     }
