@@ -23,8 +23,8 @@ use rand_pcg::Pcg64Mcg;
 
 /// Number of random postures, as in the peer's program.
 const POSTURES: usize = 256;
-/// Postures of a batch, and of one that a thread more is worth its start for.
-const BATCHES: [usize; 2] = [256, 65_536];
+/// Postures of batches: in the second-level cache, in the third-level one, in memory.
+const BATCHES: [usize; 3] = [256, 16_384, 65_536];
 
 fn postures(model: &Model) -> Vec<Posture> {
     let mut random = Pcg64Mcg::new(7);

@@ -4,8 +4,9 @@
 //! [`crate::statics`].
 
 use super::lanes::{LANES, Lanes};
+use super::sin_cos::LARGEST_ANGLE;
 use crate::math::Function;
-use crate::model::{Drive, LARGEST, Model};
+use crate::model::{Drive, Model};
 
 /// Square of the length below which a quaternion is looked at again: rounding must not hide one that is too short.
 const SHORT_QUATERNION: f64 = 2e-12;
@@ -79,13 +80,15 @@ fn evaluate(function: &Function, at: Lanes) -> (Lanes, Lanes) {
     (Lanes(values), Lanes(slopes))
 }
 
-/// Whether the values of all coordinates are numbers that a posture may have in every lane; `false`, too, for quaternions that are
-/// almost too short.
-pub(super) fn are_fine(model: &Model, values: &[Lanes]) -> bool {
-    let in_size = values.iter().fold(true, |fine, lanes| fine & lanes.every(|x| x.abs() <= LARGEST));
-    in_size
-        && model.balls.iter().all(|&first| {
-            let squares = values[first..first + 4].iter().fold(Lanes::ZERO, |sum, v| sum + *v * *v);
-            squares.every(|square| square >= SHORT_QUATERNION)
-        })
+/// Whether all values are numbers that [`LARGEST_ANGLE`] allows, in every lane.
+pub(super) fn are_small(values: &[Lanes]) -> bool {
+    values.iter().fold(true, |small, lanes| small & lanes.every(|x| x.abs() <= LARGEST_ANGLE))
+}
+
+/// Whether no quaternion is too short, or almost, in any lane.
+pub(super) fn are_rotations(model: &Model, values: &[Lanes]) -> bool {
+    model.balls.iter().all(|&first| {
+        let squares = values[first..first + 4].iter().fold(Lanes::ZERO, |sum, v| sum + *v * *v);
+        squares.every(|square| square >= SHORT_QUATERNION)
+    })
 }

@@ -12,7 +12,7 @@ use multiversion::multiversion;
 use super::lanes::{Lanes, Rotations, Vectors};
 use super::loads::{Effect, Pulls};
 use super::plan::{Attached, Node, Plan, Source, Step, Way};
-use super::sin_cos::{LARGEST_ANGLE, sin_cos, sin_cos_of_any};
+use super::sin_cos::{sin_cos, sin_cos_of_any};
 use crate::statics::FixedIn;
 
 /// Rows of a placement: the columns of its rotation, and its origin.
@@ -31,6 +31,8 @@ pub(super) struct Frames {
     pub(super) forces: Vec<[Vectors; 2]>,
     /// By function that drives a motion: its value.
     pub(super) driven: Vec<Lanes>,
+    /// Some value of a coordinate or function is larger than [`super::sin_cos::LARGEST_ANGLE`].
+    pub(super) any_angle: bool,
 }
 
 impl Frames {
@@ -43,6 +45,7 @@ impl Frames {
             moments: vec![Vectors::ZERO; nodes],
             forces: vec![[Vectors::ZERO; 2]; nodes],
             driven: vec![Lanes::ZERO; plan.functions],
+            any_angle: false,
         }
     }
 }
@@ -80,8 +83,10 @@ pub(super) fn block(
     values: &[Lanes],
     results: Results<'_>,
 ) {
-    if !outward::<false>(plan, frames, values) {
+    if frames.any_angle {
         outward_with_any_angle(plan, frames, values);
+    } else {
+        outward::<false>(plan, frames, values);
     }
     for (frame, rows) in placed.iter().zip(results.placements.chunks_exact_mut(PLACEMENT_ROWS)) {
         write_placement(frame, frames, rows);
@@ -101,21 +106,24 @@ fn outward_with_any_angle(plan: &Plan, frames: &mut Frames, values: &[Lanes]) {
     outward::<true>(plan, frames, values);
 }
 
-/// Frames of all nodes, axes of all motions, and mass times centre of every node alone. Whether no angle was too large.
+/// Frames of all nodes, axes of all motions, and mass times centre of every node alone. Each frame is turned where it is stored: kept in
+/// variables, its numbers would be regrouped across the lanes.
 #[inline(always)]
-fn outward<const ANY_ANGLE: bool>(plan: &Plan, frames: &mut Frames, values: &[Lanes]) -> bool {
-    let mut largest = Lanes::ZERO;
+fn outward<const ANY_ANGLE: bool>(plan: &Plan, frames: &mut Frames, values: &[Lanes]) {
     for (i, node) in plan.nodes.iter().enumerate() {
-        let (mut rotation, mut origin) = match node.parent {
+        let (before, now) = frames.rotations.split_at_mut(i);
+        let (origins, origin) = frames.origins.split_at_mut(i);
+        let (rotation, origin) = (&mut now[0], &mut origin[0]);
+        (*rotation, *origin) = match node.parent {
             None => (Rotations::IDENTITY, Vectors::ZERO),
-            Some(parent) => (frames.rotations[parent], frames.origins[parent]),
+            Some(parent) => (before[parent], origins[parent]),
         };
         if let Some(translation) = node.translation {
-            origin = rotation.turn_all(translation) + origin;
+            *origin = rotation.turn_all(translation) + *origin;
         }
         for step in &plan.steps[node.motions.clone()] {
             if let Some(turned) = step.turned {
-                rotation = rotation.times_all(turned);
+                *rotation = rotation.times_all(turned);
             }
             let value = match step.source {
                 Source::Coordinate(c) => values[c],
@@ -123,28 +131,24 @@ fn outward<const ANY_ANGLE: bool>(plan: &Plan, frames: &mut Frames, values: &[La
                 Source::Fixed(value) => Lanes::all(value),
             };
             let turn = |angle: Lanes| if ANY_ANGLE { sin_cos_of_any(angle) } else { sin_cos(angle) };
+            let axis = &mut frames.axes[step.element];
             match step.way {
-                Way::Slide(axis) => {
-                    let axis = rotation.turn_all(axis);
-                    frames.axes[step.element] = axis;
-                    origin = origin + axis * value;
+                Way::Slide(along) => {
+                    *axis = rotation.turn_all(along);
+                    *origin = *origin + *axis * value;
                 }
-                Way::Ball => turn_ball(&mut rotation, step, values, &mut frames.axes),
-                Way::Axis(axis) => {
-                    largest = largest.larger(value.map(f64::abs));
-                    frames.axes[step.element] = rotation.turn_all(axis);
-                    rotation = rotation.times(about_axis(axis, turn(value)));
+                Way::Ball => turn_ball(rotation, step, values, &mut frames.axes),
+                Way::Axis(about) => {
+                    *axis = rotation.turn_all(about);
+                    *rotation = rotation.times(about_axis(about, turn(value)));
                 }
-                Way::Principal(k, sign) => {
-                    largest = largest.larger(value.map(f64::abs));
-                    frames.axes[step.element] = turn_principal(&mut rotation, k, sign, turn(value * sign));
-                }
+                Way::Principal(0, sign) => *axis = turn_principal::<0, 1, 2>(rotation, sign, turn(value * sign)),
+                Way::Principal(1, sign) => *axis = turn_principal::<1, 2, 0>(rotation, sign, turn(value * sign)),
+                Way::Principal(_, sign) => *axis = turn_principal::<2, 0, 1>(rotation, sign, turn(value * sign)),
             }
         }
-        (frames.rotations[i], frames.origins[i]) = (rotation, origin);
-        frames.moments[i] = own_moment(node, &rotation, origin);
+        frames.moments[i] = own_moment(node, rotation, *origin);
     }
-    largest.every(|angle| angle <= LARGEST_ANGLE)
 }
 
 /// Mass times centre of what is fixed to a node.
@@ -153,28 +157,17 @@ fn own_moment(node: &Node, rotation: &Rotations, origin: Vectors) -> Vectors {
     if node.mass == 0.0 { Vectors::ZERO } else { rotation.turn_all(node.first_moment) + origin * node.mass }
 }
 
-/// Turns a frame about its own axis `k`, and answers the axis in ground.
+/// Turns a frame about its own axis `K`, and answers the axis in ground.
 #[inline(always)]
-fn turn_principal(rotation: &mut Rotations, k: usize, sign: f64, turn: (Lanes, Lanes)) -> Vectors {
-    match k {
-        0 => turn_columns::<1, 2>(rotation, turn),
-        1 => turn_columns::<2, 0>(rotation, turn),
-        _ => turn_columns::<0, 1>(rotation, turn),
-    }
-    // A match, so that the column is not looked up by a number that is known only when the program runs.
-    let axis = match k {
-        0 => rotation.0[0],
-        1 => rotation.0[1],
-        _ => rotation.0[2],
-    };
-    axis * sign
-}
-
-#[inline(always)]
-fn turn_columns<const FROM: usize, const TO: usize>(rotation: &mut Rotations, (sin, cos): (Lanes, Lanes)) {
+fn turn_principal<const K: usize, const FROM: usize, const TO: usize>(
+    rotation: &mut Rotations,
+    sign: f64,
+    (sin, cos): (Lanes, Lanes),
+) -> Vectors {
     let (from, to) = (rotation.0[FROM], rotation.0[TO]);
     rotation.0[FROM] = from * cos + to * sin;
     rotation.0[TO] = to * cos - from * sin;
+    rotation.0[K] * sign
 }
 
 /// The rotation about an axis, after Rodrigues.
@@ -296,6 +289,19 @@ mod tests {
     use super::*;
     use crate::model::{Adult, adult};
 
+    /// As [`statics`] on a processor whose registers have 256 bits.
+    #[multiversion(targets("x86_64+avx2"))]
+    fn narrower(
+        plan: &Plan,
+        pulls: &Pulls,
+        placed: &[Attached],
+        frames: &mut Frames,
+        values: &[Lanes],
+        results: Results<'_>,
+    ) {
+        block(plan, pulls, placed, frames, values, results);
+    }
+
     #[test]
     fn registers_of_any_width_give_the_same_bits() {
         let model = adult(&Adult::default()).unwrap();
@@ -304,15 +310,15 @@ mod tests {
         pulls.update(&model, &plan, &[]);
         let placed = [plan.attached(&model, 0)];
         let (elements, coordinates) = (model.elements.len(), model.coordinates.len());
-        let computed = |values: &[Lanes], portable: bool| {
+        let computed = |values: &[Lanes], width: usize| {
             let mut frames = Frames::new(&plan, elements);
             let mut rows = [elements, 3, PLACEMENT_ROWS, 3 * plan.joints.len()].map(|count| vec![Lanes::ZERO; count]);
             let [torques, center_of_mass, placements, about_axes] = &mut rows;
             let results = Results { torques, center_of_mass, placements, about_axes };
-            if portable {
-                block(&plan, &pulls, &placed, &mut frames, values, results);
-            } else {
-                statics(&plan, &pulls, &placed, &mut frames, values, results);
+            match width {
+                0 => block(&plan, &pulls, &placed, &mut frames, values, results),
+                1 => narrower(&plan, &pulls, &placed, &mut frames, values, results),
+                _ => statics(&plan, &pulls, &placed, &mut frames, values, results),
             }
             rows
         };
@@ -320,8 +326,9 @@ mod tests {
             let values: Vec<Lanes> = (0..coordinates)
                 .map(|c| Lanes(std::array::from_fn(|lane| ((i * 8 + lane) * (c + 3)) as f64 * 0.618_034 % 6.0 - 3.0)))
                 .collect();
-            let rows = computed(&values, true);
-            assert_eq!(rows, computed(&values, false), "block {i}");
+            let rows = computed(&values, 0);
+            assert_eq!(rows, computed(&values, 1), "block {i}");
+            assert_eq!(rows, computed(&values, 2), "block {i}");
             assert!(rows[0].iter().all(|torque| torque.0.iter().all(|x| x.is_finite())));
             assert!(rows[0].iter().any(|torque| torque.0[0] != torque.0[1]));
         }

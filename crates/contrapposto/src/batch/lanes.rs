@@ -87,16 +87,6 @@ impl Lanes {
         }
         held
     }
-
-    /// The larger of both in every lane, where neither is NaN.
-    #[inline(always)]
-    pub(super) fn larger(self, other: Self) -> Self {
-        let mut result = [0.0; LANES];
-        for i in 0..LANES {
-            result[i] = if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] };
-        }
-        Self(result)
-    }
 }
 
 /// A vector of each posture.

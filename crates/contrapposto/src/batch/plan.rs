@@ -85,6 +85,8 @@ pub(super) struct Plan {
     pub(super) fixed_moment: [f64; 3],
     /// Number of functions that drive motions.
     pub(super) functions: usize,
+    /// Values of motions that stand still.
+    pub(super) fixed: Vec<f64>,
 }
 
 impl Plan {
@@ -100,6 +102,7 @@ impl Plan {
             mass: 0.0,
             fixed_moment: model.fixed.1.into(),
             functions: 0,
+            fixed: vec![],
         };
         for (i, mobility) in model.mobilities.iter().enumerate() {
             let step = plan.step(mobility);
@@ -129,7 +132,10 @@ impl Plan {
         };
         let source = match &mobility.drive {
             Drive::Coordinate(c) => Source::Coordinate(*c),
-            Drive::Fixed(value) => Source::Fixed(*value),
+            Drive::Fixed(value) => {
+                self.fixed.push(*value);
+                Source::Fixed(*value)
+            }
             Drive::Function(..) => {
                 self.functions += 1;
                 Source::Function(self.functions - 1)

@@ -1,6 +1,6 @@
 //! Computes the blocks of one thread.
 
-use super::coordinates::{Driven, are_fine};
+use super::coordinates::{Driven, are_rotations, are_small};
 use super::error::BatchError;
 use super::gradient::{Virials, gradient};
 use super::kernel::{self, Frames, Results};
@@ -8,6 +8,7 @@ use super::lanes::{LANES, Lanes};
 use super::loads::Pulls;
 use super::plan::{Attached, Plan};
 use super::rows::Rows;
+use super::sin_cos::LARGEST_ANGLE;
 use crate::joint_torques::{AboutAxes, JointTorquesError, active_torque, relative_load};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -98,7 +99,8 @@ impl Worker {
         rows: &mut [Lanes],
     ) -> Result<(), (usize, JointTorquesError)> {
         let Given { model, plan, .. } = given;
-        if !are_fine(model, values) {
+        let small = are_small(values);
+        if !small || !are_rotations(model, values) {
             for lane in 0..lanes {
                 self.take_posture(values, lane);
                 self.posture.check(model).map_err(|problem| (lane, problem.into()))?;
@@ -108,6 +110,9 @@ impl Worker {
         if !model.direct {
             self.driven.update(model, values, &mut self.frames.driven);
         }
+        let fixed_small = plan.fixed.iter().all(|value| value.abs() <= LARGEST_ANGLE);
+        self.frames.any_angle =
+            !(small && fixed_small && are_small(&self.frames.driven) && are_small(&self.driven.values));
         let coupled = &self.driven.values;
         let results = Results {
             torques: if model.direct { &mut *torques } else { &mut self.elements },
