@@ -264,6 +264,28 @@ fn every_scenario_runs() {
 }
 
 #[test]
+fn without_a_report_the_answer_is_the_same_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let (with, without) = (folder.path().join("with"), folder.path().join("without"));
+    std::fs::create_dir(&without).unwrap();
+    let scenario = shortened(&scenarios().join("hold-tool.toml"));
+    let json = |arguments: &[&str]| {
+        let run = contrapposto(["simulate", "-", "--json"]).args(arguments).stdin(&scenario).folder(&without).run();
+        let mut summary: Value = serde_json::from_str(&run.stdout).unwrap();
+        let files = summary["files"].take();
+        (summary, files.as_array().unwrap().len(), run.code)
+    };
+    let (report, files, code) = json(&["--out", with.to_str().unwrap()]);
+    assert_eq!(files, FILES_OF_A_BODY.len());
+    assert_eq!(json(&["--no-report"]), (report, 0, code));
+    assert_eq!(std::fs::read_dir(&without).unwrap().count(), 0);
+    for other in ["--resume", "--figures", "--out=x"] {
+        let run = contrapposto(["simulate", "-", "--no-report", other]).stdin(&scenario).run();
+        assert_eq!(run.code, 2, "{other}");
+    }
+}
+
+#[test]
 fn the_same_scenario_gives_the_same_bytes() {
     for path in paths() {
         let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];

@@ -18,8 +18,11 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "FILE.json")]
     pub(crate) start_from: Option<PathBuf>,
     /// Folder for the results; made if it is not there.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "no_report")]
+    pub(crate) out: Option<PathBuf>,
+    /// Draw and write nothing: the answer goes to standard output only, as text or with --json.
+    #[arg(long, conflicts_with_all = ["out", "resume", "figures"])]
+    pub(crate) no_report: bool,
     /// Continue from the snapshot that an interrupted run left in DIR.
     #[arg(long)]
     pub(crate) resume: bool,
@@ -91,8 +94,11 @@ pub(crate) struct PoseArgs {
     #[arg(long, value_name = "FILE.json")]
     pub(crate) start_from: Option<PathBuf>,
     /// Folder for the results; made if it is not there.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "no_report")]
+    pub(crate) out: Option<PathBuf>,
+    /// Draw and write nothing: the answer goes to standard output only, as text or with --json.
+    #[arg(long, conflicts_with_all = ["out", "figures"])]
+    pub(crate) no_report: bool,
     /// Also draw, into DIR/figures, the torques over angle of the five joints that work hardest, each as SVG and PNG.
     #[arg(long)]
     pub(crate) figures: bool,
@@ -116,6 +122,9 @@ pub(crate) struct RelaxArgs {
     /// Folder for the results; made if it is not there. Nothing is written without it.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Draw and write nothing, as without --out.
+    #[arg(long, conflicts_with = "out")]
+    pub(crate) no_report: bool,
     /// Also draw, into DIR/figures, the torques over angle of the five joints that work hardest, each as SVG and PNG.
     #[arg(long, requires = "out")]
     pub(crate) figures: bool,

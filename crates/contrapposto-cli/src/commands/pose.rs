@@ -1,7 +1,5 @@
 //! `contrapposto pose`: one posture from tasks in order of priority.
 
-use std::path::Path;
-
 use contrapposto::posture_solver::{Engine, EngineError, Reason, SolvedPosture};
 use contrapposto::verdict::{HeldPosture, Missed, Verdict};
 use contrapposto_formats::motion::{write_csv, write_sto};
@@ -39,37 +37,39 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     limits.map(|place| pose.levels.remove(place));
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
+    let files = if args.out.is_some() { names.collect() } else { vec![] };
     let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
     let verdict = verdict(&scenario, &pose, &held);
-    let text = PoseText::new(&scenario, &pose, &verdict, names.collect());
-    let json = write(&scenario, &pose, &text, &figures, held, &args.out)?;
-    let folder = Folder::open(&args.out)?;
-    print(&if args.json { json } else { report(&scenario, &pose, &text, &verdict, &folder) })?;
+    let text = PoseText::new(&scenario, &pose, &verdict, files);
+    let json = json_text("pose.json", &text)?;
+    let folder = args.out.as_deref().map(Folder::open).transpose()?;
+    if let Some(folder) = &folder {
+        write(&scenario, &pose, (&text, &json), &figures, held, folder)?;
+    }
+    print(&if args.json { json } else { report(&scenario, &pose, &text, &verdict, folder.as_ref()) })?;
     exit(&pose, &verdict)
 }
 
-/// Writes all files, and gives back the text of `pose.json`.
+/// Writes all files.
 fn write(
     scenario: &PoseScenario,
     pose: &SolvedPosture,
-    text: &PoseText,
+    (text, json): (&PoseText, &str),
     figures: &[(String, Vec<u8>)],
     held: Held,
-    out: &Path,
-) -> Result<String, Fail> {
+    folder: &Folder,
+) -> Result<(), Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows = [pose.posture.values()];
     let title = if scenario.title.is_empty() { "pose" } else { &scenario.title };
     let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
-    let json = json_text("pose.json", &text)?;
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let page = report_of_pose(scenario, pose, text, held)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
-    Folder::open(out)?.write(&POSE_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
-    Ok(json)
+    folder.write(&POSE_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())
 }
 
 /// The answer of a posture that is held.

@@ -1,6 +1,7 @@
 //! `contrapposto simulate` and `contrapposto demo`: a scenario over time.
 
 mod snapshot;
+mod trials;
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,6 +12,7 @@ use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 
 use self::snapshot::{SNAPSHOT, go_on, save};
+use self::trials::try_changes;
 use crate::args::{DemoArgs, SimulateArgs};
 use crate::fail::Fail;
 use crate::output::{Folder, json_text, print, print_note};
@@ -39,13 +41,13 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
     let SimulateArgs { resume, figures, json, no_suggest, .. } = *args;
-    carry_out(&run, &args.out, How { resume, figures, json, suggest: !no_suggest })
+    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest: !no_suggest })
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     let (name, text) = if args.figure_8 { FIGURE_8 } else { DEMO };
     let run = read_run(name, text.as_bytes(), None)?;
-    carry_out(&run, &args.out, How { resume: false, figures: false, json: args.json, suggest: true })?;
+    carry_out(&run, Some(&args.out), How { resume: false, figures: false, json: args.json, suggest: true })?;
     if args.json {
         return Ok(());
     }
@@ -66,63 +68,81 @@ struct How {
     suggest: bool,
 }
 
-fn carry_out(run: &RunScenario, out: &Path, how: How) -> Result<(), Fail> {
+/// Runs a scenario; without `out` nothing is recorded, drawn and written.
+fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail> {
     let (RunScenario { scenario, things, .. }, How { resume, figures, json, suggest }) = (run, how);
-    let folder = Folder::open(out)?;
+    let folder = out.map(Folder::open).transpose()?;
     // A second handler is refused, which only happens if there is one already.
     let _ = ctrlc::set_handler(interrupt);
     let failed = |error| Fail::job("simulation", error);
-    let (mut run, mut recording) = match resume {
-        true => go_on(scenario, &folder.path(SNAPSHOT))?,
-        false => match Run::new(scenario) {
+    let resumed =
+        folder.as_ref().filter(|_| resume).map(|folder| go_on(scenario, &folder.path(SNAPSHOT))).transpose()?;
+    let (mut run, recording) = match resumed {
+        Some(resumed) => resumed,
+        None => match Run::new(scenario) {
             Ok(run) => (run, Recording::new(scenario)),
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
                 let body = (&scenario.model, scenario.loads.as_slice());
-                return without_posture("summary.json", &scenario.title, body, missing, Some(&folder), json);
+                return without_posture("summary.json", &scenario.title, body, missing, folder.as_ref(), json);
             }
             Err(error) => return Err(failed(error)),
         },
     };
+    let mut files = folder.map(|folder| Files { folder, recording });
     let progress = progress_bar(scenario.run.duration);
     let mut number = run.snapshot().samples;
     let mut saved = (Instant::now(), number);
     // The start is always shown.
     while number == 0 || !INTERRUPTED.load(Ordering::Relaxed) {
         let Some(sample) = run.next_sample().map_err(failed)? else { break };
-        recording.record(number, &sample);
+        if let Some(files) = &mut files {
+            files.recording.record(number, &sample);
+        }
         number += 1;
         if number.is_multiple_of(256) {
             progress.set_position(sample.time as u64);
             if saved.0.elapsed() > BETWEEN_SAVES && run.snapshot().samples > saved.1 {
-                save(scenario, &run, &recording, &folder)?;
+                files.iter().try_for_each(|files| save(scenario, &run, &files.recording, &files.folder))?;
                 saved = (Instant::now(), run.snapshot().samples);
             }
         }
     }
     progress.finish_and_clear();
     let summary = run.summary();
-    let figures = if figures { figures_of_run(scenario, things, &recording, &summary)? } else { vec![] };
     let mut answer = Answer::of_run(scenario, &summary);
     if suggest && summary.reason != StopReason::Interrupted {
-        answer.try_changes(scenario, &summary, || !INTERRUPTED.load(Ordering::Relaxed));
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        try_changes(&mut answer, scenario, &summary, threads, || !INTERRUPTED.load(Ordering::Relaxed));
     }
-    let json_text = write((scenario, things), &summary, &answer, &recording, &figures, &folder)?;
+    let text = match &files {
+        Some(files) => files.write((scenario, things), &summary, &answer, figures)?,
+        None => summary_json(scenario, &summary, &answer, vec![])?,
+    };
     let partial = summary.reason == StopReason::Interrupted;
-    if partial {
-        save(scenario, &run, &recording, &folder)?;
-    } else {
-        folder.remove(SNAPSHOT)?;
+    match &files {
+        Some(files) if partial => save(scenario, &run, &files.recording, &files.folder)?,
+        Some(files) => files.folder.remove(SNAPSHOT)?,
+        None => {}
     }
-    print(&if json { json_text } else { report(scenario, &summary, &answer, &folder) })?;
+    let folder = files.as_ref().map(|files| &files.folder);
+    print(&if json { text } else { report(scenario, &summary, &answer, folder) })?;
     match partial {
-        true => Err(Fail::Job(format!(
-            "interrupted at {:.2} of {} s: the results so far are in {}; the same command with --resume continues",
-            summary.end_time,
-            scenario.run.duration,
-            out.display()
-        ))),
+        true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
         false => answered(&answer.verdict),
     }
+}
+
+/// The error of an interrupted run.
+fn interrupted(summary: &Summary, duration: f64, out: Option<&Path>) -> String {
+    let files = out.map_or(String::new(), |out| {
+        format!(": the results so far are in {}; the same command with --resume continues", out.display())
+    });
+    format!("interrupted at {:.2} of {duration} s{files}", summary.end_time)
+}
+
+/// The text of `summary.json`.
+fn summary_json(scenario: &Scenario, summary: &Summary, answer: &Answer, files: Vec<String>) -> Result<String, Fail> {
+    json_text("summary.json", &SummaryText::new(scenario, summary, &answer.verdict, &answer.helping, files))
 }
 
 /// The first Ctrl-C ends the run as soon as a search that is under way is over; the second one ends the program.
@@ -133,42 +153,50 @@ fn interrupt() {
     print_note("note", "interrupted: the results so far are being written; Ctrl-C again leaves without them");
 }
 
-/// All files but the snapshot; gives the text of `summary.json`.
-fn write(
-    (scenario, things): (&Scenario, &[Thing]),
-    summary: &Summary,
-    answer: &Answer,
-    recording: &Recording,
-    figures: &[(String, Vec<u8>)],
-    folder: &Folder,
-) -> Result<String, Fail> {
-    let mut contents = vec![
-        ("trajectory.csv", tables::trajectory(scenario, recording).into_bytes()),
-        ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
-        ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
-        ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
-        ("report.html", report_of_run((scenario, things), recording, summary, answer)?.into_bytes()),
-        ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
-    ];
-    contents.extend(animation::bodies(scenario, recording)?);
-    if !scenario.supports.is_empty() {
-        contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
+/// The folder of a run, and all that its files show.
+struct Files {
+    folder: Folder,
+    recording: Recording,
+}
+
+impl Files {
+    /// Writes all files but the snapshot, on request with figures; gives the text of `summary.json`.
+    fn write(
+        &self,
+        (scenario, things): (&Scenario, &[Thing]),
+        summary: &Summary,
+        answer: &Answer,
+        figures: bool,
+    ) -> Result<String, Fail> {
+        let recording = &self.recording;
+        let figures = if figures { figures_of_run(scenario, things, recording, summary)? } else { vec![] };
+        let mut contents = vec![
+            ("trajectory.csv", tables::trajectory(scenario, recording).into_bytes()),
+            ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
+            ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
+            ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
+            ("report.html", report_of_run((scenario, things), recording, summary, answer)?.into_bytes()),
+            ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
+        ];
+        contents.extend(animation::bodies(scenario, recording)?);
+        if !scenario.supports.is_empty() {
+            contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
+        }
+        let names = if scenario.has_supports_or_tasks() {
+            ["postures.svg", "postures.png"]
+        } else {
+            ["torque-balance.svg", "torque-balance.png"]
+        };
+        let [first, second] = pictures_of_run(scenario, things, summary, recording)?;
+        for (names, figure) in [(names, first), (["time-line.svg", "time-line.png"], second)] {
+            contents.push((names[0], figure.svg().into_bytes()));
+            contents.push((names[1], figure.png().map_err(|error| Fail::job("PNG", error))?));
+        }
+        contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
+        let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
+        let json = summary_json(scenario, summary, answer, files)?;
+        contents.push(("summary.json", json.clone().into_bytes()));
+        self.folder.write(&contents)?;
+        Ok(json)
     }
-    let names = if scenario.has_supports_or_tasks() {
-        ["postures.svg", "postures.png"]
-    } else {
-        ["torque-balance.svg", "torque-balance.png"]
-    };
-    let [first, second] = pictures_of_run(scenario, things, summary, recording)?;
-    for (names, figure) in [(names, first), (["time-line.svg", "time-line.png"], second)] {
-        contents.push((names[0], figure.svg().into_bytes()));
-        contents.push((names[1], figure.png().map_err(|error| Fail::job("PNG", error))?));
-    }
-    contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
-    let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
-    let text = SummaryText::new(scenario, summary, &answer.verdict, &answer.helping, files);
-    let json = json_text("summary.json", &text)?;
-    contents.push(("summary.json", json.clone().into_bytes()));
-    folder.write(&contents)?;
-    Ok(json)
 }

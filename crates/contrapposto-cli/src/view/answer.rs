@@ -4,8 +4,8 @@ use contrapposto::contact::Missing;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::statics::{Load, LoadKind};
-use contrapposto::suggestions::{Change, Suggestion, changes, suggestion, with_breaks};
-use contrapposto::verdict::{Verdict, VerdictKind};
+use contrapposto::suggestions::Suggestion;
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::VerdictText;
 use serde::Serialize;
 
@@ -33,33 +33,6 @@ impl Answer {
     /// The verdict alone.
     pub(crate) fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
         Self { verdict: Verdict::of_run(scenario, summary), helping: vec![], advice: None }
-    }
-
-    /// Tries all changes of a job that does not hold, several at once, while `go_on` says yes. What is found does not depend on the
-    /// number of threads.
-    pub(crate) fn try_changes(&mut self, scenario: &Scenario, summary: &Summary, go_on: impl Fn() -> bool + Sync) {
-        let verdict = &self.verdict;
-        if verdict.kind == VerdictKind::Holds {
-            return;
-        }
-        let changes = changes(scenario);
-        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let mut tried: Vec<Option<Suggestion>> = vec![];
-        let go_on = &go_on;
-        for part in changes.chunks(threads) {
-            tried.extend(std::thread::scope(|scope| {
-                let run = |change: &'_ Change| suggestion(scenario, change, go_on);
-                let runs: Vec<_> = part.iter().map(|change| scope.spawn(move || run(change))).collect();
-                // A change whose run ends in a panic is none that helps.
-                runs.into_iter().map(|run| run.join().ok().flatten()).collect::<Vec<_>>()
-            }));
-        }
-        let breaks = (verdict.kind == VerdictKind::HeldUntil).then(|| with_breaks(scenario, summary)).flatten();
-        let tried: Vec<Suggestion> = tried.into_iter().flatten().chain(breaks).collect();
-        let number = tried.len();
-        let helping = Suggestion::that_help(tried, verdict);
-        self.advice = Suggestion::sentence(&helping, number, verdict);
-        self.helping = helping;
     }
 
     /// The lines that everything begins with.

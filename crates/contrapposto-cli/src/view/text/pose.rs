@@ -59,7 +59,7 @@ pub(crate) fn report(
     pose: &SolvedPosture,
     text: &PoseText,
     verdict: &Verdict,
-    folder: &Folder,
+    folder: Option<&Folder>,
 ) -> String {
     let mut table = plain_table();
     table.set_header(["priority", "task", "remaining error", ""]);
@@ -78,9 +78,9 @@ pub(crate) fn report(
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
     let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };
+    let page = folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path("report.html").display()));
     format!(
-        "{first}{title}{table}\n{reason} ({steps})\nreport: {}\n",
-        folder.path("report.html").display(),
+        "{first}{title}{table}\n{reason} ({steps})\n{page}",
         first = first_lines(verdict) + &unbalanced(scenario, verdict)
     )
 }

@@ -41,7 +41,7 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
     format!("cases {}", list.join(", "))
 }
 
-pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: &Folder) -> String {
+pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: Option<&Folder>) -> String {
     let mut table = plain_table();
     table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
     let all = scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free);
@@ -84,15 +84,16 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
         0 => String::new(),
         more => format!("and {more} coordinates with lower loads, which summary.json lists\n"),
     };
+    let files = folder.map_or(String::new(), |folder| {
+        let [page, first, second] = ["report.html", picture, "time-line.svg"].map(|name| folder.path(name));
+        format!("report: {}\npictures: {}, {}\n", page.display(), first.display(), second.display())
+    });
     format!(
-        "{}{}\n{table}\n{more}{standing}{reason} after {:.2} s ({} samples)\nreport: {}\npictures: {}, {}\n",
+        "{}{}\n{table}\n{more}{standing}{reason} after {:.2} s ({} samples)\n{files}",
         answer.first_lines(),
         scenario.title,
         summary.end_time,
         summary.samples,
-        folder.path("report.html").display(),
-        folder.path(picture).display(),
-        folder.path("time-line.svg").display(),
     )
 }
 
