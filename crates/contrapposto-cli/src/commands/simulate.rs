@@ -115,18 +115,12 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         try_changes(&mut answer, scenario, &summary, threads, || !INTERRUPTED.load(Ordering::Relaxed));
     }
     let text = match &files {
-        Some(files) => files.write((scenario, things), &summary, &answer, figures)?,
+        Some(files) => files.write((scenario, things), (&run, &summary), &answer, figures)?,
         None => summary_json(scenario, &summary, &answer, vec![])?,
     };
-    let partial = summary.reason == StopReason::Interrupted;
-    match &files {
-        Some(files) if partial => save(scenario, &run, &files.recording, &files.folder)?,
-        Some(files) => files.folder.remove(SNAPSHOT)?,
-        None => {}
-    }
     let folder = files.as_ref().map(|files| &files.folder);
     print(&if json { text } else { report(scenario, &summary, &answer, folder) })?;
-    match partial {
+    match summary.reason == StopReason::Interrupted {
         true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
         false => answered(&answer.verdict),
     }
@@ -160,11 +154,11 @@ struct Files {
 }
 
 impl Files {
-    /// Writes all files but the snapshot, on request with figures; gives the text of `summary.json`.
+    /// Writes all files, on request with figures, and of an interrupted run the snapshot; gives the text of `summary.json`.
     fn write(
         &self,
         (scenario, things): (&Scenario, &[Thing]),
-        summary: &Summary,
+        (run, summary): (&Run, &Summary),
         answer: &Answer,
         figures: bool,
     ) -> Result<String, Fail> {
@@ -197,6 +191,10 @@ impl Files {
         let json = summary_json(scenario, summary, answer, files)?;
         contents.push(("summary.json", json.clone().into_bytes()));
         self.folder.write(&contents)?;
+        match summary.reason == StopReason::Interrupted {
+            true => save(scenario, run, recording, &self.folder)?,
+            false => self.folder.remove(SNAPSHOT)?,
+        }
         Ok(json)
     }
 }
