@@ -8,7 +8,8 @@ use clap::{Parser, Subcommand};
 
 pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
 pub(crate) use model::{
-    AssessArgs, ConvertArgs, InspectArgs, LoadArgs, ModelArgs, PassiveFrom, RootChoice, TorquesArgs,
+    AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,
+    RuleChoice, TorquesArgs,
 };
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs};
 
@@ -52,6 +53,8 @@ pub(crate) enum Verb {
     Inspect(InspectArgs),
     /// External, passive and active torque of every coordinate, for one posture or a motion.
     Torques(TorquesArgs),
+    /// Path, forces and moment arms of every muscle of an OpenSim model, and the strength of its joints, for one posture or a motion.
+    Muscles(MusclesArgs),
     /// Find the muscle group that fails first in a recorded motion, when, and which change of posture would relieve it.
     Assess(AssessArgs),
     /// Write a model in another format: OpenSim, URDF or MJCF.

@@ -6,6 +6,7 @@ pub(crate) mod convert;
 pub(crate) mod figures;
 pub(crate) mod inspect;
 pub(crate) mod minimize;
+pub(crate) mod muscles;
 pub(crate) mod new;
 pub(crate) mod passive;
 pub(crate) mod pose;

@@ -19,7 +19,9 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Verb};
-use commands::{assess, compare, convert, figures, inspect, minimize, new, passive, pose, relax, simulate, torques};
+use commands::{
+    assess, compare, convert, figures, inspect, minimize, muscles, new, passive, pose, relax, simulate, torques,
+};
 use output::Notes;
 
 fn main() -> ExitCode {
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         Verb::Passive(args) => passive::passive(&args),
         Verb::Inspect(args) => inspect::inspect(&args),
         Verb::Torques(args) => torques::torques(&args),
+        Verb::Muscles(args) => muscles::muscles(&args),
         Verb::Assess(args) => assess::assess(&args),
         Verb::Convert(args) => convert::convert(&args),
         Verb::Schema => output::print(&format!("{:#}\n", contrapposto_formats::scenario_schema())),

@@ -10,7 +10,7 @@ use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError};
 use contrapposto_formats::motion::{self, Table, Units, postures, read_table};
 use contrapposto_formats::tissue::SourcedModel;
 
-use crate::args::LoadArgs;
+use crate::args::{FrameArgs, LoadArgs};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::output::print_note;
@@ -80,7 +80,7 @@ fn told(error: GroundReactionError) -> Fail {
 pub(crate) fn read_motion(
     path: &Path,
     accepted: &str,
-    args: &LoadArgs,
+    args: &FrameArgs,
     model: &Model,
     notes: &mut Vec<String>,
 ) -> Result<Vec<(f64, Posture)>, Fail> {

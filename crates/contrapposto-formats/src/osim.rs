@@ -2,7 +2,8 @@
 //!
 //! Documents of OpenSim 4 (bodies and joints in two sets, offset frames) and the older form (joints inside their child
 //! body), from version 10901 on. A property that a document leaves out has the value of a `<defaults>` section of the model,
-//! else OpenSim's default. Muscles, actuators, meshes and the like do not matter to quasi-static torque: they are counted in [`ModelIr::ignored`].
+//! else OpenSim's default. Actuators, meshes and the like do not matter to quasi-static torque: they are counted in [`ModelIr::ignored`].
+//! Muscles that are not supported do not refuse the model: [`ModelIr::muscles`] counts them.
 //! A part that matters and is not supported is an [`OsimError`] with its place.
 //!
 //! Rotations of ball and free joints are three body-fixed x, y, z angles, as OpenSim's coordinates are; the torques that
@@ -16,8 +17,11 @@ mod force;
 mod frames;
 mod functions;
 mod joint;
+mod muscle;
+mod path;
 mod sets;
 mod tree;
+mod wrap;
 
 pub use error::{OsimError, OsimProblem};
 
@@ -69,6 +73,7 @@ fn body(text: &[u8], limits: &Limits) -> Result<ModelIr, OsimProblem> {
     };
     let coordinates = tree::assemble(&reader, &scene, &mut body, &mut ignored)?;
     force::read(&reader, &scene, &coordinates, &mut body, &mut ignored)?;
+    body.muscles = muscle::read(&reader, &scene, &coordinates, &body);
     sets::stations(&reader, &scene, &mut body, &mut ignored)?;
     body.coordinates = coordinates.into_list();
     body.ignored = ignored.into_list();

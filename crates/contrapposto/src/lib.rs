@@ -25,7 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The crate knows no velocities and no dynamics, no muscles with paths, and no skin. [`posture_solver`] finds postures
+//! The crate knows no velocities and no dynamics, and no skin; [`muscle`] computes muscles with paths at rest. [`posture_solver`] finds postures
 //! from tasks in strict priority, [`equilibria`] those of least effort on their supports, [`simulation`] moves a body that tires.
 
 // Unit tests share bodies with the tests outside, which know this crate by its name.
@@ -44,6 +44,7 @@ pub mod joint_torques;
 pub mod kinematics;
 pub mod math;
 pub mod model;
+pub mod muscle;
 pub mod passive;
 pub mod posture;
 pub mod posture_solver;

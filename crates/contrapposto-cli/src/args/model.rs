@@ -208,6 +208,13 @@ pub(crate) struct LoadArgs {
     /// Segments that the ground reactions act on, in the order of the file's columns; guessed by name when left out.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", requires = "grf")]
     pub(crate) grf_on: Vec<String>,
+    #[command(flatten)]
+    pub(crate) frames: FrameArgs,
+}
+
+/// The frames of a motion, and the unit of its angles.
+#[derive(Debug, clap::Args)]
+pub(crate) struct FrameArgs {
     /// Leave out the frames before this time, s.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
@@ -230,4 +237,45 @@ pub(crate) struct ConvertArgs {
     pub(crate) model: ModelArgs,
     /// File to write: .osim, .urdf, or .xml for MJCF.
     pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  contrapposto muscles gait2392.osim\n  \
+    contrapposto muscles subject.osim gait.mot --json > muscles.jsonl\n\n\
+    Fibres and tendons are in equilibrium at rest. A moment arm is the torque about a coordinate for each newton of tension; those of \
+    coordinates that follow others are part of theirs. Strength is a plain sum: muscles that pull one way at full activation, all \
+    others at --activation.")]
+pub(crate) struct MusclesArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Postures: .mot, .sto or .csv, one row a frame; or `default`.
+    #[arg(default_value = "default")]
+    pub(crate) postures: PathBuf,
+    #[command(flatten)]
+    pub(crate) frames: FrameArgs,
+    /// The rule by which paths lie on the surfaces that they wrap over.
+    #[arg(long, value_enum, default_value = "geodesic")]
+    pub(crate) rule: RuleChoice,
+    /// Activation of all muscles, 0 to 1; a muscle with a least activation of its own has at least that.
+    #[arg(long, value_name = "A", default_value_t = 0.01, value_parser = activation)]
+    pub(crate) activation: f64,
+    /// Print one line of JSON a posture, in rad, m, N, N m, instead of tables.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The rule by which a path lies on its surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RuleChoice {
+    /// Shortest lines: moment arms are minus the derivatives of the length.
+    Geodesic,
+    /// OpenSim's lines and moment arms, for comparisons with it.
+    Opensim,
+}
+
+fn activation(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|a| (0.0..=1.0).contains(a))
+        .ok_or_else(|| "an activation is a number from 0 to 1".to_owned())
 }

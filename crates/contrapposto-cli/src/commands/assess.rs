@@ -116,7 +116,8 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
     let mut notes = std::mem::take(&mut opened.notes);
     notes.extend(fatigue_notes(&opened.model));
     let model = &opened.model;
-    let motion = read_motion(&args.motion, "MOTION is a .mot, .sto or .csv file", &args.under, model, &mut notes)?;
+    let accepted = "MOTION is a .mot, .sto or .csv file";
+    let motion = read_motion(&args.motion, accepted, &args.under.frames, model, &mut notes)?;
     let (held, ground) = loads_of(&args.under, model, &mut notes)?;
     if let Some(ground) = &ground {
         ground.check(motion.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))?;

@@ -39,7 +39,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         true => vec![(0.0, model.default_posture())],
         false => {
             let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
-            read_motion(&args.postures, accepted, &args.under, model, &mut notes)?
+            read_motion(&args.postures, accepted, &args.under.frames, model, &mut notes)?
         }
     };
     let (loads, ground) = loads_of(&args.under, model, &mut notes)?;

@@ -5,12 +5,14 @@
 mod build;
 mod ignored;
 mod model;
+mod muscles;
 mod root;
 mod sole;
 
 pub use contrapposto::math::{Function, Spline, SplineError};
 pub use contrapposto::model::{CoordinateKind, Coupling, Drive};
 pub use model::{Imported, ModelIrError};
+pub use muscles::{KindTally, MuscleTally, MusclesIr};
 pub(crate) use root::FREE_ENDINGS;
 pub use root::RootAttachment;
 
@@ -43,6 +45,8 @@ pub struct ModelIr {
     pub solids: Vec<SolidIr>,
     /// Named points (markers, sites): name, segment index, position in the segment's frame.
     pub stations: Vec<(String, usize, Vector3<f64>)>,
+    /// Muscles.
+    pub muscles: MusclesIr,
     /// Ignored elements, which do not matter to quasi-static torque: kind and count, sorted by kind.
     pub ignored: Vec<(String, usize)>,
 }

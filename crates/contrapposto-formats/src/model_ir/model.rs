@@ -4,18 +4,23 @@ use contrapposto::fatigue::FatigueLaw;
 use contrapposto::model::{
     CoordinateSpec, JointKind, Model, ModelBuilder, ModelError, Motion, MuscleGroup, SegmentSpec, Side,
 };
+use contrapposto::muscle::Musculature;
 use contrapposto::passive::{PassiveError, PassiveLaw, Term};
 use contrapposto::strength::Strength;
 use nalgebra::Unit;
 
 use super::sole::with_soles;
-use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, PassiveLawIr, SegmentIr, StrengthIr};
+use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, MuscleTally, PassiveLawIr, SegmentIr, StrengthIr};
 
 /// A model, and notes on its file.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// The model.
     pub model: Model,
+    /// Its muscles.
+    pub muscles: Musculature,
+    /// What became of the file's muscles.
+    pub muscle_tally: MuscleTally,
     /// The kinds of things in the file that the model does not have, with their numbers: [`ModelIr::ignored`].
     pub left_out: Vec<(String, usize)>,
     /// Changes, one plain sentence each.
@@ -56,7 +61,9 @@ impl ModelIr {
         }
         let model = builder.build();
         let model = if self.strength.is_empty() { model } else { model.by_coordinates() };
-        Ok(Imported { model: with_soles(model, &self.solids), left_out: self.ignored.clone(), notes })
+        let (muscles, muscle_tally) = (self.musculature(&model), self.muscles.tally.clone());
+        let model = with_soles(model, &self.solids);
+        Ok(Imported { model, muscles, muscle_tally, left_out: self.ignored.clone(), notes })
     }
 
     /// The two groups of a coordinate that a motor drives; none of one that follows another coordinate.

@@ -34,6 +34,10 @@ impl Coordinates {
         self.list
     }
 
+    pub(super) fn list(&self) -> &[CoordinateIr] {
+        &self.list
+    }
+
     pub(super) fn manner(&self, index: usize) -> Manner {
         self.manners[index]
     }

@@ -41,6 +41,8 @@ pub(super) struct Scene<'a> {
     markers: Vec<Node<'a>>,
     frames: Frames<'a>,
     by_name: HashMap<String, usize>,
+    /// The element of ground, where there is one.
+    ground: Option<Node<'a>>,
 }
 
 /// Sets whose members do not matter: element, and the name of its members in messages.
@@ -90,6 +92,7 @@ impl<'a> Scene<'a> {
             markers: Vec::new(),
             frames: Frames::default(),
             by_name: HashMap::new(),
+            ground: model.child("Ground"),
         };
         for section in model.children() {
             let name = section.name();
@@ -166,6 +169,7 @@ impl<'a> Scene<'a> {
         }
         let name = reader.unique_name(node)?;
         if version < SETS_FROM && name == "ground" {
+            self.ground = Some(node);
             return Ok(());
         }
         if self.by_name.insert(name.clone(), self.bodies.len()).is_some() {
@@ -221,6 +225,32 @@ impl<'a> Scene<'a> {
             self.joints.push(SceneJoint { name: reader.name(node)?, node, parent, child, old: true });
         }
         Ok(())
+    }
+
+    /// Sets of surfaces that paths wrap over, each with the body that carries it.
+    pub(super) fn wrap_sets(&self) -> impl Iterator<Item = (Option<usize>, Node<'a>)> {
+        let ground = self.ground.into_iter().map(|node| (None, node));
+        let bodies = self.bodies.iter().enumerate().map(|(index, body)| (Some(index), body.node));
+        ground.chain(bodies).filter_map(|(body, node)| Some((body, node.child("WrapObjectSet")?)))
+    }
+
+    /// The frame of a point: by `socket_parent_frame` of the component at `path`, or by `body` in older documents.
+    pub(super) fn frame_of_point(
+        &self,
+        reader: &Reader<'a>,
+        node: Node<'a>,
+        path: &str,
+    ) -> Result<Attachment, OsimProblem> {
+        if node.child("body").is_some() && node.child("socket_parent_frame").is_none() {
+            Ok(Attachment { body: self.old_body(reader, node, "body")?, pose: nalgebra::Isometry3::identity() })
+        } else {
+            self.frames.socket(reader, node, "socket_parent_frame", path)
+        }
+    }
+
+    /// The segment of a body; `None` for ground.
+    pub(super) fn segment(&self, body: Option<usize>, segments: &HashMap<&str, usize>) -> Option<usize> {
+        body.and_then(|index| segments.get(self.bodies[index].name.as_str()).copied())
     }
 
     /// A body by its name, as older documents give it; `None` is ground.
@@ -304,14 +334,9 @@ pub(super) fn stations<'a>(
     let mut stations = Vec::new();
     for &node in &scene.markers {
         let name = reader.unique_name(node)?;
-        let frame = if node.child("body").is_some() && node.child("socket_parent_frame").is_none() {
-            Attachment { body: scene.old_body(reader, node, "body")?, pose: nalgebra::Isometry3::identity() }
-        } else {
-            scene.frames.socket(reader, node, "socket_parent_frame", &format!("/markerset/{name}"))?
-        };
+        let frame = scene.frame_of_point(reader, node, &format!("/markerset/{name}"))?;
         let location = frame.pose * nalgebra::Point3::from(reader.vector(node, "location", Some(Vector3::zeros()))?);
-        let segment = frame.body.and_then(|index| segments.get(scene.bodies[index].name.as_str()));
-        let Some(&segment) = segment else {
+        let Some(segment) = scene.segment(frame.body, &segments) else {
             ignored.add("markers fixed to ground", 1);
             continue;
         };

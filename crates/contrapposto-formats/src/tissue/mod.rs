@@ -14,10 +14,11 @@ pub use origin::{Origin, Origins};
 pub use person::Person;
 
 use contrapposto::model::{Adult, AdultError, Model, Sex, adult};
+use contrapposto::muscle::Musculature;
 
 use crate::input_error::InputError;
 use crate::model_file::{ModelFileError, ModelFormat, read_model};
-use crate::model_ir::RootAttachment;
+use crate::model_ir::{Imported, MuscleTally, RootAttachment};
 use crate::overlay::overlay;
 
 /// A model, and the origin of its numbers.
@@ -29,6 +30,10 @@ pub struct SourcedModel {
     pub format: ModelFormat,
     /// Sex of the body; `None` where nobody says it, and strength and passive torque of the library are a man's.
     pub sex: Option<Sex>,
+    /// The muscles of its file.
+    pub muscles: Musculature,
+    /// What became of the file's muscles.
+    pub muscle_tally: MuscleTally,
     /// By coordinate.
     pub origins: Vec<Origins>,
     /// The kinds of things that the file holds and this model does not, with their numbers.
@@ -71,7 +76,8 @@ impl SourcedModel {
         let mut notes = imported.notes;
         notes.splice(0..0, left_out_note(&imported.left_out));
         notes.extend(strength_note(&imported.model, format));
-        Ok(Self { model: imported.model, format, sex: None, origins, left_out: imported.left_out, notes })
+        let Imported { model, muscles, muscle_tally, left_out, .. } = imported;
+        Ok(Self { model, muscles, muscle_tally, format, sex: None, origins, left_out, notes })
     }
 
     /// The model without the strength that its file gives to motors; its notes no longer tell of it. For a model file as it was read.
@@ -105,7 +111,8 @@ impl SourcedModel {
         });
         let origins = origins.collect();
         let (sex, left_out, notes) = (Some(size.sex), vec![], vec![]);
-        Ok(Self { origins, model, format: ModelFormat::Adult, sex, left_out, notes })
+        let (muscles, muscle_tally) = (Musculature::default(), MuscleTally::default());
+        Ok(Self { origins, model, muscles, muscle_tally, format: ModelFormat::Adult, sex, left_out, notes })
     }
 
     /// Lays the overlay in `bytes` over the model: [`overlay`].

@@ -5,7 +5,7 @@ use syn::spanned::Spanned;
 use super::sources::{Source, crates, sources};
 
 /// Rooms of the science crate whose constants are tolerances or limits of a solver or a search.
-const ROOMS: [&str; 6] = ["math", "contact", "effort", "posture_solver", "equilibria", "simulation"];
+const ROOMS: [&str; 7] = ["math", "muscle", "contact", "effort", "posture_solver", "equilibria", "simulation"];
 
 /// The page `docs/tolerances.md`.
 pub(super) fn page() -> String {

@@ -1,6 +1,7 @@
 //! The contents of a model, as `inspect --json` prints them and as terminal tables.
 
 mod group_strength;
+mod muscle_counts;
 pub(crate) mod scenario;
 
 use std::collections::BTreeMap;
@@ -11,6 +12,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::math::Function;
 use contrapposto::model::{Coordinate, CoordinateKind, Model, MuscleGroup};
 use contrapposto::passive::{PassiveLaw, Term};
+use contrapposto_formats::model_ir::KindTally;
 use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
 
@@ -19,6 +21,7 @@ use super::plain_table;
 use super::sources::{Known, Seen, Source};
 use crate::view::moment::MomentJoint;
 use group_strength::StrengthText;
+use muscle_counts::muscle_counts;
 
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
@@ -32,6 +35,9 @@ pub(crate) struct Report<'a> {
     segments: Vec<SegmentText<'a>>,
     coordinate_order: Vec<&'a str>,
     coordinates: BTreeMap<&'a str, InspectedCoordinateText<'a>>,
+    /// What became of muscles, the points of their paths and surfaces, by kind; left out where the file has none.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    muscles: &'a BTreeMap<String, KindTally>,
     /// Parts that were ignored, changed or filled in, one sentence each.
     notes: &'a [String],
 }
@@ -146,6 +152,7 @@ pub(crate) fn report<'a>(opened: &'a SourcedModel, file: &'a str) -> Report<'a> 
             .enumerate()
             .map(|(index, coordinate)| (coordinate.name.as_str(), text(opened, model, index, coordinate)))
             .collect(),
+        muscles: &opened.muscle_tally.0,
         notes: &opened.notes,
     }
 }
@@ -265,6 +272,7 @@ pub(crate) fn readable(opened: &SourcedModel, file: &str) -> String {
     let mut seen = Seen::default();
     let _ = writeln!(text, "{}", coordinates(opened, &mut seen));
     text.push_str(&seen.legend());
+    text.push_str(&muscle_counts(&opened.muscle_tally.0));
     if !opened.notes.is_empty() {
         text.push_str("\nnotes:\n");
         opened.notes.iter().for_each(|note| {

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto_formats::tissue::SourcedModel;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::joint::AxisText;
-use super::plain_table;
 use super::sources::StrengthAtText;
+use super::{Named, plain_table};
 use crate::view::moment::{Moment, MomentJoint};
 use crate::view::torque_rows::{Frame, Order, Row, Torques};
 
@@ -53,15 +53,6 @@ struct MomentText<'a> {
     passive_nm: [f64; 3],
     active_nm: [f64; 3],
     load: Option<f64>,
-}
-
-/// An object whose keys keep their order.
-struct Named<'a, T>(Vec<(&'a str, T)>);
-
-impl<T: Serialize> Serialize for Named<'_, T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
-    }
 }
 
 pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Frame<'_>) -> FrameText<'a> {

@@ -1,0 +1,84 @@
+//! `contrapposto muscles`: path, forces and moment arms of every muscle of a body at rest, and the strength of its joints.
+
+use std::path::Path;
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::muscle::{FiberState, PathGeometry, PathRule, passive_torque, strength};
+use contrapposto::posture::Posture;
+use contrapposto_formats::tissue::SourcedModel;
+
+use crate::args::{MusclesArgs, RuleChoice};
+use crate::fail::Fail;
+use crate::model_file::open;
+use crate::motion_file::{note_values_out_of_range, read_motion};
+use crate::output::{print, print_note};
+use crate::view::text::muscles::{MuscleFrame, json, readable};
+
+pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
+    if args.model.model == Path::new("-") && args.postures == Path::new("-") {
+        return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
+    }
+    let mut opened = open(&args.model, false)?;
+    if opened.muscles.muscles.is_empty() {
+        let file = args.model.model.display();
+        let why = "no muscle could be read from it; MODEL is an OpenSim file with muscles, and `contrapposto inspect` counts them";
+        return Err(Fail::Refused(format!("{file}: {why}")));
+    }
+    let mut notes = std::mem::take(&mut opened.notes);
+    notes.retain(|note| !note.starts_with("in the file and not used"));
+    let model = &opened.model;
+    let frames = match args.postures == Path::new("default") {
+        true => vec![(0.0, model.default_posture())],
+        false => {
+            let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
+            read_motion(&args.postures, accepted, &args.frames, model, &mut notes)?
+        }
+    };
+    let warnings = note_values_out_of_range(&opened, &frames, &mut notes);
+    warnings.iter().for_each(|warning| print_note("warning", warning));
+    for (kind, tally) in opened.muscle_tally.0.iter().filter(|(_, tally)| tally.left_out + tally.refused > 0) {
+        let missing = tally.left_out + tally.refused;
+        notes.push(format!(
+            "{missing} of {} {kind} are left out; `contrapposto inspect` says why",
+            missing + tally.read
+        ));
+    }
+    notes.iter().for_each(|note| print_note("note", note));
+    run(&opened, &frames, args)
+}
+
+/// Computes and prints frame after frame.
+fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> Result<(), Fail> {
+    let (model, muscles) = (&opened.model, &opened.muscles);
+    let rule = match args.rule {
+        RuleChoice::Geodesic => PathRule::Geodesic,
+        RuleChoice::Opensim => PathRule::OpenSim,
+    };
+    let mut kinematics = Kinematics::new(model);
+    let mut geometry = PathGeometry::new(model, &muscles.paths);
+    let (mut strengths, mut passive) = (vec![[0.0; 2]; model.rates().len()], vec![0.0; model.rates().len()]);
+    for (index, (time, posture)) in frames.iter().enumerate() {
+        kinematics.update(model, posture).map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
+        geometry.update(model, &kinematics, &muscles.paths, rule);
+        let states = |activation: f64| -> Vec<FiberState> {
+            let all = muscles.muscles.iter();
+            all.map(|muscle| muscle.at_rest(geometry.lengths()[muscle.spec().path], activation)).collect()
+        };
+        let (rest, full) = (states(args.activation), states(1.0));
+        strength(muscles, &geometry, &rest, &full, &mut strengths);
+        passive_torque(muscles, &geometry, &rest, &mut passive);
+        let frame = MuscleFrame {
+            index,
+            time: *time,
+            rule: args.rule,
+            activation: args.activation,
+            geometry: &geometry,
+            rest: &rest,
+            full: &full,
+            strength: &strengths,
+            passive: &passive,
+        };
+        print(&if args.json { json(opened, &frame)? } else { readable(opened, &frame) })?;
+    }
+    Ok(())
+}

@@ -1,0 +1,198 @@
+//! Computes lengths and moment arms of paths in a posture.
+//!
+//! The moment arm is the torque about a coordinate for each newton of tension: by virtual work, the sum over the line's corners
+//! of the forces of the straight parts on the segments that carry them, times the motion of the corner with the coordinate. By the
+//! geodesic rule that is minus the derivative of the length (Sherman, Seth & Delp 2013 derive it; recalled).
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::path::{Location, MovingPoint, PathPoint, PathRule, Paths};
+use super::routing::{FrameInGround, Node, NodeKind, Routing, Scene};
+use crate::kinematics::Kinematics;
+use crate::model::{Model, Motion};
+
+/// Lengths and moment arms. Depend on posture and rule; filled by [`PathGeometry::update`].
+#[derive(Clone, Debug)]
+pub struct PathGeometry {
+    lengths: Vec<f64>,
+    /// One row a path, one column a rate.
+    moment_arms: Vec<f64>,
+    rates: usize,
+    /// Segments' frames in that of their mobility.
+    offsets: Vec<FrameInGround>,
+    segments: Vec<FrameInGround>,
+    objects: Vec<FrameInGround>,
+    /// By path: the mobilities that move some of its points and not all, outermost first.
+    moving: Vec<Vec<usize>>,
+    /// By path over several surfaces: all mobilities that move any of its points; empty for other paths. The forces of OpenSim's rule are
+    /// not in balance there ([`super::routing::Node::seen`]), so that it has moment arms about joints that the path does not cross.
+    carrying: Vec<Vec<usize>>,
+    /// Force and moment about ground's origin on each mobility, N for each newton of tension and m.
+    wrenches: Vec<(Vector3<f64>, Vector3<f64>)>,
+    routing: Routing,
+}
+
+impl PathGeometry {
+    /// Space for the paths of a model.
+    pub fn new(model: &Model, paths: &Paths) -> Self {
+        let frame =
+            |pose: &crate::model::Placement| (pose.rotation.to_rotation_matrix().into_inner(), pose.translation.vector);
+        let rates = model.rates().len();
+        Self {
+            lengths: vec![0.0; paths.paths.len()],
+            moment_arms: vec![0.0; paths.paths.len() * rates],
+            rates,
+            offsets: model.segments.iter().map(|segment| frame(&segment.offset)).collect(),
+            segments: model.segments.iter().map(|segment| frame(&segment.offset)).collect(),
+            objects: paths.wrap_objects.iter().map(|object| frame(&object.pose)).collect(),
+            moving: (0..paths.paths.len()).map(|path| moving(model, paths, path, false)).collect(),
+            carrying: (0..paths.paths.len())
+                .map(|path| if paths.paths[path].wraps.len() > 1 { moving(model, paths, path, true) } else { vec![] })
+                .collect(),
+            wrenches: vec![(Vector3::zeros(), Vector3::zeros()); model.mobilities.len()],
+            routing: Routing::new(paths),
+        }
+    }
+
+    /// Lengths of all paths, m.
+    pub fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// Moment arms of one path: torque by rate for each newton of tension, m (N/N for slides). Those of coordinates that follow others
+    /// are folded into those that lead them.
+    pub fn moment_arms(&self, path: usize) -> &[f64] {
+        &self.moment_arms[path * self.rates..(path + 1) * self.rates]
+    }
+
+    /// Lays all paths anew. Does not allocate.
+    pub fn update(&mut self, model: &Model, kinematics: &Kinematics, paths: &Paths, rule: PathRule) {
+        self.place(model, kinematics, paths);
+        self.moment_arms.fill(0.0);
+        for (index, path) in paths.paths.iter().enumerate() {
+            let scene =
+                Scene { paths, values: kinematics.values(), segments: &self.segments, objects: &self.objects, rule };
+            self.lengths[index] = self.routing.lay(scene, path);
+            let arms = &mut self.moment_arms[index * self.rates..(index + 1) * self.rates];
+            let mut tension = Tension { model, kinematics, points: &path.points, segments: &self.segments, rule, arms };
+            let unbalanced = rule == PathRule::OpenSim && path.wraps.len() > 1;
+            let moving = if unbalanced { &self.carrying[index] } else { &self.moving[index] };
+            moving.iter().for_each(|&m| self.wrenches[m] = Default::default());
+            tension.pull(&self.routing.nodes, moving, &mut self.wrenches);
+            tension.turn(moving, &mut self.wrenches);
+        }
+        kinematics.fold_columns(model, &mut self.moment_arms);
+    }
+
+    /// Brings the frames of segments and surfaces to the posture.
+    fn place(&mut self, model: &Model, kinematics: &Kinematics, paths: &Paths) {
+        for ((segment, offset), frame) in model.segments.iter().zip(&self.offsets).zip(&mut self.segments) {
+            if let Some(m) = segment.mobility {
+                let rotation = &kinematics.rotations[m];
+                *frame = (rotation * offset.0, rotation * offset.1 + kinematics.origins[m]);
+            }
+        }
+        for (object, frame) in paths.wrap_objects.iter().zip(&mut self.objects) {
+            let own: Matrix3<f64> = object.pose.rotation.to_rotation_matrix().into_inner();
+            let at = object.pose.translation.vector;
+            *frame = object.segment.map_or((own, at), |s| {
+                let (axes, origin) = &self.segments[s];
+                (axes * own, axes * at + origin)
+            });
+        }
+    }
+}
+
+/// The mobilities that move some of a path's points and not all, outermost first: those of other coordinates do not change it. `any`: also
+/// those that move all of them.
+fn moving(model: &Model, paths: &Paths, path: usize, any: bool) -> Vec<usize> {
+    let path = &paths.paths[path];
+    let of_wraps = path.wraps.iter().map(|wrap| paths.wrap_objects[wrap.object].segment);
+    let carriers: Vec<_> = path.points.iter().map(|point| point.segment).chain(of_wraps).collect();
+    let mut counts = vec![0; model.mobilities.len()];
+    for carrier in &carriers {
+        let mut next = carrier.and_then(|segment| model.segments[segment].mobility);
+        while let Some(m) = next {
+            counts[m] += 1;
+            next = model.mobilities[m].parent;
+        }
+    }
+    (0..counts.len()).rev().filter(|&m| counts[m] > 0 && (any || counts[m] < carriers.len())).collect()
+}
+
+/// A tension of 1 N along a line, and the row of moment arms that it fills.
+struct Tension<'a> {
+    model: &'a Model,
+    kinematics: &'a Kinematics,
+    points: &'a [PathPoint],
+    segments: &'a [FrameInGround],
+    rule: PathRule,
+    arms: &'a mut [f64],
+}
+
+impl Tension<'_> {
+    /// Adds the forces of all straight parts to the mobilities that carry their ends, and the work of points that move in their segment.
+    fn pull(&mut self, nodes: &[Node], moving: &[usize], wrenches: &mut [(Vector3<f64>, Vector3<f64>)]) {
+        for pair in nodes.windows(2) {
+            let [from, to] = [&pair[0], &pair[1]];
+            if matches!(from.kind, NodeKind::On(_)) {
+                continue;
+            }
+            let same = from.segment == to.segment;
+            // OpenSim leaves out the work of points that move against another point of the same segment.
+            if same && self.rule == PathRule::OpenSim {
+                continue;
+            }
+            let straight = to.seen - from.seen;
+            let length = straight.norm();
+            if length == 0.0 {
+                continue;
+            }
+            let direction = straight / length;
+            for (node, force) in [(from, direction), (to, -direction)] {
+                self.slide(node, &force);
+                let mobility = node.segment.and_then(|segment| self.model.segments[segment].mobility);
+                if let Some(m) = mobility.filter(|m| !same && moving.contains(m)) {
+                    wrenches[m].0 += force;
+                    wrenches[m].1 += node.place.cross(&force);
+                }
+            }
+        }
+    }
+
+    /// The work of a force on a point that moves in its segment.
+    fn slide(&mut self, node: &Node, force: &Vector3<f64>) {
+        let NodeKind::Point(index) = node.kind else { return };
+        let Location::Moving(point) = &self.points[index].location else { return };
+        let MovingPoint { coordinate: Some(coordinate), .. } = **point else { return };
+        let Some(rate) = self.model.coordinates[coordinate].rate else { return };
+        let values = self.kinematics.values();
+        let slope = match self.rule {
+            PathRule::Geodesic if point.stays(values) => return,
+            PathRule::Geodesic => point.place_and_slope(values).1,
+            PathRule::OpenSim => point.slope_beyond_range(values),
+        };
+        let slope = node.segment.map_or(slope, |s| self.segments[s].0 * slope);
+        self.arms[rate] += force.dot(&slope);
+    }
+
+    /// Torques of the forces about all axes, from the outermost mobility inward.
+    fn turn(&mut self, moving: &[usize], wrenches: &mut [(Vector3<f64>, Vector3<f64>)]) {
+        for &m in moving {
+            let mobility = &self.model.mobilities[m];
+            let (force, moment) = wrenches[m];
+            let about = moment - self.kinematics.origins[m].cross(&force);
+            for element in mobility.rate..mobility.rate + mobility.motion.rates() {
+                let axis = &self.kinematics.axes[element];
+                let torque = if let Motion::Slide(_) = mobility.motion { axis.dot(&force) } else { axis.dot(&about) };
+                if let Some(rate) = self.model.elements[element] {
+                    self.arms[rate] += self.kinematics.drives[element].0 * torque;
+                }
+            }
+            if let Some(parent) = mobility.parent {
+                wrenches[parent].0 += force;
+                wrenches[parent].1 += moment;
+            }
+        }
+    }
+}

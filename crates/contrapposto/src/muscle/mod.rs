@@ -1,0 +1,31 @@
+//! Computes what a body's muscles do at rest: paths with their lengths and moment arms, forces of fibres and tendons, and the passive
+//! torque and strength that follow.
+//!
+//! [`Musculature`] is given and does not change; [`PathGeometry`] and [`FiberState`] depend on the posture. Paths follow one of two rules
+//! ([`PathRule`]): shortest lines, whose moment arms are minus the derivatives of the length, or OpenSim's.
+
+mod fiber;
+mod geometry;
+mod path;
+mod routing;
+mod tolerances;
+mod torque;
+mod wrap;
+
+pub use fiber::{
+    ActiveCurve, FiberLaw, FiberState, Millard2012, Muscle, MuscleError, MuscleSpec, PassiveFiberCurve, PassiveShape,
+    TendonCurve, TendonShape, Thelen2003,
+};
+pub use geometry::PathGeometry;
+pub use path::{Location, MovingPoint, Path, PathPoint, PathRule, PathWrap, Paths, WrapMethod};
+pub use torque::{passive_torque, strength};
+pub use wrap::{Quadrant, WrapObject, WrapShape};
+
+/// The muscles of a body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Musculature {
+    /// Their paths and the surfaces that they wrap over.
+    pub paths: Paths,
+    /// The muscles, in the file's order.
+    pub muscles: Vec<Muscle>,
+}
