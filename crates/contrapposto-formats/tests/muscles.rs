@@ -63,6 +63,8 @@ fn muscles_of_published_models_are_opensims() {
         ("rajagopal_lai_uhlrich2023", "RajagopalLaiUhlrich2023.osim", &[], MILLARD),
         ("rajagopal_lai_uhlrich2023", "RajagopalLaiUhlrich2023.osim", &cylinder, MILLARD),
         ("rajagopal_lai_uhlrich2023", "RajagopalLaiUhlrich2023.osim", &cylinders, several),
+        ("gait1018_dgf", "gait1018.osim", &[], THELEN),
+        ("wrist", "wrist.osim", &[], MILLARD),
     ] {
         if let Some(bytes) = model_bytes(file) {
             check(name, &bytes, wraps, &limits);

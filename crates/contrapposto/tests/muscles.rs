@@ -166,3 +166,18 @@ fn the_shortest_line_over_a_cylinder_is_not_longer_than_opensims() {
     }
     assert!(differ > 5, "{differ} of 200 lines differ");
 }
+
+#[test]
+fn laying_paths_anew_allocates_nothing() {
+    let model = adult(&Adult::default()).unwrap();
+    let mut rng = random();
+    let paths = past_cylinder(&model, Quadrant::All, 0.01);
+    let (mut kinematics, mut geometry) = (Kinematics::new(&model), PathGeometry::new(&model, &paths));
+    for _ in 0..20 {
+        kinematics.update(&model, &inside(&mut rng, &model)).unwrap();
+        for rule in [PathRule::Geodesic, PathRule::OpenSim] {
+            let update = || geometry.update(&model, &kinematics, &paths, rule);
+            assert_eq!(allocation_counter::measure(update).count_total, 0, "{rule:?}");
+        }
+    }
+}

@@ -3,20 +3,22 @@
 use std::collections::HashMap;
 
 use contrapposto::muscle::{
-    ActiveCurve, FiberLaw, Millard2012, Muscle, MuscleSpec, PassiveFiberCurve, PassiveShape, TendonCurve, TendonShape,
-    Thelen2003,
+    ActiveCurve, DeGrooteFregly2016, FiberLaw, Millard2012, Muscle, MuscleSpec, PassiveFiberCurve, PassiveShape,
+    Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
 
 use super::attributes::Reader;
 use super::coordinates::Coordinates;
 use super::error::OsimProblem;
+use super::functions;
 use super::path::Surroundings;
 use super::sets::Scene;
 use super::wrap::WrapObjects;
 use crate::model_ir::{ModelIr, MusclesIr};
 use crate::xml::Node;
 
-const MUSCLES: &str = "Thelen2003Muscle, Millard2012EquilibriumMuscle";
+const MUSCLES: &str =
+    "Thelen2003Muscle, Millard2012EquilibriumMuscle, DeGrooteFregly2016Muscle, Schutte1993Muscle_Deprecated";
 /// Fibre damping from which on OpenSim's fibres need no least active force.
 const DAMPED: f64 = 0.001;
 /// Least active force, over the greatest isometric force, of undamped fibres with a compliant tendon in OpenSim.
@@ -57,7 +59,13 @@ fn muscle<'a>(around: &Surroundings<'_, 'a>, node: Node<'a>, all: &mut MusclesIr
         // OpenSim's muscle of this kind has a compliant tendon whatever the file says.
         "Thelen2003Muscle" => (FiberLaw::Thelen2003(thelen(reader, node)?), false),
         "Millard2012EquilibriumMuscle" => (FiberLaw::Millard2012(millard(reader, node, compliant)?), !compliant),
+        "DeGrooteFregly2016Muscle" => (FiberLaw::DeGrooteFregly2016(degroote_fregly(reader, node)?), !compliant),
+        "Schutte1993Muscle_Deprecated" => (FiberLaw::Schutte1993(schutte(reader, node)?), false),
         other => return Err(OsimProblem::unsupported(node.place(), other, MUSCLES)),
+    };
+    let least_activation = match law {
+        FiberLaw::Thelen2003(_) | FiberLaw::Millard2012(_) => number("minimum_activation", 0.01)?,
+        FiberLaw::DeGrooteFregly2016(_) | FiberLaw::Schutte1993(_) => 0.0,
     };
     let pennation = if reader.property(node, "pennation_angle_at_optimal").is_some() {
         "pennation_angle_at_optimal"
@@ -72,7 +80,7 @@ fn muscle<'a>(around: &Surroundings<'_, 'a>, node: Node<'a>, all: &mut MusclesIr
         tendon_slack_length: number("tendon_slack_length", 0.2)?,
         pennation: number(pennation, 0.0)?,
         max_pennation: number("maximum_pennation_angle", 0.1f64.acos())?,
-        least_activation: number("minimum_activation", 0.01)?,
+        least_activation,
         rigid_tendon,
         law,
     };
@@ -94,6 +102,30 @@ fn thelen<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<Thelen2003, OsimPro
         fiber_strain: number("FmaxMuscleStrain", default.fiber_strain)?,
         active_shape: number("KshapeActive", default.active_shape)?,
         passive_shape: number("KshapePassive", default.passive_shape)?,
+    })
+}
+
+fn degroote_fregly<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<DeGrooteFregly2016, OsimProblem> {
+    let number = |name, default| reader.number(node, name, Some(default));
+    let default = DeGrooteFregly2016::default();
+    Ok(DeGrooteFregly2016 {
+        active_width: number("active_force_width_scale", default.active_width)?,
+        fiber_strain: number("passive_fiber_strain_at_one_norm_force", default.fiber_strain)?,
+        tendon_strain: number("tendon_strain_at_one_norm_force", default.tendon_strain)?,
+        without_passive: reader.flag(node, "ignore_passive_fiber_force", default.without_passive)?,
+    })
+}
+
+fn schutte<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<Schutte1993, OsimProblem> {
+    let curve = |name: &str| {
+        let function = reader.object(node, name, |_| false);
+        function.map(|function| functions::read(reader, function)).transpose()
+    };
+    let default = Schutte1993::default();
+    Ok(Schutte1993 {
+        active: curve("active_force_length_curve")?.unwrap_or(default.active),
+        passive: curve("passive_force_length_curve")?,
+        tendon: curve("tendon_force_length_curve")?.unwrap_or(default.tendon),
     })
 }
 

@@ -6,8 +6,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::path::{Location, MovingPoint, PathPoint, PathRule, Paths};
+use super::path::{Location, MovingPoint, PathPoint, Paths};
 use super::routing::{FrameInGround, Node, NodeKind, Routing, Scene};
+use super::rule::PathRule;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Motion};
 

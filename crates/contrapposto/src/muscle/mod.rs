@@ -8,16 +8,18 @@ mod fiber;
 mod geometry;
 mod path;
 mod routing;
+mod rule;
 mod tolerances;
 mod torque;
 mod wrap;
 
 pub use fiber::{
-    ActiveCurve, FiberLaw, FiberState, Millard2012, Muscle, MuscleError, MuscleSpec, PassiveFiberCurve, PassiveShape,
-    TendonCurve, TendonShape, Thelen2003,
+    ActiveCurve, DeGrooteFregly2016, FiberLaw, FiberState, Millard2012, Muscle, MuscleError, MuscleSpec,
+    PassiveFiberCurve, PassiveShape, Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
 pub use geometry::PathGeometry;
-pub use path::{Location, MovingPoint, Path, PathPoint, PathRule, PathWrap, Paths, WrapMethod};
+pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
+pub use rule::{PathRule, WrapMethod};
 pub use torque::{passive_torque, strength};
 pub use wrap::{Quadrant, WrapObject, WrapShape};
 

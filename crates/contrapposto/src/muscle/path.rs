@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::rule::WrapMethod;
 use super::wrap::WrapObject;
 use crate::math::Function;
 use crate::model::Placement;
@@ -68,18 +69,6 @@ impl MovingPoint {
     }
 }
 
-/// How OpenSim chooses the plane of a path over an ellipsoid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum WrapMethod {
-    /// A blend of the two others.
-    #[default]
-    Hybrid,
-    /// A point half way.
-    Midpoint,
-    /// A point along the axis that is most across the path.
-    Axial,
-}
-
 /// A surface that a path may wrap over.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathWrap {
@@ -107,15 +96,4 @@ pub struct Paths {
     pub paths: Vec<Path>,
     /// The surfaces.
     pub wrap_objects: Vec<WrapObject>,
-}
-
-/// The rule by which a path lies on its surfaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PathRule {
-    /// Shortest lines on the surfaces: moment arms are the derivatives of the length, so that forces of length are conservative.
-    #[default]
-    Geodesic,
-    /// The rule of OpenSim 4, for comparisons with it: its lines are not the shortest ones, and its moment arms, those of a tension
-    /// along the line, are not the derivatives of its length.
-    OpenSim,
 }

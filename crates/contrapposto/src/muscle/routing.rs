@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::path::{Location, Path, PathRule, PathWrap, Paths};
+use super::path::{Location, Path, PathWrap, Paths};
+use super::rule::PathRule;
 use super::tolerances::{GEODESIC_AT_REST, GEODESIC_ROUNDS, OPENSIM_AT_REST, OPENSIM_ROUNDS, RANGE_SLACK};
 use super::wrap::{Contact, Manner, Wrapping};
 

@@ -4,8 +4,45 @@
 //! method between these bounds, with bisection where it would leave them. The first length is that of a slightly stretched tendon, as in
 //! OpenSim, so that of several equilibria the same one is found.
 
-use super::{Curves, FiberState, Muscle};
+use super::curves::Curves;
 use crate::muscle::tolerances::{EQUILIBRIUM, EQUILIBRIUM_STEPS, FIRST_STRETCH};
+
+/// Fibres of constant width in series with a tendon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fibers {
+    /// Width of the fibres' parallelogram, m.
+    pub(super) width: f64,
+    /// Shortest length of the fibres, m.
+    pub(super) least_length: f64,
+    /// m.
+    pub(super) optimal_length: f64,
+    /// Of the tendon, m.
+    pub(super) slack_length: f64,
+    /// The tendon does not stretch.
+    pub(super) rigid: bool,
+    /// N.
+    pub(super) max_isometric_force: f64,
+}
+
+/// A muscle in equilibrium at rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FiberState {
+    /// m.
+    pub fiber_length: f64,
+    /// Cosine of the angle between fibres and tendon.
+    pub cos_pennation: f64,
+    /// Force of the tendon, N.
+    pub tendon_force: f64,
+    /// Active force of the fibres along the tendon, N.
+    pub active_force: f64,
+    /// Passive force of the fibres along the tendon, N.
+    pub passive_force: f64,
+    /// Fibre force along the tendon less tendon force, over the greatest isometric force; zero but for rounding, unless the fibres are at
+    /// their shortest length.
+    pub imbalance: f64,
+    /// The fibres are at their shortest length and carry nothing.
+    pub shortest: bool,
+}
 
 /// Forces of fibres of one length, over the greatest isometric force.
 struct Forces {
@@ -23,73 +60,89 @@ impl Forces {
     }
 }
 
-/// The equilibrium at a path length, m.
-pub(super) fn solve(muscle: &Muscle, curves: &impl Curves, path_length: f64, activation: f64) -> FiberState {
-    let spec = muscle.spec();
-    let forces = |length: f64| evaluate(muscle, curves, path_length, activation, length);
-    let extent = path_length - spec.tendon_slack_length;
-    let slack = muscle.length_of_extent(extent);
-    let least = muscle.least_length;
-    if spec.rigid_tendon || spec.tendon_slack_length == 0.0 {
-        let mut forces = forces(slack);
-        forces.tendon = ((forces.active + forces.passive) * forces.cos).max(0.0);
-        return state(muscle, slack, &forces, slack <= least);
-    }
-    let at_least = forces(least);
-    if slack <= least || at_least.imbalance() >= 0.0 {
-        return state(muscle, least, &at_least, true);
-    }
-    let (mut low, mut high) = (least, slack);
-    let mut length = muscle.length_of_extent(extent - FIRST_STRETCH * spec.tendon_slack_length);
-    let mut now = forces(length);
-    for _ in 0..EQUILIBRIUM_STEPS {
-        let imbalance = now.imbalance();
-        if imbalance.abs() <= EQUILIBRIUM {
-            break;
+impl Fibers {
+    /// The equilibrium at a path length, m.
+    pub(super) fn solve(&self, curves: &impl Curves, path_length: f64, activation: f64) -> FiberState {
+        let forces = |length: f64| self.evaluate(curves, path_length, activation, length);
+        let extent = path_length - self.slack_length;
+        let slack = self.length_of_extent(extent);
+        let least = self.least_length;
+        if self.rigid {
+            let mut forces = forces(slack);
+            forces.tendon = ((forces.active + forces.passive) * forces.cos).max(0.0);
+            return self.state(slack, &forces, slack <= least);
         }
-        if imbalance > 0.0 {
-            high = length
-        } else {
-            low = length
+        let at_least = forces(least);
+        if slack <= least || at_least.imbalance() >= 0.0 {
+            return self.state(least, &at_least, true);
         }
-        let newton = length - imbalance / now.slope;
-        if (newton - length).abs() <= f64::EPSILON * length {
-            break;
+        let (mut low, mut high) = (least, slack);
+        let mut length = self.length_of_extent(extent - FIRST_STRETCH * self.slack_length);
+        let mut now = forces(length);
+        for _ in 0..EQUILIBRIUM_STEPS {
+            let imbalance = now.imbalance();
+            if imbalance.abs() <= EQUILIBRIUM {
+                break;
+            }
+            if imbalance > 0.0 {
+                high = length
+            } else {
+                low = length
+            }
+            let newton = length - imbalance / now.slope;
+            if (newton - length).abs() <= f64::EPSILON * length {
+                break;
+            }
+            length = if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
+            now = forces(length);
         }
-        length = if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
-        now = forces(length);
+        self.state(length, &now, false)
     }
-    state(muscle, length, &now, false)
-}
 
-fn evaluate(muscle: &Muscle, curves: &impl Curves, path_length: f64, activation: f64, length: f64) -> Forces {
-    let spec = muscle.spec();
-    let cos = muscle.cos_pennation(length);
-    let relative = length / spec.optimal_fiber_length;
-    let (active, active_slope) = curves.active(relative);
-    let (passive, passive_slope) = curves.passive(relative);
-    let (tendon, tendon_slope) = match spec.tendon_slack_length {
-        slack if slack > 0.0 => curves.tendon((path_length - length * cos) / slack),
-        _ => (0.0, 0.0),
-    };
-    let fibers = activation * active + passive;
-    let fibers_slope = (activation * active_slope + passive_slope) / spec.optimal_fiber_length;
-    let cos_slope = muscle.width * muscle.width / (length * length * length * cos);
-    let slope = fibers_slope * cos + fibers * cos_slope + tendon_slope / (spec.tendon_slack_length * cos);
-    Forces { cos, active: activation * active, passive, tendon, slope }
-}
+    /// The forces of fibres of a length, m.
+    pub(super) fn at(&self, curves: &impl Curves, path_length: f64, activation: f64, length: f64) -> FiberState {
+        self.state(length, &self.evaluate(curves, path_length, activation, length), false)
+    }
 
-fn state(muscle: &Muscle, length: f64, forces: &Forces, shortest: bool) -> FiberState {
-    let most = muscle.spec().max_isometric_force;
-    let carried = if shortest { 0.0 } else { most * forces.cos };
-    let rigid = muscle.spec().rigid_tendon || muscle.spec().tendon_slack_length == 0.0;
-    FiberState {
-        fiber_length: length,
-        cos_pennation: forces.cos,
-        tendon_force: if shortest && rigid { 0.0 } else { most * forces.tendon },
-        active_force: carried * forces.active,
-        passive_force: carried * forces.passive,
-        imbalance: if shortest { 0.0 } else { forces.imbalance() },
-        shortest,
+    fn evaluate(&self, curves: &impl Curves, path_length: f64, activation: f64, length: f64) -> Forces {
+        let cos = self.cos_pennation(length);
+        let relative = length / self.optimal_length;
+        let (active, active_slope) = curves.active(relative);
+        let (passive, passive_slope) = curves.passive(relative);
+        let (tendon, tendon_slope) = match self.slack_length {
+            slack if slack > 0.0 => curves.tendon((path_length - length * cos) / slack),
+            _ => (0.0, 0.0),
+        };
+        let fibers = activation * active + passive;
+        let fibers_slope = (activation * active_slope + passive_slope) / self.optimal_length;
+        let cos_slope = self.width * self.width / (length * length * length * cos);
+        let slope = fibers_slope * cos + fibers * cos_slope + tendon_slope / (self.slack_length * cos);
+        Forces { cos, active: activation * active, passive, tendon, slope }
+    }
+
+    fn state(&self, length: f64, forces: &Forces, shortest: bool) -> FiberState {
+        let most = self.max_isometric_force;
+        let carried = if shortest { 0.0 } else { most * forces.cos };
+        FiberState {
+            fiber_length: length,
+            cos_pennation: forces.cos,
+            tendon_force: if shortest && self.rigid { 0.0 } else { most * forces.tendon },
+            active_force: carried * forces.active,
+            passive_force: carried * forces.passive,
+            imbalance: if shortest { 0.0 } else { forces.imbalance() },
+            shortest,
+        }
+    }
+
+    /// Length of fibres whose extent along the tendon is given, m; the shortest where it is too small.
+    fn length_of_extent(&self, extent: f64) -> f64 {
+        let length = self.width.hypot(extent);
+        if extent > 0.0 { length.max(self.least_length) } else { self.least_length }
+    }
+
+    /// Cosine of the pennation of fibres of a length.
+    fn cos_pennation(&self, length: f64) -> f64 {
+        let sin = self.width / length;
+        ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
     }
 }

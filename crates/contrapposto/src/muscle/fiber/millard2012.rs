@@ -2,7 +2,7 @@
 //! at zero velocity. The knots were learnt from opensim-core, `SmoothSegmentedFunctionFactory`.
 
 use super::curve::{Curve, Knot};
-use super::{Curves, MuscleError};
+use super::curves::{Curves, MuscleError};
 
 /// Parameters of the active curve against fibre length over optimal length.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,21 +4,25 @@
 //! `(a active(l) + passive(l)) cos(phi) = tendon(L - l cos(phi))`. A rigid tendon has its slack length always.
 
 mod curve;
+mod curves;
+mod degroote_fregly2016;
 mod equilibrium;
 mod millard2012;
+mod schutte1993;
 mod thelen2003;
 
+pub use curves::MuscleError;
+pub use degroote_fregly2016::DeGrooteFregly2016;
+pub use equilibrium::FiberState;
 pub use millard2012::{ActiveCurve, Millard2012, PassiveFiberCurve, PassiveShape, TendonCurve, TendonShape};
+pub use schutte1993::Schutte1993;
 pub use thelen2003::Thelen2003;
 
+use equilibrium::Fibers;
 use millard2012::Millard;
 
-/// Force over the greatest isometric force, and its slope, against length over optimal (fibres) or slack length (tendon).
-trait Curves {
-    fn active(&self, length: f64) -> (f64, f64);
-    fn passive(&self, length: f64) -> (f64, f64);
-    fn tendon(&self, length: f64) -> (f64, f64);
-}
+/// Shortest fibre length over optimal length of laws that have none; that at which De Groote's passive force is zero.
+const LEAST_LENGTH: f64 = 0.2;
 
 /// The law of a muscle's fibres and tendon, by its publication.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +31,10 @@ pub enum FiberLaw {
     Thelen2003(Thelen2003),
     /// Millard, Uchida, Seth & Delp 2013.
     Millard2012(Millard2012),
+    /// De Groote, Kinney, Rao & Fregly 2016.
+    DeGrooteFregly2016(DeGrooteFregly2016),
+    /// Schutte 1993.
+    Schutte1993(Schutte1993),
 }
 
 /// The numbers of a muscle.
@@ -54,53 +62,20 @@ pub struct MuscleSpec {
     pub law: FiberLaw,
 }
 
-/// Why numbers make no muscle.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{what} is {value}; accepted: {accepted}")]
-pub struct MuscleError {
-    /// The number's name.
-    pub what: &'static str,
-    /// It.
-    pub value: f64,
-    /// The values that have a meaning.
-    pub accepted: &'static str,
-}
-
 /// A muscle, ready to be evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Muscle {
     spec: MuscleSpec,
     curves: CurveSet,
-    /// Width of the fibres' parallelogram, m.
-    width: f64,
-    /// Shortest length of the fibres, m.
-    least_length: f64,
+    fibers: Fibers,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum CurveSet {
     Thelen(Thelen2003),
     Millard(Box<Millard>),
-}
-
-/// A muscle in equilibrium at rest.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FiberState {
-    /// m.
-    pub fiber_length: f64,
-    /// Cosine of the angle between fibres and tendon.
-    pub cos_pennation: f64,
-    /// Force of the tendon, N.
-    pub tendon_force: f64,
-    /// Active force of the fibres along the tendon, N.
-    pub active_force: f64,
-    /// Passive force of the fibres along the tendon, N.
-    pub passive_force: f64,
-    /// Fibre force along the tendon less tendon force, over the greatest isometric force; zero but for rounding, unless the fibres are at
-    /// their shortest length.
-    pub imbalance: f64,
-    /// The fibres are at their shortest length and carry nothing.
-    pub shortest: bool,
+    DeGrooteFregly(DeGrooteFregly2016),
+    Schutte(Box<Schutte1993>),
 }
 
 impl Muscle {
@@ -133,14 +108,27 @@ impl Muscle {
         let curves = match &spec.law {
             FiberLaw::Thelen2003(law) => CurveSet::Thelen(law.checked()?),
             FiberLaw::Millard2012(law) => CurveSet::Millard(Box::new(law.curves()?)),
+            FiberLaw::DeGrooteFregly2016(law) => CurveSet::DeGrooteFregly(law.checked()?),
+            FiberLaw::Schutte1993(law) => CurveSet::Schutte(Box::new(law.clone())),
         };
         let width = spec.optimal_fiber_length * spec.pennation.sin();
         let pennate = width / spec.max_pennation.sin();
-        let least_length = match &curves {
-            CurveSet::Thelen(_) => pennate,
-            CurveSet::Millard(curves) => pennate.max(curves.least_length * spec.optimal_fiber_length),
+        // Shortest length over optimal length, beside that of the greatest pennation.
+        let least = match &curves {
+            CurveSet::Thelen(_) => 0.0,
+            CurveSet::Millard(curves) => curves.least_length,
+            CurveSet::DeGrooteFregly(_) | CurveSet::Schutte(_) => LEAST_LENGTH,
         };
-        Ok(Self { spec, curves, width, least_length })
+        let least_length = pennate.max(least * spec.optimal_fiber_length);
+        let fibers = Fibers {
+            width,
+            least_length,
+            optimal_length: spec.optimal_fiber_length,
+            slack_length: spec.tendon_slack_length,
+            rigid: spec.rigid_tendon || spec.tendon_slack_length == 0.0,
+            max_isometric_force: spec.max_isometric_force,
+        };
+        Ok(Self { spec, curves, fibers })
     }
 
     /// Its numbers.
@@ -152,20 +140,23 @@ impl Muscle {
     pub fn at_rest(&self, path_length: f64, activation: f64) -> FiberState {
         let activation = activation.max(self.spec.least_activation).min(1.0);
         match &self.curves {
-            CurveSet::Thelen(curves) => equilibrium::solve(self, curves, path_length, activation),
-            CurveSet::Millard(curves) => equilibrium::solve(self, &**curves, path_length, activation),
+            CurveSet::Thelen(curves) => self.fibers.solve(curves, path_length, activation),
+            CurveSet::Millard(curves) => self.fibers.solve(&**curves, path_length, activation),
+            CurveSet::DeGrooteFregly(curves) => self.fibers.solve(curves, path_length, activation),
+            CurveSet::Schutte(curves) => self.fibers.solve(&**curves, path_length, activation),
         }
     }
 
-    /// Length of fibres whose extent along the tendon is given, m; the shortest where it is too small.
-    fn length_of_extent(&self, extent: f64) -> f64 {
-        let length = self.width.hypot(extent);
-        if extent > 0.0 { length.max(self.least_length) } else { self.least_length }
-    }
-
-    /// Cosine of the pennation of fibres of a length.
-    fn cos_pennation(&self, length: f64) -> f64 {
-        let sin = self.width / length;
-        ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
+    /// The forces at rest of fibres of a length (m) that need not be in equilibrium with the tendon: [`FiberState::imbalance`] says how far
+    /// they are from it. Does not allocate.
+    pub fn at_fiber_length(&self, path_length: f64, fiber_length: f64, activation: f64) -> FiberState {
+        let (length, activation) =
+            (fiber_length.max(self.fibers.least_length), activation.max(self.spec.least_activation).min(1.0));
+        match &self.curves {
+            CurveSet::Thelen(curves) => self.fibers.at(curves, path_length, activation, length),
+            CurveSet::Millard(curves) => self.fibers.at(&**curves, path_length, activation, length),
+            CurveSet::DeGrooteFregly(curves) => self.fibers.at(curves, path_length, activation, length),
+            CurveSet::Schutte(curves) => self.fibers.at(&**curves, path_length, activation, length),
+        }
     }
 }

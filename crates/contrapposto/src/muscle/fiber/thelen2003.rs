@@ -2,7 +2,7 @@
 //! OpenSim's `Thelen2003Muscle`, at zero velocity: a Gaussian, an exponential, and a tendon with an exponential toe. The unrounded
 //! numbers of the toe are those of opensim-core.
 
-use super::{Curves, MuscleError};
+use super::curves::{Curves, MuscleError};
 
 /// Force at the end of the toe, over the greatest isometric force.
 const TOE_FORCE: f64 = 0.33;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::{Contact, Quadrant, Wrapping};
+use super::contact::{Contact, Quadrant, Wrapping};
 use crate::muscle::tolerances::FULL_TURN;
 
 /// Points at which lines from two points touch a circle about z, and the way round that the quadrant asks for.

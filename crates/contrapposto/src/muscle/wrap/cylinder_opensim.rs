@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Vector3};
 
+use super::contact::{Contact, Quadrant, Wrapping};
 use super::cylinder::{Touching, touching};
-use super::{Contact, Quadrant, Wrapping};
 use crate::muscle::tolerances::{
     OPENSIM_PARALLEL, OPENSIM_PIECE, OPENSIM_REACH, OPENSIM_TANGENCY, OPENSIM_TANGENCY_TRIES,
 };

@@ -1,11 +1,15 @@
 //! Defines surfaces that paths wrap over, and computes where a straight part of a path touches one of them.
 
+mod contact;
 mod cylinder;
 mod cylinder_opensim;
 
+pub use contact::Quadrant;
+pub(super) use contact::{Contact, Wrapping};
+
 use nalgebra::Vector3;
 
-use super::path::PathRule;
+use super::rule::PathRule;
 use crate::model::Placement;
 
 /// A surface fixed in a segment.
@@ -25,28 +29,6 @@ pub struct WrapObject {
     pub shape: WrapShape,
 }
 
-/// The half of a surface that paths may touch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Quadrant {
-    /// All of it: paths take the shorter way.
-    #[default]
-    All,
-    /// The half on one side: index of the axis (0 for x), and whether it is the positive side.
-    Half {
-        /// 0 for x, 1 for y, 2 for z.
-        axis: usize,
-        /// Its positive side.
-        positive: bool,
-    },
-}
-
-impl Quadrant {
-    /// The axis and whether a point lies on the side that paths may touch.
-    fn on(axis: usize, positive: bool, point: &Vector3<f64>) -> bool {
-        (point[axis] >= 0.0) == positive
-    }
-}
-
 /// Shapes of surfaces, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrapShape {
@@ -57,28 +39,6 @@ pub enum WrapShape {
         /// Its length.
         length: f64,
     },
-}
-
-/// Two points on a surface and the line between them, in the surface's frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Contact {
-    pub(super) first: Vector3<f64>,
-    pub(super) second: Vector3<f64>,
-    /// Length of the line on the surface, m.
-    pub(super) length: f64,
-}
-
-/// What a surface does to a straight part of a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Wrapping {
-    /// An end of the part is inside.
-    Inside,
-    /// It does not touch.
-    Free,
-    /// It may lie on it: the part that it makes longer by the least counts.
-    Touches(Contact),
-    /// It would pass through.
-    Crosses(Contact),
 }
 
 /// Circumstances of a part of a path.

@@ -1,0 +1,82 @@
+//! Computes the curves of De Groote, Kinney, Rao & Fregly 2016 ("Evaluation of direct collocation optimal control problem formulations for
+//! solving the muscle redundancy problem"), OpenSim's `DeGrooteFregly2016Muscle`, at zero velocity, with the numbers of opensim-core: three
+//! bells, an exponential that is zero at a fibre length of 0.2, and an exponential tendon that is zero at its slack length.
+
+use super::curves::{Curves, MuscleError};
+
+/// Height, place, width and its growth of the three bells of the active curve.
+const BELLS: [[f64; 4]; 3] = [
+    [0.815_067_113_424_354_2, 1.055_033_428_970_575, 0.162_384_573_599_574, 0.063_303_448_465_465],
+    [0.433_004_984_392_647, 0.716_775_413_397_76, -0.029_947_116_970_696, 0.200_356_847_296_188],
+    [0.1, 1.0, 0.353_553_390_593_274, 0.0],
+];
+/// Exponent of the passive curve.
+const PASSIVE_EXPONENT: f64 = 4.0;
+/// Fibre length over optimal length at which the passive force is zero.
+const PASSIVE_ZERO: f64 = 0.2;
+/// Force of the tendon at its slack length before the same is subtracted, over the greatest isometric force.
+const TENDON_FORCE: f64 = 0.2;
+
+/// The parameters of one muscle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeGrooteFregly2016 {
+    /// Factor of the width of the active curve.
+    pub active_width: f64,
+    /// Passive strain of the fibres at the greatest isometric force.
+    pub fiber_strain: f64,
+    /// Strain of the tendon at the greatest isometric force.
+    pub tendon_strain: f64,
+    /// The fibres have no passive force.
+    pub without_passive: bool,
+}
+
+impl Default for DeGrooteFregly2016 {
+    fn default() -> Self {
+        Self { active_width: 1.0, fiber_strain: 0.6, tendon_strain: 0.049, without_passive: false }
+    }
+}
+
+impl DeGrooteFregly2016 {
+    /// Itself, if its numbers have a meaning.
+    pub(super) fn checked(&self) -> Result<Self, MuscleError> {
+        for (what, value, least) in [
+            ("active_force_width_scale", self.active_width, 1.0),
+            ("passive_fiber_strain_at_one_norm_force", self.fiber_strain, f64::MIN_POSITIVE),
+            ("tendon_strain_at_one_norm_force", self.tendon_strain, f64::MIN_POSITIVE),
+        ] {
+            if !(value >= least && value.is_finite()) {
+                return Err(MuscleError { what, value, accepted: "above 0; active_force_width_scale at least 1" });
+            }
+        }
+        Ok(*self)
+    }
+}
+
+impl Curves for DeGrooteFregly2016 {
+    fn active(&self, length: f64) -> (f64, f64) {
+        let x = (length - 1.0) / self.active_width + 1.0;
+        let bell = |[height, place, width, growth]: [f64; 4]| {
+            let (away, wide) = (x - place, width + growth * x);
+            let force = height * (-0.5 * (away / wide).powi(2)).exp();
+            (force, -force * away / wide * (wide - away * growth) / (wide * wide))
+        };
+        let sum = BELLS.map(bell).into_iter().fold((0.0, 0.0), |(f, s), (force, slope)| (f + force, s + slope));
+        (sum.0, sum.1 / self.active_width)
+    }
+
+    fn passive(&self, length: f64) -> (f64, f64) {
+        if self.without_passive {
+            return (0.0, 0.0);
+        }
+        let rate = PASSIVE_EXPONENT / self.fiber_strain;
+        let zero = (rate * (PASSIVE_ZERO - 1.0)).exp();
+        let (force, all) = ((rate * (length - 1.0)).exp(), PASSIVE_EXPONENT.exp() - zero);
+        ((force - zero) / all, rate * force / all)
+    }
+
+    fn tendon(&self, length: f64) -> (f64, f64) {
+        let rate = ((1.0 + TENDON_FORCE) / TENDON_FORCE).ln() / self.tendon_strain;
+        let force = TENDON_FORCE * (rate * (length - 1.0)).exp();
+        (force - TENDON_FORCE, rate * force)
+    }
+}
