@@ -37,8 +37,8 @@ pub struct FiberState {
     pub active_force: f64,
     /// Passive force of the fibres along the tendon, N.
     pub passive_force: f64,
-    /// Fibre force along the tendon less tendon force, over the greatest isometric force; zero but for rounding, unless the fibres are at
-    /// their shortest length.
+    /// Fibre force along the tendon less tendon force, over the greatest isometric force: zero but for rounding. Not so where a file's passive
+    /// curve is negative and larger than the active force: no tendon can hold such fibres, which stay at the length of a slack one.
     pub imbalance: f64,
     /// The fibres are at their shortest length and carry nothing.
     pub shortest: bool,
