@@ -58,7 +58,7 @@ impl ActiveSet {
             work: Vec::with_capacity(n),
             gradient: Vec::with_capacity(n),
             order: Vec::with_capacity(n),
-            constraints: Vec::with_capacity(n + rows),
+            constraints: Vec::with_capacity(n),
             ..Self::default()
         }
     }
@@ -174,7 +174,7 @@ impl ActiveSet {
     /// Appends the row in `work`, not yet transformed, to the factor; `false` if it is linearly dependent.
     fn append(&mut self, constraint: Constraint, row_norm: f64) -> bool {
         let (r, width) = (self.factor.len(), self.factor.width());
-        self.factor.transform(&mut self.work, 0, r);
+        self.factor.transform(&mut self.work, r);
         let independent = r < width && norm(&self.work[r..width]) > INDEPENDENT * row_norm;
         if independent {
             self.factor.append(&self.work, constraint);
@@ -182,24 +182,46 @@ impl ActiveSet {
         independent
     }
 
-    /// Drops a constraint and factorises the rest anew.
+    /// Drops a constraint and updates the factor.
     pub(crate) fn drop_constraint(&mut self, problem: &Problem, dropped: Constraint) {
         match dropped {
             Constraint::Bound(i) => self.working_set.bounds[i] = Side::Inactive,
             Constraint::Row(row) => self.working_set.set_row(row, RowState::Inactive, Side::Inactive),
         }
-        self.refactorise(problem);
+        // Rows that depended on the factor may now block a step.
+        for state in self.working_set.states.iter_mut().filter(|state| **state == RowState::Dependent) {
+            *state = RowState::Inactive;
+        }
+        let row = self.factor.constraints().iter().position(|constraint| *constraint == dropped);
+        let updated = match (row, dropped) {
+            (Some(row), _) => self.factor.remove(row),
+            (None, Constraint::Bound(i)) => self.factor.join(i, |constraint| match constraint {
+                Constraint::Bound(_) => 0.0,
+                Constraint::Row(row) => self.rows.coefficients(problem, row)[i],
+            }),
+            (None, Constraint::Row(_)) => false,
+        };
+        if updated {
+            self.append_dependents(problem);
+        } else {
+            self.refactorise(problem);
+        }
+    }
+
+    /// Appends the fixed rows that were linearly dependent on the factor before, where they no longer are.
+    fn append_dependents(&mut self, problem: &Problem) {
+        for _ in 0..self.working_set.dependents.len() {
+            let row = self.working_set.dependents.remove(0);
+            if !self.append_row(problem, row) {
+                self.working_set.set_aside(row);
+            }
+        }
     }
 
     /// Factorises the rows of the working set anew. Unknowns at a bound become columns left out.
     fn refactorise(&mut self, problem: &Problem) {
         self.constraints.clear();
         self.constraints.extend_from_slice(self.factor.constraints());
-        self.constraints.extend(self.working_set.dependents.iter().map(|&row| Constraint::Row(row)));
-        self.working_set.dependents.clear();
-        for state in self.working_set.states.iter_mut().filter(|state| **state == RowState::Dependent) {
-            *state = RowState::Inactive;
-        }
         self.factor.reset(&self.order, |i| self.working_set.bounds[i] != Side::Inactive);
         for c in 0..self.constraints.len() {
             let Constraint::Row(row) = self.constraints[c] else { continue };
@@ -207,6 +229,7 @@ impl ActiveSet {
                 self.working_set.set_aside(row);
             }
         }
+        self.append_dependents(problem);
     }
 
     /// Writes `work`, by column of the factor, to `step`, by unknown.

@@ -172,7 +172,7 @@ impl IdentityLevel {
                 set.work[column] = *value;
             }
         }
-        set.factor.transform(&mut set.work, 0, rank);
+        set.factor.transform(&mut set.work, rank);
         self.transformed.clear();
         self.transformed.extend_from_slice(&set.work[..rank]);
         set.work[..rank].fill(0.0);

@@ -9,6 +9,7 @@
 use crate::active_set::{ActiveSet, Blocking};
 use crate::linalg::{LeastSquares, add_scaled, dot, norm};
 use crate::problem::Problem;
+use crate::residual_rows::{ResidualRows, choose_residual_rows, drop_residual_row, target};
 use crate::tolerances::{INDEPENDENT, LAST_DIGITS, LIGHT_ROW, MULTIPLIER, NORM_UPDATE, REACHED, REFINEMENTS};
 use crate::working_set::{Constraint, RowState, Side};
 
@@ -20,8 +21,11 @@ pub(crate) struct LevelSolver {
     /// Number of independent residual rows: they are the first of `residual_rows`, and behind `above` in the factor.
     rank: usize,
     residual_rows: Vec<usize>,
-    /// `Q^T` times each residual row, one after the other, with zeros up to a multiple of eight.
+    /// `Q^T` times each residual row, one after the other, [`Factor::stride`](crate::factor::Factor::stride) long. An
+    /// independent row is as it was before its own reflection: its first entries are its row of `L`.
     transformed: Vec<f64>,
+    /// The residual rows as they are before any of them is in the factor.
+    by_constraints_above: ResidualRows,
     /// Share of each residual row outside the span of the factor, squared: now, and when it was last computed anew.
     remainders: Vec<(f64, f64)>,
     /// `b - A x` of each residual row.
@@ -30,7 +34,11 @@ pub(crate) struct LevelSolver {
     residuals: Vec<f64>,
     /// Sum of the absolute contributions to the gradient at the minimum; 0 where all of it is rounding.
     gradient_size: f64,
-    /// The step in the columns of the independent residual rows.
+    /// Number of columns behind `above` in which the level moves: `rank`, or all of them where the residual rows determine
+    /// every column and no level follows. Then no row needs to be in the factor.
+    columns: usize,
+    overdetermined: bool,
+    /// The step in these columns.
     y: Vec<f64>,
     /// `Q^T x` of a damped level.
     transformed_x: Vec<f64>,
@@ -43,6 +51,7 @@ impl LevelSolver {
         Self {
             residual_rows: Vec::with_capacity(rows),
             transformed: Vec::with_capacity(rows * n),
+            by_constraints_above: ResidualRows::with_capacity(unknowns, rows),
             remainders: Vec::with_capacity(rows),
             right: Vec::with_capacity(rows),
             residuals: Vec::with_capacity(rows),
@@ -58,6 +67,8 @@ impl LevelSolver {
     pub(crate) fn solve(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) -> bool {
         choose_residual_rows(problem, set, k);
         self.y.resize(problem.unknowns(), 0.0);
+        self.by_constraints_above.clear();
+        self.overdetermined = k + 1 == problem.levels.len() && problem.levels[k].damping == 0.0;
         loop {
             self.above = set.factor.len();
             self.factorise(problem, set, k);
@@ -87,24 +98,24 @@ impl LevelSolver {
         true
     }
 
-    /// Transforms the residual rows and appends the independent ones to the factor, the largest remainder first.
+    /// Appends the independent residual rows to the factor, the largest remainder first.
     fn factorise(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) {
-        let (width, padded) = (set.factor.width(), set.factor.padded_width());
-        let is_residual = |row: &usize| set.working_set.states[*row] == RowState::Residual;
-        self.residual_rows.clear();
-        self.residual_rows.extend(set.rows.of_level(k).filter(is_residual));
-        self.transformed.resize(self.residual_rows.len() * padded, 0.0);
-        self.remainders.clear();
-        for (t, &row) in self.transformed.chunks_exact_mut(padded.max(1)).zip(&self.residual_rows) {
-            set.factor.gather(set.rows.coefficients(problem, row), t);
-            set.factor.transform(t, 0, self.above);
+        self.by_constraints_above.update(problem, set, k);
+        let (width, padded) = (set.factor.width(), set.factor.stride());
+        self.residual_rows.clone_from(self.by_constraints_above.rows());
+        self.transformed.clone_from(self.by_constraints_above.transformed());
+        self.rank = 0;
+        self.columns = width - self.above;
+        self.overdetermined &= self.columns > 0 && self.residual_rows.len() >= self.columns;
+        if self.overdetermined {
+            return;
         }
+        self.remainders.clear();
         for (s, &row) in self.residual_rows.iter().enumerate() {
             let length = norm(&self.transformed[s * padded + self.above..s * padded + width]);
             let share = if set.rows.is_nonzero(row) { (length / set.rows.norm(row)).powi(2) } else { 0.0 };
             self.remainders.push((share, share));
         }
-        self.rank = 0;
         while self.rank < self.residual_rows.len() {
             let p = self.rank;
             let larger = |best: usize, s: usize| if self.remainders[s].0 > self.remainders[best].0 { s } else { best };
@@ -122,19 +133,20 @@ impl LevelSolver {
             self.rank += 1;
             self.transform_rows_behind_pivot(set);
         }
+        self.columns = self.rank;
     }
 
     /// Applies the last reflection to the residual rows that are not in the factor, and updates their remainders.
     #[inline]
     fn transform_rows_behind_pivot(&mut self, set: &ActiveSet) {
-        let (r, width, padded) = (set.factor.len() - 1, set.factor.width(), set.factor.padded_width());
+        let (r, width, padded) = (set.factor.len() - 1, set.factor.width(), set.factor.stride());
         let tail = self.transformed[self.rank * padded..].chunks_exact_mut(padded);
         let rows = self.residual_rows[self.rank..].iter().zip(&mut self.remainders[self.rank..]);
         for (t, (&row, (share, computed))) in tail.zip(rows) {
             if *computed == 0.0 {
                 continue;
             }
-            set.factor.transform(t, r, r + 1);
+            set.factor.transform_by_last(t);
             *share -= (t[r] / set.rows.norm(row)).powi(2);
             if *share < NORM_UPDATE * *computed {
                 *share = (norm(&t[r + 1..width]) / set.rows.norm(row)).powi(2);
@@ -149,6 +161,11 @@ impl LevelSolver {
         let damped = problem.levels[k].damping > 0.0;
         for attempt in 0..=REFINEMENTS {
             self.solve_least_squares(problem, set, k);
+            if self.overdetermined && !self.determines_all_columns(set) {
+                self.overdetermined = false;
+                self.factorise(problem, set, k);
+                self.solve_least_squares(problem, set, k);
+            }
             if attempt == REFINEMENTS || !self.step_is_noticeable(set, damped) {
                 break;
             }
@@ -164,8 +181,8 @@ impl LevelSolver {
 
     /// Computes `y` and the residual of each residual row at the minimum.
     fn solve_least_squares(&mut self, problem: &Problem, set: &ActiveSet, k: usize) {
-        let (above, rank, rows) = (self.above, self.rank, self.residual_rows.len());
-        let (padded, damping) = (set.factor.padded_width(), problem.levels[k].damping);
+        let (above, rank, columns, rows) = (self.above, self.rank, self.columns, self.residual_rows.len());
+        let (padded, damping) = (set.factor.stride(), problem.levels[k].damping);
         self.right.clear();
         self.right.extend(self.residual_rows.iter().map(|&row| target(problem, set, row) - set.value(problem, row)));
         self.residuals.clear();
@@ -174,20 +191,20 @@ impl LevelSolver {
             self.residuals.resize(rows, 0.0);
             return;
         }
-        let damped_rows = if damping > 0.0 { rank } else { 0 };
-        self.least_squares.begin(rows + damped_rows, rank);
+        let damped_rows = if damping > 0.0 { columns } else { 0 };
+        self.least_squares.begin(rows + damped_rows, columns);
         for s in 0..rank {
-            self.least_squares.set(s, &set.factor.lower_row(above + s)[above..], self.right[s]);
+            self.least_squares.set(s, &self.transformed[s * padded + above..][..s], self.right[s]);
             self.least_squares.set_entry(s, s, set.factor.diagonal(above + s));
         }
         for s in rank..rows {
-            let own = &self.transformed[s * padded + above..s * padded + above + rank];
+            let own = &self.transformed[s * padded + above..s * padded + above + columns];
             self.least_squares.set(s, own, self.right[s]);
         }
         if damping > 0.0 {
             self.transformed_x.resize(padded, 0.0);
             set.factor.gather(&set.x, &mut self.transformed_x);
-            set.factor.transform(&mut self.transformed_x, 0, above + rank);
+            set.factor.transform(&mut self.transformed_x, above + rank);
         }
         for r in 0..damped_rows {
             self.least_squares.set(rows + r, &[], -damping * self.transformed_x[above + r]);
@@ -197,11 +214,17 @@ impl LevelSolver {
         self.residuals.extend(self.least_squares.residual()[..rows].iter().map(|r| -r));
     }
 
+    /// True where the residual rows are independent in all columns, beside the largest of them.
+    fn determines_all_columns(&self, set: &ActiveSet) -> bool {
+        let largest = self.residual_rows.iter().fold(0.0, |most: f64, &row| most.max(set.rows.norm(row)));
+        self.least_squares.least_pivot() > INDEPENDENT * largest
+    }
+
     /// Computes the step by unknown. Damping alone moves the directions that no row of the level contains.
     fn compute_step(&self, set: &mut ActiveSet, damped: bool) {
-        let (above, end, width) = (self.above, self.above + self.rank, set.factor.width());
+        let (above, end, width) = (self.above, self.above + self.columns, set.factor.width());
         set.work.fill(0.0);
-        set.work[above..end].copy_from_slice(&self.y[..self.rank]);
+        set.work[above..end].copy_from_slice(&self.y[..self.columns]);
         if damped {
             for (work, x) in set.work[end..width].iter_mut().zip(&self.transformed_x[end..width]) {
                 *work = -x;
@@ -214,19 +237,17 @@ impl LevelSolver {
     /// True where the step changes the value of a residual row by more than [`REACHED`] of its rounding (of a damped level by
     /// more than its rounding), or the directions that only damping moves by more than rounding.
     fn step_is_noticeable(&self, set: &ActiveSet, damped: bool) -> bool {
-        let (above, padded) = (self.above, set.factor.padded_width());
-        if damped && set.exceeds_rounding_of_x(&self.transformed_x[above + self.rank..set.factor.width()]) {
+        let (above, padded) = (self.above, set.factor.stride());
+        if damped && set.exceeds_rounding_of_x(&self.transformed_x[above + self.columns..set.factor.width()]) {
             return true;
         }
         let share = if damped { 1.0 } else { REACHED };
         self.residual_rows.iter().enumerate().any(|(s, &row)| {
-            let change = if s < self.rank {
-                dot(&set.factor.lower_row(above + s)[above..], &self.y[..s])
-                    + set.factor.diagonal(above + s) * self.y[s]
-            } else {
-                let own = &self.transformed[s * padded + above..s * padded + above + self.rank];
-                dot(own, &self.y[..self.rank])
-            };
+            let own = &self.transformed[s * padded + above..];
+            let independent = s < self.rank;
+            let end = if independent { s } else { self.columns };
+            let diagonal = if independent { set.factor.diagonal(above + s) * self.y[s] } else { 0.0 };
+            let change = dot(&own[..end], &self.y[..end]) + diagonal;
             change.abs() > share * set.rounding(row)
         })
     }
@@ -242,10 +263,10 @@ impl LevelSolver {
     /// Sets residuals of the size of rounding to zero for rows in the span of the levels above: rounding there causes them,
     /// and they have no multiplier.
     fn ignore_rounding_of_levels_above(&mut self, set: &ActiveSet) {
-        let (above, padded) = (self.above, set.factor.padded_width());
+        let (above, padded) = (self.above, set.factor.stride());
         for s in self.rank..self.residual_rows.len() {
             let row = self.residual_rows[s];
-            let own = &self.transformed[s * padded + above..s * padded + above + self.rank];
+            let own = &self.transformed[s * padded + above..s * padded + above + self.columns];
             if self.residuals[s].abs() <= set.rounding(row) && norm(own) <= INDEPENDENT * set.rows.norm(row) {
                 self.residuals[s] = 0.0;
             }
@@ -313,14 +334,12 @@ impl LevelSolver {
         if self.gradient_size == 0.0 {
             return;
         }
-        let (above, padded) = (self.above, set.factor.padded_width());
+        let (above, padded) = (self.above, set.factor.stride());
         let by_unknown = !set.factor.columns_left_out().is_empty();
         set.work.fill(0.0);
         set.gradient.fill(0.0);
         for (s, (residual, &row)) in self.residuals.iter().zip(&self.residual_rows).enumerate() {
-            let in_factor = s < self.rank;
-            let own = if in_factor { set.factor.lower_row(above + s) } else { &self.transformed[s * padded..] };
-            add_scaled(&mut set.work[..above], *residual, &own[..above]);
+            add_scaled(&mut set.work[..above], *residual, &self.transformed[s * padded..][..above]);
             if by_unknown {
                 add_scaled(&mut set.gradient, *residual, set.rows.coefficients(problem, row));
             }
@@ -333,8 +352,11 @@ impl LevelSolver {
     }
 
     /// Puts the residual rows into the working set: equations and rows with a residual for all levels below, the others as
-    /// active rows.
+    /// active rows. No level is below an overdetermined one.
     fn fix(&self, set: &mut ActiveSet) {
+        if self.overdetermined {
+            return;
+        }
         for (s, &row) in self.residual_rows.iter().enumerate() {
             let has_residual = self.residuals[s].abs() * set.rows.norm(row) > self.zero(set, row);
             let fixed = set.working_set.sides[row] == Side::Equality || (self.gradient_size > 0.0 && has_residual);
@@ -344,38 +366,4 @@ impl LevelSolver {
             }
         }
     }
-}
-
-/// Chooses the residual rows to begin with: equations, violated inequalities, and inequalities that were active before.
-fn choose_residual_rows(problem: &Problem, set: &mut ActiveSet, k: usize) {
-    for row in set.rows.of_level(k) {
-        let (lower, upper) = set.rows.limits(problem, row);
-        let (value, rounding) = (set.value(problem, row), set.rounding(row));
-        let side = match set.working_set.sides[row] {
-            _ if lower == upper => Side::Equality,
-            _ if value > upper + rounding => Side::Upper,
-            _ if value < lower - rounding => Side::Lower,
-            before => before.where_finite(lower, upper),
-        };
-        let state = if side == Side::Inactive { RowState::Inactive } else { RowState::Residual };
-        set.working_set.set_row(row, state, side);
-    }
-}
-
-/// The limit that a residual row is to reach.
-fn target(problem: &Problem, set: &ActiveSet, row: usize) -> f64 {
-    let (lower, upper) = set.rows.limits(problem, row);
-    if set.working_set.sides[row] == Side::Lower { lower } else { upper }
-}
-
-/// Drops a residual row whose multiplier has the wrong sign: it is satisfied, or violates its other limit.
-fn drop_residual_row(problem: &Problem, set: &mut ActiveSet, row: usize) {
-    let (lower, upper) = set.rows.limits(problem, row);
-    let (value, rounding) = (set.value(problem, row), set.rounding(row));
-    let (state, side) = match set.working_set.sides[row] {
-        Side::Lower if value > upper + rounding => (RowState::Residual, Side::Upper),
-        Side::Upper if value < lower - rounding => (RowState::Residual, Side::Lower),
-        _ => (RowState::Inactive, Side::Inactive),
-    };
-    set.working_set.set_row(row, state, side);
 }

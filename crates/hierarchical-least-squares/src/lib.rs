@@ -44,6 +44,7 @@ mod level_solver;
 pub mod linalg;
 mod multipliers;
 mod problem;
+mod residual_rows;
 mod rows;
 mod solver;
 mod tolerances;

@@ -70,6 +70,20 @@ impl Solver {
         Ok(self.run(problem))
     }
 
+    /// Solves from the last answer with its working set, for the next of a sequence of problems whose answers are near each
+    /// other. Where the levels determine all unknowns, the answer is that of [`Solver::solve`]; other unknowns stay near the
+    /// last answer. After [`Solver::forget`], or where the last answer is not finite, this is [`Solver::solve`].
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn solve_near(&mut self, problem: &Problem) -> Result<Status, ProblemError> {
+        self.active_set.rows.measure(problem)?;
+        if !self.active_set.x.iter().all(|x| x.is_finite()) {
+            self.forget();
+        }
+        Ok(self.run(problem))
+    }
+
     /// Forgets the last answer and its working set.
     pub fn forget(&mut self) {
         self.active_set.clear();

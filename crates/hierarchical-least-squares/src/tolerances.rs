@@ -58,3 +58,6 @@ pub(crate) const CYCLING: usize = 4;
 
 /// Size from which the unknowns of the first level come first. Unit: unknowns.
 pub(crate) const MANY_UNKNOWNS: usize = 32;
+
+/// Rotations that a factor gathers before it is computed anew. Unit: rotations per column.
+pub(crate) const ROTATIONS_PER_COLUMN: usize = 4;

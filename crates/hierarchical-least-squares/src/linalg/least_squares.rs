@@ -84,6 +84,12 @@ impl LeastSquares {
         self.compute_residual();
     }
 
+    /// The smallest pivot of the last solution; 0 where columns depend on each other.
+    pub(crate) fn least_pivot(&self) -> f64 {
+        let least = self.diagonal.iter().fold(f64::INFINITY, |least, pivot| least.min(pivot.abs()));
+        if self.diagonal.len() == self.columns { least } else { 0.0 }
+    }
+
     /// `c - T y` of the last solution, by row.
     pub(crate) fn residual(&self) -> &[f64] {
         &self.residual
