@@ -8,12 +8,15 @@ mod files;
 use contrapposto::kinematics::{self, Kinematics};
 use contrapposto::model::{Model, Placement};
 use contrapposto::posture::Posture;
+use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{self, CenterOfMass, Orientation, Point, Task};
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::urdf;
 use hierarchical_least_squares::{Level, Problem, Solver};
 use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
+use rand::RngExt;
+use rand_pcg::Pcg64;
 use serde_json::Value;
 
 use self::files::shared;
@@ -137,6 +140,53 @@ impl Peer {
         solver.solve(&problem).unwrap();
         assert!(solver.residual_norm(0) < 1e-12);
         error.norm() - solver.residual_norm(1)
+    }
+
+    /// A random posture that keeps feet, centre of mass and ranges, and where its right hand is: surely within reach. Drawn as the
+    /// published targets are: right arm anywhere, spine and left arm in half their ranges, hips and knees bent up to 1.3 rad.
+    pub fn reachable(&self, rng: &mut Pcg64) -> (Vector3<f64>, Posture) {
+        let mut kinematics = Kinematics::new(&self.model);
+        loop {
+            let mut wish = self.rest.clone();
+            for (i, coordinate) in self.model.coordinates().iter().enumerate() {
+                let (name, (lower, upper)) = (coordinate.name.as_str(), coordinate.range);
+                let named = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
+                let (lower, upper) = if named(&["jRightC7", "jRightShoulder", "jRightElbow", "jRightWrist"]) {
+                    (lower, upper)
+                } else if named(&["jLeftC7", "jLeftShoulder", "jLeftElbow", "jLeftWrist", "jL5", "jL4", "jL1", "jT9"]) {
+                    (0.5 * lower, 0.5 * upper)
+                } else if named(&["Hip_roty", "Knee_roty"]) {
+                    if -lower > upper { (lower.max(-1.3), 0.0) } else { (0.0, upper.min(1.3)) }
+                } else {
+                    continue;
+                };
+                wish.values_mut()[i] = lower + (upper - lower) * rng.random::<f64>();
+            }
+            // Feet and centre of mass as asked, and everything else as near to the wish as that allows.
+            let mut goals = self.goals(Vector3::zeros());
+            goals.drain(2..4);
+            let Some([Task::Posture(tasks::Posture { target, .. })]) = goals.last_mut().map(|goal| &mut goal.tasks[..])
+            else {
+                panic!("the last goal is a posture");
+            };
+            target.clone_from(&wish);
+            let pose =
+                Engine::new(&self.model, goals, &[], Options::inverse_kinematics()).unwrap().solve(&wish).unwrap();
+            if pose.levels[..2].iter().all(|level| level.length < 1e-9) && self.excess(&pose.posture) == 0.0 {
+                kinematics.update(&self.model, &pose.posture).unwrap();
+                return (kinematics.station(&self.model, self.hand(), Vector3::zeros()), pose.posture);
+            }
+        }
+    }
+
+    /// A target out of reach: overhead for an even `i`, far in front and beside for an odd one, as the published ones.
+    pub fn out_of_reach(&self, i: usize, rng: &mut Pcg64) -> Vector3<f64> {
+        let mut within = |lower: f64, upper: f64| lower + (upper - lower) * rng.random::<f64>();
+        if i % 2 == 0 {
+            return Vector3::new(within(-0.4, 0.4), within(-0.5, 0.0), within(2.4, 3.2));
+        }
+        let (distance, angle) = (within(1.8, 2.8), within(-0.6, 0.6));
+        Vector3::new(distance * angle.cos(), distance * angle.sin(), within(0.5, 1.6))
     }
 }
 

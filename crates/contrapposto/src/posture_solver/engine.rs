@@ -250,7 +250,7 @@ impl<'a> Engine<'a> {
     }
 
     /// Steps until they are short or change the merit little. With effort, [`Options::local_minima`] are compared
-    /// first. Without supports the largest step shrinks after a third of the largest number of steps, so that the body
+    /// first. Without supports the largest step shrinks after a fifth of the largest number of steps, so that the body
     /// comes to rest whatever it is asked.
     ///
     /// # Errors

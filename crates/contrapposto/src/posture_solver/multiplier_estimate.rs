@@ -25,6 +25,11 @@ pub(super) struct MultiplierEstimate {
     solution: Vec<f64>,
 }
 
+/// Whether a bound or row that had this multiplier in the last step has no room now.
+pub(super) fn is_active(multiplier: f64, lower: f64, upper: f64) -> bool {
+    multiplier != 0.0 && (if multiplier > 0.0 { upper } else { -lower }) <= NO_ROOM
+}
+
 impl MultiplierEstimate {
     /// Space for so many `rows` above.
     pub(super) fn new(rows: usize, unknowns: usize) -> Self {
@@ -47,8 +52,7 @@ impl MultiplierEstimate {
     pub(super) fn estimate(&mut self, problem: &Problem, above: &[Level], last: Multipliers<'_>, gradient: &[f64]) {
         let n = problem.unknowns();
         let active = |multiplier: Option<&f64>, lower: f64, upper: f64| {
-            lower == upper
-                || multiplier.is_some_and(|m| *m != 0.0 && (if *m > 0.0 { upper } else { -lower }) <= NO_ROOM)
+            lower == upper || multiplier.is_some_and(|m| is_active(*m, lower, upper))
         };
         // Multipliers of other rows say nothing of these.
         let same = last.rows.len() == above.iter().map(Level::rows).sum::<usize>();

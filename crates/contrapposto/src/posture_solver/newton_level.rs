@@ -18,7 +18,7 @@
 //! diagonal.
 
 use super::linearisation::missing;
-use super::multiplier_estimate::MultiplierEstimate;
+use super::multiplier_estimate::{MultiplierEstimate, is_active};
 use super::tolerances::{
     FLAT_CURVATURE, FLAT_EFFORT, LARGEST_NEWTON_REGULARISATION, LEAST_GAIN, REGULARISATION_GROWTH,
     REGULARISATION_START, WEAK_CURVATURE,
@@ -110,11 +110,14 @@ impl NewtonLevel {
         }
     }
 
-    /// Makes the matrix larger along the unknowns that press against a bound.
-    pub(super) fn weigh_bounds(&mut self, bounds: &[f64], weight: f64) {
+    /// Makes the matrix larger along the unknowns that pressed against a bound in the `last` step and have no room now: one
+    /// at the edge of the last trust region is free again.
+    pub(super) fn weigh_bounds(&mut self, problem: &Problem, last: &[f64], weight: f64) {
         let n = self.row.len();
-        for (i, _) in bounds.iter().enumerate().filter(|(_, multiplier)| **multiplier != 0.0) {
-            self.matrix[i * n + i] += weight;
+        for (i, multiplier) in last.iter().enumerate() {
+            if is_active(*multiplier, problem.lower[i], problem.upper[i]) {
+                self.matrix[i * n + i] += weight;
+            }
         }
     }
 

@@ -97,10 +97,10 @@ impl PriorityRule {
         self.restoration_solver.forget();
     }
 
-    /// After a third of the largest number of steps the largest step shrinks, so that the body comes to rest whatever
-    /// it is asked.
+    /// After a fifth of the largest number of steps the largest step shrinks, and is next to nothing after as many steps
+    /// again, so that the body comes to rest whatever it is asked.
     pub(super) fn cool_toward_last_step(&mut self, options: &Options) {
-        let steps = (options.max_steps - options.max_steps / STEPS_BEFORE_COOLING).max(1);
+        let steps = (options.max_steps / STEPS_BEFORE_COOLING).max(1);
         self.cooling = (COOLED_STEP * options.step_tolerance / options.max_step).powf(1.0 / steps as f64);
     }
 
@@ -255,7 +255,7 @@ impl PriorityRule {
             let equation = lower == upper;
             (equation || multiplier != 0.0).then_some(if equation { multiplier } else { 0.0 })
         });
-        newton.weigh_bounds(last.bounds, weight);
+        newton.weigh_bounds(problem, last.bounds, weight);
         newton.write_with_absolute_curvature(&mut problem.levels[k], size);
     }
 

@@ -72,9 +72,9 @@ pub(super) const LEAST_REJECTED_STEP: f64 = 1e-7;
 pub(super) const LEAST_ERROR: f64 = 1e-6;
 /// Share of the rejected step: the trust radius after it.
 pub(super) const SHRINK_AFTER_REJECTION: f64 = 0.25;
-/// Part of the largest number of steps, one third, after which the largest step shrinks.
-pub(super) const STEPS_BEFORE_COOLING: usize = 3;
-/// Share of the step tolerance, to which the largest step has shrunk at the last step.
+/// Part of the largest number of steps, one fifth, after which the largest step shrinks for as many steps.
+pub(super) const STEPS_BEFORE_COOLING: usize = 5;
+/// Share of the step tolerance, to which the largest step then has shrunk.
 pub(super) const COOLED_STEP: f64 = 0.1;
 
 // Rule of the merit function.

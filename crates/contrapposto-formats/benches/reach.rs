@@ -1,0 +1,179 @@
+//! Measures the posture solver on targets drawn anew: out of reach, and within reach of the published peer problem.
+//! Processor time of the thread, from `/proc/thread-self/schedstat`. Needs the problem in `../shared`.
+//! `cargo bench -p contrapposto-formats --bench reach -- solve|plain|starts|within SEED COUNT`.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark prints")]
+
+#[path = "../tests/common/peer.rs"]
+mod peer;
+
+use contrapposto::posture_solver::{Engine, Options};
+use peer::Peer;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+/// Plain steps of a run out of reach, and the last of them that are to be short.
+const STEPS: usize = 300;
+const LAST: usize = 50;
+
+/// Processor time of this thread, ms.
+fn cpu() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+    1e-6 * text.split_whitespace().next().unwrap().parse::<f64>().unwrap()
+}
+
+fn share(sorted: &mut [f64], share: f64) -> f64 {
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted[((sorted.len() - 1) as f64 * share).round() as usize]
+}
+
+fn describe(what: &str, values: &mut [f64]) {
+    let (total, n) = (values.iter().sum::<f64>(), values.len() as f64);
+    let [median, p90, p99, most] = [0.5, 0.9, 0.99, 1.0].map(|part| share(values, part));
+    println!(
+        "{what}: total {total:.4}, mean {:.4}, median {median:.4}, p90 {p90:.4}, p99 {p99:.4}, max {most:.4}",
+        total / n
+    );
+}
+
+fn main() {
+    let args: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    let [mode, seed, count] = &args[..] else { return println!("solve|plain|starts|within SEED COUNT") };
+    let (peer, count) = (Peer::read(), count.parse().unwrap());
+    let seed: u64 = seed.parse().unwrap();
+    println!("{mode}, seed {seed}, {count} targets");
+    match mode.as_str() {
+        "solve" => solve(&peer, seed, count),
+        "plain" => plain(&peer, seed, count),
+        "starts" => starts(&peer, seed, count),
+        "within" => within(&peer, seed, count),
+        mode => panic!("`{mode}`"),
+    }
+}
+
+fn solve(peer: &Peer, seed: u64, count: usize) {
+    let rng = &mut Pcg64::seed_from_u64(seed);
+    let (mut times, mut steps) = (vec![], vec![]);
+    for i in 0..count {
+        let target = peer.out_of_reach(i, rng);
+        let mut engine = Engine::new(&peer.model, peer.goals(target), &[], Options::inverse_kinematics()).unwrap();
+        let start = cpu();
+        let pose = engine.solve(&peer.rest).unwrap();
+        let time = cpu() - start;
+        let [feet, com, hand] = [0, 1, 2].map(|k| pose.levels[k].length);
+        let gain = peer.gain(&pose.posture, target, 1e-3);
+        println!(
+            "target {i}: {} steps {time:.2} ms, hand {hand:.7} feet {feet:.1e} com {com:.1e} gain {gain:.1e} {:?}",
+            pose.steps, pose.reason
+        );
+        times.push(time);
+        steps.push(pose.steps as f64);
+    }
+    describe("steps", &mut steps);
+    describe("ms a target", &mut times);
+}
+
+fn plain(peer: &Peer, seed: u64, count: usize) {
+    let rng = &mut Pcg64::seed_from_u64(seed);
+    let (mut times, mut moves, mut worst, mut changes) = (vec![], vec![], vec![], 0);
+    let verbose = std::env::var("TRACE").ok().and_then(|t| t.parse::<usize>().ok());
+    for i in 0..count {
+        let target = peer.out_of_reach(i, rng);
+        if verbose.is_some_and(|v| v != i) {
+            continue;
+        }
+        let mut engine = Engine::new(&peer.model, peer.goals(target), &[], Options::inverse_kinematics()).unwrap();
+        let (mut posture, mut before, mut last, mut all) = (peer.rest.clone(), peer.rest.clone(), 0f64, 0f64);
+        let mut step = vec![0.0; peer.model.rates().len()];
+        let mut quiet = 0;
+        for s in 0..STEPS {
+            let start = cpu();
+            let made = engine.step(&mut posture).unwrap();
+            times.push(cpu() - start);
+            before.difference(&peer.model, &posture, &mut step);
+            let largest = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+            if verbose.is_some() {
+                println!("{s}: {largest:.2e} {:?} {} {:.1e}", made.status, made.changes, made.largest);
+                println!("    {:?}", engine.errors());
+            }
+            if s + LAST >= STEPS {
+                last = last.max(largest);
+            }
+            if largest > 1e-6 {
+                quiet = s + 1;
+            }
+            all = all.max(largest);
+            changes += made.changes;
+            before.clone_from(&posture);
+        }
+        println!("target {i}: last {LAST} moves {last:.1e} rad, quiet after {quiet}, hand {:.7}", engine.errors()[2]);
+        moves.push(last);
+        worst.push(all);
+    }
+    for v in moves.iter_mut() {
+        *v *= 1e6;
+    }
+    describe("ms a step", &mut times);
+    describe("largest of the last moves, microrad", &mut moves);
+    describe("largest of all moves, rad", &mut worst);
+    println!("changes of the working set a step {:.1}", changes as f64 / times.len() as f64);
+}
+
+fn starts(peer: &Peer, seed: u64, count: usize) {
+    let rng = &mut Pcg64::seed_from_u64(seed);
+    let other = &mut Pcg64::seed_from_u64(seed ^ 0x5eed);
+    let (mut excesses, mut near) = (vec![], 0);
+    for i in 0..count {
+        let target = peer.out_of_reach(i, rng);
+        let mut engine = Engine::new(&peer.model, peer.goals(target), &[], Options::inverse_kinematics()).unwrap();
+        let own = engine.solve(&peer.rest).unwrap().levels[2].length;
+        let mut found: Vec<f64> = (0..20)
+            .map(|_| peer.reachable(other).1)
+            .map(|start| engine.solve(&start).unwrap())
+            .filter(|pose| pose.levels[..2].iter().all(|level| level.length < 1e-6))
+            .map(|pose| pose.levels[2].length)
+            .collect();
+        found.sort_unstable_by(f64::total_cmp);
+        let excess = 1e3 * (own - found.first().unwrap_or(&own).min(own));
+        println!("target {i}: {excess:.3} mm, own {own:.7}, best {:.7} {:?}", found[0], target.as_slice());
+        excesses.push(excess);
+        near += usize::from(excess <= 1.0);
+    }
+    describe("excess, mm", &mut excesses);
+    println!("{near} of {count} within 1 mm");
+}
+
+fn within(peer: &Peer, seed: u64, count: usize) {
+    let rng = &mut Pcg64::seed_from_u64(seed);
+    let (mut made, mut times, mut each, mut failed) = (vec![], vec![], vec![], 0);
+    for i in 0..count {
+        let target = peer.reachable(rng).0;
+        let mut engine = Engine::new(&peer.model, peer.goals(target), &[], Options::inverse_kinematics()).unwrap();
+        let (mut posture, mut steps, mut total) = (peer.rest.clone(), 0, 0.0);
+        loop {
+            let start = cpu();
+            engine.step(&mut posture).unwrap();
+            let time = cpu() - start;
+            if engine.errors()[..3].iter().all(|error| *error < 1e-3) {
+                break;
+            }
+            steps += 1;
+            total += time;
+            each.push(time);
+            if steps == STEPS {
+                println!("target {i} is not reached: {:?}", target.as_slice());
+                failed += 1;
+                break;
+            }
+        }
+        if steps > 20 {
+            println!("target {i}: {steps} steps");
+        }
+        made.push(steps as f64);
+        times.push(total);
+    }
+    describe("steps", &mut made);
+    describe("ms a step", &mut each);
+    describe("ms a target", &mut times);
+    println!("{failed} of {count} not reached");
+}

@@ -1,0 +1,53 @@
+//! Moves hand targets of the built-in adult out of reach and back.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Model, adult};
+use contrapposto::posture_solver::{Engine, Options};
+use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal, Placement, Point, Posture, PriorityLevel, Task};
+use nalgebra::Vector3;
+
+/// Feet where they are, the centre of mass over them, the right hand on the target, the default posture.
+fn levels(model: &Model, target: Vector3<f64>) -> Vec<PriorityLevel> {
+    let start = model.default_posture();
+    let mut at = Kinematics::new(model);
+    at.update(model, &start).unwrap();
+    let foot = |name: &str| {
+        let segment = model.segment(name).unwrap();
+        let target = at.placement(model, segment);
+        Task::Placement(Placement { segment, point: Vector3::zeros(), target })
+    };
+    let goal = CenterOfMassGoal::At { target: at.center_of_mass(model).unwrap(), axes: [true, false, true] };
+    let hand = model.segment("hand_r").unwrap();
+    vec![
+        PriorityLevel { tasks: vec![foot("calcn_r"), foot("calcn_l")], hard: true, ..PriorityLevel::default() },
+        Task::CenterOfMass(CenterOfMass { goal }).into(),
+        Task::Point(Point { segment: hand, point: Vector3::zeros(), target, axes: [true; 3] }).into(),
+        Task::Posture(Posture::whole(model, start.clone())).into(),
+    ]
+}
+
+const TARGETS: [[f64; 3]; 4] = [[2.0, 1.2, 0.3], [0.2, 2.9, 0.4], [1.6, 0.8, -0.6], [-0.1, 2.5, 0.1]];
+
+#[test]
+fn a_target_that_comes_back_within_reach_is_reached_by_plain_steps() {
+    let model = adult(&Adult::default()).unwrap();
+    let start = model.default_posture();
+    let hand = model.segment("hand_r").unwrap();
+    let mut at = Kinematics::new(&model);
+    at.update(&model, &start).unwrap();
+    for target in TARGETS {
+        for by in [Vector3::new(0.1, 0.1, 0.0), Vector3::new(0.3, 0.2, 0.1), Vector3::new(0.0, 0.3, -0.1)] {
+            let near = at.station(&model, hand, Vector3::zeros()) + by;
+            let far = levels(&model, Vector3::from(target));
+            let mut engine = Engine::new(&model, far, &[], Options::inverse_kinematics()).unwrap();
+            let mut posture = start.clone();
+            (0..200).for_each(|_| drop(engine.step(&mut posture).unwrap()));
+            assert!(engine.levels_mut()[2].tasks[0].retarget(near));
+            (0..60).for_each(|_| drop(engine.step(&mut posture).unwrap()));
+            let left = engine.report(&posture).unwrap()[2].length;
+            assert!(left < 1e-4, "from {target:?} by {by:?}: {left} m are left");
+        }
+    }
+}
