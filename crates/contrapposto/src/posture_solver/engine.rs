@@ -20,6 +20,7 @@ use super::report::{LevelError, SolvedPosture};
 use super::settings::{Rates, Settings};
 use super::slope::SlopeAlongMotion;
 use super::step_rule::StepRule;
+use super::tolerances::OTHER_STARTS;
 use crate::contact::{Balance, ContactForces, Support};
 use crate::effort::basin_hopping::BasinHopping;
 use crate::effort::hessian::HessianModel;
@@ -251,7 +252,8 @@ impl<'a> Engine<'a> {
 
     /// Steps until they are short or change the merit little. With effort, [`Options::local_minima`] are compared
     /// first. Without supports the largest step shrinks after a fifth of the largest number of steps, so that the body
-    /// comes to rest whatever it is asked.
+    /// comes to rest whatever it is asked; and where a level other than a rest posture is not reached, two other starts
+    /// are tried, and the posture whose first differing level is nearer is kept.
     ///
     /// # Errors
     /// As [`Engine::step`].
@@ -259,7 +261,7 @@ impl<'a> Engine<'a> {
         self.solve_watched(start, |_, _| {})
     }
 
-    /// As [`Engine::solve`]; `watch` is given every step and the posture after it.
+    /// As [`Engine::solve`]; `watch` is given every step of every start and the posture after it.
     ///
     /// # Errors
     /// As [`Engine::step`].
@@ -267,6 +269,28 @@ impl<'a> Engine<'a> {
         &mut self,
         start: &Posture,
         mut watch: impl FnMut(&Step, &Posture),
+    ) -> Result<SolvedPosture, EngineError> {
+        let mut best = self.solve_from(start, &mut watch)?;
+        if self.settings.on_supports() || !self.settings.is_out_of_reach(&best.levels) {
+            return Ok(best);
+        }
+        let first = best.posture.clone();
+        let mut steps = best.steps;
+        for share in OTHER_STARTS {
+            let other = self.solve_from(&self.settings.other_start(&first, share), &mut watch)?;
+            steps += other.steps;
+            if other.is_nearer_than(&best) {
+                best = other;
+            }
+        }
+        self.evaluate(&best.posture)?;
+        Ok(SolvedPosture { steps, ..best })
+    }
+
+    fn solve_from(
+        &mut self,
+        start: &Posture,
+        watch: &mut impl FnMut(&Step, &Posture),
     ) -> Result<SolvedPosture, EngineError> {
         self.restart();
         self.rule.begin_solve(&self.settings.options);

@@ -1,6 +1,7 @@
 //! The result of a solve: a posture, the error of every level, and why the steps ended there.
 
 use super::Reason;
+use super::tolerances::NEARER;
 use crate::contact::Balance;
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
@@ -24,6 +25,14 @@ pub struct SolvedPosture {
     pub reason: Reason,
     /// Number of steps.
     pub steps: usize,
+}
+
+impl SolvedPosture {
+    /// Whether the first level that differs noticeably is nearer than that of the `other` posture.
+    pub(super) fn is_nearer_than(&self, other: &Self) -> bool {
+        let mut differences = self.levels.iter().zip(&other.levels).map(|(own, other)| own.length - other.length);
+        differences.find(|difference| difference.abs() > NEARER).is_some_and(|difference| difference < 0.0)
+    }
 }
 
 /// Error of one level in a posture.

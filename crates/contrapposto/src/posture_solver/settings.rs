@@ -3,6 +3,7 @@
 
 use super::error::EngineError;
 use super::options::Options;
+use super::report::LevelError;
 use super::tolerances::RANGE_ROUNDING;
 use crate::constraint::HalfSpace;
 use crate::contact::{ContactForces, Support};
@@ -17,6 +18,9 @@ use crate::tasks::{PriorityLevel, Task, free_place, held_place};
 /// Levels of a problem on supports before those of the caller: friction and equilibrium, places of the supports, limits,
 /// shares.
 const CONTACT_LEVELS: usize = 4;
+
+/// rad or m. A coordinate with a wider range has no middle that means anything.
+const TURN: f64 = std::f64::consts::TAU;
 
 /// See the module's text.
 #[derive(Clone, Debug)]
@@ -169,6 +173,31 @@ impl<'a> Settings<'a> {
     /// Whether effort is the last level: nothing below it is passed over by a descent.
     pub(super) fn effort_is_last(&self) -> bool {
         self.effort_level.is_some_and(|level| level + 1 == self.levels.len())
+    }
+
+    /// Whether a level other than a rest posture is not reached.
+    pub(super) fn is_out_of_reach(&self, levels: &[LevelError]) -> bool {
+        let asks = |level: &PriorityLevel| {
+            !(level.half_spaces.is_empty() && level.tasks.iter().all(|task| matches!(task, Task::Posture(_))))
+        };
+        self.levels.iter().zip(levels).any(|(level, error)| asks(level) && error.length > self.options.level_tolerance)
+    }
+
+    /// A start beside the `first` solution: every coordinate with a range on both sides, and not locked, at this share
+    /// of the way from the middle of its range to there. A negative share bends elbows and knees the other way round
+    /// the middle of their ranges.
+    pub(super) fn other_start(&self, first: &Posture, share: f64) -> Posture {
+        let mut start = first.clone();
+        for (rate, locked) in self.model.rates().iter().zip(&self.locked) {
+            if let (Some(c), false) = (rate.coordinate, *locked) {
+                let (lower, upper) = self.model.coordinates()[c].range;
+                let (middle, width) = (0.5 * (lower + upper), upper - lower);
+                if width < TURN {
+                    start.values_mut()[c] = (middle + share * (first.values()[c] - middle)).clamp(lower, upper);
+                }
+            }
+        }
+        start
     }
 
     /// Takes back what rounding has carried out of the ranges.

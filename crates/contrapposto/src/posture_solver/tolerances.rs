@@ -74,6 +74,10 @@ pub(super) const LEAST_ERROR: f64 = 1e-6;
 pub(super) const SHRINK_AFTER_REJECTION: f64 = 0.25;
 /// Part of the largest number of steps, one fifth, after which the largest step shrinks for as many steps.
 pub(super) const STEPS_BEFORE_COOLING: usize = 5;
+/// Unit of the level. Another start is kept where the first level that differs by more is nearer.
+pub(super) const NEARER: f64 = 1e-5;
+/// By start: place of a joint, as a share of the way from the middle of its range to where the first start ended.
+pub(super) const OTHER_STARTS: [f64; 2] = [0.0, -0.5];
 /// Share of the step tolerance, to which the largest step then has shrunk.
 pub(super) const COOLED_STEP: f64 = 0.1;
 
