@@ -13,15 +13,11 @@ use contrapposto::posture::Posture;
 use contrapposto_formats::osim;
 use serde_json::Value;
 
-/// A file of the folder that CONTRAPPOSTO_OPENSIM_MODELS names; says so when it is not there.
-pub fn model_bytes(file: &str) -> Option<Vec<u8>> {
+/// A file of the folder that CONTRAPPOSTO_OPENSIM_MODELS names.
+pub fn model_bytes(file: &str) -> Vec<u8> {
     let folder = std::env::var_os("CONTRAPPOSTO_OPENSIM_MODELS").expect("CONTRAPPOSTO_OPENSIM_MODELS names a folder");
     let path = PathBuf::from(folder).join(file);
-    let bytes = std::fs::read(&path).ok();
-    if bytes.is_none() {
-        println!("skipped: {} is not there", path.display());
-    }
-    bytes
+    std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// A model, and OpenSim's numbers of it.
