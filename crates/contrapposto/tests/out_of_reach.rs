@@ -43,9 +43,13 @@ fn a_target_that_comes_back_within_reach_is_reached_by_plain_steps() {
             let far = levels(&model, Vector3::from(target));
             let mut engine = Engine::new(&model, far, &[], Options::inverse_kinematics()).unwrap();
             let mut posture = start.clone();
-            (0..200).for_each(|_| drop(engine.step(&mut posture).unwrap()));
+            for _ in 0..200 {
+                engine.step(&mut posture).unwrap();
+            }
             assert!(engine.levels_mut()[2].tasks[0].retarget(near));
-            (0..60).for_each(|_| drop(engine.step(&mut posture).unwrap()));
+            for _ in 0..60 {
+                engine.step(&mut posture).unwrap();
+            }
             let left = engine.report(&posture).unwrap()[2].length;
             assert!(left < 1e-4, "from {target:?} by {by:?}: {left} m are left");
         }

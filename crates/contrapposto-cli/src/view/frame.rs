@@ -117,9 +117,13 @@ impl Frame {
 
     /// Share of the external torque of a coordinate that passive tissue carries, 0..=1; `None` below 0.5 N m.
     pub(crate) fn carried(&self, i: usize) -> Option<f64> {
-        let external = self.external[i];
-        (external.abs() > 0.5).then(|| (-self.passive[i] / external).clamp(0.0, 1.0))
+        carried(self.external[i], self.passive[i])
     }
+}
+
+/// Share of an external torque that passive tissue carries, 0..=1; `None` below 0.5 N m.
+pub(crate) fn carried(external: f64, passive: f64) -> Option<f64> {
+    (external.abs() > 0.5).then(|| (-passive / external).clamp(0.0, 1.0))
 }
 
 /// The frame of a posture of least effort, with the contact forces and torques that the search found.

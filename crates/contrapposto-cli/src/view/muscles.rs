@@ -1,6 +1,7 @@
 //! The muscle groups of a moment: the one that works, the hardest worked, the most tired, and the first to fail.
 
 use contrapposto::model::{Model, Side};
+use contrapposto::simulation::Summary;
 
 use super::frame::Frame;
 use super::words::{group, plain};
@@ -10,6 +11,14 @@ pub(crate) fn hardest(model: &Model, frame: &Frame) -> Option<(String, f64)> {
     let i = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]))?;
     let name = working(model, i, frame).unwrap_or_else(|| plain(&model.coordinates()[i].name));
     Some((name, frame.load[i]))
+}
+
+/// The group that works hardest in a run while no support is put elsewhere, its load, and when, s.
+pub(crate) fn hardest_of_run(model: &Model, summary: &Summary) -> Option<(String, f64, f64)> {
+    let (hardest, time) = summary.hardest?;
+    let coordinate = &model.coordinates()[hardest.coordinate];
+    let groups = coordinate.groups.as_ref()?;
+    Some((group(&groups[hardest.side.index()].name, &coordinate.name), hardest.load, time))
 }
 
 /// The group that fails first when a posture is held from a rested start, and after how many seconds; `None` where all groups hold

@@ -36,7 +36,7 @@ pub struct Worst {
 
 impl Worst {
     fn take(&mut self, error: f64, at: impl FnOnce() -> String) {
-        if !(error.abs() <= self.size) {
+        if error.is_nan() || error.abs() > self.size {
             (self.size, self.at) = (error.abs(), at());
         }
     }

@@ -7,7 +7,7 @@ use crate::view::answer::{Answer, also_missed};
 use crate::view::axes::pelvis_list;
 use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
-use crate::view::muscles::{hardest, tired};
+use crate::view::muscles::{hardest_of_run, tired};
 use crate::view::words::{how_long, percent, plain, sentence, value};
 
 /// A pelvis that hangs more than this, degrees, is no level one.
@@ -34,18 +34,28 @@ pub(super) fn write(
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
     let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
-    let happened = match standing {
-        Some((_, list)) if list.abs() >= LEVEL => narrative.of_slouch(list),
-        _ if excerpt.happened == 0 => narrative.of_rest(summary.end_time),
-        Some((_, list)) => narrative.of_level(list),
-        None => narrative.of_joint(),
-    };
     report.headline.clone_from(&answer.verdict.sentence);
-    report.reasons = also_missed(&answer.verdict).into_iter().chain(answer.advice.clone()).chain([happened]).collect();
-    report.reasons.extend(narrative.reasons(standing.is_some()));
+    report.reasons = also_missed(&answer.verdict).into_iter().chain(answer.advice.clone()).collect();
+    // Of a job that cannot be done nothing else is said to hold.
+    if answer.verdict.kind.is_done() {
+        report.reasons.push(match standing {
+            _ if excerpt.happened == 0 => of_rest(summary.end_time),
+            Some((before, after)) if after.abs() >= LEVEL => narrative.of_list(before, after),
+            Some((_, after)) => narrative.of_level(after),
+            None => narrative.of_joint(),
+        });
+        if excerpt.happened > 0 {
+            report.reasons.extend(narrative.reasons(standing.is_some()));
+        }
+    }
     report.reasons.extend(summary.foot_steps.iter().map(|step| narrative.of_step(step)));
     report.reasons.push(narrative.end(excerpt, summary));
-    report.figures = narrative.figures(standing);
+    report.figures = narrative.figures(standing, summary);
+}
+
+/// No muscle group needed relief.
+fn of_rest(seconds: f64) -> String {
+    format!("In {} no muscle became so tired that it needed relief.", how_long(seconds))
 }
 
 struct Narrative<'a> {
@@ -56,22 +66,15 @@ struct Narrative<'a> {
 }
 
 impl Narrative<'_> {
-    fn of_slouch(&self, list: f64) -> String {
-        let side = if list > 0.0 { "right" } else { "left" };
-        format!("Slouched: the pelvis drops {:.0}° to the {side}, and {}.", list.abs(), self.weight())
+    /// The pelvis hangs to a side; in a run, if it did not at the start.
+    fn of_list(&self, before: f64, after: f64) -> String {
+        let side = if after > 0.0 { "right" } else { "left" };
+        let word = if after.abs() - before.abs() >= LEVEL { "Slouched: the" } else { "The" };
+        format!("{word} pelvis ends {:.0}° lower on the {side}, and {}.", after.abs(), self.weight())
     }
 
     fn of_level(&self, list: f64) -> String {
         format!("No slouch: the pelvis ends level (within {:.0}°), and {}.", list.abs().ceil().max(1.0), self.weight())
-    }
-
-    /// No muscle group needed relief.
-    fn of_rest(&self, seconds: f64) -> String {
-        let hardest = match hardest(&self.scenario.model, self.last) {
-            Some((name, load)) => format!("; {name} has the highest load, {} of its strength", percent(load)),
-            None => String::new(),
-        };
-        format!("The posture holds: in {} no muscle became so tired that it needed relief{hardest}.", how_long(seconds))
     }
 
     fn weight(&self) -> String {
@@ -169,7 +172,7 @@ impl Narrative<'_> {
         format!("The run ended after {:.0} s: {how}.{why}{more}", summary.end_time)
     }
 
-    fn figures(&self, standing: Option<(f64, f64)>) -> Vec<Figure> {
+    fn figures(&self, standing: Option<(f64, f64)>, summary: &Summary) -> Vec<Figure> {
         let Self { scenario, first, last, main } = *self;
         let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
         let mut figures = vec![];
@@ -218,8 +221,8 @@ impl Narrative<'_> {
             change,
             format!("sum of squared relative loads, {before:.3} to {after:.3}"),
         ));
-        if let Some((name, load)) = hardest(&scenario.model, last) {
-            figures.push(figure("Highest load", percent(load), name));
+        if let Some((name, load, time)) = hardest_of_run(&scenario.model, summary) {
+            figures.push(figure("Highest load", percent(load), format!("{name}, at {}", how_long(time))));
         }
         figures
     }

@@ -3,9 +3,10 @@
 
 use contrapposto::model::Model;
 use contrapposto::model::data::{HazardRow, library};
+use contrapposto::simulation::Summary;
 use contrapposto_report::Report;
 
-use crate::view::frame::Frame;
+use crate::view::frame::{Frame, carried};
 use crate::view::words::{how_long, list, percent, plain, value};
 
 /// The hazard that a coordinate is in.
@@ -42,6 +43,27 @@ pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<Strin
         };
         let joints = list(&joints);
         sentences.push(format!("Hazard: ligaments hold {joints}{long}; {}{too_long}.", row.finding));
+    }
+    sentences
+}
+
+/// A sentence for each kind of hazard in which a run ends.
+pub(crate) fn hazards_at_end(model: &Model, summary: &Summary) -> Vec<String> {
+    let mut sentences = vec![];
+    for row in library().hazards() {
+        let coordinates = model.coordinates().iter().zip(&summary.coordinates).enumerate();
+        let joints = coordinates.filter_map(|(i, (coordinate, end))| {
+            let [external, passive, _] = end.final_torques;
+            let share = carried(external, passive)?;
+            row.applies(coordinate, end.final_value, share).then(|| {
+                let (name, angle) = (plain(&coordinate.name), value(model, i, end.final_value));
+                format!("{name} at {angle} ({} of {:.0} N m)", percent(share), external.abs())
+            })
+        });
+        let joints: Vec<String> = joints.collect();
+        if !joints.is_empty() {
+            sentences.push(format!("Hazard: at the end ligaments hold {}; {}.", list(&joints), row.finding));
+        }
     }
     sentences
 }

@@ -207,7 +207,7 @@ impl ComparedPostureText {
     }
 }
 
-/// `B can be held longest: 19.8 min; A 12.0 min.`
+/// `The easiest first: B holds through 5.0 min, hardest worked at 9 %; A can be held 12.0 min.`
 fn answer(postures: &[ComparedPosture]) -> String {
     let seconds = |stance: &ComparedPosture| match stance.verdict.kind {
         VerdictKind::Holds => f64::INFINITY,
@@ -220,7 +220,10 @@ fn answer(postures: &[ComparedPosture]) -> String {
         VerdictKind::NotReached => "does not reach its target".to_owned(),
         VerdictKind::HeldUntil => format!("can be held {}", stance.verdict.seconds.map(how_long).unwrap_or_default()),
         VerdictKind::Holds => match stance.verdict.seconds {
-            Some(time) => format!("holds through {}", how_long(time)),
+            Some(time) => {
+                let load = stance.verdict.who.map_or(0.0, |group| group.load);
+                format!("holds through {}, hardest worked at {:.0} %", how_long(time), 100.0 * load)
+            }
             None => "holds without a limit by muscles".to_owned(),
         },
     };

@@ -143,7 +143,7 @@ impl ActiveCurve {
                 "0 <= least < transition < 0.95, greatest > 1.05",
             ));
         }
-        if !(floor >= 0.0 && floor < 0.5 && shallow_slope >= 0.0 && shallow_slope < (1.0 - floor) / (x2 - x1)) {
+        if !((0.0..0.5).contains(&floor) && (0.0..(1.0 - floor) / (x2 - x1)).contains(&shallow_slope)) {
             return Err(refused(
                 "shallow slope of the active curve",
                 shallow_slope,
@@ -167,7 +167,7 @@ impl ActiveCurve {
 impl PassiveFiberCurve {
     fn curve(&self) -> Result<Curve, MuscleError> {
         let span = self.strain - self.zero_strain;
-        if !(span > 0.0) {
+        if span.is_nan() || span <= 0.0 {
             return Err(refused("strain of the passive curve", self.strain, "above its strain at zero force"));
         }
         let default = PassiveShape { low_slope: 0.2, slope: 2.0 / span, curviness: 0.75 };
@@ -193,7 +193,7 @@ impl PassiveFiberCurve {
 
 impl TendonCurve {
     fn curve(&self) -> Result<Curve, MuscleError> {
-        if !(self.strain > 0.0) {
+        if self.strain.is_nan() || self.strain <= 0.0 {
             return Err(refused("strain of the tendon", self.strain, "above 0"));
         }
         let default = TendonShape { slope: 1.375 / self.strain, toe_force: 2.0 / 3.0, curviness: 0.5 };
