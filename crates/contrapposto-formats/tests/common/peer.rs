@@ -182,7 +182,7 @@ impl Peer {
     /// A target out of reach: overhead for an even `i`, far in front and beside for an odd one, as the published ones.
     pub fn out_of_reach(&self, i: usize, rng: &mut Pcg64) -> Vector3<f64> {
         let mut within = |lower: f64, upper: f64| lower + (upper - lower) * rng.random::<f64>();
-        if i % 2 == 0 {
+        if i.is_multiple_of(2) {
             return Vector3::new(within(-0.4, 0.4), within(-0.5, 0.0), within(2.4, 3.2));
         }
         let (distance, angle) = (within(1.8, 2.8), within(-0.6, 0.6));
