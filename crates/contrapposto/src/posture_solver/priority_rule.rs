@@ -19,7 +19,7 @@ use super::settings::Settings;
 use super::tolerances::{
     COOLED_STEP, DAMPING, LARGEST_DAMPED_ERROR, LEAST_ERROR, LEAST_REJECTED_STEP, LEVELS_ABOVE_MET, LEVELS_ABOVE_NEAR,
     MERIT_ROUNDING, SETTLED_STEP, SHRINK_AFTER_REJECTION, STALLED_ERROR, STALLED_RESIDUAL, STALLED_STEP, STALLED_STEPS,
-    STEPS_BEFORE_COOLING, TRUST_GROWTH, UNSETTLED, WEIGHT_OF_ACTIVE_ROWS,
+    STEPS_BEFORE_COOLING, STEPS_OF_COOLING, TRUST_GROWTH, UNSETTLED, WEIGHT_OF_ACTIVE_ROWS,
 };
 use crate::posture::Posture;
 use crate::tasks::{ErrorHessian, PriorityLevel, Task};
@@ -97,10 +97,10 @@ impl PriorityRule {
         self.restoration_solver.forget();
     }
 
-    /// After a fifth of the largest number of steps the largest step shrinks, and is next to nothing after as many steps
-    /// again, so that the body comes to rest whatever it is asked.
+    /// After a fifth of the largest number of steps the largest step shrinks, and is next to nothing after another
+    /// quarter of it, so that the body comes to rest whatever it is asked.
     pub(super) fn cool_toward_last_step(&mut self, options: &Options) {
-        let steps = (options.max_steps / STEPS_BEFORE_COOLING).max(1);
+        let steps = (options.max_steps / STEPS_OF_COOLING).max(1);
         self.cooling = (COOLED_STEP * options.step_tolerance / options.max_step).powf(1.0 / steps as f64);
     }
 

@@ -72,8 +72,10 @@ pub(super) const LEAST_REJECTED_STEP: f64 = 1e-7;
 pub(super) const LEAST_ERROR: f64 = 1e-6;
 /// Share of the rejected step: the trust radius after it.
 pub(super) const SHRINK_AFTER_REJECTION: f64 = 0.25;
-/// Part of the largest number of steps, one fifth, after which the largest step shrinks for as many steps.
+/// Part of the largest number of steps, one fifth, after which the largest step shrinks.
 pub(super) const STEPS_BEFORE_COOLING: usize = 5;
+/// Part of the largest number of steps, one quarter, in which it shrinks.
+pub(super) const STEPS_OF_COOLING: usize = 4;
 /// Unit of the level. Another start is kept where the first level that differs by more is nearer.
 pub(super) const NEARER: f64 = 1e-5;
 /// By start: place of a joint, as a share of the way from the middle of its range to where the first start ended.
