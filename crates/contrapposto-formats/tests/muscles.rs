@@ -52,7 +52,7 @@ fn muscles_of_arm26_without_surfaces_are_opensims() {
 
 #[test]
 #[ignore = "needs CONTRAPPOSTO_OPENSIM_MODELS: a folder of published full bodies and arms"]
-fn muscles_of_published_models_are_opensims() {
+fn muscles_of_fetched_bodies_are_opensims() {
     let (cylinder, cylinders) = (["WrapCylinder"], ["WrapCylinder"; 2]);
     let several = Limits { length: 1e-6, arm: 1e-6, force: 1e-6 };
     for (name, file, wraps, limits) in [
