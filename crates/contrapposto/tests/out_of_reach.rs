@@ -7,6 +7,11 @@ use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::tasks::{CenterOfMass, CenterOfMassGoal, Placement, Point, Posture, PriorityLevel, Task};
 use nalgebra::Vector3;
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+const SEED: u128 = 5;
+const TARGETS_DRAWN: usize = 20;
 
 /// Feet where they are, the centre of mass over them, the right hand on the target, the default posture.
 fn levels(model: &Model, target: Vector3<f64>) -> Vec<PriorityLevel> {
@@ -53,5 +58,27 @@ fn a_target_that_comes_back_within_reach_is_reached_by_plain_steps() {
             let left = engine.report(&posture).unwrap()[2].length;
             assert!(left < 1e-4, "from {target:?} by {by:?}: {left} m are left");
         }
+    }
+}
+
+/// Plain steps are those of the first start.
+#[test]
+fn a_solve_out_of_reach_ends_no_farther_than_its_first_start() {
+    let model = adult(&Adult::default()).unwrap();
+    let start = model.default_posture();
+    let mut random = Pcg64Mcg::new(SEED);
+    for _ in 0..TARGETS_DRAWN {
+        let (distance, angle) = (random.random_range(1.5..2.5), random.random_range(-0.6..0.6_f64));
+        let target = Vector3::new(distance * angle.cos(), random.random_range(0.4..2.6), distance * angle.sin());
+        let mut engine = Engine::new(&model, levels(&model, target), &[], Options::inverse_kinematics()).unwrap();
+        let mut posture = start.clone();
+        for _ in 0..Options::inverse_kinematics().max_steps {
+            engine.step(&mut posture).unwrap();
+        }
+        let plain = engine.report(&posture).unwrap();
+        let solved = engine.solve(&start).unwrap();
+        assert!(solved.levels[..2].iter().all(|level| level.length < 1e-6), "seed {SEED}, {target:?}");
+        let gain = plain[2].length - solved.levels[2].length;
+        assert!(gain > -1e-4, "seed {SEED}, {target:?}: {gain} m");
     }
 }

@@ -7,7 +7,7 @@ use hierarchical_least_squares::Status;
 pub struct Options {
     /// Largest change of any joint angle or distance in one step, rad or m.
     pub max_step: f64,
-    /// Largest number of steps of a solve.
+    /// Largest number of steps of each start of a solve.
     pub max_steps: usize,
     /// Steps end when every change is at most this, rad or m.
     pub step_tolerance: f64,

@@ -97,9 +97,9 @@ impl PriorityRule {
         self.restoration_solver.forget();
     }
 
-    /// After a fifth of the largest number of steps the largest step shrinks, and is next to nothing after another
-    /// quarter of it, so that the body comes to rest whatever it is asked.
-    pub(super) fn cool_toward_last_step(&mut self, options: &Options) {
+    /// After a fifth of the largest number of steps the trust radius shrinks, within a quarter of that number to next to
+    /// nothing, so that the body comes to rest whatever it is asked.
+    pub(super) fn cool_toward_rest(&mut self, options: &Options) {
         let steps = (options.max_steps / STEPS_OF_COOLING).max(1);
         self.cooling = (COOLED_STEP * options.step_tolerance / options.max_step).powf(1.0 / steps as f64);
     }

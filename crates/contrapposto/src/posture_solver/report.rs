@@ -23,7 +23,7 @@ pub struct SolvedPosture {
     pub balance: Balance,
     /// Why the steps ended.
     pub reason: Reason,
-    /// Number of steps.
+    /// Number of steps of all starts.
     pub steps: usize,
 }
 

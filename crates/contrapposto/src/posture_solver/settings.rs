@@ -4,7 +4,7 @@
 use super::error::EngineError;
 use super::options::Options;
 use super::report::LevelError;
-use super::tolerances::RANGE_ROUNDING;
+use super::tolerances::{RANGE_ROUNDING, WIDEST_RANGE};
 use crate::constraint::HalfSpace;
 use crate::contact::{ContactForces, Support};
 use crate::effort::problem::EffortProblem;
@@ -18,9 +18,6 @@ use crate::tasks::{PriorityLevel, Task, free_place, held_place};
 /// Levels of a problem on supports before those of the caller: friction and equilibrium, places of the supports, limits,
 /// shares.
 const CONTACT_LEVELS: usize = 4;
-
-/// rad or m. A coordinate with a wider range has no middle that means anything.
-const TURN: f64 = std::f64::consts::TAU;
 
 /// See the module's text.
 #[derive(Clone, Debug)]
@@ -183,16 +180,16 @@ impl<'a> Settings<'a> {
         self.levels.iter().zip(levels).any(|(level, error)| asks(level) && error.length > self.options.level_tolerance)
     }
 
-    /// A start beside the `first` solution: every coordinate with a range on both sides, and not locked, at this share
-    /// of the way from the middle of its range to there. A negative share bends elbows and knees the other way round
-    /// the middle of their ranges.
+    /// A start beside the `first` solution: every coordinate that is not locked and has a range of at most [`WIDEST_RANGE`],
+    /// at this share of the way from the middle of its range to there. With a negative share elbows and knees are bent on the
+    /// other side of the middle of their ranges.
     pub(super) fn other_start(&self, first: &Posture, share: f64) -> Posture {
         let mut start = first.clone();
         for (rate, locked) in self.model.rates().iter().zip(&self.locked) {
             if let (Some(c), false) = (rate.coordinate, *locked) {
                 let (lower, upper) = self.model.coordinates()[c].range;
                 let (middle, width) = (0.5 * (lower + upper), upper - lower);
-                if width < TURN {
+                if width < WIDEST_RANGE {
                     start.values_mut()[c] = (middle + share * (first.values()[c] - middle)).clamp(lower, upper);
                 }
             }

@@ -36,7 +36,7 @@ impl StepRule {
     /// A solve begins, which ends after the largest number of steps.
     pub(super) fn begin_solve(&mut self, options: &Options) {
         match self {
-            Self::Priorities(rule) => rule.cool_toward_last_step(options),
+            Self::Priorities(rule) => rule.cool_toward_rest(options),
             Self::Merit(_) => {}
         }
     }

@@ -78,6 +78,8 @@ pub(super) const STEPS_BEFORE_COOLING: usize = 5;
 pub(super) const STEPS_OF_COOLING: usize = 4;
 /// Unit of the level. Another start is kept where the first level that differs by more is nearer.
 pub(super) const NEARER: f64 = 1e-5;
+/// rad or m. A coordinate with a wider range, such as a free root, keeps its place in other starts.
+pub(super) const WIDEST_RANGE: f64 = std::f64::consts::TAU;
 /// By start: place of a joint, as a share of the way from the middle of its range to where the first start ended.
 pub(super) const OTHER_STARTS: [f64; 2] = [0.0, -0.5];
 /// Share of the step tolerance, to which the largest step then has shrunk.

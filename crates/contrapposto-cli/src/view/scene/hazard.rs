@@ -1,9 +1,9 @@
 //! Names joints that ligaments carry where that is a hazard: a flexed lumbar spine, a spine at the end of its measured range, a
 //! hyperextended knee. The angles and their sources are in `data/hazards.toml` of the science crate.
 
-use contrapposto::model::Model;
 use contrapposto::model::data::{HazardRow, library};
-use contrapposto::simulation::Summary;
+use contrapposto::model::{Coordinate, Model};
+use contrapposto::simulation::{CoordinateSummary, Summary};
 use contrapposto_report::Report;
 
 use crate::view::frame::{Frame, carried};
@@ -11,8 +11,18 @@ use crate::view::words::{how_long, list, percent, plain, value};
 
 /// The hazard that a coordinate is in.
 pub(crate) fn hazard(model: &Model, frame: &Frame, i: usize) -> Option<&'static HazardRow> {
-    let carried = frame.carried(i)?;
-    library().hazards().iter().find(|row| row.applies(&model.coordinates()[i], frame.angles[i], carried))
+    hazard_at(&model.coordinates()[i], frame.angles[i], frame.carried(i)?)
+}
+
+/// The hazard of a coordinate at an angle where passive tissue carries this share of the external torque.
+fn hazard_at(coordinate: &Coordinate, angle: f64, carried: f64) -> Option<&'static HazardRow> {
+    library().hazards().iter().find(|row| row.applies(coordinate, angle, carried))
+}
+
+/// `lumbar extension at −60.0° (74 % of 165 N m)`.
+fn loaded(model: &Model, i: usize, angle: f64, share: f64, external: f64) -> String {
+    let name = plain(&model.coordinates()[i].name);
+    format!("{name} at {} ({} of {:.0} N m)", value(model, i, angle), percent(share), external.abs())
 }
 
 /// A sentence for each kind of hazard in the frames, about the coordinates where they are loaded most. `lasts`: the frames follow
@@ -26,9 +36,8 @@ pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<Strin
         for i in 0..model.coordinates().len() {
             let worst = frames.iter().filter(|frame| is_in(frame, i));
             let Some(worst) = worst.max_by(|a, b| a.passive[i].abs().total_cmp(&b.passive[i].abs())) else { continue };
-            let name = plain(&model.coordinates()[i].name);
-            let (angle, share) = (value(model, i, worst.angles[i]), worst.carried(i).map_or_else(String::new, percent));
-            joints.push(format!("{name} at {angle} ({share} of {:.0} N m)", worst.external[i].abs()));
+            let share = worst.carried(i).unwrap_or_default();
+            joints.push(loaded(model, i, worst.angles[i], share, worst.external[i]));
             let spans = frames.windows(2).filter(|pair| is_in(&pair[0], i)).map(|pair| pair[1].time - pair[0].time);
             longest = longest.max(spans.sum());
         }
@@ -47,20 +56,18 @@ pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<Strin
     sentences
 }
 
-/// A sentence for each kind of hazard in which a run ends.
+/// A sentence for each kind of hazard in which a run ends, by the coordinates of its last posture.
 pub(crate) fn hazards_at_end(model: &Model, summary: &Summary) -> Vec<String> {
     let mut sentences = vec![];
     for row in library().hazards() {
-        let coordinates = model.coordinates().iter().zip(&summary.coordinates).enumerate();
-        let joints = coordinates.filter_map(|(i, (coordinate, end))| {
+        let joint = |(i, (coordinate, end)): (usize, (&Coordinate, &CoordinateSummary))| {
             let [external, passive, _] = end.final_torques;
             let share = carried(external, passive)?;
-            row.applies(coordinate, end.final_value, share).then(|| {
-                let (name, angle) = (plain(&coordinate.name), value(model, i, end.final_value));
-                format!("{name} at {angle} ({} of {:.0} N m)", percent(share), external.abs())
-            })
-        });
-        let joints: Vec<String> = joints.collect();
+            let found = hazard_at(coordinate, end.final_value, share)?;
+            std::ptr::eq(found, row).then(|| loaded(model, i, end.final_value, share, external))
+        };
+        let joints: Vec<String> =
+            model.coordinates().iter().zip(&summary.coordinates).enumerate().filter_map(joint).collect();
         if !joints.is_empty() {
             sentences.push(format!("Hazard: at the end ligaments hold {}; {}.", list(&joints), row.finding));
         }
