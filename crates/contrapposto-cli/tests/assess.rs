@@ -321,3 +321,28 @@ fn what_makes_no_sense_is_refused_in_words() {
         assert!(!out.exists(), "{arguments:?}");
     }
 }
+
+/// Two postures ten minutes apart: the moment of a failure between them is that of the fatigue law, not that of a posture, and the
+/// page opens with joint, moment and load of its title.
+#[test]
+fn the_page_of_a_failure_between_two_postures_names_its_moment_and_opens_with_the_joint_of_the_title() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n600,90\n");
+    let out = folder.path().join("out");
+    let load = ["--load", "hand_r 8kg", "--json", "--out", out.to_str().unwrap()];
+    let found = json(&[&["assess", "adult", &motion][..], &load].concat());
+    let first = &found["groups"][0];
+    let fails = first["exhausted_at_s"].as_f64().unwrap();
+    assert!(fails > 1.0 && fails < 550.0, "{fails}");
+    let page = page(&out);
+    let entries = page["list"]["entries"].as_array().unwrap();
+    let entry = entries.iter().find(|entry| entry["text"].as_str().unwrap().contains(" fails")).unwrap();
+    assert!((entry["time"].as_f64().unwrap() - fails).abs() <= 1e-3, "{entry}");
+    let shown = &page["joints"][page["main"].as_u64().unwrap() as usize];
+    assert_eq!(shown["name"], first["coordinate"]);
+    let side = usize::from(first["side"] == "negative");
+    assert!((shown["groups"][side]["fails"].as_f64().unwrap() - fails).abs() <= 1e-3);
+    let open = page["open"].as_u64().unwrap() as usize;
+    let peak = first["peak_load"]["value"].as_f64().unwrap();
+    assert!((column(&shown["load"], 2)[open] - peak).abs() < 1e-4);
+}

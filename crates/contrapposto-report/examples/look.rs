@@ -1,5 +1,5 @@
-//! Looks at report pages in a headless Chromium: prints how large they are, how long they take to open (words and body painted,
-//! then all charts drawn and the page at rest; since the browser was asked for the page) and how fast the slider answers, and takes
+//! Looks at report pages in a headless Chromium: prints how large they are, how long they take to open (words and
+//! charts drawn, then the body and the page at rest; since the browser was asked for the page) and how fast the slider answers, and takes
 //! pictures of them: light, dark, on a phone and on paper.
 //!
 //! `cargo run --release -p contrapposto-report --example look -- PICTURES out/report.html ...`
@@ -7,6 +7,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a tool for developers")]
 
 #[path = "../tests/support/chromium.rs"]
+#[allow(dead_code, reason = "the tests press keys")]
 mod chromium;
 
 use std::path::Path;
@@ -56,9 +57,9 @@ fn look(page: &Path, pictures: &Path) {
         browser.open(page);
         let mark = |name: &str| format!("Number(document.documentElement.dataset.{name}) / 1000");
         let mut moment = |name: &str| browser.evaluate(&mark(name)).as_f64().unwrap();
-        times.push([moment("drawn"), moment("ready"), busy(&mut browser)]);
+        times.push([moment("charted"), moment("ready"), busy(&mut browser)]);
     }
-    let [drawn, ready, opening] = [0, 1, 2].map(|k| middle(times.iter().map(|time| time[k])));
+    let [charted, ready, opening] = [0, 1, 2].map(|k| middle(times.iter().map(|time| time[k])));
     let mut browser = Chromium::start();
     size(&mut browser, 1400, 900, 1);
     browser.call("Performance.enable", json!({ "timeDomain": "threadTicks" }));
@@ -67,7 +68,7 @@ fn look(page: &Path, pictures: &Path) {
     let took: Vec<f64> = serde_json::from_value(browser.evaluate(SLIDE)).unwrap();
     let slide = 1e3 * (busy(&mut browser) - before) / 30.0;
     println!(
-        "{name}: {:.2} MB, of which data {:.2} MB; words and body after {drawn:.2} s, all charts after {ready:.2} s \
+        "{name}: {:.2} MB, of which data {:.2} MB; words and charts after {charted:.2} s, the body after {ready:.2} s \
          ({opening:.2} s of processor; middle of {OPENINGS}); slider answers in {:.0} ms (middle of 30), {:.0} ms at most \
          ({slide:.0} ms of processor); {} requests, {} complaints; load of the machine {}",
         text.len() as f64 / 1e6,
@@ -78,7 +79,8 @@ fn look(page: &Path, pictures: &Path) {
         browser.complaints().len(),
         std::fs::read_to_string("/proc/loadavg").unwrap_or_default().split(' ').next().unwrap_or_default(),
     );
-    browser.press("End");
+    // As a reader opens it.
+    browser.open(page);
     for (kind, scheme, width) in [("light", "light", 1400), ("dark", "dark", 1400), ("phone", "light", 390)] {
         size(&mut browser, width, if width < 500 { 844 } else { 900 }, if width < 500 { 2 } else { 1 });
         let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);

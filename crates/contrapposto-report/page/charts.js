@@ -1,6 +1,7 @@
 // The charts of one joint, by plotly.js: torques over the angle, and everything over time. Marks of the present frame lie over the
 // charts, so that a step of the slider draws no chart anew.
 const LONGEST_LABEL = 48;
+const PAPER_WIDTH = 680, PAPER_HEIGHT = 200, PAPER_HEIGHT_TALL = 285; // px; the style sheet has these heights, too
 const CHART_CONFIG = {
   displaylogo: false, responsive: true, displayModeBar: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
 };
@@ -24,9 +25,11 @@ function chartAxis(title, more) {
   return { title: { text: title, standoff: 8 }, ...colors, automargin: true, ...more };
 }
 
-function chartLayout(more) {
-  const ink = styleValue("--ink");
+// Layout of a chart; `paperHeight` is its height in print, where nothing waits for it to follow the size of the page.
+function chartLayout(paperHeight, more) {
+  const ink = styleValue("--ink"), onPaper = document.documentElement.hasAttribute("data-paper");
   return {
+    ...(onPaper && { width: PAPER_WIDTH, height: paperHeight }),
     font: { family: "system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif", size: 12, color: ink },
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", margin: { l: 58, r: 14, t: 10, b: 44 }, dragmode: false,
     legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: { size: 11.5 } },
@@ -97,7 +100,7 @@ class Charts {
     const joint = this.joint, positive = joint.positive ? ` (positive: ${joint.positive})` : "";
     const traces = [...this.activeTraces(), ...this.rangeTraces()];
     for (const trace of traces) Object.assign(trace, { type: "scatter", mode: trace.mode || "lines" });
-    Plotly.react(this.balance, traces, chartLayout({
+    Plotly.react(this.balance, traces, chartLayout(PAPER_HEIGHT, {
       xaxis: chartAxis(chartText(`${joint.slides ? "place, m" : "angle, °"}${positive}`), { zeroline: false }),
       yaxis: chartAxis(`torque, ${joint.torque}`),
     }), CHART_CONFIG);
@@ -144,7 +147,7 @@ class Charts {
   drawCourse() {
     const joint = this.joint, tires = (joint.groups || []).some((group) => group.fatigue);
     const levels = tires && report.levels ? report.levels.map((share) => 100 * share) : [];
-    Plotly.react(this.course, this.courseTraces(tires), chartLayout({
+    Plotly.react(this.course, this.courseTraces(tires), chartLayout(PAPER_HEIGHT_TALL, {
       hovermode: "x unified",
       shapes: levels.map((y, i) => levelLine(y, i ? "dot" : "dash")),
       annotations: levels.map((y, i) => levelLabel(y, i ? "relief ends" : "relief begins")),
@@ -164,10 +167,21 @@ class Charts {
     ];
     for (const [side, group] of (tires ? joint.groups : []).entries()) {
       const line = chartLine(side ? "--negative" : "--positive", 2, side ? "dashdot" : "solid");
-      traces.push({ name: chartText(group.label), y: Array.from(group.fatigue, (f) => 100 * f), yaxis: "y3", line });
+      traces.push({ name: chartText(group.label), ...this.fatigueCourse(group), yaxis: "y3", line });
     }
-    for (const trace of traces) Object.assign(trace, { type: "scatter", mode: "lines", x: this.times, hovertemplate: "%{y:.2f}" });
+    for (const trace of traces) Object.assign(trace, { x: trace.x || this.times, type: "scatter", mode: "lines", hovertemplate: "%{y:.2f}" });
     return traces;
+  }
+
+  // Fatigue over time, %, with the moment at which it becomes whole.
+  fatigueCourse({ fatigue, fails }) {
+    const [x, y] = [[...this.times], Array.from(fatigue, (share) => 100 * share)];
+    const after = fails === null ? -1 : x.findIndex((time) => time > fails);
+    if (after > 0 && x[after - 1] < fails) {
+      x.splice(after, 0, fails);
+      y.splice(after, 0, 100);
+    }
+    return { x, y };
   }
 
   // The torques of the present frame, and the span that muscles hold.

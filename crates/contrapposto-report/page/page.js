@@ -1,7 +1,8 @@
 // Ties the page together: one frame, one joint, one measure; everything shown follows from these three.
 const HARDEST_GROUPS = 8, LONGEST_PLAY = 12, MOST_LOADS = 3; // rows; s; named in the key
 const MOST_REASONS = 4, MOST_ENTRIES = 6; // shown before the rest is folded
-const NARROW = matchMedia("(max-width: 52rem)"), SMALLEST_BODY = 300, LARGEST_BODY = 680; // px
+const NARROW = matchMedia("(max-width: 52rem)"), TOUCHED = matchMedia("(pointer: coarse)").matches;
+const SMALLEST_BODY = 300, LARGEST_BODY = 680; // px
 const RESTING = 0.005, TIRED = (report.levels || [0, 0.3])[1]; // load; fatigue
 const LAST_FRAME = Math.max(0, report.frames - 1), TIMES = report.times || [], END = TIMES[LAST_FRAME] || 0;
 const MOVES = TIMES.length > 1, SEVERAL = LAST_FRAME > 0;
@@ -34,14 +35,14 @@ function press(buttons, isPressed) {
 // --- Numbers in words.
 
 function clock(t) {
-  if (END < 300) return `${t.toFixed(END < 20 ? 2 : 1)} s`;
+  if (END < 300 || t < 100) return `${t.toFixed(END < 20 ? 2 : 1)} s`;
   return `${Math.floor(t / 60)} min ${String(Math.floor(t % 60)).padStart(2, "0")} s`;
 }
 function frameName(frame) {
   return report.names ? report.names[frame] : clock(TIMES[frame] || 0);
 }
 function percent(share) {
-  return `${(100 * share).toFixed(share < 0.0995 ? 1 : 0)}\u00a0%`;
+  return share > 0 && share < 0.005 ? "<\u00a01\u00a0%" : `${(100 * share).toFixed(0)}\u00a0%`;
 }
 function signed(value) {
   return `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(Math.abs(value) < 9.95 ? 2 : 1)}`;
@@ -101,7 +102,8 @@ function hideUnknown() {
   document.documentElement.toggleAttribute("data-still", !MOVES);
   if (!TIRES) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
   const postureKeys = SEVERAL ? "Arrow keys go from posture to posture. " : "";
-  const keys = MOVES ? "Space plays. Arrow keys step (with Shift by ten), Home and End jump. " : postureKeys;
+  if (TOUCHED) find("handling").textContent = "One finger turns, two magnify, a tap on a limb chooses its joint.";
+  const keys = TOUCHED ? "" : MOVES ? "Space plays. Arrow keys step (with Shift by ten), Home and End jump. " : postureKeys;
   find("keys").textContent = keys;
 }
 
@@ -155,20 +157,14 @@ function balanceHint(joint) {
 
 class Page {
   constructor() {
-    [this.frame, this.joint, this.measure, this.playing, this.wanted] = [0, report.main, measures.load, null, null];
+    [this.frame, this.joint, this.measure, this.playing, this.wanted, this.body] = [0, report.main, measures.load, null, null, null];
     fillHeader();
     fillChooser();
     hideUnknown();
     this.fillList();
     fillTable();
     this.fillPostures();
-    this.body = Body.on(find("body"), (view) => {
-      press("[data-view]", (button) => button.dataset.view === view);
-      this.paintBody();
-    }, (segment) => this.chooseLimb(segment));
-    find("handling").hidden = !this.body;
     for (const fold of document.querySelectorAll(".fold")) fold.open = !NARROW.matches;
-    if (!this.body) find("no-body").hidden = false;
     this.charts = new Charts((time) => this.showFrame(frameAt(time)));
     this.listen();
     this.listenToMedia();
@@ -178,7 +174,8 @@ class Page {
     const more = find("more-decisions").querySelector("ol");
     find("list-heading").textContent = report.list.heading;
     for (const entry of report.list.entries) {
-      const time = MOVES || report.names ? [make("time", frameName(entry.frame))] : [];
+      const named = entry.time === null ? frameName(entry.frame) : clock(entry.time);
+      const time = MOVES || report.names ? [make("time", named)] : [];
       const button = makeButton(...time, make("span", entry.text)), item = make("li");
       button.addEventListener("click", () => {
         if (entry.joint !== null) this.chooseJoint(entry.joint);
@@ -200,6 +197,17 @@ class Page {
     });
   }
 
+  // Makes and paints the body, which takes long where no graphics card helps.
+  showBody() {
+    this.body = Body.on(find("body"), (view) => {
+      press("[data-view]", (button) => button.dataset.view === view);
+      this.paintBody();
+    }, (segment) => this.chooseLimb(segment));
+    find("handling").hidden = !this.body;
+    find("no-body").hidden = Boolean(this.body);
+    this.paintBody();
+  }
+
   paintBody() {
     if (this.body) this.body.draw(this.frame, this.measure);
   }
@@ -215,7 +223,8 @@ class Page {
     this.charts.drawFrame(this.frame);
     this.describeJoint();
     this.listGroups(name);
-    const current = report.list.entries.findLastIndex((entry) => entry.frame <= this.frame);
+    const latest = Math.max(...report.list.entries.map((entry) => entry.frame).filter((of) => of <= this.frame));
+    const current = report.list.entries.findIndex((entry) => entry.frame === latest);
     document.querySelectorAll("#list button").forEach((b, i) => b.classList.toggle("current", i === current));
   }
 
@@ -399,13 +408,13 @@ class Page {
     find("by-load").hidden = !hasLoads;
     this.chooseMeasure(hasLoads ? "load" : "passive");
     this.chooseJoint(this.joint);
-    this.showFrame(report.names ? 0 : LAST_FRAME);
+    this.showFrame(report.open);
     this.fitBody();
   }
 }
 
-// Opens the page: first words and body, then, when these are painted, plotly.js and the charts. The times of both steps stand as
-// `data-drawn` and `data-ready` on the root element.
+// Opens the page: first the words, when these are painted plotly.js and the charts, at last the body. The times at which charts and
+// body are drawn stand as `data-charted` and `data-ready` on the root element.
 async function openPage() {
   const painted = new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
   const parsed = new Promise((done) => addEventListener("DOMContentLoaded", done));
@@ -413,11 +422,13 @@ async function openPage() {
   const page = new Page();
   page.open();
   await painted;
-  mark("drawn");
   await parsed;
   document.head.append(make("script", find("plotly").textContent));
   find("plotly").remove();
   await page.chooseJoint(page.joint);
+  mark("charted");
+  await new Promise((done) => setTimeout(done));
+  page.showBody();
   mark("ready");
 }
 openPage();

@@ -12,6 +12,8 @@ const TURN: f64 = 2e-4;
 const DEGREES: f64 = 0.02;
 const TORQUE: f64 = 0.01;
 const SHARE: f64 = 1e-3;
+/// Of loads: small enough that a share rounds to the same percentage as before.
+const LOAD: f64 = 1e-5;
 const NEWTONS: f64 = 0.5;
 /// Endurance times from this on, s, count as unlimited.
 const UNLIMITED: f64 = 1e5;
@@ -32,6 +34,7 @@ pub(crate) fn data(report: &Report) -> String {
         "frames": n,
         "times": times,
         "names": names,
+        "open": report.open.min(n.saturating_sub(1)),
         "segments": report.segments.iter().map(|s| segment(s, n)).collect::<Value>(),
         "joints": report.joints.iter().map(|j| joint(j, n)).collect::<Value>(),
         "main": report.main,
@@ -88,7 +91,7 @@ fn joint(joint: &Joint, n: usize) -> Value {
         "angle": list(&joint.angle, angle),
         "external": list(&joint.external, TORQUE),
         "passive": list(&joint.passive, TORQUE),
-        "load": list(&joint.load, SHARE),
+        "load": list(&joint.load, LOAD),
         "hazard": known(&joint.hazard, || list(&joint.hazard.iter().map(|is| f64::from(u8::from(*is))).collect::<Vec<_>>(), 1.0)),
         "balance": joint.balance.iter().map(|b| balance(b, angle)).collect::<Value>(),
     })
@@ -100,6 +103,7 @@ fn group(group: &Group, n: usize) -> Value {
         "label": group.label,
         "fatigue": known(&group.fatigue, || column(group.fatigue.iter().copied(), n, SHARE)),
         "left": column(group.left.iter().map(left), n, 1.0),
+        "fails": group.fails.map(|seconds| short(&[seconds], SECONDS)[0].clone()),
     })
 }
 
@@ -138,7 +142,8 @@ fn places(places: &[[f64; 7]], n: usize) -> Value {
 }
 
 fn entry(entry: &Entry) -> Value {
-    json!({ "frame": entry.frame, "joint": entry.joint, "text": entry.text })
+    let time = entry.time.map(|seconds| short(&[seconds], SECONDS)[0].clone());
+    json!({ "frame": entry.frame, "time": time, "joint": entry.joint, "text": entry.text })
 }
 
 fn points(points: &[[f64; 3]]) -> Value {

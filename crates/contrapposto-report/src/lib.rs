@@ -31,6 +31,8 @@ pub struct Report {
     pub figures: Vec<Figure>,
     /// Meaning of the frames.
     pub moments: Moments,
+    /// Number of the frame to show first.
+    pub open: usize,
     /// Segments of the body.
     pub segments: Vec<Segment>,
     /// Coordinates of the body that carry a torque.
@@ -162,6 +164,8 @@ pub struct Group {
     pub fatigue: Vec<f64>,
     /// Time for which the present load can still be held, s, in every frame; may be infinite.
     pub left: Vec<f64>,
+    /// When its fatigue first reaches 1, s, which may be between two frames.
+    pub fails: Option<f64>,
 }
 
 /// One support of the body over time.
@@ -215,6 +219,8 @@ pub struct List {
 pub struct Entry {
     /// Number of the frame.
     pub frame: usize,
+    /// The time that it names, s; `None` for that of the frame.
+    pub time: Option<f64>,
     /// Index in [`Report::joints`]; `None` for a text about no joint.
     pub joint: Option<usize>,
     /// In plain words.

@@ -19,14 +19,22 @@ use support::chromium::Chromium;
 const HOSTILE: &str = "</script><script>document.title='owned'</script><img src=x onerror=\"document.title='owned'\">\
                        <a href=\"https://example.invalid/\">x</a>&amp;\u{2028}{{script}}";
 
+fn entry(frame: usize, joint: usize, text: &str) -> Entry {
+    Entry { frame, joint: Some(joint), text: text.to_owned(), ..Entry::default() }
+}
+
 /// A bar that swings about its upper end, carried at its foot.
 fn report() -> Report {
     let times: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.2).collect();
     let swing = |t: &f64| 0.08 * t;
     let place = |t: &f64| [0.0, 1.0, 0.0, (0.5 * swing(t)).cos(), 0.0, 0.0, (0.5 * swing(t)).sin()];
     let over = |f: &dyn Fn(&f64) -> f64| times.iter().map(f).collect::<Vec<f64>>();
-    let group =
-        |label: &str| Group { label: label.to_owned(), fatigue: over(&|t| 0.05 * t), left: over(&|t| 100.0 - t) };
+    let group = |label: &str| Group {
+        label: label.to_owned(),
+        fatigue: over(&|t| 0.05 * t),
+        left: over(&|t| 100.0 - t),
+        fails: None,
+    };
     let joint = |name: &str, size: f64| Joint {
         name: name.to_owned(),
         label: name.to_owned(),
@@ -39,7 +47,6 @@ fn report() -> Report {
         balance: vec![Balance { angle: vec![-10.0, 90.0], minus_passive: vec![-1.0, 9.0], external: vec![2.0, 3.0] }],
         ..Joint::default()
     };
-    let entry = |frame, joint, text: &str| Entry { frame, joint: Some(joint), text: text.to_owned() };
     Report {
         title: HOSTILE.to_owned(),
         body: HOSTILE.to_owned(),
@@ -55,6 +62,7 @@ fn report() -> Report {
         }],
         joints: vec![joint(HOSTILE, 1.0), joint("second", 2.0)],
         main: 0,
+        open: 49,
         levels: Some([0.6, 0.3]),
         supports: vec![Support {
             label: HOSTILE.to_owned(),
@@ -87,6 +95,7 @@ fn postures(count: usize) -> Report {
     let mut report = report();
     report.moments = Moments::Postures((1..=count).map(|number| format!("{number} {HOSTILE}")).collect());
     report.levels = None;
+    report.open = 0;
     for joint in &mut report.joints {
         let range = joint.balance[0].clone();
         joint.balance = (0..count)
@@ -100,8 +109,7 @@ fn postures(count: usize) -> Report {
     for segment in &mut report.segments {
         segment.places = segment.places.iter().step_by(20).copied().collect();
     }
-    report.list.entries =
-        (0..count).map(|frame| Entry { frame, joint: Some(frame % 2), text: HOSTILE.to_owned() }).collect();
+    report.list.entries = (0..count).map(|frame| entry(frame, frame % 2, HOSTILE)).collect();
     report.targets = vec![[0.2, 0.5, 0.1]];
     report
 }
@@ -325,7 +333,7 @@ fn a_long_report_is_five_screens_of_a_phone_and_two_pages_of_paper() {
     report.headline = "Can be held 19.8 min, then right shoulder flexion fails first.".to_owned();
     report.reasons = vec![text(); 8];
     report.figures = vec![Figure { label: "Load".to_owned(), value: "5 %".to_owned(), note: "a note".to_owned() }; 6];
-    report.list.entries = (0..120).map(|i| Entry { frame: i % 50, joint: Some(0), text: text() }).collect();
+    report.list.entries = (0..120).map(|i| entry(i % 50, 0, &text())).collect();
     report.list.heading = "Decisions".to_owned();
     report.table.heading = "Table".to_owned();
     report.table.rows = vec![vec!["a cell".to_owned(); 6]; 10];

@@ -165,7 +165,7 @@ impl<'a> Scene<'a> {
                 group.fatigue.time_left(fatigue(frame), load)
             };
             let label = words::group(&group.name, &coordinate.name);
-            Some(Group { label, fatigue: if tires { over(&fatigue) } else { vec![] }, left: over(&left) })
+            Some(Group { label, fatigue: if tires { over(&fatigue) } else { vec![] }, left: over(&left), fails: None })
         };
         Ok(Joint {
             name: coordinate.name.clone(),

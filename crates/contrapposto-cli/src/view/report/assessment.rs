@@ -7,7 +7,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::simulation::{Contact, Standing};
 use contrapposto::statics::{Load, LoadKind};
-use contrapposto::verdict::Verdict;
+use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::tissue::SourcedModel;
 use contrapposto_report::{Entry, Figure, List, Moments, Table};
 use nalgebra::Vector3;
@@ -29,19 +29,28 @@ pub(crate) struct AssessedFrames<'a> {
     model: &'a Model,
     instants: usize,
     frames: Vec<Frame>,
+    /// The greatest relative load so far, and its place in `frames` where only the load is the reason for it.
+    hardest: (f64, Option<usize>),
     /// Segments that measured forces act on.
     pushed: Vec<usize>,
 }
 
 impl<'a> AssessedFrames<'a> {
     pub(crate) fn new(opened: &'a SourcedModel, instants: usize) -> Self {
-        Self { opened, model: &opened.model, instants, frames: vec![], pushed: vec![] }
+        Self { opened, model: &opened.model, instants, frames: vec![], hardest: (0.0, None), pushed: vec![] }
     }
 
-    /// Takes in an instant, if it is one of those that are shown. `measured` adds the measured forces of the ground.
+    /// Takes in an instant, if it is one of those that are shown or has the greatest load so far. `measured` adds the measured forces of the ground.
     pub(crate) fn record(&mut self, instant: &Instant, measured: impl FnOnce(&mut Vec<Load>)) {
         let stride = self.instants.div_ceil(MOST_FRAMES).max(1);
-        if !instant.index.is_multiple_of(stride) && instant.index + 1 != self.instants {
+        let chosen = instant.index.is_multiple_of(stride) || instant.index + 1 == self.instants;
+        let load = instant.load.iter().flatten().copied().fold(0.0, f64::max);
+        if load > self.hardest.0 {
+            if let (_, Some(before)) = self.hardest {
+                self.frames.remove(before);
+            }
+            self.hardest = (load, (!chosen).then_some(self.frames.len()));
+        } else if !chosen {
             return;
         }
         let mut frame = Frame::of_instant(self.model, instant);
@@ -111,7 +120,16 @@ pub(crate) fn report_of_assessment(
     let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, stage) };
     scene.carried.extend(&assessed_frames.pushed);
     let times = frames.iter().map(|frame| frame.time).collect();
-    let mut report = scene.report(Moments::Times(times), working.first().map_or(0, |group| group.coordinate))?;
+    let main = verdict.who.map(|group| group.coordinate).or(working.first().map(|group| group.coordinate));
+    let mut report = scene.report(Moments::Times(times), main.unwrap_or(0))?;
+    for group in &found.groups {
+        let place = shown.iter().position(|&i| i == group.coordinate);
+        let shown_group = place.and_then(|place| report.joints[place].groups.as_mut());
+        if let Some(groups) = shown_group {
+            groups[group.side.index()].fails = group.exhausted_at;
+        }
+    }
+    report.open = assessed_frames.nearest(moment(found, verdict));
     let span = last.time - first.time;
     report.headline.clone_from(&verdict.sentence);
     report.reasons = warnings.iter().map(|warning| sentence(warning) + ".").collect();
@@ -129,6 +147,17 @@ pub(crate) fn report_of_assessment(
     Ok(contrapposto_report::write(&report))
 }
 
+/// The time that the verdict is about, s.
+fn moment(found: &Assessment, verdict: &Verdict) -> f64 {
+    let hardest = found.groups.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value));
+    let time = match verdict.kind {
+        VerdictKind::HeldUntil => verdict.seconds,
+        VerdictKind::CannotStand => found.missing.map(|(_, time)| time),
+        _ => hardest.map(|group| group.peak_load.time),
+    };
+    time.unwrap_or_default()
+}
+
 fn figures(
     model: &Model,
     found: &Assessment,
@@ -141,7 +170,8 @@ fn figures(
     let earliest = failed.first().map_or_else(String::new, |time| format!("the first at {time:.1} s"));
     let mut figures =
         vec![figure("Muscle groups that fail", format!("{} of {}", failed.len(), working.len()), earliest)];
-    if let Some(tired) = working.iter().max_by(|a, b| a.peak_fatigue.value.total_cmp(&b.peak_fatigue.value)) {
+    // Of equals the first to fail.
+    if let Some(tired) = working.iter().rev().max_by(|a, b| a.peak_fatigue.value.total_cmp(&b.peak_fatigue.value)) {
         figures.push(figure("Greatest fatigue", percent(tired.peak_fatigue.value), name(model, tired)));
     }
     if let Some(hard) = working.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value)) {
@@ -157,10 +187,10 @@ fn table(opened: &SourcedModel, working: &[&GroupAssessment]) -> Table {
         vec![
             name(&opened.model, group),
             percent(group.peak_load.value),
-            format!("{:.2} s", group.peak_load.time),
+            format!("{:.2}\u{a0}s", group.peak_load.time),
             StrengthAtText::new(opened, group).map(|strength| strength.words()).unwrap_or_default(),
             percent(group.fatigue),
-            group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at {time:.1} s")),
+            group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at\u{a0}{time:.1}\u{a0}s")),
         ]
     };
     Table {
@@ -172,15 +202,16 @@ fn table(opened: &SourcedModel, working: &[&GroupAssessment]) -> Table {
     }
 }
 
-/// The times at which groups fail, and relief at their peaks.
+/// The times at which groups fail, then relief at their peaks.
 fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], shown: &[usize]) -> Vec<Entry> {
     let model = assessed_frames.model;
-    let mut entries = vec![];
+    let (mut failures, mut reliefs) = (vec![], vec![]);
     for found in working.iter().take(MOST_ROWS) {
         let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
         if let Some(time) = found.exhausted_at {
             let text = format!("{} fails: it cannot give the torque that is needed.", name(model, found));
-            entries.push(Entry { frame: assessed_frames.nearest(time), joint: Some(joint), text });
+            let frame = assessed_frames.nearest(time);
+            failures.push(Entry { frame, time: Some(time), joint: Some(joint), text });
         }
         if model.coordinates()[found.coordinate].kind != CoordinateKind::Rotation {
             continue;
@@ -188,16 +219,20 @@ fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], s
         for peak in found.proposals.chunk_by(|a, b| a.at == b.at) {
             let moves = |proposal: &Proposal| !matches!(proposal.decision.outcome, Outcome::Stay | Outcome::None);
             if peak.iter().any(moves) {
-                entries.push(Entry {
+                reliefs.push(Entry {
                     frame: assessed_frames.nearest(peak[0].time),
+                    time: Some(peak[0].time),
                     joint: Some(joint),
                     text: relief(model, found, peak),
                 });
             }
         }
     }
-    entries.sort_by_key(|entry| entry.frame);
-    entries
+    for part in [&mut failures, &mut reliefs] {
+        part.sort_by(|a, b| a.time.unwrap_or_default().total_cmp(&b.time.unwrap_or_default()));
+    }
+    failures.extend(reliefs);
+    failures
 }
 
 /// The proposals of both strategies at a peak; one where they agree.

@@ -44,6 +44,7 @@ pub(crate) fn report_of_comparison(postures: &[ComparedPosture], text: &CompareT
         .collect();
     let entry = |(frame, compared): (usize, &ComparedPosture)| Entry {
         frame,
+        time: None,
         joint: Some(report.main),
         text: format!("{}: {} {}", compared.letter, compared.title, compared.verdict.sentence),
     };

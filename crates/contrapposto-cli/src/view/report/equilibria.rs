@@ -55,6 +55,7 @@ pub(crate) fn report_of_equilibria(
     let supports = carriers(&scene);
     let entry = |(frame, posture): (usize, &RelaxedPosture)| Entry {
         frame,
+        time: None,
         joint: shown.iter().position(|&i| i == main_coordinate_of(posture)),
         text: description(model, posture, &frames[frame], &supports),
     };

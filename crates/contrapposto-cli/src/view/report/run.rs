@@ -71,7 +71,9 @@ fn entries(scenario: &Scenario, summary: &Summary, excerpt: &RunExcerpt, shown: 
     });
     let mut told: Vec<(f64, Option<usize>, String)> = decided.chain(changed).chain(stepped).collect();
     told.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let entry = |(time, joint, text): (f64, Option<usize>, String)| Some(Entry { frame: frame_at(time)?, joint, text });
+    let entry = |(time, joint, text): (f64, Option<usize>, String)| {
+        Some(Entry { frame: frame_at(time)?, time: Some(time), joint, text })
+    };
     told.into_iter().filter_map(entry).collect()
 }
 
