@@ -10,7 +10,7 @@ use super::sets::Scene;
 use crate::model_ir::MuscleTally;
 use crate::xml::Node;
 
-const WRAP_SHAPES: &str = "WrapCylinder";
+const WRAP_SHAPES: &str = "WrapCylinder, WrapSphere";
 
 /// The surfaces, and the index of each by its name.
 #[derive(Default)]
@@ -60,6 +60,7 @@ fn object<'a>(reader: &Reader<'a>, node: Node<'a>, segment: Option<usize>) -> Re
     };
     let shape = match node.name() {
         "WrapCylinder" => WrapShape::Cylinder { radius: length("radius", 1.0)?, length: length("length", 1.0)? },
+        "WrapSphere" => WrapShape::Sphere { radius: length("radius", 0.05)? },
         other => return Err(OsimProblem::unsupported(node.place(), other, WRAP_SHAPES)),
     };
     Ok(WrapObject {

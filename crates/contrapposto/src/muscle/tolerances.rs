@@ -4,6 +4,9 @@
 
 /// Angle short of a full turn from which a line over a cylinder turns by nothing, rad: rounding of a line that only just touches.
 pub(super) const FULL_TURN: f64 = 1e-9;
+/// Sine of the angle between a line and the way from an end to the center of a sphere below which the line passes through the center;
+/// OpenSim's, which does not wrap such a line.
+pub(super) const THROUGH_CENTER: f64 = 1e-5;
 /// Rounds in which several surfaces of a path move each other's lines, by the geodesic rule.
 pub(super) const GEODESIC_ROUNDS: usize = 200;
 /// Change of length between two rounds below which a path over several surfaces is at rest by the geodesic rule, m.

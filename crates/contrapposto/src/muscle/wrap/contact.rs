@@ -24,6 +24,15 @@ impl Quadrant {
     }
 }
 
+/// Whether the straight line between two points enters the unit sphere and leaves it.
+pub(super) fn passes_through(from: &Vector3<f64>, to: &Vector3<f64>) -> bool {
+    let straight = to - from;
+    let (square, half) = (straight.norm_squared(), from.dot(&straight));
+    let root = half.mul_add(half, -square * (from.norm_squared() - 1.0)).sqrt();
+    let inside = |share: f64| share > 0.0 && share < 1.0;
+    inside((-half - root) / square) && inside((root - half) / square)
+}
+
 /// Two points on a surface and the line between them, in the surface's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::muscle) struct Contact {

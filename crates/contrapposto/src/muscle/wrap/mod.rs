@@ -3,6 +3,7 @@
 mod contact;
 mod cylinder;
 mod cylinder_opensim;
+mod sphere;
 
 pub use contact::Quadrant;
 pub(super) use contact::{Contact, Wrapping};
@@ -39,6 +40,11 @@ pub enum WrapShape {
         /// Its length.
         length: f64,
     },
+    /// A sphere about the origin.
+    Sphere {
+        /// Its radius.
+        radius: f64,
+    },
 }
 
 /// Circumstances of a part of a path.
@@ -59,6 +65,7 @@ impl WrapObject {
             (WrapShape::Cylinder { radius, length }, PathRule::OpenSim) => {
                 cylinder_opensim::wrap(*radius, *length, self.quadrant, from, to, manner.single)
             }
+            (WrapShape::Sphere { radius }, rule) => sphere::wrap(*radius, self.quadrant, from, to, rule),
         }
     }
 }
