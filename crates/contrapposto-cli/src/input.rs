@@ -2,7 +2,8 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use crate::fail::Fail;
 
@@ -10,6 +11,15 @@ use crate::fail::Fail;
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 /// The first bytes of a file that zip made.
 const ZIP: &[u8] = b"PK\x03\x04";
+
+/// Every file that was read.
+static READ: Mutex<Vec<PathBuf>> = Mutex::new(vec![]);
+
+/// Whether this program has read the file.
+pub(crate) fn was_read(path: &Path) -> bool {
+    let Ok(path) = path.canonicalize() else { return false };
+    READ.lock().unwrap_or_else(PoisonError::into_inner).contains(&path)
+}
 
 /// Reads a regular file (or standard input for `-`) of `most` bytes at most.
 pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Fail> {
@@ -22,6 +32,9 @@ pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Fail> {
         let kind = std::fs::metadata(path).map_err(|error| refuse(error.to_string()))?;
         if !kind.is_file() {
             return Err(refuse("is not a regular file".into()));
+        }
+        if let Ok(place) = path.canonicalize() {
+            READ.lock().unwrap_or_else(PoisonError::into_inner).push(place);
         }
         if kind.len() <= most {
             let file = File::open(path).map_err(|error| refuse(error.to_string()))?;

@@ -7,6 +7,7 @@ mod args;
 mod commands;
 mod fail;
 mod input;
+mod interruption;
 mod model_file;
 mod motion_file;
 mod output;
@@ -25,6 +26,7 @@ use commands::{
 use output::Notes;
 
 fn main() -> ExitCode {
+    interruption::tell_file_size_limit();
     let args = Args::parse();
     output::show_notes(match (args.verbose, args.quiet) {
         (true, _) => Notes::All,

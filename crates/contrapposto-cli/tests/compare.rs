@@ -7,7 +7,7 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use support::{ARM, Run, contents, contrapposto, scenarios};
+use support::{ARM, Run, contents, contrapposto, results, scenarios};
 
 fn shelf() -> PathBuf {
     scenarios().join("poses/reach-shelf.toml")
@@ -37,7 +37,7 @@ fn what_is_compared_is_what_simulate_and_pose_find() {
     let out = folder.path().join("out");
     let run = compare(&[&relaxed, &shelf()], &out, &["--json"]);
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
-    let written = contents(&out);
+    let written = results(&out);
     let names: Vec<&str> = written.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["compare.json", "compare.png", "compare.svg", "report.html"]);
     assert_eq!(run.stdout.as_bytes(), written[0].1);

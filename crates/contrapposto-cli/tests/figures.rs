@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use contrapposto::passive::PassiveCurve;
 use contrapposto_formats::read_scenario;
 use serde_json::{Value, json};
-use support::{contents, contrapposto};
+use support::{contents, contrapposto, results};
 
 /// Largest difference of an angle from the one on record, deg.
 const NEAR_DEG: f64 = 0.3;
@@ -93,7 +93,7 @@ fn pictures_are_whole() {
     let all = figures(out.path(), &[]);
     let named: Vec<&str> =
         all.iter().flat_map(|figure| figure["files"].as_array().unwrap()).map(|name| name.as_str().unwrap()).collect();
-    let files = contents(out.path());
+    let files = results(out.path());
     assert_eq!(files.len(), 18, "nine figures, two files each, nothing else");
     for (name, bytes) in &files {
         assert!(named.contains(&name.as_str()), "{name}");
@@ -121,7 +121,7 @@ fn only_some() {
     let some = figures(out.path(), &["--only", "8,7"]);
     let numbers: Vec<&Value> = some.iter().map(|figure| &figure["figure"]).collect();
     assert_eq!(json!(numbers), json!([7, 8]));
-    let names: Vec<String> = contents(out.path()).into_iter().map(|(name, _)| name).collect();
+    let names: Vec<String> = results(out.path()).into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["figure-07.png", "figure-07.svg", "figure-08.png", "figure-08.svg"]);
 }
 

@@ -1,5 +1,4 @@
-//! `contrapposto simulate` and `demo`: every scenario of the repository runs to whole, finite, balanced and repeatable files;
-//! whatever happens to disk, pipe or process, a named file is whole or not there.
+//! `contrapposto simulate` and `demo`: every scenario of the repository runs to whole, finite, balanced and repeatable files.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -8,10 +7,10 @@ mod support;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde_json::Value;
-use support::{Run, contents, contrapposto, scenarios};
+use support::{Run, assert_numbers, contents, contrapposto, results, scenarios};
 
 /// What a run of one joint writes, in order of names.
 const FILES: [&str; 14] = [
@@ -200,21 +199,6 @@ fn range_deg(name: &str) -> (f64, f64) {
     }
 }
 
-/// What may be unknown, or without a limit.
-const MAY_BE_NULL: [&str; 8] =
-    ["exhausted_s", "failed_first", "last_outcome", "load", "minutes", "minutes_range", "name", "who"];
-
-/// Every leaf that is no word, yes or no is a number that is finite; only what may be unknown is null.
-fn assert_numbers(value: &Value, key: &str) {
-    match value {
-        Value::Number(number) => assert!(number.as_f64().unwrap().is_finite(), "{key}"),
-        Value::Null => assert!(MAY_BE_NULL.contains(&key), "{key} is null"),
-        Value::Array(list) => list.iter().for_each(|value| assert_numbers(value, key)),
-        Value::Object(map) => map.iter().for_each(|(key, value)| assert_numbers(value, key)),
-        _ => {}
-    }
-}
-
 /// Nothing is left on the root of a body on its supports: 1e-8 of the lightest one's weight, and of that times 1 m.
 fn assert_root_is_held(table: &Table, path: &Path) {
     for slide in ["pelvis_tx", "pelvis_ty", "pelvis_tz"] {
@@ -236,7 +220,7 @@ fn every_scenario_runs() {
         let run = simulate_shortened(&path, folder.path());
         let silent = run.stderr.lines().all(|line| line.starts_with("note: "));
         assert!(run.code == 0 && silent, "{}: {}", path.display(), run.stderr);
-        let files = contents(folder.path());
+        let files = results(folder.path());
         let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
         let expected = if names.contains(&"postures.svg") { &FILES_OF_A_BODY[..] } else { &FILES };
         assert_eq!(names, expected, "{}", path.display());
@@ -496,7 +480,7 @@ fn a_reader_that_leaves_is_no_failure() {
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         assert!(output.stderr.is_empty());
-        assert_eq!(contents(folder.path()).len(), FILES.len(), "the files are written all the same");
+        assert_eq!(results(folder.path()).len(), FILES.len(), "the files are written all the same");
     }
     for arguments in [&["schema"][..], &["passive", "elbow_flex_r", "--json"], &["--help"]] {
         let mut child = contrapposto(arguments).spawn();
@@ -525,77 +509,6 @@ fn a_full_disk_under_standard_output_is_a_failure() {
         assert_eq!(run.code, 1, "{arguments:?}");
         assert!(run.stderr.contains("standard output: No space left on device"), "{arguments:?}: {}", run.stderr);
     }
-}
-
-/// A limit on the size of files stands for a full disk: whatever fits, no named file is cut off.
-#[cfg(unix)]
-#[test]
-fn a_full_disk_leaves_old_results_alone() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    let demo = |blocks: Option<u32>| {
-        let limit = blocks.map_or(String::new(), |blocks| format!("trap '' XFSZ; ulimit -f {blocks}; "));
-        let script =
-            format!("{limit}exec '{}' demo --json --out '{}'", env!("CARGO_BIN_EXE_contrapposto"), out.display());
-        Command::new("sh").args(["-c", &script]).output().unwrap()
-    };
-    assert_eq!(demo(None).status.code(), Some(0));
-    let whole = contents(&out);
-    for blocks in [0, 1, 8, 30, 60, 120] {
-        let output = demo(Some(blocks));
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{blocks} blocks: {error}");
-        assert!(error.contains("File too large"), "{error}");
-        assert!(contents(&out) == whole, "{blocks} blocks changed something");
-    }
-    std::fs::remove_dir_all(&out).unwrap();
-    assert_eq!(demo(Some(8)).status.code(), Some(1));
-    assert_eq!(contents(&out), vec![], "no file rather than a part of one");
-}
-
-#[test]
-fn an_output_folder_that_is_none_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("file");
-    std::fs::write(&file, "mine").unwrap();
-    for out in [file.clone(), file.join("below")] {
-        for verb in [
-            &["demo", "--figure-8", "--out"][..],
-            &["figures", "--only", "1", "--out"],
-            &["passive", "elbow_flex_r", "--out"],
-        ] {
-            let run = contrapposto(verb).arg(&out).run();
-            assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{}", run.stderr);
-            assert!(run.stderr.contains("--out") && run.stderr.contains(out.to_str().unwrap()), "{}", run.stderr);
-        }
-    }
-    assert_eq!(std::fs::read_to_string(file).unwrap(), "mine");
-    // A folder that bears the name of a result: told, and no other result is lost.
-    let out = folder.path().join("out");
-    std::fs::create_dir_all(out.join("summary.json/inside")).unwrap();
-    let run = contrapposto(["demo", "--figure-8", "--out"]).arg(&out).run();
-    assert_eq!(run.code, 1);
-    assert!(run.stderr.contains("summary.json"), "{}", run.stderr);
-    let stray: Vec<_> = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert!(stray.iter().all(|name| !name.to_string_lossy().starts_with('.')), "{stray:?}");
-}
-
-#[cfg(unix)]
-#[test]
-fn a_folder_that_may_not_be_written_is_told() {
-    use std::os::unix::fs::PermissionsExt;
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o555)).unwrap();
-    if File::create(folder.path().join("probe")).is_ok() {
-        println!("running as root: permissions mean nothing; /proc stands in");
-        let run = contrapposto(["demo", "--figure-8", "--out", "/proc/self"]).run();
-        assert_eq!((run.code, run.stdout.as_str()), (1, ""));
-        assert!(run.stderr.contains("/proc/self/trajectory.csv"), "{}", run.stderr);
-        return;
-    }
-    let run = contrapposto(["demo", "--figure-8", "--out"]).arg(folder.path()).run();
-    assert_eq!((run.code, run.stdout.as_str()), (1, ""));
-    assert!(run.stderr.contains("trajectory.csv") && run.stderr.contains("ermission denied"), "{}", run.stderr);
 }
 
 /// Results are for everybody the user's mask allows, and for nobody else.
@@ -648,53 +561,6 @@ fn no_colour_and_no_progress_where_none_is_wanted() {
     assert!(!plain.contains("\u{1b}[3") && plain.contains("stratgy"), "{plain:?}");
 }
 
-/// Ctrl-C ends a run with whole files marked as partial; going on gives the bytes of an unbroken run.
-#[cfg(unix)]
-#[test]
-fn an_interrupted_run_goes_on_to_the_same_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let scenario = folder.path().join("stand.toml");
-    let text = std::fs::read_to_string(scenarios().join("stand-relaxed.toml")).unwrap();
-    std::fs::write(&scenario, text.replace("duration_s = 120", "duration_s = 1200")).unwrap();
-    let (unbroken, out) = (folder.path().join("unbroken"), folder.path().join("out"));
-    let full = simulate(&scenario, &unbroken, &[]);
-    assert_eq!(full.code, 0, "{}", full.stderr);
-    let mut interrupted = 0;
-    let mut snapshot = vec![];
-    for share in [0.3, 0.2, 0.15, 0.1, 0.05] {
-        let resume = if out.join("snapshot.json").is_file() { vec!["--resume"] } else { vec![] };
-        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).args(resume).spawn();
-        std::thread::sleep(Duration::from_secs_f64(share * full.seconds));
-        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        let output = child.wait_with_output().unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        if output.status.success() {
-            continue; // a quick machine was done before
-        }
-        interrupted += 1;
-        assert_eq!(output.status.code(), Some(1), "{error}");
-        assert!(error.contains("interrupted at") && error.contains("--resume"), "{error}");
-        let summary: Value = serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
-        assert_eq!((&summary["partial"], &summary["stopped"]), (&Value::from(true), &Value::from("interrupted")));
-        assert_numbers(&summary, "");
-        snapshot = std::fs::read(out.join("snapshot.json")).unwrap();
-    }
-    println!("interrupted {interrupted} times");
-    assert!(interrupted > 0);
-    std::fs::write(out.join("snapshot.json"), &snapshot).unwrap();
-    // Not with another scenario, and not with a torn snapshot.
-    let other = folder.path().join("other.toml");
-    std::fs::write(&other, text.replace("duration_s = 120", "duration_s = 46")).unwrap();
-    let refused = simulate(&other, &out, &["--resume"]);
-    assert_eq!(refused.code, 2);
-    assert!(refused.stderr.contains("another scenario"), "{}", refused.stderr);
-    std::fs::write(out.join("snapshot.json"), &snapshot[..snapshot.len() / 2]).unwrap();
-    assert_eq!(simulate(&scenario, &out, &["--resume"]).code, 2);
-    std::fs::write(out.join("snapshot.json"), &snapshot).unwrap();
-    assert_eq!(simulate(&scenario, &out, &["--resume"]).code, 0);
-    assert!(contents(&out) == contents(&unbroken), "a resumed run differs from an unbroken one");
-}
-
 /// Who is pushed over ends the job, and everything says when and why; what came before is there.
 #[test]
 fn a_fall_ends_the_job_and_is_told() {
@@ -722,32 +588,6 @@ fn a_fall_ends_the_job_and_is_told() {
     assert!(run.code == 1 && run.stdout.contains("; B cannot stand.\n"), "{} {}", run.code, run.stdout);
 }
 
-/// However early Ctrl-C comes, whoever hears it shows the start, from which the run goes on.
-#[cfg(unix)]
-#[test]
-fn interrupted_at_once_it_shows_the_start() {
-    let folder = tempfile::tempdir().unwrap();
-    let scenario = scenarios().join("stand-relaxed.toml");
-    let mut heard = 0;
-    for moment in [0.01, 0.03, 0.1, 0.3] {
-        let out = folder.path().join(moment.to_string());
-        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).spawn();
-        std::thread::sleep(Duration::from_secs_f64(moment));
-        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        let output = child.wait_with_output().unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        // Before it listens, the signal ends it as any program; a quick machine was done before.
-        let (None | Some(0)) = output.status.code() else {
-            heard += 1;
-            assert!(output.status.code() == Some(1) && error.contains("interrupted at"), "{error}");
-            assert!(out.join("summary.json").is_file() && out.join("snapshot.json").is_file());
-            continue;
-        };
-    }
-    println!("heard {heard} times");
-    assert!(heard > 0);
-}
-
 /// Ground reaction and motion of a run, given to `torques`, give back its torques and leave nothing at the root.
 #[test]
 fn ground_reaction_and_motion_give_back_the_torques() {
@@ -773,127 +613,6 @@ fn ground_reaction_and_motion_give_back_the_torques() {
     }
     println!("{} frames, worst difference {worst:e} N m", frames.len());
     assert!(worst < 1e-9, "{worst}");
-}
-
-/// How many runs must have been killed: a few, or as many as `CONTRAPPOSTO_KILLS` says. Five hundred of each kind:
-///
-/// ```text
-/// CONTRAPPOSTO_KILLS=500 cargo test -p contrapposto-cli --test simulate kill -- --nocapture
-/// ```
-fn kills() -> u32 {
-    std::env::var("CONTRAPPOSTO_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(12)
-}
-
-/// Starts run after run and kills each at a moment of its own until enough were killed before they were done. `seconds`: what a
-/// whole run takes. `start` gets the number of the run; `look` sees what each left behind, and whether it was done.
-fn killed_over_and_over(
-    mut seconds: f64,
-    start: impl Fn(u32) -> support::Call,
-    mut look: impl FnMut(u32, bool),
-) -> u32 {
-    let (mut killed, mut runs) = (0, 0);
-    while killed < kills() {
-        let mut child = start(runs).spawn();
-        // Golden-ratio steps over a little more than a whole run, most of them near its end, where files appear.
-        let share = (f64::from(runs) * 0.618_034).fract();
-        let moment = if runs.is_multiple_of(3) { share } else { 0.7 + 0.5 * share };
-        std::thread::sleep(Duration::from_secs_f64(seconds * moment));
-        let _ = child.kill();
-        let done = child.wait().unwrap().success();
-        look(runs, done);
-        killed += u32::from(!done);
-        // Machines are busy at times.
-        seconds *= if done { 0.93 } else { 1.03 };
-        runs += 1;
-        assert!(runs < 20 * kills() + 100, "{killed} of {runs} runs were killed in time");
-    }
-    runs
-}
-
-/// Files that have a name.
-fn named(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files = contents(folder);
-    files.retain(|(name, _)| !name.starts_with(".contrapposto-"));
-    files
-}
-
-/// Killed at any moment, a named file is whole: the old one or the new one.
-#[test]
-fn a_kill_leaves_no_half_written_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let one = scenarios().join("figure-08.toml");
-    let two = folder.path().join("other.toml");
-    let text = std::fs::read_to_string(&one).unwrap();
-    std::fs::write(&two, text.replace("elbow_flex_r_deg = 20", "elbow_flex_r_deg = 35")).unwrap();
-    let (whole_one, whole_two) = (folder.path().join("one"), folder.path().join("two"));
-    let full = simulate(&one, &whole_one, &[]).seconds;
-    simulate(&two, &whole_two, &[]);
-    let (whole_one, whole_two) = (contents(&whole_one), contents(&whole_two));
-    assert!(whole_one != whole_two);
-    let out = folder.path().join("out");
-    std::fs::create_dir(&out).unwrap();
-    let mut whole = 0;
-    let start = |run: u32| {
-        let scenario = if run.is_multiple_of(2) { &one } else { &two };
-        contrapposto(["simulate"]).arg(scenario).arg("--out").arg(&out)
-    };
-    let runs = killed_over_and_over(full, start, |run, _| {
-        for (name, bytes) in named(&out) {
-            let at = FILES.iter().position(|file| *file == name).unwrap_or_else(|| panic!("stray {name}"));
-            assert!(bytes == whole_one[at].1 || bytes == whole_two[at].1, "{name} is torn, run {run}");
-            whole += 1;
-        }
-    });
-    println!("{runs} runs, {} killed in time, {whole} named files seen, all whole; a run takes {full:.2} s", kills());
-    // Running again finishes as if nothing had happened.
-    assert_eq!(simulate(&one, &out, &[]).code, 0);
-    assert!(named(&out) == whole_one);
-}
-
-/// Killed at any moment while it goes on from where it was left, a run can be taken up again, to the bytes of an unbroken one.
-#[cfg(unix)]
-#[test]
-fn a_killed_run_is_taken_up_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let scenario = scenarios().join("stand-relaxed.toml");
-    let (unbroken, out) = (folder.path().join("unbroken"), folder.path().join("out"));
-    let full = simulate(&scenario, &unbroken, &[]).seconds;
-    let unbroken = contents(&unbroken);
-    let left = out.join("snapshot.json");
-    for wait in (1..20).cycle().map(|k| 0.05 * f64::from(k) * full).take(100) {
-        let child = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).spawn();
-        std::thread::sleep(Duration::from_secs_f64(wait));
-        let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        let _ = child.wait_with_output().unwrap();
-        // Left on its way, not at its very start.
-        let snapshot = std::fs::read_to_string(&left).unwrap_or_default();
-        if snapshot.contains("\"samples\":") && !snapshot.contains("\"samples\":0") {
-            break;
-        }
-    }
-    let (snapshot, partial) = (std::fs::read(&left).unwrap(), named(&out));
-    let rest = simulate(&scenario, &out, &["--resume"]).seconds;
-    std::fs::write(&left, &snapshot).unwrap();
-    let start = |_| contrapposto(["simulate", "--resume"]).arg(&scenario).arg("--out").arg(&out);
-    let (mut finished, mut taken_up) = (0, 0);
-    let runs = killed_over_and_over(rest, start, |run, done| {
-        for (name, bytes) in named(&out) {
-            let is = |files: &[(String, Vec<u8>)]| files.contains(&(name.clone(), bytes.clone()));
-            assert!(is(&partial) || is(&unbroken), "{name} is torn, run {run}");
-        }
-        if done {
-            finished += 1;
-            assert!(named(&out) == unbroken, "run {run} came to something else");
-        } else {
-            taken_up += 1;
-        }
-        if !left.is_file() {
-            std::fs::write(&left, &snapshot).unwrap();
-        }
-    });
-    println!("{runs} runs, {taken_up} killed in time, {finished} came to the end; one takes {rest:.2} s");
-    assert_eq!(simulate(&scenario, &out, &["--resume"]).code, 0);
-    assert!(named(&out) == unbroken, "a killed run, taken up again, differs from an unbroken one");
 }
 
 #[test]

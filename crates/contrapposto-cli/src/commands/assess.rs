@@ -18,7 +18,7 @@ use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::open;
 use crate::motion_file::{fast_motion, loads_of, note_values_out_of_range, read_motion};
-use crate::output::{Folder, json_text, print, print_note};
+use crate::output::{ResultSet, json_text, print, print_note};
 use crate::view::answer::{answered, first_lines};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
@@ -48,6 +48,8 @@ struct Given {
     settings: AssessSettings,
     /// Reasons to doubt the motion.
     warnings: Vec<String>,
+    /// Where the results go.
+    folder: Option<ResultSet>,
 }
 
 pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
@@ -55,7 +57,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
     let mut opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
-    let Given { motion, held, ground, settings, warnings: doubts } = given(args, &mut opened)?;
+    let Given { motion, held, ground, settings, warnings: doubts, folder } = given(args, &mut opened)?;
     let model = &opened.model;
 
     let mut tables = Tables::new(model, motion.len());
@@ -101,11 +103,11 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
     let text = AssessText::new(&opened, &args.motion, &tables.times, &found, &verdict, warnings, files);
     let json = json_text("assess.json", &text)?;
-    if let (Some(out), Some(page)) = (&args.out, page.transpose()?) {
+    if let (Some(folder), Some(page)) = (folder, page.transpose()?) {
         let fatigue = tables.fatigue()?;
         let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes);
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
-        Folder::open(out)?.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
+        folder.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
     print(&if args.json { json } else { first_lines(&verdict) + &report(&text) })?;
     answered(&verdict)
@@ -134,7 +136,8 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
     let warnings = note_values_out_of_range(opened, &motion, &mut notes);
     warnings.iter().for_each(|warning| print_note("warning", warning));
     notes.iter().for_each(|note| print_note("note", note));
-    Ok(Given { motion, held, ground, settings, warnings })
+    let folder = args.out.as_deref().map(ResultSet::open).transpose()?;
+    Ok(Given { motion, held, ground, settings, warnings, folder })
 }
 
 /// The supports, on horizontal ground.

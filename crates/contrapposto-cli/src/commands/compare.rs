@@ -11,7 +11,7 @@ use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
 use super::pose::verdict;
 use crate::args::CompareArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print};
+use crate::output::{ResultSet, json_text, print};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::answered;
@@ -27,6 +27,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
     if args.scenarios.iter().filter(|path| *path == Path::new("-")).count() > 1 {
         return Err(Fail::Refused("standard input is one file: `-` can stand for one scenario only".to_owned()));
     }
+    let folder = ResultSet::open(&args.out)?;
     let mut postures = vec![];
     for (path, letter) in args.scenarios.iter().zip('A'..) {
         postures.push(carry_out(path, letter)?);
@@ -36,7 +37,6 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
     let json = json_text("compare.json", &text)?;
     let picture = body_figure(&picture(&postures)?);
     let [svg, png] = both("compare", &picture)?;
-    let folder = Folder::open(&args.out)?;
     let page = report_of_comparison(&postures, &text)?;
     let files =
         [("compare.json", json.as_bytes()), ("report.html", page.as_bytes()), (&svg.0, &svg.1), (&png.0, &png.1)];

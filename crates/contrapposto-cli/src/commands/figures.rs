@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use crate::args::{ElbowCurve, FiguresArgs};
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print};
+use crate::output::{ResultSet, json_text, print};
 use crate::view::charts::Sweep;
 use crate::view::text::plain_table;
 use crate::view::text::simulate::{cases, strategy_and_cases};
@@ -133,20 +133,27 @@ pub(crate) fn figures(args: &FiguresArgs) -> Result<(), Fail> {
     if let Some(unknown) = args.only.iter().find(|number| !known.contains(number)) {
         return Err(Fail::Refused(format!("--only {unknown}: there are figures {known:?}")));
     }
-    let folder = Folder::open(&args.out)?;
-    let mut texts = vec![];
+    let folder = ResultSet::open(&args.out)?;
+    let (mut texts, mut files) = (vec![], vec![]);
     let mut table = plain_table();
     table.set_header(["figure", "strategy", "cases", "ends", "kink", "as printed"]);
     for figure in FIGURES.iter().filter(|figure| args.only.is_empty() || args.only.contains(&figure.number)) {
-        texts.push(draw(figure, args.curve, &folder, &mut table)?);
+        texts.push(draw(figure, args.curve, &mut files, &mut table)?);
     }
+    folder.write(&files.iter().map(|(name, bytes)| (name.as_str(), bytes)).collect::<Vec<_>>())?;
     if args.json {
         return print(&json_text("JSON", &texts)?);
     }
     print(&format!("{table}\nD13, D14: docs/deviations.md\npictures in {}\n", args.out.display()))
 }
 
-fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Table) -> Result<FigureText, Fail> {
+/// Carries out the runs of a figure and adds its pictures to `files`.
+fn draw(
+    figure: &Published,
+    curve: ElbowCurve,
+    files: &mut Vec<(String, Vec<u8>)>,
+    table: &mut Table,
+) -> Result<FigureText, Fail> {
     let file_name = format!("scenarios/figure-{:02}.toml", figure.number);
     let mut scenario = read_scenario(&file_name, figure.scenario.as_bytes(), None)?;
     let elbow = elbow(&scenario)?;
@@ -184,7 +191,7 @@ fn draw(figure: &Published, curve: ElbowCurve, folder: &Folder, table: &mut Tabl
     let picture = torque_balance(&panels);
     let names = [format!("figure-{:02}.svg", figure.number), format!("figure-{:02}.png", figure.number)];
     let png = picture.png().map_err(|error| Fail::job(&names[1], error))?;
-    folder.write(&[(&names[0], picture.svg().into_bytes()), (&names[1], png)])?;
+    files.extend(names.iter().cloned().zip([picture.svg().into_bytes(), png]));
     Ok(FigureText { figure: figure.number, runs, zero_torque_deg: zeros, files: names.to_vec() })
 }
 

@@ -9,7 +9,7 @@ use contrapposto_plot::body_figure;
 
 use crate::args::PoseArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print, print_note};
+use crate::output::{ResultSet, json_text, print, print_note};
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::answered;
 use crate::view::held::{Held, held};
@@ -28,6 +28,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     }
     scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
+    let folder = args.out.as_deref().map(ResultSet::open).transpose()?;
     let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
     let (levels, limits) = scenario.levels();
     let mut engine = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options).map_err(refused)?;
@@ -42,7 +43,6 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let verdict = verdict(&scenario, &pose, &held);
     let text = PoseText::new(&scenario, &pose, &verdict, files);
     let json = json_text("pose.json", &text)?;
-    let folder = args.out.as_deref().map(Folder::open).transpose()?;
     if let Some(folder) = &folder {
         write(&scenario, &pose, (&text, &json), &figures, held, folder)?;
     }
@@ -57,7 +57,7 @@ fn write(
     (text, json): (&PoseText, &str),
     figures: &[(String, Vec<u8>)],
     held: Held,
-    folder: &Folder,
+    folder: &ResultSet,
 ) -> Result<(), Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows = [pose.posture.values()];

@@ -1,7 +1,6 @@
 //! `contrapposto relax`: the different postures of least effort under the tasks of a scenario.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
 use contrapposto::joint_torques::active_torque;
@@ -15,7 +14,7 @@ use contrapposto_plot::{BodyFigure, body_figure};
 
 use crate::args::RelaxArgs;
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print, print_note};
+use crate::output::{ResultSet, json_text, print, print_note};
 use crate::progress::spinner;
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::{answered, first_lines, without_posture};
@@ -47,6 +46,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     }
     scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
+    let folder = args.out.as_deref().map(ResultSet::open).transpose()?;
     let search = Search {
         model: &scenario.model,
         start: &scenario.start,
@@ -62,7 +62,6 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let found = match found {
         Ok(found) => found,
         Err(SearchError::CannotStand(missing)) => {
-            let folder = args.out.as_deref().map(Folder::open).transpose()?;
             let (title, body) = (&scenario.title, (&scenario.model, scenario.loads.as_slice()));
             return without_posture("relax.json", title, body, missing, folder.as_ref(), args.json);
         }
@@ -75,8 +74,9 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
     let text = RelaxText::new(&scenario, &found, &verdict, files);
     let json = json_text("relax.json", &text)?;
-    let folder =
-        args.out.as_deref().map(|out| write(&scenario, &found, &verdict, &text, &json, &figures, out)).transpose()?;
+    if let Some(folder) = &folder {
+        write(&scenario, &found, &verdict, (&text, &json), &figures, folder)?;
+    }
     let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
     print(&if args.json {
         json
@@ -102,11 +102,10 @@ fn write(
     scenario: &RelaxScenario,
     found: &Equilibria,
     verdict: &Verdict,
-    text: &RelaxText,
-    json: &str,
+    (text, json): (&RelaxText, &str),
     figures: &[(String, Vec<u8>)],
-    out: &Path,
-) -> Result<Folder, Fail> {
+    folder: &ResultSet,
+) -> Result<(), Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows: Vec<&[f64]> = found.postures.iter().map(|posture| posture.relaxed.posture.values()).collect();
     let times: Vec<f64> = (0..rows.len()).map(|i| i as f64).collect();
@@ -115,12 +114,10 @@ fn write(
     let csv = table(scenario, found);
     let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let folder = Folder::open(out)?;
     let page = report_of_equilibria(scenario, found, verdict)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
-    folder.write(&RELAX_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
-    Ok(folder)
+    folder.write(&RELAX_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())
 }
 
 /// One row a posture and coordinate.

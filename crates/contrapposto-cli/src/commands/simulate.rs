@@ -4,7 +4,6 @@ mod snapshot;
 mod trials;
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
@@ -15,7 +14,8 @@ use self::snapshot::{SNAPSHOT, go_on, save};
 use self::trials::try_changes;
 use crate::args::{DemoArgs, SimulateArgs};
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print, print_note};
+use crate::interruption;
+use crate::output::{ResultSet, json_text, print, print_note};
 use crate::progress::progress_bar;
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::{Answer, answered, without_posture};
@@ -31,9 +31,6 @@ const FIGURE_8: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../
 
 /// A run that takes longer is saved so often, so that a crash of the machine loses little.
 const BETWEEN_SAVES: Duration = Duration::from_secs(20);
-
-/// Someone pressed Ctrl-C.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let ScenarioFile { name, bytes, model } = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
@@ -71,9 +68,8 @@ struct How {
 /// Runs a scenario; without `out` nothing is recorded, drawn and written.
 fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail> {
     let (RunScenario { scenario, things, .. }, How { resume, figures, json, suggest }) = (run, how);
-    let folder = out.map(Folder::open).transpose()?;
-    // A second handler is refused, which only happens if there is one already.
-    let _ = ctrlc::set_handler(interrupt);
+    let folder = out.map(ResultSet::open).transpose()?;
+    interruption::watch();
     let failed = |error| Fail::job("simulation", error);
     let resumed =
         folder.as_ref().filter(|_| resume).map(|folder| go_on(scenario, &folder.path(SNAPSHOT))).transpose()?;
@@ -93,7 +89,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     let mut number = run.snapshot().samples;
     let mut saved = (Instant::now(), number);
     // The start is always shown.
-    while number == 0 || !INTERRUPTED.load(Ordering::Relaxed) {
+    while number == 0 || !interruption::is_requested() {
         let Some(sample) = run.next_sample().map_err(failed)? else { break };
         if let Some(files) = &mut files {
             files.recording.record(number, &sample);
@@ -112,7 +108,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     let mut answer = Answer::of_run(scenario, &summary);
     if suggest && summary.reason != StopReason::Interrupted {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        try_changes(&mut answer, scenario, &summary, threads, || !INTERRUPTED.load(Ordering::Relaxed));
+        try_changes(&mut answer, scenario, &summary, threads, || !interruption::is_requested());
     }
     let text = match &files {
         Some(files) => files.write((scenario, things), (&run, &summary), &answer, figures)?,
@@ -139,17 +135,9 @@ fn summary_json(scenario: &Scenario, summary: &Summary, answer: &Answer, files: 
     json_text("summary.json", &SummaryText::new(scenario, summary, &answer.verdict, &answer.helping, files))
 }
 
-/// The first Ctrl-C ends the run as soon as a search that is under way is over; the second one ends the program.
-fn interrupt() {
-    if INTERRUPTED.swap(true, Ordering::Relaxed) {
-        std::process::exit(1);
-    }
-    print_note("note", "interrupted: the results so far are being written; Ctrl-C again leaves without them");
-}
-
 /// The folder of a run, and all that its files show.
 struct Files {
-    folder: Folder,
+    folder: ResultSet,
     recording: Recording,
 }
 
@@ -190,10 +178,13 @@ impl Files {
         let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
         let json = summary_json(scenario, summary, answer, files)?;
         contents.push(("summary.json", json.clone().into_bytes()));
-        self.folder.write(&contents)?;
-        match summary.reason == StopReason::Interrupted {
-            true => save(scenario, run, recording, &self.folder)?,
-            false => self.folder.remove(SNAPSHOT)?,
+        // Whenever the program is killed from here on, either the run can be resumed or its whole set is there.
+        if summary.reason == StopReason::Interrupted {
+            save(scenario, run, recording, &self.folder)?;
+            self.folder.write(&contents)?;
+        } else {
+            self.folder.write(&contents)?;
+            self.folder.remove(SNAPSHOT)?;
         }
         Ok(json)
     }

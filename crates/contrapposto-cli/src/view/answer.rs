@@ -10,7 +10,7 @@ use contrapposto_formats::VerdictText;
 use serde::Serialize;
 
 use crate::fail::Fail;
-use crate::output::{Folder, json_text, print};
+use crate::output::{ResultSet, json_text, print};
 
 /// The file of a job for which there is no posture.
 #[derive(Serialize)]
@@ -66,7 +66,7 @@ pub(crate) fn without_posture(
     title: &str,
     (model, loads): (&Model, &[Load]),
     missing: Missing,
-    folder: Option<&Folder>,
+    folder: Option<&ResultSet>,
     json: bool,
 ) -> Result<(), Fail> {
     let verdict = Verdict::of_fall(model, missing);

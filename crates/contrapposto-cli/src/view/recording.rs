@@ -83,9 +83,20 @@ impl Recording {
         }
     }
 
-    /// Forgets the rows from sample number `samples` on.
-    pub(crate) fn truncate(&mut self, samples: u64) {
-        let rows = samples.div_ceil(self.every) as usize;
+    /// The rows before sample number `samples`; none if they are not those of `scenario`.
+    pub(crate) fn up_to(mut self, scenario: &Scenario, samples: u64) -> Option<Self> {
+        let new = Self::new(scenario);
+        let same = (self.every, self.coordinates, self.supports) == (new.every, new.coordinates, new.supports);
+        let rows = usize::try_from(samples.div_ceil(new.every)).ok()?;
+        if !same || self.times.len() < rows {
+            return None;
+        }
+        self.truncate(rows);
+        self.fits(scenario, rows).then_some(self)
+    }
+
+    /// Forgets all rows but the first `rows`.
+    fn truncate(&mut self, rows: usize) {
         let n = self.coordinates;
         self.times.truncate(rows);
         for column in [&mut self.posture, &mut self.external, &mut self.passive, &mut self.load] {
@@ -97,18 +108,16 @@ impl Recording {
         self.centers.truncate(rows);
     }
 
-    /// Whether it is what `scenario` gives, up to sample number `samples`.
-    pub(crate) fn fits(&self, scenario: &Scenario, samples: u64) -> bool {
-        let new = Self::new(scenario);
-        let (rows, n) = (samples.div_ceil(new.every) as usize, new.coordinates);
+    /// Whether every column has as many rows as `scenario` gives, of finite numbers and rising times.
+    fn fits(&self, scenario: &Scenario, rows: usize) -> bool {
+        let n = self.coordinates;
         let standing = if scenario.has_supports_or_tasks() { rows } else { 0 };
         let by_coordinate = [&self.posture, &self.external, &self.passive, &self.load];
-        (self.every, self.coordinates, self.supports) == (new.every, n, new.supports)
-            && self.times.len() == rows
+        self.times.len() == rows
             && by_coordinate.iter().all(|column| column.len() == rows * n)
             && self.fatigue.len() == rows * n
             && self.asked.len() == rows * n
-            && self.contacts.len() == standing * new.supports
+            && self.contacts.len() == standing * self.supports
             && self.centers.len() == standing
             && self.times.windows(2).all(|pair| pair[0] <= pair[1])
             && by_coordinate.into_iter().flatten().all(|v| v.is_finite())

@@ -211,14 +211,26 @@ pub fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").canonicalize().unwrap()
 }
 
-/// Names and bytes of all files of a folder, in order.
+/// Names and bytes of all files of a folder, in order, without those of folders in it.
 pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap())
+        .filter(|entry| entry.file_type().unwrap().is_file())
         .map(|entry| (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap()))
         .collect();
     files.sort();
+    files
+}
+
+/// The name of a manifest.
+pub const MANIFEST: &str = "manifest.sha256";
+
+/// As [`contents`], without the manifest of a result set, which has to be there.
+pub fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files = contents(folder);
+    let manifest = files.iter().position(|(name, _)| name == MANIFEST).expect("a result set has a manifest");
+    files.remove(manifest);
     files
 }
 
@@ -247,4 +259,19 @@ pub fn assert_png(bytes: &[u8]) {
     let (width, height) = (number(16), number(20));
     assert!((200..10_000).contains(&width) && (200..10_000).contains(&height), "{width} x {height}");
     assert_eq!(bytes[bytes.len() - 8..bytes.len() - 4], *b"IEND");
+}
+
+/// What may be unknown, or without a limit.
+const MAY_BE_NULL: [&str; 8] =
+    ["exhausted_s", "failed_first", "last_outcome", "load", "minutes", "minutes_range", "name", "who"];
+
+/// Every leaf that is no word, yes or no is a number that is finite; only what may be unknown is null.
+pub fn assert_numbers(value: &Value, key: &str) {
+    match value {
+        Value::Number(number) => assert!(number.as_f64().unwrap().is_finite(), "{key}"),
+        Value::Null => assert!(MAY_BE_NULL.contains(&key), "{key} is null"),
+        Value::Array(list) => list.iter().for_each(|value| assert_numbers(value, key)),
+        Value::Object(map) => map.iter().for_each(|(key, value)| assert_numbers(value, key)),
+        _ => {}
+    }
 }

@@ -121,7 +121,9 @@ impl Simulation<'_> {
         let load = self.group_load(i, side);
         let State { groups, requests, posture, effort, effort_at_start, .. } = &mut self.state;
         let request = &mut requests[i];
-        request.in_force &= load * *effort < groups[i][side.index()].load_at_start * *effort_at_start;
+        let before = groups[i][side.index()].load_at_start;
+        let pays = effort.zip(*effort_at_start).is_some_and(|(effort, at_start)| load * effort < before * at_start);
+        request.in_force &= pays;
         request.half_space.hold(posture.values());
     }
 

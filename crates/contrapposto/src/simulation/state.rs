@@ -23,12 +23,13 @@ pub(super) struct State {
     pub(super) next_event: usize,
     /// Strategy of every coordinate.
     pub(super) strategies: Vec<Strategy>,
-    /// Of the last sample: active torque (N m), fatigue, effort, decisions.
+    /// Of the last sample: active torque (N m), fatigue, effort, decisions. The effort is none from an event to the next sample of
+    /// a whole body: what it was before the event does not tell whether the next step is worth its cost.
     pub(super) active: Vec<f64>,
     pub(super) fatigue: Vec<[f64; 2]>,
-    pub(super) effort: f64,
-    /// Effort of the body when the first of the present recoveries requested relief.
-    pub(super) effort_at_start: f64,
+    pub(super) effort: Option<f64>,
+    /// Effort of the body when the first of the present recoveries requested relief; none where an event made it unknown.
+    pub(super) effort_at_start: Option<f64>,
     pub(super) decisions: Vec<Option<Decision>>,
     /// By coordinate.
     pub(super) requests: Vec<Request>,
@@ -107,8 +108,8 @@ impl State {
             strategies,
             active: vec![0.0; n],
             fatigue: vec![[0.0; 2]; n],
-            effort: 0.0,
-            effort_at_start: 0.0,
+            effort: Some(0.0),
+            effort_at_start: Some(0.0),
             decisions: vec![None; n],
             requests: vec![request; n],
             reliefs_move: false,
@@ -135,8 +136,8 @@ impl State {
         let sizes = self.requests.iter().map(|request| request.half_space.normal.len());
         counts.into_iter().chain(sizes).all(|count| count == n)
             && self.next_event <= events
-            && self.effort.is_finite()
-            && self.effort_at_start.is_finite()
+            && self.effort.is_none_or(f64::is_finite)
+            && self.effort_at_start.is_none_or(f64::is_finite)
             && self.active.iter().chain(self.fatigue.iter().flatten()).all(|v| v.is_finite())
             && self.requests.iter().all(Request::is_finite)
             && self.path.as_ref().is_none_or(|path| path.fits(n, supports))
@@ -156,8 +157,7 @@ impl State {
         }
         self.strategies = strategies;
         if elsewhere {
-            // The effort before the event does not tell whether the next step is worth its cost.
-            self.effort = f64::INFINITY;
+            self.effort = None;
         }
     }
 

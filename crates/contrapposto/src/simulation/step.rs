@@ -228,7 +228,7 @@ impl<'a> Simulation<'a> {
         if let Some(body) = self.motion.body() {
             body.write_standing(&mut self.record.standing);
         }
-        (self.record.standing.effort, self.state.effort) = (effort, effort);
+        (self.record.standing.effort, self.state.effort) = (effort, Some(effort));
         Ok(())
     }
 
@@ -237,8 +237,9 @@ impl<'a> Simulation<'a> {
     fn rejected(&self, requested: &[usize], falls: bool, effort: f64) -> Vec<usize> {
         let moves = |i: usize| self.state.requests[i].step.is_some_and(|step| step.abs() > SMALLEST_STEP);
         let some_move = requested.iter().any(|&i| moves(i));
-        let rises = effort > self.state.effort;
-        let too_high = effort > self.scenario.relief.effort_factor * self.state.effort_at_start;
+        let rises = self.state.effort.is_some_and(|before| effort > before);
+        let limit = self.state.effort_at_start.map(|start| self.scenario.relief.effort_factor * start);
+        let too_high = limit.is_some_and(|limit| effort > limit);
         let costs = |i: usize| {
             ((falls || (rises && too_high)) && (moves(i) || !some_move)) || (moves(i) && self.is_in_vain(i, rises))
         };

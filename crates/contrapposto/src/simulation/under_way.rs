@@ -36,7 +36,7 @@ impl Simulation<'_> {
         if is_over {
             self.end_path(effort, has_step);
         }
-        (self.record.standing.effort, self.state.effort) = (effort, effort);
+        (self.record.standing.effort, self.state.effort) = (effort, Some(effort));
         if let Some(body) = self.motion.body() {
             body.write_standing(&mut self.record.standing);
         }

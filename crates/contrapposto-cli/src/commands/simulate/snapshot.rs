@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fail::Fail;
 use crate::input::read;
-use crate::output::Folder;
+use crate::output::ResultSet;
 use crate::view::recording::Recording;
 
 /// Its name.
@@ -31,10 +31,10 @@ struct Saved<R, S> {
 }
 
 /// Writes where a run is.
-pub(super) fn save(scenario: &Scenario, run: &Run, recording: &Recording, folder: &Folder) -> Result<(), Fail> {
+pub(super) fn save(scenario: &Scenario, run: &Run, recording: &Recording, folder: &ResultSet) -> Result<(), Fail> {
     let saved = Saved { program: PROGRAM.to_owned(), scenario: fingerprint(scenario), run: run.snapshot(), recording };
     let bytes = serde_json::to_vec(&saved).map_err(|error| Fail::job(SNAPSHOT, error))?;
-    folder.write(&[(SNAPSHOT, bytes)])
+    folder.write_apart(SNAPSHOT, &bytes)
 }
 
 /// The run that was left in `folder`, and its recording.
@@ -49,11 +49,8 @@ pub(super) fn go_on<'a>(scenario: &'a Scenario, path: &Path) -> Result<(Run<'a>,
     if saved.scenario != fingerprint(scenario) {
         return Err(refused(&"is of another scenario or body, or of one that was changed since"));
     }
-    let mut recording = saved.recording;
-    recording.truncate(saved.run.samples);
-    if !recording.fits(scenario, saved.run.samples) {
-        return Err(refused(&"its recording does not fit the scenario"));
-    }
+    let recording = saved.recording.up_to(scenario, saved.run.samples);
+    let recording = recording.ok_or_else(|| refused(&"its recording does not fit the scenario"))?;
     let run = Run::resume(scenario, saved.run).map_err(|error| refused(&error))?;
     Ok((run, recording))
 }

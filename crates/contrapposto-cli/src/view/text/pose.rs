@@ -6,7 +6,7 @@ use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 
 use super::plain_table;
-use crate::output::Folder;
+use crate::output::ResultSet;
 use crate::view::answer::first_lines;
 
 /// `remaining: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
@@ -59,7 +59,7 @@ pub(crate) fn report(
     pose: &SolvedPosture,
     text: &PoseText,
     verdict: &Verdict,
-    folder: Option<&Folder>,
+    folder: Option<&ResultSet>,
 ) -> String {
     let mut table = plain_table();
     table.set_header(["priority", "task", "remaining error", ""]);

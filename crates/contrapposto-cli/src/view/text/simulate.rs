@@ -7,7 +7,7 @@ use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, S
 use contrapposto::tasks::Task;
 
 use super::plain_table;
-use crate::output::Folder;
+use crate::output::ResultSet;
 use crate::view::answer::Answer;
 use crate::view::scene::hazard::hazards_at_end;
 use crate::view::words::MOST_ROWS;
@@ -42,7 +42,7 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
     format!("cases {}", list.join(", "))
 }
 
-pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: Option<&Folder>) -> String {
+pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: Option<&ResultSet>) -> String {
     let mut table = plain_table();
     table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
     let all = scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free);

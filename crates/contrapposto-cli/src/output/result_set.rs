@@ -1,0 +1,83 @@
+//! The files of one run as a set: put in place together, named by a manifest, without a file of an older set.
+//!
+//! While names change there is no manifest, so that a reader can tell a whole set from a broken one; a program that is killed in
+//! between leaves both lists of names in its temporary folder, and the next run removes what they name.
+
+use std::path::{Path, PathBuf};
+
+use super::folder::{Folder, lock_folder};
+use super::leftover::{REPLACED, leftovers};
+use super::manifest::{Entry, MANIFEST, entries, manifest_text};
+use crate::fail::Fail;
+use crate::input::was_read;
+
+/// See the module's text.
+pub(crate) struct ResultSet {
+    folder: Folder,
+}
+
+impl ResultSet {
+    /// A set in that folder, which is made if it is not there; nothing of an older set changes yet.
+    pub(crate) fn open(path: &Path) -> Result<Self, Fail> {
+        let manifest = path.join(MANIFEST);
+        if manifest.exists() && entries(&manifest).is_none() {
+            let why = "is there and not of this program; give another folder";
+            return Err(Fail::Refused(format!("--out {}: `{MANIFEST}` {why}", path.display())));
+        }
+        Ok(Self { folder: Folder::open(path)? })
+    }
+
+    /// Writes the whole set and removes what is left of the older one: files that its manifest names, if nobody has changed them
+    /// and this program has not read them.
+    pub(crate) fn write<B: AsRef<[u8]>>(&self, files: &[(&str, B)]) -> Result<(), Fail> {
+        let pending = files.iter().map(|(name, bytes)| self.folder.pending(name, bytes.as_ref()));
+        let pending = pending.collect::<Result<Vec<_>, _>>()?;
+        let (path, temporary) = self.folder.paths();
+        let [current, new, replaced] = [path.join(MANIFEST), temporary.join(MANIFEST), temporary.join(REPLACED)];
+        let failed = |error: std::io::Error| Fail::job(current.display(), error);
+        let _alone = lock_folder(path)?;
+        let ready = self.folder.ready(pending)?;
+        std::fs::write(&new, manifest_text(files)).map_err(failed)?;
+        std::fs::File::open(&new).and_then(|file| file.sync_all()).map_err(failed)?;
+        if current.exists() {
+            std::fs::rename(&current, &replaced).map_err(failed)?;
+        }
+        for (file, place) in ready {
+            file.persist(&place).map_err(|error| Fail::job(place.display(), error.error))?;
+        }
+        let left = leftovers(path, temporary);
+        let older = entries(&replaced).into_iter().flatten().chain(left.iter().flat_map(|left| left.files.clone()));
+        older.filter(|entry| files.iter().all(|(name, _)| *name != entry.name)).for_each(|entry| discard(path, &entry));
+        std::fs::rename(&new, &current).map_err(failed)?;
+        self.folder.sync();
+        left.into_iter().for_each(super::leftover::Leftover::remove);
+        Ok(())
+    }
+
+    /// Writes a file that belongs to no set.
+    pub(crate) fn write_apart(&self, name: &str, bytes: &[u8]) -> Result<(), Fail> {
+        self.folder.write(&[(name, bytes)])
+    }
+
+    /// Removes a file that belongs to no set, if there is one.
+    pub(crate) fn remove(&self, name: &str) -> Result<(), Fail> {
+        self.folder.remove(name)
+    }
+
+    /// Where a file of that name stands.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path(name)
+    }
+}
+
+/// Removes a file of an older set, and its folder if that is empty then; what cannot be removed stays.
+fn discard(folder: &Path, entry: &Entry) {
+    let path = folder.join(&entry.name);
+    if !entry.is_unchanged(folder) || was_read(&path) {
+        return;
+    }
+    let _ = std::fs::remove_file(&path);
+    if let Some((inner, _)) = entry.name.rsplit_once('/') {
+        let _ = std::fs::remove_dir(folder.join(inner));
+    }
+}
