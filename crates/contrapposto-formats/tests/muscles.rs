@@ -69,3 +69,18 @@ fn muscles_of_fetched_bodies_are_opensims() {
         check(name, &model_bytes(file), wraps, &limits);
     }
 }
+
+#[test]
+#[ignore = "needs CONTRAPPOSTO_OPENSIM_MODELS: published arms with all kinds of surfaces"]
+fn muscles_of_arms_over_all_kinds_of_surfaces_are_opensims() {
+    for (name, file) in
+        [("arm26", "arm26.osim"), ("mobl2016_v04", "mobl2016_v04.osim"), ("mobl2016_v01", "mobl2016_v01.osim")]
+    {
+        let bytes = model_bytes(file);
+        let reference = Reference::read(name, &bytes, &shared(&format!("vectors/muscles/{name}.json.gz")));
+        for wraps in reference.wraps() {
+            let wraps: Vec<&str> = wraps.iter().map(String::as_str).collect();
+            check(name, &bytes, &wraps, &MILLARD);
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! Tests paths of muscles on the built-in adult: moment arms against differences of lengths, and lines over surfaces.
 
-#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::{Function, Spline};
@@ -62,6 +62,11 @@ fn paths(model: &Model, rng: &mut Pcg64) -> Paths {
 
 /// A path past a cylinder on the forearm's elbow, from the upper arm to the forearm.
 fn past_cylinder(model: &Model, quadrant: Quadrant, x: f64) -> Paths {
+    past(model, WrapShape::Cylinder { radius: 0.03, length: 1.0 }, quadrant, x)
+}
+
+/// A path past a surface on the forearm's elbow, from the upper arm to the forearm.
+fn past(model: &Model, shape: WrapShape, quadrant: Quadrant, x: f64) -> Paths {
     let [upper, lower] = segments(model, &["humerus_r", "ulna_r"])[..] else { panic!("two segments") };
     let point = |segment, y, z| PathPoint { segment, location: Location::Fixed(V::new(x, y, z)) };
     let object = WrapObject {
@@ -73,7 +78,7 @@ fn past_cylinder(model: &Model, quadrant: Quadrant, x: f64) -> Paths {
         ),
         quadrant,
         active: true,
-        shape: WrapShape::Cylinder { radius: 0.03, length: 1.0 },
+        shape,
     };
     let upper_end = model.segments()[lower.unwrap()].in_parent.translation.vector;
     let points = vec![point(upper, upper_end.y + 0.15, 0.0), point(lower, -0.15, 0.02)];
@@ -149,6 +154,39 @@ fn moment_arms_over_a_cylinder_are_minus_the_slopes_of_the_length() {
 }
 
 #[test]
+fn moment_arms_over_spheres_ellipsoids_and_tori_are_minus_the_slopes_of_the_length() {
+    let model = adult(&Adult::default()).unwrap();
+    let elbow = model.coordinate("elbow_flex_r").unwrap();
+    let half = Quadrant::Half { axis: 0, positive: false };
+    let shapes = [
+        (WrapShape::Sphere { radius: 0.03 }, Quadrant::All, 0.005),
+        (WrapShape::Sphere { radius: 0.03 }, half, -0.005),
+        (WrapShape::Ellipsoid { half_axes: V::new(0.02, 0.03, 0.05) }, Quadrant::All, 0.005),
+        (WrapShape::Ellipsoid { half_axes: V::new(0.05, 0.02, 0.03) }, half, -0.005),
+        (WrapShape::Torus { tube: 0.01, circle: 0.04 }, Quadrant::All, 0.03),
+    ];
+    for (shape, quadrant, x) in shapes {
+        let mut rng = random();
+        let mut paths = past(&model, shape, quadrant, x);
+        if let WrapShape::Torus { .. } = shape {
+            // Its axis along the forearm.
+            paths.wrap_objects[0].pose.rotation = UnitQuaternion::from_euler_angles(1.4, 0.1, 0.0);
+        }
+        let postures: Vec<Posture> = (0..60)
+            .map(|_| {
+                let mut posture = inside(&mut rng, &model);
+                posture.values_mut()[elbow] = rng.random_range(0.05..1.2);
+                posture
+            })
+            .collect();
+        let (worst, wrapped) = worst_difference(&model, &paths, &postures);
+        println!("{shape:?} {quadrant:?}: {worst:e}, {wrapped} of 60 postures wrap");
+        assert!(wrapped > 5, "{shape:?} {quadrant:?}: {wrapped} of 60 postures wrap");
+        assert!(worst < 1e-7, "{shape:?} {quadrant:?}: {worst}");
+    }
+}
+
+#[test]
 fn the_shortest_line_over_a_cylinder_is_not_longer_than_opensims() {
     let model = adult(&Adult::default()).unwrap();
     let mut rng = random();
@@ -171,13 +209,21 @@ fn the_shortest_line_over_a_cylinder_is_not_longer_than_opensims() {
 fn laying_paths_anew_allocates_nothing() {
     let model = adult(&Adult::default()).unwrap();
     let mut rng = random();
-    let paths = past_cylinder(&model, Quadrant::All, 0.01);
-    let (mut kinematics, mut geometry) = (Kinematics::new(&model), PathGeometry::new(&model, &paths));
-    for _ in 0..20 {
-        kinematics.update(&model, &inside(&mut rng, &model)).unwrap();
-        for rule in [PathRule::Geodesic, PathRule::OpenSim] {
-            let update = || geometry.update(&model, &kinematics, &paths, rule);
-            assert_eq!(allocation_counter::measure(update).count_total, 0, "{rule:?}");
+    let shapes = [
+        WrapShape::Cylinder { radius: 0.03, length: 1.0 },
+        WrapShape::Sphere { radius: 0.03 },
+        WrapShape::Ellipsoid { half_axes: V::new(0.02, 0.03, 0.05) },
+        WrapShape::Torus { tube: 0.01, circle: 0.04 },
+    ];
+    for shape in shapes {
+        let paths = past(&model, shape, Quadrant::All, 0.01);
+        let (mut kinematics, mut geometry) = (Kinematics::new(&model), PathGeometry::new(&model, &paths));
+        for _ in 0..20 {
+            kinematics.update(&model, &inside(&mut rng, &model)).unwrap();
+            for rule in [PathRule::Geodesic, PathRule::OpenSim] {
+                let update = || geometry.update(&model, &kinematics, &paths, rule);
+                assert_eq!(allocation_counter::measure(update).count_total, 0, "{shape:?} {rule:?}");
+            }
         }
     }
 }

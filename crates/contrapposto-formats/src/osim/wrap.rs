@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use contrapposto::muscle::{Quadrant, WrapObject, WrapShape};
+use nalgebra::Vector3;
 
 use super::attributes::{Reader, objects};
 use super::error::OsimProblem;
@@ -10,7 +11,7 @@ use super::sets::Scene;
 use crate::model_ir::MuscleTally;
 use crate::xml::Node;
 
-const WRAP_SHAPES: &str = "WrapCylinder, WrapSphere";
+const WRAP_SHAPES: &str = "WrapCylinder, WrapSphere, WrapEllipsoid, WrapTorus";
 
 /// The surfaces, and the index of each by its name.
 #[derive(Default)]
@@ -58,9 +59,26 @@ fn object<'a>(reader: &Reader<'a>, node: Node<'a>, segment: Option<usize>) -> Re
         }
         Err(OsimProblem::invalid(node.place(), &value.to_string(), format!("{name} must be above 0")))
     };
+    let half_axes = || {
+        let sizes = reader.vector(node, "dimensions", Some(Vector3::from_element(0.05)))?;
+        if sizes.min() > 0.0 {
+            return Ok(sizes);
+        }
+        let found = format!("{} {} {}", sizes.x, sizes.y, sizes.z);
+        Err(OsimProblem::invalid(node.place(), &found, "dimensions must be above 0"))
+    };
+    let torus = || {
+        let (tube, circle) = (length("inner_radius", 0.01)?, length("outer_radius", 0.05)?);
+        if tube < circle {
+            return Ok(WrapShape::Torus { tube, circle });
+        }
+        Err(OsimProblem::invalid(node.place(), &circle.to_string(), format!("outer_radius must be above {tube}")))
+    };
     let shape = match node.name() {
         "WrapCylinder" => WrapShape::Cylinder { radius: length("radius", 1.0)?, length: length("length", 1.0)? },
         "WrapSphere" => WrapShape::Sphere { radius: length("radius", 0.05)? },
+        "WrapEllipsoid" => WrapShape::Ellipsoid { half_axes: half_axes()? },
+        "WrapTorus" => torus()?,
         other => return Err(OsimProblem::unsupported(node.place(), other, WRAP_SHAPES)),
     };
     Ok(WrapObject {

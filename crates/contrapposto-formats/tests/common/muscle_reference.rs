@@ -82,6 +82,14 @@ impl Reference {
         self.numbers["postures"].as_array().unwrap().iter().map(posture).collect()
     }
 
+    /// The kinds of surfaces of the muscles, each list once.
+    pub fn wraps(&self) -> Vec<Vec<String>> {
+        let mut all: Vec<_> = self.numbers["wraps"].as_array().unwrap().iter().map(strings).collect();
+        all.sort();
+        all.dedup();
+        all
+    }
+
     /// Errors of the muscles whose surfaces are of these kinds, in this order.
     pub fn errors(&self, rule: PathRule, wraps: &[&str]) -> Errors {
         let names = strings(&self.numbers["muscles"]);

@@ -171,7 +171,7 @@ impl Routing {
     /// Wraps the part of the line that suits best over the surface of one wrap; `None` where no point of the wrap's range is there.
     fn apply(&mut self, scene: Scene<'_>, path: &Path, wrap: usize) -> Option<Found> {
         self.remove(wrap);
-        let PathWrap { object: index, range, .. } = &path.wraps[wrap];
+        let PathWrap { object: index, method, range } = &path.wraps[wrap];
         let object = &scene.paths.wrap_objects[*index];
         if !object.active {
             return Some(Found::Free);
@@ -182,7 +182,7 @@ impl Routing {
         let start = self.nodes.iter().position(within)?;
         let end = self.nodes.iter().rposition(within)?;
         let (axes, origin) = &scene.objects[*index];
-        let manner = Manner { rule: scene.rule, single: path.wraps.len() == 1 };
+        let manner = Manner { rule: scene.rule, method: *method, single: path.wraps.len() == 1 };
         let mut found = Found::Free;
         let mut best: Option<(usize, Contact, f64)> = None;
         for at in start..end {
@@ -195,6 +195,7 @@ impl Routing {
             match object.wrap(&from, &to, manner) {
                 Wrapping::Inside => found = Found::Inside,
                 Wrapping::Free => found = Found::Free,
+                Wrapping::WithoutLine => found = Found::Touches,
                 Wrapping::Crosses(contact) => {
                     found = Found::Touches;
                     best = Some((at, contact, f64::NEG_INFINITY));

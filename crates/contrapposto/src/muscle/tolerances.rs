@@ -7,6 +7,63 @@ pub(super) const FULL_TURN: f64 = 1e-9;
 /// Sine of the angle between a line and the way from an end to the center of a sphere below which the line passes through the center;
 /// OpenSim's, which does not wrap such a line.
 pub(super) const THROUGH_CENTER: f64 = 1e-5;
+/// By how much a point may lie inside an ellipsoid, as a share of the squared half axes, and still count as on it; and the difference from 1
+/// of the cosine between both ends below which they lie in one direction from the center. OpenSim's.
+pub(super) const ELLIPSOID_ON: f64 = 1e-4;
+/// OpenSim's distance from a plane of symmetry below which a place lies in it; the mean half axis is 1.
+pub(super) const ELLIPSOID_PLANE: f64 = 2e-13;
+/// OpenSim's cosine between a line and the nearest axis up to which the fan alone determines the plane of a line over an ellipsoid.
+pub(super) const ELLIPSOID_FAN_BELOW: f64 = 0.7073;
+/// The cosine from which the plane of symmetry alone does.
+pub(super) const ELLIPSOID_AXIAL_FROM: f64 = 0.9;
+/// Share of the chord at either end over which the plane of symmetry loses its weight.
+pub(super) const ELLIPSOID_FADE: f64 = 0.3;
+/// OpenSim's number of parts of the chord for the fan.
+pub(super) const ELLIPSOID_BLADES: u32 = 300;
+/// Length of the pieces into which OpenSim divides a line on an ellipsoid, m.
+pub(super) const ELLIPSOID_PIECE: f64 = 0.001;
+/// OpenSim's greatest number of such pieces.
+pub(super) const ELLIPSOID_PIECES: u32 = 499;
+/// Residual at which OpenSim's search of the nearest point of an ellipsoid ends; the mean half axis is 1.
+pub(super) const NEAREST_RESIDUAL: f64 = 1e-9;
+/// Its greatest number of steps.
+pub(super) const NEAREST_STEPS: usize = 64;
+/// Sum of squares of residuals at which OpenSim's search of a point of tangency ends; the mean half axis is 1.
+pub(super) const TANGENCY_RESIDUAL: f64 = 1e-8;
+/// Its greatest number of steps.
+pub(super) const TANGENCY_STEPS: usize = 50;
+/// Its greatest number of repetitions of a step.
+pub(super) const TANGENCY_REPEATS: usize = 1000;
+/// Length of the tube that OpenSim takes for a torus, m.
+pub(super) const TORUS_TUBE: f64 = 10_000.0;
+/// Relative accuracy of OpenSim's search of the point of a torus's circle nearest to a line.
+pub(super) const TORUS_ACCURACY: f64 = 1e-4;
+/// Its first trust radius, m.
+pub(super) const TORUS_FIRST_STEP: f64 = 0.2;
+/// Its step of a difference, m.
+pub(super) const TORUS_NUDGE: f64 = 1e-5;
+/// Its greatest number of steps.
+pub(super) const TORUS_STEPS: usize = 500;
+/// Sections of a geodesic, each of which is extrapolated from [`GEODESIC_PARTS`].
+pub(super) const GEODESIC_SECTIONS: usize = 3;
+/// Numbers of parts into which a section of a geodesic is divided for the extrapolation.
+pub(super) const GEODESIC_PARTS: [u32; 6] = [2, 4, 6, 8, 10, 12];
+/// Steps in which a geodesic is brought to pass through the end of a line.
+pub(super) const GEODESIC_STEPS: usize = 25;
+/// Step of both unknowns of a geodesic below which it passes through the end: rad, and shares of the mean half axis or m.
+pub(super) const GEODESIC_FOUND: f64 = 1e-11;
+/// Greatest step of the angle at which a geodesic starts, rad.
+pub(super) const GEODESIC_TURN: f64 = 0.3;
+/// Difference of that angle for its derivative, rad.
+pub(super) const GEODESIC_NUDGE: f64 = 1e-6;
+/// Least distance of an end from a surface, as a share of its size: a nearer end counts as this far outside.
+pub(super) const GEODESIC_OUTSIDE: f64 = 1e-8;
+/// Planes through a line that are compared for the start of a geodesic over an ellipsoid.
+pub(super) const GEODESIC_PLANES: usize = 24;
+/// Pieces of the section of each plane for that comparison.
+pub(super) const GEODESIC_PIECES: usize = 8;
+/// Steps to the place where the shortest way through a ring bends, the first guess of a geodesic over a torus.
+pub(super) const TORUS_BENDS: usize = 12;
 /// Rounds in which several surfaces of a path move each other's lines, by the geodesic rule.
 pub(super) const GEODESIC_ROUNDS: usize = 200;
 /// Change of length between two rounds below which a path over several surfaces is at rest by the geodesic rule, m.

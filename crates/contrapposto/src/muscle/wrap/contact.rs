@@ -24,13 +24,14 @@ impl Quadrant {
     }
 }
 
-/// Whether the straight line between two points enters the unit sphere and leaves it.
-pub(super) fn passes_through(from: &Vector3<f64>, to: &Vector3<f64>) -> bool {
+/// Shares of the straight line between two points at which it enters the unit sphere and leaves it; `None` unless it does both.
+pub(super) fn crossings(from: &Vector3<f64>, to: &Vector3<f64>) -> Option<(f64, f64)> {
     let straight = to - from;
     let (square, half) = (straight.norm_squared(), from.dot(&straight));
     let root = half.mul_add(half, -square * (from.norm_squared() - 1.0)).sqrt();
-    let inside = |share: f64| share > 0.0 && share < 1.0;
-    inside((-half - root) / square) && inside((root - half) / square)
+    let (enters, leaves) = ((-half - root) / square, (root - half) / square);
+    let between = |share: f64| share > 0.0 && share < 1.0;
+    (between(enters) && between(leaves)).then_some((enters, leaves))
 }
 
 /// Two points on a surface and the line between them, in the surface's frame.
@@ -42,11 +43,20 @@ pub(in crate::muscle) struct Contact {
     pub(in crate::muscle) length: f64,
 }
 
+impl Contact {
+    pub(super) fn is_finite(&self) -> bool {
+        let Self { first, second, length } = self;
+        length.is_finite() && first.iter().chain(second).all(|number| number.is_finite())
+    }
+}
+
 /// What a surface does to a straight part of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::muscle) enum Wrapping {
     /// An end of the part is inside.
     Inside,
+    /// OpenSim counts it as touching, but has no line over it.
+    WithoutLine,
     /// It does not touch.
     Free,
     /// It may lie on it: the part that it makes longer by the least counts.

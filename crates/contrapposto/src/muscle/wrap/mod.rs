@@ -3,14 +3,21 @@
 mod contact;
 mod cylinder;
 mod cylinder_opensim;
+mod ellipsoid;
+mod ellipsoid_opensim;
+mod geodesic;
+mod nearest;
 mod sphere;
+mod tangency;
+mod torus;
+mod torus_opensim;
 
 pub use contact::Quadrant;
 pub(super) use contact::{Contact, Wrapping};
 
 use nalgebra::Vector3;
 
-use super::rule::PathRule;
+use super::rule::{PathRule, WrapMethod};
 use crate::model::Placement;
 
 /// A surface fixed in a segment.
@@ -45,19 +52,39 @@ pub enum WrapShape {
         /// Its radius.
         radius: f64,
     },
+    /// An ellipsoid about the origin.
+    Ellipsoid {
+        /// Its half axes along x, y and z.
+        half_axes: Vector3<f64>,
+    },
+    /// A torus about z: a tube along a circle about the origin. Paths pass through it.
+    Torus {
+        /// Radius of the tube.
+        tube: f64,
+        /// Radius of the circle, above that of the tube.
+        circle: f64,
+    },
 }
 
 /// Circumstances of a part of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Manner {
     pub(super) rule: PathRule,
+    pub(super) method: WrapMethod,
     /// The path has no other surface.
     pub(super) single: bool,
 }
 
 impl WrapObject {
-    /// What it does to a part of a path between two points in its frame.
+    /// What it does to a part of a path between two points in its frame. A search that ends in no number leaves the part straight.
     pub(super) fn wrap(&self, from: &Vector3<f64>, to: &Vector3<f64>, manner: Manner) -> Wrapping {
+        match self.laid(from, to, manner) {
+            Wrapping::Touches(contact) | Wrapping::Crosses(contact) if !contact.is_finite() => Wrapping::Free,
+            other => other,
+        }
+    }
+
+    fn laid(&self, from: &Vector3<f64>, to: &Vector3<f64>, manner: Manner) -> Wrapping {
         match (&self.shape, manner.rule) {
             (WrapShape::Cylinder { radius, length }, PathRule::Geodesic) => {
                 cylinder::wrap(*radius, *length, self.quadrant, from, to)
@@ -66,6 +93,18 @@ impl WrapObject {
                 cylinder_opensim::wrap(*radius, *length, self.quadrant, from, to, manner.single)
             }
             (WrapShape::Sphere { radius }, rule) => sphere::wrap(*radius, self.quadrant, from, to, rule),
+            (WrapShape::Ellipsoid { half_axes }, PathRule::Geodesic) => {
+                ellipsoid::wrap(half_axes, self.quadrant, from, to)
+            }
+            (WrapShape::Ellipsoid { half_axes }, PathRule::OpenSim) => {
+                ellipsoid_opensim::wrap(half_axes, self.quadrant, manner.method, from, to)
+            }
+            (WrapShape::Torus { tube, circle }, PathRule::Geodesic) => {
+                torus::wrap(*tube, *circle, self.quadrant, from, to)
+            }
+            (WrapShape::Torus { tube, circle }, PathRule::OpenSim) => {
+                torus_opensim::wrap(*tube, *circle, self.quadrant, from, to, manner.single)
+            }
         }
     }
 }

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::contact::{Contact, Quadrant, Wrapping, passes_through};
+use super::contact::{Contact, Quadrant, Wrapping, crossings};
 use crate::muscle::rule::PathRule;
 use crate::muscle::tolerances::THROUGH_CENTER;
 
@@ -24,7 +24,7 @@ pub(super) fn wrap(
     if d1 < radius || d2 < radius {
         return Wrapping::Inside;
     }
-    if !passes_through(&(from / radius), &(to / radius)) {
+    if crossings(&(from / radius), &(to / radius)).is_none() {
         return Wrapping::Free;
     }
     let (u1, u2) = (from / d1, to / d2);

@@ -1,0 +1,99 @@
+//! Computes the line over a torus: two tangents and a geodesic between them, over the inner side of the tube.
+//!
+//! The place at which a line touches the tube is told apart by its angle about the axis of the torus; in the section across the tube there,
+//! two lines touch, of which the one on the side of the first guess counts. The guess is the line over a straight tube at the same place.
+//! Where no geodesic is near, that line takes its place.
+
+use nalgebra::Vector3;
+
+use super::contact::{Contact, Quadrant, Wrapping};
+use super::geodesic::{Geodesic, State, Surface, find};
+use super::torus_opensim::over_tube;
+use crate::muscle::tolerances::{GEODESIC_TURN, TORUS_BENDS};
+
+type V = Vector3<f64>;
+
+/// What a torus about z does to the straight line between two points.
+pub(super) fn wrap(tube: f64, circle: f64, quadrant: Quadrant, from: &V, to: &V) -> Wrapping {
+    let Wrapping::Touches(guess) = over_tube(tube, circle, quadrant, from, to) else { return Wrapping::Free };
+    let near = |place: &V| {
+        let angle = place.y.atan2(place.x);
+        let mut torus = Torus { tube, circle, upper: true };
+        let miss = |torus: &Torus| torus.tangent(from, angle).map(|state| (state.place - place).norm_squared());
+        let above = miss(&torus)?;
+        torus.upper = false;
+        torus.upper = above < miss(&torus)?;
+        find(&torus, from, to, (angle, guess.length))
+    };
+    let total = |contact: &Contact| (contact.first - from).norm() + contact.length + (to - contact.second).norm();
+    // Geodesics that run round the tube or the torus another way are not the line.
+    let same_way = |found: &Geodesic| (total(&found.contact()) - total(&guess)).abs() < tube;
+    let through = through_hole(circle - tube, from, to).as_ref().and_then(near).filter(same_way);
+    let found = through.or_else(|| near(&guess.first).filter(same_way));
+    Wrapping::Touches(found.map_or(guess, |geodesic| geodesic.contact()))
+}
+
+/// The place of the edge of a disc across z at which the shortest way between two points through the disc bends; `None` for points on one
+/// side of its plane. The lengths are a convex function of the place, so that there is one.
+fn through_hole(radius: f64, from: &V, to: &V) -> Option<V> {
+    if from.z * to.z >= 0.0 {
+        return None;
+    }
+    let straight = from + from.z / (from.z - to.z) * (to - from);
+    let mut angle = straight.y.atan2(straight.x);
+    for _ in 0..TORUS_BENDS {
+        let (sin, cos) = angle.sin_cos();
+        let (place, slope) = (radius * V::new(cos, sin, 0.0), radius * V::new(-sin, cos, 0.0));
+        let (mut first, mut second) = (0.0, 0.0);
+        for end in [from, to] {
+            let away = place - end;
+            let distance = away.norm();
+            let rate = away.dot(&slope) / distance;
+            first += rate;
+            second += (slope.norm_squared() - place.dot(&away) - rate * rate) / distance;
+        }
+        let step = if second > 0.0 { -first / second } else { -first.signum() * GEODESIC_TURN };
+        angle += step.clamp(-GEODESIC_TURN, GEODESIC_TURN);
+    }
+    Some(radius * V::new(angle.cos(), angle.sin(), 0.0))
+}
+
+struct Torus {
+    tube: f64,
+    circle: f64,
+    /// The line touches on the upper side, seen from the point.
+    upper: bool,
+}
+
+impl Surface for Torus {
+    fn tangent(&self, from: &V, number: f64) -> Option<State> {
+        let (sin, cos) = number.sin_cos();
+        let out = V::new(cos, sin, 0.0);
+        // In the section across the tube: the point as seen from the middle of the tube.
+        let (beyond, above) = (from.dot(&out) - self.circle, from.z);
+        let distance = beyond.hypot(above);
+        if distance <= self.tube {
+            return None;
+        }
+        let half = (self.tube / distance).acos();
+        let turned = above.atan2(beyond) + if self.upper { half } else { -half };
+        let place = (self.circle + self.tube * turned.cos()) * out + self.tube * turned.sin() * V::z();
+        let direction = (place - from).try_normalize(0.0)?;
+        Some(State { place, direction, length: 0.0 })
+    }
+
+    fn rates(&self, state: &State) -> State {
+        let (place, direction) = (&state.place, &state.direction);
+        let distance = place.xy().norm();
+        let out = V::new(place.x, place.y, 0.0) / distance;
+        let (away, up) = (direction.dot(&out), direction.z);
+        let round = V::z().cross(&out).dot(direction);
+        let bend = (away * away + up * up + (distance - self.circle) / distance * round * round) / self.tube;
+        State { place: *direction, direction: -bend * self.normal(place), length: 1.0 }
+    }
+
+    fn normal(&self, place: &V) -> V {
+        let flat = V::new(place.x, place.y, 0.0);
+        (place - self.circle / flat.norm() * flat) / self.tube
+    }
+}
