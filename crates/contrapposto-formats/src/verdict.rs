@@ -11,18 +11,45 @@ use serde::Serialize;
 pub struct VerdictText {
     /// `cannot_be_done`, `cannot_stand`, `not_reached`, `held_until` or `holds`.
     pub kind: &'static str,
-    /// How long the job can be done, min; `null`: muscles set no limit, or it cannot be done.
+    /// The time that was asked for, min.
+    pub asked_minutes: Option<f64>,
+    /// How long the job can be done, min, one that holds with the posture of its end held on; `null`: muscles set no limit, or it
+    /// cannot be done.
     pub minutes: Option<f64>,
     /// Least and greatest time until `who` fails, min, over published laws of fatigue and two of three people; `null` in it: never.
     pub minutes_range: Option<[Option<f64>; 2]>,
-    /// The muscle group that is too weak or fails first; of a job that holds, the one with the greatest load.
+    /// The muscle group that is too weak or fails first; where none does, the one with the greatest load.
     pub who: Option<String>,
     /// Its active torque over strength.
     pub load: Option<f64>,
+    /// The group with the greatest load.
+    pub hardest: Option<LoadText>,
+    /// Of a run that holds, the group that is most tired at the end.
+    pub tired: Option<TiredText>,
+    /// Of a run that holds, the group that fails before its end in weaker people: one in six, by the spread.
+    pub fails_weaker: Option<String>,
     /// The same in one sentence.
     pub sentence: String,
     /// Targets that are missed, the most important first.
     pub missed: Vec<MissedText>,
+}
+
+/// A muscle group with its load.
+#[derive(Clone, Debug, Serialize)]
+pub struct LoadText {
+    /// Its name.
+    pub who: String,
+    /// Active torque over strength.
+    pub load: f64,
+}
+
+/// A muscle group with its fatigue.
+#[derive(Clone, Debug, Serialize)]
+pub struct TiredText {
+    /// Its name.
+    pub who: String,
+    /// Fatigue, 0 rested to 1 exhausted.
+    pub fatigue: f64,
 }
 
 /// A change of the job that was tried, and that helps.
@@ -32,9 +59,11 @@ pub struct SuggestionText {
     pub change: String,
     /// The kind of verdict with it.
     pub kind: &'static str,
-    /// How long the job can be done with it, min; `null`: muscles set no limit.
+    /// How long the job can be done with it, min, one that holds with the posture of its end held on; `null`: muscles set no limit.
     pub minutes: Option<f64>,
-    /// Load of the group that works hardest or fails first.
+    /// Least of that time for two of three people, min; `null`: not known, or no limit.
+    pub least_minutes: Option<f64>,
+    /// Load of the group that works hardest.
     pub load: Option<f64>,
 }
 
@@ -44,6 +73,7 @@ impl From<&Suggestion> for SuggestionText {
             change: suggestion.change.clone(),
             kind: suggestion.kind.word(),
             minutes: suggestion.seconds.map(|seconds| seconds / 60.0),
+            least_minutes: suggestion.least.filter(|least| least.is_finite()).map(|seconds| seconds / 60.0),
             load: suggestion.load,
         }
     }
@@ -66,10 +96,14 @@ impl VerdictText {
         let minutes = |seconds: f64| seconds.is_finite().then_some(seconds / 60.0);
         Self {
             kind: verdict.kind.word(),
+            asked_minutes: verdict.asked.and_then(minutes),
             minutes: verdict.seconds.and_then(minutes),
             minutes_range: verdict.range.map(|(least, greatest)| [least, greatest].map(minutes)),
             who: verdict.who.map(|who| who.name(model)),
             load: verdict.who.map(|group| group.load),
+            hardest: verdict.hardest.map(|who| LoadText { who: who.name(model), load: who.load }),
+            tired: verdict.tired.map(|tired| TiredText { who: tired.who.name(model), fatigue: tired.fatigue }),
+            fails_weaker: verdict.fails_weaker.map(|who| who.name(model)),
             sentence: verdict.sentence.clone(),
             missed: verdict.missed.iter().map(MissedText::from).collect(),
         }

@@ -4,12 +4,12 @@
 
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::simulation::{Run, Scenario, Summary};
-use contrapposto::suggestions::{BREAK, BREAK_EVERY, Change, changes, suggestion, with_breaks};
-use contrapposto::verdict::{Verdict, VerdictKind};
+use contrapposto::suggestions::{BREAK, BREAK_EVERY, Change, Suggestion, changes, suggestion, with_breaks};
+use contrapposto::verdict::{Verdict, VerdictKind, how_long};
 use contrapposto_formats::read_scenario;
 
 /// An arm that holds a weight before the body.
-fn text(target: [f64; 3], kilograms: f64, strategy: &str) -> String {
+fn text(target: [f64; 3], kilograms: f64, strategy: &str, seconds: f64) -> String {
     format!(
         r#"
 format = 1
@@ -32,7 +32,7 @@ kind = "effort"
 [strategy]
 kind = "{strategy}"
 [run]
-duration_s = 1500
+duration_s = {seconds}
 step_s = 0.1
 "#,
         target[0], target[1], target[2]
@@ -42,6 +42,8 @@ step_s = 0.1
 /// The hand at the start of the body that holds nothing, forward by 0.1 m.
 const TARGET: [f64; 3] = [0.45, 1.2, 0.2];
 const KILOGRAMS: f64 = 5.0;
+/// Longer than anybody holds these weights, s.
+const LONG: f64 = 1500.0;
 
 fn read(text: &str) -> Scenario {
     read_scenario("held.toml", text.as_bytes(), None).unwrap()
@@ -58,12 +60,26 @@ fn ran(scenario: &Scenario) -> (Summary, Verdict) {
 
 #[test]
 fn every_change_gives_the_time_that_a_whole_run_of_the_changed_file_gives() {
+    let before = every_change_gives_the_time_of_its_own_run(LONG);
+    assert_eq!(before.kind, VerdictKind::HeldUntil, "{}", before.sentence);
+}
+
+#[test]
+fn every_change_of_a_job_that_holds_without_reserve_gives_the_time_of_its_own_run() {
+    let (_, longer) = ran(&read(&text(TARGET, KILOGRAMS, "active", LONG)));
+    let before = every_change_gives_the_time_of_its_own_run((0.9 * longer.seconds.unwrap()).round());
+    assert_eq!(before.kind, VerdictKind::Holds, "{}", before.sentence);
+    assert!(!before.has_reserve(), "{}", before.sentence);
+}
+
+/// Tries every change of the weight held for so long; the verdict without a change.
+fn every_change_gives_the_time_of_its_own_run(seconds: f64) -> Verdict {
+    let text = |target, kilograms, strategy| text(target, kilograms, strategy, seconds);
     let scenario = read(&text(TARGET, KILOGRAMS, "active"));
     let (_, before) = ran(&scenario);
-    assert_eq!(before.kind, VerdictKind::HeldUntil, "{}", before.sentence);
     let all = changes(&scenario);
     assert_eq!(all.len(), 5, "{all:?}");
-    let mut seen = 0;
+    let mut tried = vec![];
     for change in &all {
         let moved = |by: f64| [TARGET[0], TARGET[1] + by, TARGET[2]];
         let by_hand = match change {
@@ -81,17 +97,28 @@ fn every_change_gives_the_time_that_a_whole_run_of_the_changed_file_gives() {
         let (_, found) = ran(&read(&by_hand));
         println!("{}: {:?} {:?}", promised.change, promised.kind, promised.seconds);
         assert_eq!(promised.kind, found.kind, "{}", promised.change);
+        assert_eq!(promised.seconds.is_some(), found.seconds.is_some(), "{}", promised.change);
         if let (Some(promised), Some(found)) = (promised.seconds, found.seconds) {
             assert!((promised - found).abs() <= 0.1 + 1e-3 * found, "{change:?}: {promised} s promised, {found} s");
         }
-        seen += 1;
+        tried.push(promised);
     }
-    assert_eq!(seen, all.len());
+    assert_eq!(tried.len(), all.len());
+    let helping = Suggestion::that_help(tried, &before);
+    let advice = Suggestion::sentence(&helping, all.len(), &before).unwrap();
+    assert!(advice.starts_with("What would help most: with "), "{advice}");
+    for one in &helping {
+        assert!(one.seconds.unwrap() > before.seconds.unwrap() || one.kind > before.kind, "{one:?}");
+        if one.kind == VerdictKind::HeldUntil {
+            assert!(one.in_words().ends_with(&format!("of the {} asked", how_long(seconds))), "{}", one.in_words());
+        }
+    }
+    before
 }
 
 #[test]
 fn a_break_a_minute_every_ten_gives_the_time_of_small_steps_of_the_law() {
-    let scenario = read(&text(TARGET, 0.17 * KILOGRAMS, "active"));
+    let scenario = read(&text(TARGET, 0.17 * KILOGRAMS, "active", LONG));
     let (summary, verdict) = ran(&scenario);
     let promised = with_breaks(&scenario, &summary).unwrap();
     // The group that fails first without breaks, or is worked hardest: its load and its law in steps of 0.05 s.
@@ -101,7 +128,7 @@ fn a_break_a_minute_every_ten_gives_the_time_of_small_steps_of_the_law() {
     let loads = &summary.coordinates[who.coordinate].loads[who.side.index()];
     let (mut fatigued, mut work, mut time, mut fails) = (0.0, 0.0, 0.0, f64::INFINITY);
     let h = 0.05;
-    while time < 1500.0 {
+    while time < LONG {
         let rests = time % (BREAK_EVERY + BREAK) >= BREAK_EVERY;
         let load = if rests { 0.0 } else { loads.at(work) };
         let recovery = if rests { law.rest_multiplier * law.recovery_rate } else { law.recovery_rate };
@@ -120,7 +147,9 @@ fn a_break_a_minute_every_ten_gives_the_time_of_small_steps_of_the_law() {
         promised.kind, promised.seconds, verdict.seconds
     );
     match promised.kind {
-        VerdictKind::Holds => assert!(fails.is_infinite(), "{fails}"),
+        VerdictKind::Holds => {
+            assert!(fails.is_infinite() && promised.seconds.is_none_or(|seconds| seconds >= LONG), "{fails}");
+        }
         _ => assert!((promised.seconds.unwrap() - fails).abs() < 3.0 + 0.01 * fails, "{:?} {fails}", promised.seconds),
     }
 }

@@ -158,12 +158,47 @@ fn the_same_weight_for_a_minute_holds_and_names_the_hardest_worked_group() {
     let (summary, verdict, _) = run(&scenario);
     assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
     let greatest = summary.coordinates.iter().map(|coordinate| coordinate.peak_load).fold(0.0, f64::max);
-    assert_eq!(verdict.who.unwrap().load, greatest);
-    assert!(
-        verdict.sentence.starts_with("Holds through the run (60\u{a0}s); hardest worked: "),
-        "{}",
-        verdict.sentence
-    );
+    let hardest = verdict.hardest.unwrap();
+    assert_eq!(hardest.load, greatest);
+    assert!(verdict.sentence.starts_with("Holds through the run (60\u{a0}s). "), "{}", verdict.sentence);
+    let words =
+        format!("Hardest worked: {} at {:.0}\u{a0}% of its strength.", hardest.name(&scenario.model), 100.0 * greatest);
+    assert!(verdict.sentence.ends_with(&words), "{}", verdict.sentence);
+    assert!(verdict.has_reserve(), "{}", verdict.sentence);
+}
+
+#[test]
+fn a_weight_that_holds_for_a_while_fails_in_a_longer_run_at_the_time_and_in_the_range_that_were_foretold() {
+    let kilograms = 25.0;
+    let scenario = arm(kilograms, 900.0);
+    let (_, longer, _) = run(&scenario);
+    assert_eq!(longer.kind, VerdictKind::HeldUntil, "{}", longer.sentence);
+    let fails = longer.seconds.unwrap();
+    // The weaker fail before the end of the longest of these runs, and only the middle and the long one end tired.
+    for (share, tired) in [(0.1, false), (0.6, true), (0.95, true)] {
+        let seconds = (share * fails).round();
+        let shorter = arm(kilograms, seconds);
+        let (_, verdict, _) = run(&shorter);
+        assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
+        println!("{seconds} s of {fails}: {}", verdict.sentence);
+        assert_eq!(verdict.asked, Some(seconds));
+        assert_eq!(verdict.who.unwrap().name(&shorter.model), "right elbow flexion");
+        assert!((verdict.seconds.unwrap() - fails).abs() < 0.2 + 1e-3 * fails, "{:?} and {fails}", verdict.seconds);
+        let ((least, greatest), (lower, upper)) = (verdict.range.unwrap(), longer.range.unwrap());
+        assert!(
+            (least - lower).abs() < 0.02 * lower && (greatest - upper).abs() < 0.02 * upper,
+            "{least} to {greatest}"
+        );
+        assert!(least < fails && fails < greatest);
+        assert_eq!(verdict.fails_weaker.is_some(), least < seconds, "{}", verdict.sentence);
+        assert_eq!(verdict.sentence.contains(", but about one in six people fails before"), least < seconds);
+        let end = verdict.tired.unwrap();
+        assert_eq!((end.fatigue > 0.5, verdict.sentence.contains("tired at the end")), (tired, tired));
+        assert_eq!(verdict.has_reserve(), !tired && least >= seconds);
+        let text = VerdictText::new(&shorter.model, &verdict);
+        assert!((text.minutes.unwrap() - verdict.seconds.unwrap() / 60.0).abs() < 1e-12);
+        assert_eq!(text.tired.unwrap().fatigue, end.fatigue);
+    }
 }
 
 #[test]

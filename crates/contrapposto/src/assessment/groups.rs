@@ -75,6 +75,7 @@ impl Groups {
             loads: LoadHistory::default(),
             peak_fatigue: Peak::default(),
             fatigue: 0.0,
+            load: 0.0,
             exhausted_at: None,
             proposals: vec![],
         };
@@ -109,6 +110,7 @@ impl Groups {
             }
             summary.peak_load.take(load, index, time);
             summary.loads.push(time, load);
+            summary.load = load;
             let interval = Interval { law, load: (before, load), seconds, pieces };
             tire(summary, &mut self.states[place], &interval, index, time);
             self.fatigue[i][side.index()] = summary.fatigue;

@@ -61,6 +61,8 @@ pub struct GroupAssessment {
     pub peak_fatigue: Peak,
     /// Fatigue at the end.
     pub fatigue: f64,
+    /// Relative load at the end.
+    pub load: f64,
     /// When its fatigue first reached 1, s.
     pub exhausted_at: Option<f64>,
     /// Where relief would lie at both peaks, by both strategies; where the group rested or has no falling passive curve, none.

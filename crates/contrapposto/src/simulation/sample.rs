@@ -25,6 +25,8 @@ pub struct Sample<'a> {
     pub fatigue: &'a [[f64; 2]],
     /// Whether the positive and negative group of every coordinate can no longer hold their load.
     pub exhausted: &'a [[bool; 2]],
+    /// For how long the positive and negative group of every coordinate could go on to hold their present load, s; infinite for ever.
+    pub seconds_left: &'a [[f64; 2]],
     /// A support is being put elsewhere: weight is shifted for it, or it is in the air. Such a second or two is a motion, whose torques
     /// at rest say little.
     pub stepping: bool,
@@ -51,6 +53,7 @@ pub(super) struct Record {
     pub(super) passive: Vec<f64>,
     pub(super) load: Vec<f64>,
     pub(super) exhausted: Vec<[bool; 2]>,
+    pub(super) seconds_left: Vec<[f64; 2]>,
     pub(super) stepping: bool,
     pub(super) asking: Vec<Option<Side>>,
     pub(super) attempts: Vec<Option<Attempt>>,
@@ -67,6 +70,7 @@ impl Record {
             passive: vec![0.0; n],
             load: vec![0.0; n],
             exhausted: vec![[false; 2]; n],
+            seconds_left: vec![[f64::INFINITY; 2]; n],
             stepping: false,
             asking: vec![None; n],
             attempts: vec![None; n],

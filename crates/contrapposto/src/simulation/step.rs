@@ -127,6 +127,7 @@ impl<'a> Simulation<'a> {
             load: &self.record.load,
             fatigue: &self.state.fatigue,
             exhausted: &self.record.exhausted,
+            seconds_left: &self.record.seconds_left,
             stepping: self.record.stepping,
             decisions: &self.state.decisions,
             asking: &self.record.asking,
@@ -293,7 +294,12 @@ impl<'a> Simulation<'a> {
                 let judged = if group.recovering { load.max(group.load_at_start) } else { load };
                 let level = fatigue.level(judged);
                 self.state.fatigue[i][side.index()] = level;
-                self.record.exhausted[i][side.index()] = fatigue.level(load) >= 1.0;
+                let present = fatigue.level(load);
+                self.record.exhausted[i][side.index()] = present >= 1.0;
+                let law =
+                    self.scenario.model.coordinates()[i].groups.as_ref().map(|groups| &groups[side.index()].fatigue);
+                self.record.seconds_left[i][side.index()] =
+                    law.map_or(f64::INFINITY, |law| law.time_left(present, load));
                 group.set_recovering(self.scenario.hysteresis.recovering(group.recovering, level), load);
             }
         }

@@ -58,6 +58,17 @@ impl StopReason {
     }
 }
 
+/// A muscle group at the end of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GroupAtEnd {
+    /// Relative load.
+    pub load: f64,
+    /// Fatigue, 0..=1.
+    pub fatigue: f64,
+    /// For how long it could go on to hold its load, s; `None` for ever.
+    pub seconds_left: Option<f64>,
+}
+
 /// Results of one coordinate.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateSummary {
@@ -75,6 +86,8 @@ pub struct CoordinateSummary {
     pub peak_load: f64,
     /// Greatest fatigue of the positive and negative group.
     pub peak_fatigue: [f64; 2],
+    /// The positive and negative group in the last sample in which no support was put elsewhere.
+    pub final_groups: [GroupAtEnd; 2],
     /// When each group could first no longer hold its load, s; while a support is put elsewhere nobody is judged.
     pub exhausted_at: [Option<f64>; 2],
     /// The last decision.
@@ -138,7 +151,11 @@ impl CoordinateSummary {
         self.peak_load = self.peak_load.max(sample.load[i]);
         for side in Side::BOTH.map(Side::index) {
             let works = Side::of(sample.active[i]).index() == side;
-            self.loads[side].push(sample.time, if works { sample.load[i] } else { 0.0 });
+            let load = if works { sample.load[i] } else { 0.0 };
+            self.loads[side].push(sample.time, load);
+            let left = sample.seconds_left[i][side];
+            self.final_groups[side] =
+                GroupAtEnd { load, fatigue: sample.fatigue[i][side], seconds_left: left.is_finite().then_some(left) };
             if sample.exhausted[i][side] && self.exhausted_at[side].is_none() {
                 self.exhausted_at[side] = Some(sample.time);
             }

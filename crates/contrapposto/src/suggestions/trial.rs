@@ -14,8 +14,13 @@ pub struct Suggestion {
     pub change: String,
     /// The kind of verdict with it.
     pub kind: VerdictKind,
-    /// How long the job can be done with it, s: until a group fails, or through the asked time.
+    /// The time that was asked for, s.
+    pub asked: f64,
+    /// How long the job can be done with it, s: until a group fails; of a job that holds, with the posture of its end held on. `None`
+    /// where no muscle sets a limit, or where it cannot be done.
     pub seconds: Option<f64>,
+    /// Least of that time for two of three people, s.
+    pub least: Option<f64>,
     /// Load of the hardest worked group.
     pub load: Option<f64>,
 }
@@ -56,42 +61,56 @@ pub fn suggestion(scenario: &Scenario, change: &Change, go_on: impl Fn() -> bool
     Some(Suggestion {
         change: change.in_words(scenario),
         kind: verdict.kind,
+        asked: scenario.run.end(),
         seconds: verdict.seconds,
-        load: verdict.who.map(|group| group.load),
+        least: verdict.range.map(|(least, _)| least),
+        load: verdict.hardest.map(|group| group.load),
     })
 }
 
+/// Times of a job for comparison: that of the mean person, and the least for two of three people, s; infinite without a limit.
+fn times(seconds: Option<f64>, least: Option<f64>) -> (f64, f64) {
+    (seconds.unwrap_or(f64::INFINITY), least.unwrap_or(f64::INFINITY))
+}
+
 impl Suggestion {
-    /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same for longer.
+    /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same for longer; where no muscle
+    /// limits the mean person before or after, longer for weaker ones.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
-        let least = verdict.seconds.unwrap_or(0.0) * LONGER;
-        let helps = |one: &Self| {
-            let longer = one.seconds.unwrap_or(f64::INFINITY) > least;
-            one.kind.is_done() && (one.kind > verdict.kind || (one.kind == verdict.kind && longer))
+        let (before, least_before) = times(verdict.seconds, verdict.range.map(|(least, _)| least));
+        let longer = |one: &Self| {
+            let (after, least_after) = times(one.seconds, one.least);
+            after > LONGER * before || (after.is_infinite() && least_after > LONGER * least_before)
         };
+        let helps =
+            |one: &Self| one.kind.is_done() && (one.kind > verdict.kind || one.kind == verdict.kind && longer(one));
         all.retain(helps);
-        let load = |one: &Self| one.load.unwrap_or(0.0);
-        let time = |one: &Self| one.seconds.unwrap_or(f64::INFINITY);
-        all.sort_by(|a, b| b.kind.cmp(&a.kind).then(time(b).total_cmp(&time(a))).then(load(a).total_cmp(&load(b))));
+        all.sort_by(|a, b| {
+            let ((time_a, least_a), (time_b, least_b)) = (times(a.seconds, a.least), times(b.seconds, b.least));
+            let load = a.load.unwrap_or(0.0).total_cmp(&b.load.unwrap_or(0.0));
+            b.kind.cmp(&a.kind).then(time_b.total_cmp(&time_a)).then(least_b.total_cmp(&least_a)).then(load)
+        });
         all
     }
 
-    /// `with the target of right hand 10 cm lower it holds through the run (60 min)`.
+    /// `with the target of right hand 10 cm lower it holds through the run (5.0 min), about 11.2 min in all`,
+    /// `with 20 % less load it can be held 11 s of the 30 s asked`.
     pub fn in_words(&self) -> String {
-        let time = self.seconds.map_or_else(String::new, how_long);
-        match self.kind {
-            VerdictKind::Holds if time.is_empty() => {
-                format!("with {} it holds without a limit by muscles", self.change)
+        let (change, asked) = (&self.change, how_long(self.asked));
+        match (self.kind, self.seconds) {
+            (VerdictKind::Holds, Some(time)) => {
+                format!("with {change} it holds through the run ({asked}), about {} in all", how_long(time))
             }
-            VerdictKind::Holds => format!("with {} it holds through the run ({time})", self.change),
-            _ => format!("with {} it can be held {time}", self.change),
+            (VerdictKind::Holds, None) => format!("with {change} it holds through the run ({asked}) without a limit"),
+            (_, time) => format!("with {change} it can be held {} of the {asked} asked", how_long(time.unwrap_or(0.0))),
         }
     }
 
-    /// The sentence after the verdict; `None` where nothing needs to change.
+    /// The sentence after the verdict; `None` where nothing was tried.
     pub fn sentence(helping: &[Self], tried: usize, verdict: &Verdict) -> Option<String> {
         match helping {
-            _ if tried == 0 || verdict.kind == VerdictKind::Holds => None,
+            _ if verdict.has_reserve() => Some("Nothing needs to change.".to_owned()),
+            _ if tried == 0 => None,
             [] => Some(format!("None of the {tried} changes that were tried helps.")),
             [best] => Some(format!("What would help: {}.", best.in_words())),
             [best, rest @ ..] => {

@@ -1,22 +1,55 @@
-//! Finds the muscle group that fails first in one posture that is held.
+//! Computes when muscle groups fail in a posture that is held.
 
-use super::Failure;
 use super::spread::spread;
+use super::{Failure, Findings, Tired, Who};
 use crate::fatigue::LoadHistory;
 use crate::joint_torques::GroupLoad;
-use crate::model::Model;
+use crate::model::{Model, MuscleGroup};
 
-/// The group that fails first when all groups were rested; `None` where all hold for ever.
-pub(super) fn fails_first(model: &Model, groups: &[GroupLoad]) -> Option<Failure> {
-    let group_of = |group: &GroupLoad| {
-        let groups = model.coordinates().get(group.coordinate)?.groups.as_ref()?;
-        Some(&groups[group.side.index()])
+/// When every group fails that was rested at first; infinite where it holds for ever.
+pub(super) fn failures(model: &Model, groups: &[GroupLoad]) -> Vec<Failure> {
+    let failure = |group: &GroupLoad| {
+        let muscles = &model.coordinates().get(group.coordinate)?.groups.as_ref()?[group.side.index()];
+        let range = spread(muscles, &LoadHistory::constant(group.load), 0.0);
+        Some(Failure { who: (*group).into(), time: muscles.fatigue.endurance_time(group.load), range })
     };
-    let tires = groups.iter().filter_map(|group| {
-        let seconds = group_of(group)?.fatigue.endurance_time(group.load);
-        seconds.is_finite().then_some((*group, seconds))
-    });
-    let (group, time) = tires.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let history = LoadHistory::constant(group.load);
-    Some(Failure { who: group.into(), time, range: spread(group_of(&group)?, &history, 0.0) })
+    groups.iter().filter_map(failure).collect()
+}
+
+/// A muscle group at the end of a run or motion.
+pub(super) struct GroupAtEnd<'a> {
+    /// Which, with its load at the end.
+    pub(super) who: Who,
+    /// Its law and strength.
+    pub(super) muscles: &'a MuscleGroup,
+    /// Relative load until then.
+    pub(super) history: &'a LoadHistory,
+    /// Fatigue at the start, 0..=1.
+    pub(super) start: f64,
+    /// Fatigue at the end.
+    pub(super) fatigue: f64,
+    /// For how long it could go on to hold its load, s; `None` for ever.
+    pub(super) seconds_left: Option<f64>,
+}
+
+impl GroupAtEnd<'_> {
+    /// When the group fails under its load at the time `end`, s after `start`; `None` where it does not work.
+    fn failure(&self, (start, end): (f64, f64)) -> Option<Failure> {
+        if self.who.load <= 0.0 {
+            return None;
+        }
+        let time = end + self.seconds_left.unwrap_or(f64::INFINITY);
+        let (least, greatest) = spread(self.muscles, self.history, self.start);
+        let range = (least.min(time) - start, greatest.max(time) - start);
+        Some(Failure { who: self.who, time: time - start, range })
+    }
+}
+
+impl Findings {
+    /// Takes in how long the posture of the end could be held on; `span` is the start and the end of the job, s.
+    pub(super) fn take_end(&mut self, groups: &[GroupAtEnd<'_>], span: (f64, f64)) {
+        self.later = groups.iter().filter_map(|group| group.failure(span)).collect();
+        let most = groups.iter().max_by(|a, b| a.fatigue.total_cmp(&b.fatigue));
+        self.tired = most.map(|group| Tired { who: group.who, fatigue: group.fatigue });
+    }
 }

@@ -10,6 +10,8 @@
 //! 5. [`VerdictKind::Holds`]: none of these.
 //!
 //! While a support is put elsewhere nobody is judged: a step is a motion of a second or two, whose torques at rest say little.
+//! Of a job that holds, the verdict says how long it could go on, were the posture of its end held on.
+//!
 //! A time comes with its spread ([`spread`]): over published laws of fatigue and over people of different strength.
 
 mod holding;
@@ -92,22 +94,51 @@ pub(crate) struct Failure {
     pub(crate) range: (f64, f64),
 }
 
+/// Fatigue above which a group counts as tired at the end of a job that holds. Assumed: half of what it can bear.
+pub const TIRED: f64 = 0.5;
+
+/// A muscle group that is tired.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tired {
+    /// The group with its load.
+    pub who: Who,
+    /// Its fatigue, 0..=1.
+    pub fatigue: f64,
+}
+
 /// The answer to a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     /// Its kind.
     pub kind: VerdictKind,
-    /// How long the job can be done, s: until `who` fails, or the time that was asked for; `None` where no muscle sets a limit, and
-    /// where the job cannot be done.
+    /// The time that was asked for, s; `None` where none was.
+    pub asked: Option<f64>,
+    /// How long the job can be done, s: until `who` fails; of a job that holds, with the posture of its end held on. `None` where no
+    /// muscle sets a limit, and where the job cannot be done.
     pub seconds: Option<f64>,
     /// Least and greatest time until `who` fails, s, over published laws and two of three people; infinite where it never fails.
     pub range: Option<(f64, f64)>,
-    /// The muscle group that is too weak or fails first; of a job that holds, the one with the greatest load.
+    /// The muscle group that is too weak or fails first; where none does, the one with the greatest load.
     pub who: Option<Who>,
+    /// The group with the greatest load.
+    pub hardest: Option<Who>,
+    /// Of a run that holds, the group with the greatest fatigue at the end.
+    pub tired: Option<Tired>,
+    /// Of a run that holds, the group that fails before its end in people whose strength is one standard deviation below the mean, or
+    /// by another published law.
+    pub fails_weaker: Option<Who>,
     /// The first sentence of every result.
     pub sentence: String,
     /// Targets that are missed, the most important first.
     pub missed: Vec<Missed>,
+}
+
+impl Verdict {
+    /// Nothing needs to change: the job holds, for the weaker of two of three people, too, and no group is tired at its end.
+    pub fn has_reserve(&self) -> bool {
+        let tired = self.tired.is_some_and(|tired| tired.fatigue > TIRED);
+        self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired
+    }
 }
 
 /// What a job has shown.
@@ -123,11 +154,28 @@ pub(crate) struct Findings {
     pub(crate) missed: Vec<Missed>,
     /// The group that fails first.
     pub(crate) fails: Option<Failure>,
+    /// When every group that works at the end would fail, were the posture of the end held on.
+    pub(crate) later: Vec<Failure>,
+    /// The group with the greatest fatigue at the end.
+    pub(crate) tired: Option<Tired>,
     /// The run was left before its end, at that time, s.
     pub(crate) interrupted: Option<f64>,
 }
 
 impl Findings {
+    /// The group that would fail first, were the posture of the end held on: by the time of the mean person; where that is no limit, by the
+    /// least of the range. `None` where no group ever fails.
+    fn fails_later(&self) -> Option<&Failure> {
+        let first = self.later.iter().min_by(|a, b| a.time.total_cmp(&b.time).then(a.range.0.total_cmp(&b.range.0)));
+        first.filter(|failure| failure.range.0.is_finite())
+    }
+
+    /// The group that fails before the asked time in weaker people, or by another published law.
+    fn fails_weaker(&self) -> Option<&Failure> {
+        let first = self.later.iter().min_by(|a, b| a.range.0.total_cmp(&b.range.0));
+        first.filter(|failure| self.asked.is_some_and(|asked| failure.range.0 < asked))
+    }
+
     /// The kind, by precedence.
     fn kind(&self) -> VerdictKind {
         let misses = self.missed.first().is_some_and(|missed| missed.decides);

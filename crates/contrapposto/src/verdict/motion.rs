@@ -1,7 +1,8 @@
 //! Judges a recorded motion.
 
+use super::holding::GroupAtEnd;
 use super::spread::spread;
-use super::{Failure, Findings, Verdict, Who};
+use super::{Failure, Findings, Verdict, VerdictKind, Who};
 use crate::assessment::{Assessment, GroupAssessment};
 use crate::joint_torques::GroupLoad;
 use crate::model::Model;
@@ -10,22 +11,44 @@ impl Verdict {
     /// Of a motion of `seconds` that was assessed.
     pub fn of_motion(model: &Model, found: &Assessment, seconds: f64) -> Self {
         let hardest = found.groups.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value));
+        let start = found.groups.first().and_then(|group| group.loads.pieces().first()).map_or(0.0, |(time, _)| *time);
         let failed = found.groups.iter().filter_map(|group| Some((group, group.exhausted_at?)));
         let fails = failed.min_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(group, time)| {
             let muscles = &model.coordinates()[group.coordinate].groups.as_ref()?[group.side.index()];
             let (least, greatest) = spread(muscles, &group.loads, 0.0);
             let who = Who { coordinate: group.coordinate, side: group.side, load: group.loads.at(time) };
-            Some(Failure { who, time, range: (least.min(time), greatest.max(time)) })
+            let range = (least.min(time) - start, greatest.max(time) - start);
+            Some(Failure { who, time: time - start, range })
         });
-        Findings {
+        let mut findings = Findings {
             asked: Some(seconds),
             hardest: hardest.filter(|group| group.peak_load.value > 0.0).map(|g| (load_of(g), Some(g.peak_load.time))),
             missing: found.missing.map(|(missing, time)| (missing, Some(time))),
             fails,
             ..Findings::default()
+        };
+        // Loads of fast postures at rest say nothing of how long the motion can go on.
+        if findings.kind() == VerdictKind::Holds && found.fast_share == 0.0 {
+            let groups: Vec<_> = found.groups.iter().filter_map(|group| at_end(model, group)).collect();
+            findings.take_end(&groups, (start, start + seconds));
         }
-        .verdict(model)
+        findings.verdict(model)
     }
+}
+
+/// A group at the end of the motion.
+fn at_end<'a>(model: &'a Model, group: &'a GroupAssessment) -> Option<GroupAtEnd<'a>> {
+    let (coordinate, side) = (group.coordinate, group.side);
+    let muscles = &model.coordinates()[coordinate].groups.as_ref()?[side.index()];
+    let left = muscles.fatigue.time_left(group.fatigue, group.load);
+    Some(GroupAtEnd {
+        who: Who { coordinate, side, load: group.load },
+        muscles,
+        history: &group.loads,
+        start: 0.0,
+        fatigue: group.fatigue,
+        seconds_left: left.is_finite().then_some(left),
+    })
 }
 
 fn load_of(group: &GroupAssessment) -> GroupLoad {

@@ -1,6 +1,6 @@
 //! Judges one posture that is held.
 
-use super::holding::fails_first;
+use super::holding::failures;
 use super::{Findings, Missed, Verdict};
 use crate::contact::Missing;
 use crate::equilibria::{RelaxedPosture, Work};
@@ -51,11 +51,14 @@ impl Verdict {
     /// ```
     pub fn of_posture(model: &Model, posture: &HeldPosture) -> Self {
         let hardest = posture.groups.iter().max_by(|a, b| a.load.total_cmp(&b.load));
+        let later = failures(model, &posture.groups);
+        let first = later.iter().min_by(|a, b| a.time.total_cmp(&b.time));
         Findings {
             hardest: hardest.map(|group| (*group, None)),
             missing: posture.missing.map(|missing| (missing, None)),
             missed: posture.missed.clone(),
-            fails: fails_first(model, &posture.groups),
+            fails: first.filter(|failure| failure.time.is_finite()).copied(),
+            later,
             ..Findings::default()
         }
         .verdict(model)

@@ -1,7 +1,8 @@
 //! Judges a run over time.
 
+use super::holding::GroupAtEnd;
 use super::spread::spread;
-use super::{Failure, Findings, Missed, Verdict, Who};
+use super::{Failure, Findings, Missed, Verdict, VerdictKind, Who};
 use crate::model::Side;
 use crate::simulation::{Scenario, StopReason, Summary};
 
@@ -11,16 +12,40 @@ impl Verdict {
         let levels = scenario.tasks.iter().map(|task| &task.goal).zip(summary.errors.iter().copied());
         let slip = summary.standing.as_ref().and_then(|standing| Missed::of_supports(standing.slip));
         let interrupted = summary.reason == StopReason::Interrupted;
-        Findings {
+        let mut findings = Findings {
             asked: Some(summary.end_time),
             hardest: summary.hardest.map(|(group, time)| (group, Some(time))),
             missing: summary.fall.map(|fall| (fall.missing, Some(fall.time))),
             missed: slip.into_iter().chain(Missed::of_levels(&scenario.model, levels)).collect(),
             fails: fails(scenario, summary),
             interrupted: interrupted.then_some(summary.end_time),
+            ..Findings::default()
+        };
+        if findings.kind() == VerdictKind::Holds {
+            findings.take_end(&groups_at_end(scenario, summary), (0.0, summary.end_time));
         }
-        .verdict(&scenario.model)
+        findings.verdict(&scenario.model)
     }
+}
+
+/// All groups of known strength at the end of a run.
+fn groups_at_end<'a>(scenario: &'a Scenario, summary: &'a Summary) -> Vec<GroupAtEnd<'a>> {
+    let mut all = vec![];
+    for (coordinate, course) in summary.coordinates.iter().enumerate() {
+        let Some(groups) = &scenario.model.coordinates()[coordinate].groups else { continue };
+        all.extend(Side::BOTH.map(|side| {
+            let end = course.final_groups[side.index()];
+            GroupAtEnd {
+                who: Who { coordinate, side, load: end.load },
+                muscles: &groups[side.index()],
+                history: &course.loads[side.index()],
+                start: scenario.start_fatigue[coordinate][side.index()],
+                fatigue: end.fatigue,
+                seconds_left: end.seconds_left,
+            }
+        }));
+    }
+    all
 }
 
 /// The group that fails first in a run.

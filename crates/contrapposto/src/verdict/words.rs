@@ -1,6 +1,6 @@
 //! Says a verdict in one sentence.
 
-use super::{Failure, Findings, Missed, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, Missed, TIRED, Verdict, VerdictKind, Who};
 use crate::model::{Model, plain_group_name, plain_name};
 use crate::tasks::Unit;
 
@@ -22,13 +22,22 @@ impl Findings {
             Some(time) => format!("Interrupted after {}; so far: {sentence}", how_long(time)),
             None => sentence,
         };
-        let fails = self.fails.filter(|_| kind == VerdictKind::HeldUntil);
-        let hardest = self.hardest.filter(|_| matches!(kind, VerdictKind::CannotBeDone | VerdictKind::Holds));
+        let fails = match kind {
+            VerdictKind::HeldUntil => self.fails,
+            VerdictKind::Holds => self.fails_later().copied(),
+            _ => None,
+        };
+        let hardest = self.hardest.map(|(group, _)| Who::from(group));
+        let names_hardest = matches!(kind, VerdictKind::CannotBeDone | VerdictKind::Holds);
         Verdict {
             kind,
-            seconds: fails.map(|failure| failure.time).or(self.asked.filter(|_| kind == VerdictKind::Holds)),
+            asked: self.asked,
+            seconds: fails.map(|failure| failure.time).filter(|time| time.is_finite()),
             range: fails.map(|failure| failure.range),
-            who: fails.map(|failure| failure.who).or(hardest.map(|(group, _)| group.into())),
+            who: fails.map(|failure| failure.who).or(hardest.filter(|_| names_hardest)),
+            hardest,
+            tired: self.tired,
+            fails_weaker: self.fails_weaker().map(|failure| failure.who),
             sentence,
             missed: self.missed,
         }
@@ -69,18 +78,58 @@ impl Findings {
     }
 
     fn holds(&self, model: &Model) -> String {
-        let hardest = self.hardest.filter(|(group, _)| group.load >= 0.005);
-        let worked = hardest
-            .map(|(group, _)| format!("{} at {} of its strength", Who::from(group).name(model), percent(group.load)));
-        let worked = worked.unwrap_or_else(|| "no muscle works".to_owned());
         if model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
             return "In balance; no strength of this body is known, so nothing can be said of load and time."
                 .to_owned();
         }
-        match self.asked {
-            Some(time) => format!("Holds through the run ({}); hardest worked: {worked}.", how_long(time)),
-            None => format!("Holds without a limit by muscles; hardest worked: {worked}."),
+        let head = match self.asked {
+            Some(time) => format!("Holds through the run ({})", how_long(time)),
+            None => "Holds without a limit by muscles".to_owned(),
+        };
+        let but = self.reservations(model).join(", and ");
+        let but = if but.is_empty() { but } else { format!(", but {but}") };
+        format!("{head}{but}.{} {}", self.held_on(model), self.hardest_worked(model))
+    }
+
+    /// `about one in six people fails before`, `right shoulder flexion is 82 % tired at the end`.
+    fn reservations(&self, model: &Model) -> Vec<String> {
+        let weaker = self.fails_weaker().map(|failure| {
+            let first = self.fails_later().is_some_and(|other| other.who == failure.who);
+            let who = if first { String::new() } else { format!(" ({})", failure.who.name(model)) };
+            format!("about one in six people fails before{who}")
+        });
+        let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
+        let tired =
+            tired.map(|tired| format!("{} is {} tired at the end", tired.who.name(model), percent(tired.fatigue)));
+        weaker.into_iter().chain(tired).collect()
+    }
+
+    /// ` Held on like this: about 6.6 min in all (3.9 min to 21.4 min for two of three people), then right shoulder flexion fails first.`
+    fn held_on(&self, model: &Model) -> String {
+        let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.range.0 < A_DAY) else {
+            return if self.later.is_empty() || self.asked.is_none() {
+                String::new()
+            } else {
+                " No muscle sets a limit.".to_owned()
+            };
+        };
+        let (who, range) = (who.name(model), in_words(*range));
+        let on = if self.asked.is_some() { "Held on like this: " } else { "" };
+        if *time < A_DAY {
+            return format!(" {on}about {} in all ({range}), then {who} fails first.", how_long(*time));
         }
+        format!(" {on}no limit in all ({range}; {who} would fail first).")
+    }
+
+    /// `Hardest worked: right shoulder flexion at 17 % of its strength.`
+    fn hardest_worked(&self, model: &Model) -> String {
+        let hardest = self.hardest.filter(|(group, _)| group.load >= 0.005);
+        hardest.map_or_else(
+            || "No muscle works.".to_owned(),
+            |(group, _)| {
+                format!("Hardest worked: {} at {} of its strength.", Who::from(group).name(model), percent(group.load))
+            },
+        )
     }
 }
 

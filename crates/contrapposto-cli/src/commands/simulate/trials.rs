@@ -1,12 +1,11 @@
-//! Tries the changes of a job that does not hold, several at once.
+//! Tries the changes of a job that does not hold with reserve, several at once.
 
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::suggestions::{Change, Suggestion, changes, suggestion, with_breaks};
-use contrapposto::verdict::VerdictKind;
 
 use crate::view::answer::Answer;
 
-/// Tries all changes of a job that does not hold, on `threads` threads, while `go_on` says yes, and completes the answer. The
+/// Tries all changes of a job that does not hold, or holds without reserve, on `threads` threads, while `go_on` says yes, and completes the answer. The
 /// findings do not depend on the number of threads.
 pub(super) fn try_changes(
     answer: &mut Answer,
@@ -16,7 +15,8 @@ pub(super) fn try_changes(
     go_on: impl Fn() -> bool + Sync,
 ) {
     let verdict = &answer.verdict;
-    if verdict.kind == VerdictKind::Holds {
+    if verdict.has_reserve() {
+        answer.advice = Suggestion::sentence(&[], 0, verdict);
         return;
     }
     let mut tried: Vec<Option<Suggestion>> = vec![];
@@ -29,7 +29,7 @@ pub(super) fn try_changes(
             runs.into_iter().map(|run| run.join().ok().flatten()).collect::<Vec<_>>()
         }));
     }
-    let breaks = (verdict.kind == VerdictKind::HeldUntil).then(|| with_breaks(scenario, summary)).flatten();
+    let breaks = verdict.kind.is_done().then(|| with_breaks(scenario, summary)).flatten();
     let tried: Vec<Suggestion> = tried.into_iter().flatten().chain(breaks).collect();
     let number = tried.len();
     let helping = Suggestion::that_help(tried, verdict);

@@ -38,7 +38,8 @@ pub(crate) fn report_of_comparison(postures: &[ComparedPosture], text: &CompareT
     report.figures = postures
         .iter()
         .map(|compared| {
-            let time = compared.verdict.seconds.map_or_else(|| "no time".to_owned(), how_long);
+            let none = if compared.verdict.kind.is_done() { "no limit" } else { "no time" };
+            let time = compared.verdict.seconds.map_or_else(|| none.to_owned(), how_long);
             figure(&compared.letter.to_string(), time, &compared.title)
         })
         .collect();

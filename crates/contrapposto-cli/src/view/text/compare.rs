@@ -207,11 +207,10 @@ impl ComparedPostureText {
     }
 }
 
-/// `The easiest first: B holds through 5.0 min, hardest worked at 9 %; A can be held 12.0 min.`
+/// `The easiest first: B holds through 5.0 min, 33.0 min in all, hardest worked at 9 %; A can be held 12.0 min.`
 fn answer(postures: &[ComparedPosture]) -> String {
     let seconds = |stance: &ComparedPosture| match stance.verdict.kind {
-        VerdictKind::Holds => f64::INFINITY,
-        VerdictKind::HeldUntil => stance.verdict.seconds.unwrap_or(f64::INFINITY),
+        VerdictKind::Holds | VerdictKind::HeldUntil => stance.verdict.seconds.unwrap_or(f64::INFINITY),
         _ => f64::NEG_INFINITY,
     };
     let said = |stance: &ComparedPosture| match stance.verdict.kind {
@@ -219,17 +218,18 @@ fn answer(postures: &[ComparedPosture]) -> String {
         VerdictKind::CannotStand => "cannot stand".to_owned(),
         VerdictKind::NotReached => "does not reach its target".to_owned(),
         VerdictKind::HeldUntil => format!("can be held {}", stance.verdict.seconds.map(how_long).unwrap_or_default()),
-        VerdictKind::Holds => match stance.verdict.seconds {
-            Some(time) => {
-                let load = stance.verdict.who.map_or(0.0, |group| group.load);
-                format!("holds through {}, hardest worked at {:.0} %", how_long(time), 100.0 * load)
+        VerdictKind::Holds => match stance.verdict.asked {
+            Some(asked) => {
+                let load = stance.verdict.hardest.map_or(0.0, |group| group.load);
+                let all = stance.verdict.seconds.map_or_else(|| "without a limit".to_owned(), how_long);
+                format!("holds through {}, {all} in all, hardest worked at {:.0} %", how_long(asked), 100.0 * load)
             }
             None => "holds without a limit by muscles".to_owned(),
         },
     };
     let mut order: Vec<&ComparedPosture> = postures.iter().collect();
     // Of two that hold, the one whose hardest worked group works less.
-    let load = |stance: &ComparedPosture| stance.verdict.who.map_or(0.0, |group| group.load);
+    let load = |stance: &ComparedPosture| stance.verdict.hardest.map_or(0.0, |group| group.load);
     order.sort_by(|a, b| seconds(b).total_cmp(&seconds(a)).then(load(a).total_cmp(&load(b))));
     let list: Vec<String> = order.iter().map(|stance| format!("{} {}", stance.letter, said(stance))).collect();
     format!("The easiest first: {}.", list.join("; "))
