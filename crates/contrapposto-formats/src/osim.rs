@@ -20,6 +20,7 @@ mod joint;
 mod muscle;
 mod path;
 mod sets;
+mod springs;
 mod tree;
 mod wrap;
 

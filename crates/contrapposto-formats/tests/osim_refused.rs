@@ -65,10 +65,9 @@ fn what_matters_and_is_not_supported_is_an_error_with_its_place() {
             "a joint that closes a loop",
         ),
         (
-            force("<BushingForce name=\"x\"/>"),
-            "<BushingForce> at line 8, column 1: force BushingForce is not supported; accepted: CoordinateLimitForce",
+            force("<FunctionBasedBushingForce name=\"x\"/>"),
+            "<FunctionBasedBushingForce> at line 8, column 1: force FunctionBasedBushingForce is not supported; accepted: CoordinateLimitForce",
         ),
-        (force("<Ligament name=\"x\"/>"), "force Ligament is not supported"),
         (force("<MeyerFregly2016Force name=\"x\"/>"), "force MeyerFregly2016Force is not supported"),
         (force("<PrescribedForce name=\"x\"/>"), "force PrescribedForce is not supported"),
         (

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::muscle::{FiberState, PathGeometry, PathRule, passive_torque, strength};
+use contrapposto::muscle::{FiberState, PathGeometry, PathRule, bushing_torque, passive_torque, strength};
 use contrapposto::posture::Posture;
 use contrapposto_formats::tissue::SourcedModel;
 
@@ -57,6 +57,7 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
     let mut kinematics = Kinematics::new(model);
     let mut geometry = PathGeometry::new(model, &muscles.paths);
     let (mut strengths, mut passive) = (vec![[0.0; 2]; model.rates().len()], vec![0.0; model.rates().len()]);
+    let mut of_bushings = passive.clone();
     for (index, (time, posture)) in frames.iter().enumerate() {
         kinematics.update(model, posture).map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
         geometry.update(model, &kinematics, &muscles.paths, rule);
@@ -67,6 +68,8 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
         let (rest, full) = (states(args.activation), states(1.0));
         strength(muscles, &geometry, &rest, &full, &mut strengths);
         passive_torque(muscles, &geometry, &rest, &mut passive);
+        bushing_torque(&muscles.bushings, model, &kinematics, &mut of_bushings);
+        passive.iter_mut().zip(&of_bushings).for_each(|(passive, more)| *passive += more);
         let frame = MuscleFrame {
             index,
             time: *time,

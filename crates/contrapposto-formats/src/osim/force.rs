@@ -5,12 +5,14 @@ use super::coordinates::Coordinates;
 use super::error::OsimProblem;
 use super::functions;
 use super::sets::Scene;
+use super::springs;
 use crate::model_ir::{Coupling, Ignored, ModelIr, PassiveIr, PassiveLawIr};
 use crate::xml::Node;
 use contrapposto::passive::{CoordinateLimitForce, DoubleExponential, End};
 
 const FORCES: &str = "CoordinateLimitForce, ExponentialCoordinateLimitForce, SpringGeneralizedForce, \
-                      ExpressionBasedCoordinateForce, muscles, actuators, contacts, and forces with <appliesForce>false</appliesForce>";
+                      ExpressionBasedCoordinateForce, muscles, Ligament, \
+                      Blankevoort1991Ligament, PathSpring, BushingForce, actuators, contacts, and forces with <appliesForce>false</appliesForce>";
 /// Contacts of the body with the ground, which a scenario's supports stand for.
 const CONTACTS: [&str; 3] = ["HuntCrossleyForce", "ElasticFoundationForce", "SmoothSphereHalfSpaceForce"];
 const CONSTRAINTS: &str = "CoordinateCouplerConstraint, and constraints with <isEnforced>false</isEnforced>";
@@ -38,6 +40,8 @@ pub(super) fn read<'a>(
         let kind = node.name();
         if kind.contains("Muscle") {
             ignored.add("muscles", 1);
+        } else if springs::KINDS.contains(&kind) {
+            ignored.add("ligaments, path springs and bushings", 1);
         } else if kind.ends_with("Actuator") {
             ignored.add("actuators", 1);
         } else if !reader.flag(node, "appliesForce", true)? || reader.flag(node, "isDisabled", false)? {

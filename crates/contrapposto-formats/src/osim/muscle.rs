@@ -1,4 +1,4 @@
-//! Reads the muscles of a model. One that is not supported is counted with its reason, and does not refuse the model.
+//! Reads the muscles, ligaments and springs of a model. One that is not supported is counted with its reason, and does not refuse the model.
 
 use std::collections::HashMap;
 
@@ -13,6 +13,7 @@ use super::error::OsimProblem;
 use super::functions;
 use super::path::Surroundings;
 use super::sets::Scene;
+use super::springs;
 use super::wrap::WrapObjects;
 use crate::model_ir::{ModelIr, MusclesIr};
 use crate::xml::Node;
@@ -31,8 +32,10 @@ pub(super) fn read<'a>(reader: &Reader<'a>, scene: &Scene<'a>, coordinates: &Coo
     let objects = WrapObjects::read(reader, scene, &segments, &mut all.tally);
     let list = coordinates.list();
     let around = Surroundings { reader, scene, coordinates, list, segments: &segments, objects: &objects };
-    for &node in scene.forces.iter().filter(|node| node.name().contains("Muscle")) {
-        match off(reader, node).and_then(|off| if off { Ok(None) } else { muscle(&around, node, &mut all).map(Some) }) {
+    let soft = |kind: &str| kind.contains("Muscle") || springs::KINDS.contains(&kind);
+    for &node in scene.forces.iter().filter(|node| soft(node.name())) {
+        let read = if node.name().contains("Muscle") { muscle } else { springs::read };
+        match off(reader, node).and_then(|off| if off { Ok(None) } else { read(&around, node, &mut all).map(Some) }) {
             Ok(Some(points)) => {
                 all.tally.read(node.name());
                 points.into_iter().for_each(|kind| all.tally.read(kind));

@@ -121,6 +121,11 @@ impl<'a> Scene<'a> {
         scene.forces.extend(set("ForceSet")?);
         scene.constraints.extend(set("ConstraintSet")?);
         scene.markers.extend(set("MarkerSet")?);
+        for &force in scene.forces.iter().filter(|node| node.name().ends_with("BushingForce")) {
+            let path = format!("/forceset/{}", reader.name(force)?);
+            let frames = force.child("frames").into_iter().chain(force.child("components")).flat_map(Node::children);
+            scene.frames.add_offsets(reader, &path, frames)?;
+        }
         for (nodes, path) in
             [(Vec::from_iter(inside(Some(model))), ""), (Vec::from_iter(set("ComponentSet")?), "/componentset")]
         {
@@ -246,6 +251,22 @@ impl<'a> Scene<'a> {
         } else {
             self.frames.socket(reader, node, "socket_parent_frame", path)
         }
+    }
+
+    /// A frame of a bushing, the first or the second: by a socket, or by body and pose in older documents.
+    pub(super) fn frame_of_bushing(
+        &self,
+        reader: &Reader<'a>,
+        node: Node<'a>,
+        path: &str,
+        number: usize,
+    ) -> Result<Attachment, OsimProblem> {
+        if node.child(&format!("body_{number}")).is_none() {
+            return self.frames.socket(reader, node, &format!("socket_frame{number}"), path);
+        }
+        let body = self.old_body(reader, node, &format!("body_{number}"))?;
+        let [location, orientation] = ["location", "orientation"].map(|what| format!("{what}_body_{number}"));
+        Ok(Attachment { body, pose: reader.old_pose(node, &location, &orientation)? })
     }
 
     /// The segment of a body; `None` for ground.

@@ -4,8 +4,10 @@
 //! [`Musculature`] is given and does not change; [`PathGeometry`] and [`FiberState`] depend on the posture. Paths follow one of two rules
 //! ([`PathRule`]): shortest lines, whose moment arms are minus the derivatives of the length, or OpenSim's.
 
+mod bushing;
 mod fiber;
 mod geometry;
+mod ligament;
 mod path;
 mod routing;
 mod rule;
@@ -13,21 +15,27 @@ mod tolerances;
 mod torque;
 mod wrap;
 
+pub use bushing::{Bushing, bushing_torque};
 pub use fiber::{
     ActiveCurve, DeGrooteFregly2016, FiberLaw, FiberState, Millard2012, Muscle, MuscleError, MuscleSpec,
     PassiveFiberCurve, PassiveShape, Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
 pub use geometry::PathGeometry;
+pub use ligament::{Ligament, LigamentLaw};
 pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
 pub use rule::{PathRule, WrapMethod};
 pub use torque::{passive_torque, strength};
 pub use wrap::{Quadrant, WrapObject, WrapShape};
 
-/// The muscles of a body.
+/// The muscles of a body, with its ligaments and springs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Musculature {
     /// Their paths and the surfaces that they wrap over.
     pub paths: Paths,
     /// The muscles, in the file's order.
     pub muscles: Vec<Muscle>,
+    /// Ligaments and springs along paths.
+    pub ligaments: Vec<Ligament>,
+    /// Springs between frames.
+    pub bushings: Vec<Bushing>,
 }

@@ -4,7 +4,8 @@ use super::Musculature;
 use super::fiber::FiberState;
 use super::geometry::PathGeometry;
 
-/// Torque of the fibres' passive forces by rate, N m (N for slides), overwritten; one state a muscle. Does not allocate.
+/// Torque of the fibres' passive forces and of ligaments by rate, N m (N for slides), overwritten; one state a muscle. That of bushings
+/// is [`super::bushing_torque`]. Does not allocate.
 ///
 /// # Panics
 /// Unless there is a state for every muscle and room for every rate.
@@ -15,6 +16,11 @@ pub fn passive_torque(muscles: &Musculature, geometry: &PathGeometry, states: &[
         let arms = geometry.moment_arms(muscle.spec().path);
         assert_eq!(arms.len(), torque.len(), "one torque a rate");
         torque.iter_mut().zip(arms).for_each(|(torque, arm)| *torque += arm * state.passive_force);
+    }
+    for ligament in &muscles.ligaments {
+        let (tension, _) = ligament.law.tension_and_slope(geometry.lengths()[ligament.path]);
+        let arms = geometry.moment_arms(ligament.path);
+        torque.iter_mut().zip(arms).for_each(|(torque, arm)| *torque += arm * tension);
     }
 }
 
