@@ -1,5 +1,6 @@
 //! Writes a verdict as it stands in every JSON file.
 
+use contrapposto::joint_torques::Hazard;
 use contrapposto::model::Model;
 use contrapposto::suggestions::Suggestion;
 use contrapposto::tasks::Unit;
@@ -28,10 +29,36 @@ pub struct VerdictText {
     pub tired: Option<TiredText>,
     /// Of a run that holds, the group that fails before its end in weaker people: one in six, by the spread.
     pub fails_weaker: Option<String>,
+    /// Coordinates that ligaments carry at an angle where that is a hazard.
+    pub hazards: Vec<HazardText>,
     /// The same in one sentence.
     pub sentence: String,
     /// Targets that are missed, the most important first.
     pub missed: Vec<MissedText>,
+}
+
+/// A coordinate that ligaments carry at an angle where that is a hazard.
+#[derive(Clone, Debug, Serialize)]
+pub struct HazardText {
+    /// The coordinate.
+    pub coordinate: String,
+    /// Its angle, deg.
+    pub angle_deg: f64,
+    /// Share of the external torque that passive tissue carries, 0 to 1.
+    pub carried: f64,
+    /// What carries how much, and what a study found.
+    pub sentence: String,
+}
+
+impl HazardText {
+    fn new(model: &Model, hazard: &Hazard) -> Self {
+        Self {
+            coordinate: model.coordinates()[hazard.coordinate].name.clone(),
+            angle_deg: hazard.angle.to_degrees(),
+            carried: hazard.carried(),
+            sentence: format!("ligaments hold {}; {}", hazard.in_words(model), hazard.row.finding),
+        }
+    }
 }
 
 /// A muscle group with its load.
@@ -63,6 +90,8 @@ pub struct SuggestionText {
     pub minutes: Option<f64>,
     /// Least of that time for two of three people, min; `null`: not known, or no limit.
     pub least_minutes: Option<f64>,
+    /// Number of coordinates that ligaments carry in hazard.
+    pub hazards: usize,
     /// Load of the group that works hardest.
     pub load: Option<f64>,
 }
@@ -74,6 +103,7 @@ impl From<&Suggestion> for SuggestionText {
             kind: suggestion.kind.word(),
             minutes: suggestion.seconds.map(|seconds| seconds / 60.0),
             least_minutes: suggestion.least.filter(|least| least.is_finite()).map(|seconds| seconds / 60.0),
+            hazards: suggestion.hazards,
             load: suggestion.load,
         }
     }
@@ -104,6 +134,7 @@ impl VerdictText {
             hardest: verdict.hardest.map(|who| LoadText { who: who.name(model), load: who.load }),
             tired: verdict.tired.map(|tired| TiredText { who: tired.who.name(model), fatigue: tired.fatigue }),
             fails_weaker: verdict.fails_weaker.map(|who| who.name(model)),
+            hazards: verdict.hazards.iter().map(|hazard| HazardText::new(model, hazard)).collect(),
             sentence: verdict.sentence.clone(),
             missed: verdict.missed.iter().map(MissedText::from).collect(),
         }

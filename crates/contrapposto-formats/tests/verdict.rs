@@ -256,3 +256,48 @@ fn words_of_kinds_are_those_of_the_files_and_only_two_are_done() {
     let done: Vec<bool> = VerdictKind::ALL.iter().map(|kind| kind.is_done()).collect();
     assert_eq!(done, [false, false, false, true, true]);
 }
+
+/// A man whose root is held, bent in the lumbar spine alone.
+fn bent(degrees: f64) -> Scenario {
+    let text = format!(
+        "format = 1\n[posture]\npelvis_ty_m = 0.95\nlumbar_extension_deg = {degrees}\n[coordinates]\nfree = []\n\
+         [strategy]\nkind = \"active\"\n[run]\nduration_s = 1\nstep_s = 0.1\n"
+    );
+    read_scenario("bent.toml", text.as_bytes(), None).unwrap()
+}
+
+#[test]
+fn a_lumbar_spine_that_hangs_on_its_ligaments_holds_but_is_named_with_the_torque_that_levers_give() {
+    let scenario = bent(-60.0);
+    let (_, verdict, _) = run(&scenario);
+    let model = &scenario.model;
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &scenario.start).unwrap();
+    let i = model.coordinate("lumbar_extension").unwrap();
+    let joint = kinematics.station(model, model.segment("abdomen").unwrap(), Vector3::zeros());
+    let legs = ["pelvis", "femur", "tibia", "talus", "calcn", "toes"];
+    let above =
+        model.segments().iter().enumerate().filter(|(_, part)| !legs.iter().any(|leg| part.name.starts_with(leg)));
+    let torque: f64 = above
+        .map(|(s, part)| part.mass * GRAVITY * (kinematics.station(model, s, part.center_of_mass) - joint).x)
+        .sum();
+    let passive = model.coordinates()[i].passive.as_ref().unwrap().torque(i, scenario.start.values());
+    let share = (passive / torque).min(1.0);
+    assert!(share > 0.5, "{passive} of {torque}");
+    assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
+    let words =
+        format!("ligaments hold lumbar extension at \u{2212}60.0° ({:.0}\u{a0}% of {torque:.0} N m)", 100.0 * share);
+    assert!(verdict.sentence.contains(&words) && verdict.sentence.contains(", but "), "{words}: {}", verdict.sentence);
+    assert!(!verdict.has_reserve());
+    let text = VerdictText::new(model, &verdict);
+    let hazard = &text.hazards[0];
+    assert_eq!((hazard.coordinate.as_str(), text.hazards.len()), ("lumbar_extension", 1));
+    assert!((hazard.angle_deg + 60.0).abs() < 1e-9 && (hazard.carried - share).abs() < 1e-9);
+    assert!(hazard.sentence.starts_with(&words), "{}", hazard.sentence);
+}
+
+#[test]
+fn a_lumbar_spine_bent_within_three_quarters_of_its_range_is_in_no_hazard() {
+    let (_, verdict, _) = run(&bent(-40.0));
+    assert!(verdict.hazards.is_empty() && !verdict.sentence.contains("ligaments"), "{}", verdict.sentence);
+}

@@ -78,7 +78,8 @@ pub(super) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held
     let slip = levels().filter(|(goal, _)| goal.hard).map(|(_, level)| level.length).sum();
     let targets = levels().filter(|(goal, _)| !goal.hard).map(|(goal, level)| (goal, level.length));
     let missed = Missed::of_supports(slip).into_iter().chain(Missed::of_levels(&scenario.model, targets)).collect();
-    let posture = HeldPosture { groups: held.groups.clone(), missing: held.missing, missed };
+    let posture =
+        HeldPosture { groups: held.groups.clone(), missing: held.missing, missed, hazards: held.hazards.clone() };
     Verdict::of_posture(&scenario.model, &posture)
 }
 

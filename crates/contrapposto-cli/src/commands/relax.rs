@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
-use contrapposto::joint_torques::active_torque;
+use contrapposto::joint_torques::{Hazard, active_torque};
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
 use contrapposto::verdict::{HeldPosture, Missed, Verdict};
@@ -68,7 +68,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         Err(SearchError::Relax(error)) => return Err(Fail::Refused(format!("{name}: {error}"))),
         Err(error) => return Err(Fail::Job(format!("{name}: {error}"))),
     };
-    let verdict = verdict(&scenario, &found);
+    let verdict = verdict(&scenario, &found)?;
     let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
     let names = RELAX_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
@@ -87,14 +87,17 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
 }
 
 /// The answer: that of the posture of least effort.
-fn verdict(scenario: &RelaxScenario, found: &Equilibria) -> Verdict {
+fn verdict(scenario: &RelaxScenario, found: &Equilibria) -> Result<Verdict, Fail> {
     let Some(best) = found.postures.first() else {
-        return Verdict::of_posture(&scenario.model, &HeldPosture::default());
+        return Ok(Verdict::of_posture(&scenario.model, &HeldPosture::default()));
     };
     let lengths = best.relaxed.levels.iter().map(|level| level.length);
     let missed = Missed::of_levels(&scenario.model, scenario.goals.iter().zip(lengths));
     let missed = Missed::of_supports(best.relaxed.slip).into_iter().chain(missed).collect();
-    Verdict::of_posture(&scenario.model, &HeldPosture::of_equilibrium(best, missed))
+    let frame = frame_of_posture(&scenario.model, best)?;
+    let hazards = Hazard::all(&scenario.model, &frame.angles, &frame.external, &frame.passive);
+    let posture = HeldPosture { hazards, ..HeldPosture::of_equilibrium(best, missed) };
+    Ok(Verdict::of_posture(&scenario.model, &posture))
 }
 
 /// Writes all files.

@@ -42,10 +42,13 @@ impl Answer {
     }
 }
 
-/// The sentence, and below it the targets of lower priority that are missed.
+/// The sentence, and below it the findings of studies about its hazards, and the targets of lower priority that are missed.
 pub(crate) fn first_lines(verdict: &Verdict) -> String {
+    let mut findings: Vec<&str> = verdict.hazards.iter().map(|hazard| hazard.row.finding.as_str()).collect();
+    findings.dedup();
+    let hazards: String = findings.iter().map(|finding| format!("Hazard: {finding}.\n")).collect();
     let more = also_missed(verdict).map_or(String::new(), |more| more + "\n");
-    format!("{}\n{more}", verdict.sentence)
+    format!("{}\n{hazards}{more}", verdict.sentence)
 }
 
 /// `Missed besides, of lower priority: look at head by 3.4°.`

@@ -3,7 +3,7 @@
 use contrapposto::assessment::Instant;
 use contrapposto::contact::ContactForces;
 use contrapposto::equilibria::RelaxedPosture;
-use contrapposto::joint_torques::{active_torque, effort, relative_load};
+use contrapposto::joint_torques::{active_torque, carried, effort, relative_load};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Contact, Sample, Standing};
@@ -119,11 +119,6 @@ impl Frame {
     pub(crate) fn carried(&self, i: usize) -> Option<f64> {
         carried(self.external[i], self.passive[i])
     }
-}
-
-/// Share of an external torque that passive tissue carries, 0..=1; `None` below 0.5 N m.
-pub(crate) fn carried(external: f64, passive: f64) -> Option<f64> {
-    (external.abs() > 0.5).then(|| (-passive / external).clamp(0.0, 1.0))
 }
 
 /// The frame of a posture of least effort, with the contact forces and torques that the search found.

@@ -2,7 +2,7 @@
 
 use contrapposto::assessment::{AssessSettings, GroupAssessment, assess};
 use contrapposto::contact::{Missing, Support};
-use contrapposto::joint_torques::GroupLoad;
+use contrapposto::joint_torques::{GroupLoad, Hazard};
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -18,6 +18,8 @@ pub(crate) struct Held {
     pub(crate) missing: Option<Missing>,
     /// Groups at work.
     pub(crate) groups: Vec<GroupLoad>,
+    /// Coordinates in hazard.
+    pub(crate) hazards: Vec<Hazard>,
 }
 
 impl Held {
@@ -44,5 +46,10 @@ pub(crate) fn held(model: &Model, posture: &Posture, loads: &[Load], supports: &
         let GroupAssessment { coordinate, side, peak_torque: torque, .. } = *group;
         GroupLoad { coordinate, side, torque, load: group.peak_load.value }
     });
-    Ok(Held { frame, missing: found.missing.map(|(missing, _)| missing), groups: groups.collect() })
+    Ok(Held {
+        frame,
+        missing: found.missing.map(|(missing, _)| missing),
+        groups: groups.collect(),
+        hazards: found.hazards.clone(),
+    })
 }

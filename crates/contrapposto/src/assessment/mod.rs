@@ -14,6 +14,7 @@ mod settings;
 
 use nalgebra::Vector3;
 
+use crate::joint_torques::Hazard;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
@@ -57,6 +58,7 @@ pub fn assess(
         evaluation.update(index, *time, posture, &mut loads)?;
         groups.add(&evaluation, index, *time, before.map_or(0.0, |before| time - before));
         found.take_root(&evaluation, index, *time);
+        found.take_hazards(&evaluation);
         centers.extend(evaluation.torques.kinematics().center_of_mass(model));
         record(&Instant {
             index,
@@ -84,6 +86,22 @@ pub fn assess(
 }
 
 impl Assessment {
+    /// Takes in the hazards of an instant.
+    fn take_hazards(&mut self, evaluation: &Evaluation<'_>) {
+        let torques = &evaluation.torques;
+        for (i, coordinate) in evaluation.model.coordinates().iter().enumerate() {
+            let Some(rate) = coordinate.rate else { continue };
+            let ((external, passive), angle) = (torques.external_and_passive(rate), torques.angles()[i]);
+            let Some(row) = Hazard::at(coordinate, angle, external, passive) else { continue };
+            let new = Hazard { coordinate: i, angle, external, passive, row };
+            match self.hazards.iter_mut().find(|hazard| hazard.coordinate == i) {
+                Some(hazard) if hazard.passive.abs() < passive.abs() => *hazard = new,
+                Some(_) => {}
+                None => self.hazards.push(new),
+            }
+        }
+    }
+
     /// Takes in what the root lacks at an instant.
     fn take_root(&mut self, evaluation: &Evaluation<'_>, index: usize, time: f64) {
         let (force, moment) = evaluation.residual();

@@ -3,7 +3,7 @@
 use crate::contact::{ContactForces, Missing};
 use crate::fatigue::LoadHistory;
 use crate::hybrid::{Decision, Strategy};
-use crate::joint_torques::JointTorques;
+use crate::joint_torques::{Hazard, JointTorques};
 use crate::model::Side;
 
 /// One instant of the motion.
@@ -123,6 +123,8 @@ pub struct Proposal {
 pub struct Assessment {
     /// Every group of known strength: those that fail first, then by fatigue, then by load.
     pub groups: Vec<GroupAssessment>,
+    /// Coordinates in hazard, each where passive tissue carries most.
+    pub hazards: Vec<Hazard>,
     /// Greatest force that the root lacked, N: neither loads nor supports gave it.
     pub residual_force: Peak,
     /// Greatest moment that it lacked, N m.

@@ -1,8 +1,8 @@
-//! Holds the load of one muscle group.
+//! Holds and computes the load of one muscle group.
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::Side;
+use crate::model::{Coordinate, MuscleGroup, Side};
 
 /// A muscle group at work.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,4 +15,11 @@ pub struct GroupLoad {
     pub torque: f64,
     /// `|torque|` over strength.
     pub load: f64,
+}
+
+/// Relative load of a coordinate at `angle` (rad; [`super::JointTorques::angles`]): `|active|` (N m, about its axis) over the strength of
+/// the muscle group that gives it; 0 for a coordinate of unknown strength.
+pub fn relative_load(coordinate: &Coordinate, angle: f64, active: f64) -> f64 {
+    let strength = |groups: &[MuscleGroup; 2]| groups[Side::of(active).index()].strength.torque(angle);
+    coordinate.groups.as_ref().map_or(0.0, |groups| active.abs() / strength(groups))
 }

@@ -19,13 +19,15 @@
 
 mod about_axes;
 mod group_load;
+mod hazard;
 
 pub use about_axes::AboutAxes;
-pub use group_load::GroupLoad;
+pub use group_load::{GroupLoad, relative_load};
+pub use hazard::{Hazard, carried};
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};
-use crate::model::{Coordinate, Model, Side};
+use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, PassiveTorqueError};
 
@@ -36,13 +38,6 @@ const LEAST_TURN: f64 = 1e-6;
 #[inline]
 pub fn active_torque(external: f64, passive: f64) -> f64 {
     -(passive + external)
-}
-
-/// Relative load of a coordinate at `angle` (rad; [`JointTorques::angles`]): `|active|` (N m, about its axis) over the strength of
-/// the muscle group that gives it; 0 for a coordinate of unknown strength.
-pub fn relative_load(coordinate: &Coordinate, angle: f64, active: f64) -> f64 {
-    let strength = |groups: &[crate::model::MuscleGroup; 2]| groups[Side::of(active).index()].strength.torque(angle);
-    coordinate.groups.as_ref().map_or(0.0, |groups| active.abs() / strength(groups))
 }
 
 /// Effort: the sum of squares of relative loads, or of errors of effort tasks, which are relative loads with a sign.

@@ -4,7 +4,7 @@ use super::trial::Suggestion;
 use crate::fatigue::FatigueLaw;
 use crate::model::Side;
 use crate::simulation::{Scenario, Summary};
-use crate::verdict::VerdictKind;
+use crate::verdict::{Verdict, VerdictKind};
 
 /// A break comes after so much work, s.
 pub const BREAK_EVERY: f64 = 600.0;
@@ -47,6 +47,7 @@ pub fn with_breaks(scenario: &Scenario, summary: &Summary) -> Option<Suggestion>
         asked,
         seconds: (first < LONGEST).then_some(first),
         least: None,
+        hazards: Verdict::of_run(scenario, summary).hazards.len(),
         load: summary.hardest.map(|(group, _)| group.load),
     })
 }

@@ -21,6 +21,8 @@ pub struct Suggestion {
     pub seconds: Option<f64>,
     /// Least of that time for two of three people, s.
     pub least: Option<f64>,
+    /// Number of coordinates that ligaments carry in hazard at the end.
+    pub hazards: usize,
     /// Load of the hardest worked group.
     pub load: Option<f64>,
 }
@@ -64,6 +66,7 @@ pub fn suggestion(scenario: &Scenario, change: &Change, go_on: impl Fn() -> bool
         asked: scenario.run.end(),
         seconds: verdict.seconds,
         least: verdict.range.map(|(least, _)| least),
+        hazards: verdict.hazards.len(),
         load: verdict.hardest.map(|group| group.load),
     })
 }
@@ -74,7 +77,7 @@ fn times(seconds: Option<f64>, least: Option<f64>) -> (f64, f64) {
 }
 
 impl Suggestion {
-    /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same for longer; where no muscle
+    /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards or for longer; where no muscle
     /// limits the mean person before or after, longer for weaker ones.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
         let (before, least_before) = times(verdict.seconds, verdict.range.map(|(least, _)| least));
@@ -82,13 +85,21 @@ impl Suggestion {
             let (after, least_after) = times(one.seconds, one.least);
             after > LONGER * before || (after.is_infinite() && least_after > LONGER * least_before)
         };
+        let safer = |one: &Self| one.hazards < verdict.hazards.len();
+        let equally_safe = |one: &Self| one.hazards == verdict.hazards.len();
+        let better = |one: &Self| safer(one) || equally_safe(one) && longer(one);
         let helps =
-            |one: &Self| one.kind.is_done() && (one.kind > verdict.kind || one.kind == verdict.kind && longer(one));
+            |one: &Self| one.kind.is_done() && (one.kind > verdict.kind || one.kind == verdict.kind && better(one));
         all.retain(helps);
         all.sort_by(|a, b| {
             let ((time_a, least_a), (time_b, least_b)) = (times(a.seconds, a.least), times(b.seconds, b.least));
             let load = a.load.unwrap_or(0.0).total_cmp(&b.load.unwrap_or(0.0));
-            b.kind.cmp(&a.kind).then(time_b.total_cmp(&time_a)).then(least_b.total_cmp(&least_a)).then(load)
+            b.kind
+                .cmp(&a.kind)
+                .then(a.hazards.cmp(&b.hazards))
+                .then(time_b.total_cmp(&time_a))
+                .then(least_b.total_cmp(&least_a))
+                .then(load)
         });
         all
     }
@@ -97,13 +108,15 @@ impl Suggestion {
     /// `with 20 % less load it can be held 11 s of the 30 s asked`.
     pub fn in_words(&self) -> String {
         let (change, asked) = (&self.change, how_long(self.asked));
-        match (self.kind, self.seconds) {
+        let hazard = if self.hazards > 0 { ", with ligaments in hazard" } else { "" };
+        let time = match (self.kind, self.seconds) {
             (VerdictKind::Holds, Some(time)) => {
                 format!("with {change} it holds through the run ({asked}), about {} in all", how_long(time))
             }
             (VerdictKind::Holds, None) => format!("with {change} it holds through the run ({asked}) without a limit"),
             (_, time) => format!("with {change} it can be held {} of the {asked} asked", how_long(time.unwrap_or(0.0))),
-        }
+        };
+        time + hazard
     }
 
     /// The sentence after the verdict; `None` where nothing was tried.

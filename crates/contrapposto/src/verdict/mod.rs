@@ -28,7 +28,7 @@ pub use spread::spread;
 pub use words::how_long;
 
 use crate::contact::Missing;
-use crate::joint_torques::GroupLoad;
+use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Side;
 
 /// The kinds of verdicts, the first that applies first.
@@ -127,6 +127,8 @@ pub struct Verdict {
     /// Of a run that holds, the group that fails before its end in people whose strength is one standard deviation below the mean, or
     /// by another published law.
     pub fails_weaker: Option<Who>,
+    /// Coordinates that ligaments carry at an angle where that is a hazard: at the end of a run, at the worst of a motion.
+    pub hazards: Vec<Hazard>,
     /// The first sentence of every result.
     pub sentence: String,
     /// Targets that are missed, the most important first.
@@ -134,10 +136,11 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Nothing needs to change: the job holds, for the weaker of two of three people, too, and no group is tired at its end.
+    /// Nothing needs to change: the job holds, for the weaker of two of three people, too, no group is tired at its end, and no
+    /// coordinate is in hazard.
     pub fn has_reserve(&self) -> bool {
         let tired = self.tired.is_some_and(|tired| tired.fatigue > TIRED);
-        self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired
+        self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && self.hazards.is_empty()
     }
 }
 
@@ -158,6 +161,8 @@ pub(crate) struct Findings {
     pub(crate) later: Vec<Failure>,
     /// The group with the greatest fatigue at the end.
     pub(crate) tired: Option<Tired>,
+    /// Coordinates in hazard.
+    pub(crate) hazards: Vec<Hazard>,
     /// The run was left before its end, at that time, s.
     pub(crate) interrupted: Option<f64>,
 }

@@ -25,6 +25,7 @@ impl Verdict {
             hardest: hardest.filter(|group| group.peak_load.value > 0.0).map(|g| (load_of(g), Some(g.peak_load.time))),
             missing: found.missing.map(|(missing, time)| (missing, Some(time))),
             fails,
+            hazards: found.hazards.clone(),
             ..Findings::default()
         };
         // Loads of fast postures at rest say nothing of how long the motion can go on.

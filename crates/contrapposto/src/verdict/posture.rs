@@ -4,7 +4,7 @@ use super::holding::failures;
 use super::{Findings, Missed, Verdict};
 use crate::contact::Missing;
 use crate::equilibria::{RelaxedPosture, Work};
-use crate::joint_torques::GroupLoad;
+use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Model;
 
 /// A posture that is held, everybody rested at first.
@@ -16,12 +16,14 @@ pub struct HeldPosture {
     pub missing: Option<Missing>,
     /// Targets that are missed, the most important first.
     pub missed: Vec<Missed>,
+    /// Coordinates in hazard.
+    pub hazards: Vec<Hazard>,
 }
 
 impl HeldPosture {
     /// A posture of least effort with the targets that it misses.
     pub fn of_equilibrium(found: &RelaxedPosture, missed: Vec<Missed>) -> Self {
-        Self { groups: found.work.iter().map(GroupLoad::from).collect(), missing: None, missed }
+        Self { groups: found.work.iter().map(GroupLoad::from).collect(), missing: None, missed, hazards: vec![] }
     }
 }
 
@@ -59,6 +61,7 @@ impl Verdict {
             missed: posture.missed.clone(),
             fails: first.filter(|failure| failure.time.is_finite()).copied(),
             later,
+            hazards: posture.hazards.clone(),
             ..Findings::default()
         }
         .verdict(model)

@@ -3,8 +3,9 @@
 use super::holding::GroupAtEnd;
 use super::spread::spread;
 use super::{Failure, Findings, Missed, Verdict, VerdictKind, Who};
+use crate::joint_torques::Hazard;
 use crate::model::Side;
-use crate::simulation::{Scenario, StopReason, Summary};
+use crate::simulation::{CoordinateSummary, Scenario, StopReason, Summary};
 
 impl Verdict {
     /// Of a run, whether it went to its end or not.
@@ -18,6 +19,7 @@ impl Verdict {
             missing: summary.fall.map(|fall| (fall.missing, Some(fall.time))),
             missed: slip.into_iter().chain(Missed::of_levels(&scenario.model, levels)).collect(),
             fails: fails(scenario, summary),
+            hazards: at_end(scenario, summary),
             interrupted: interrupted.then_some(summary.end_time),
             ..Findings::default()
         };
@@ -26,6 +28,13 @@ impl Verdict {
         }
         findings.verdict(&scenario.model)
     }
+}
+
+/// Coordinates in hazard at the end of a run.
+fn at_end(scenario: &Scenario, summary: &Summary) -> Vec<Hazard> {
+    let of = |value: fn(&CoordinateSummary) -> f64| -> Vec<f64> { summary.coordinates.iter().map(value).collect() };
+    let (external, passive) = (of(|end| end.final_torques[0]), of(|end| end.final_torques[1]));
+    Hazard::all(&scenario.model, &of(|end| end.final_value), &external, &passive)
 }
 
 /// All groups of known strength at the end of a run.

@@ -38,6 +38,7 @@ impl Findings {
             hardest,
             tired: self.tired,
             fails_weaker: self.fails_weaker().map(|failure| failure.who),
+            hazards: self.hazards,
             sentence,
             missed: self.missed,
         }
@@ -74,7 +75,8 @@ impl Findings {
         if time <= 0.0 {
             return format!("Cannot be held: {who} fails at once ({range}).");
         }
-        format!("Can be held {} ({range}), then {who} fails first.", how_long(time))
+        let hazards = self.ligaments(model).map_or(String::new(), |ligaments| format!("; but {ligaments}"));
+        format!("Can be held {} ({range}), then {who} fails first{hazards}.", how_long(time))
     }
 
     fn holds(&self, model: &Model) -> String {
@@ -101,7 +103,13 @@ impl Findings {
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
         let tired =
             tired.map(|tired| format!("{} is {} tired at the end", tired.who.name(model), percent(tired.fatigue)));
-        weaker.into_iter().chain(tired).collect()
+        weaker.into_iter().chain(tired).chain(self.ligaments(model)).collect()
+    }
+
+    /// `ligaments hold lumbar extension at −60.0° (74 % of 165 N m)`.
+    fn ligaments(&self, model: &Model) -> Option<String> {
+        let list: Vec<String> = self.hazards.iter().map(|hazard| hazard.in_words(model)).collect();
+        (!list.is_empty()).then(|| format!("ligaments hold {}", list.join(" and ")))
     }
 
     /// ` Held on like this: about 6.6 min in all (3.9 min to 21.4 min for two of three people), then right shoulder flexion fails first.`

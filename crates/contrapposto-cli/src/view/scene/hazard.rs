@@ -1,28 +1,17 @@
 //! Names joints that ligaments carry where that is a hazard: a flexed lumbar spine, a spine at the end of its measured range, a
 //! hyperextended knee. The angles and their sources are in `data/hazards.toml` of the science crate.
 
+use contrapposto::joint_torques::Hazard;
+use contrapposto::model::Model;
 use contrapposto::model::data::{HazardRow, library};
-use contrapposto::model::{Coordinate, Model};
-use contrapposto::simulation::{CoordinateSummary, Summary};
 use contrapposto_report::Report;
 
-use crate::view::frame::{Frame, carried};
-use crate::view::words::{how_long, list, percent, plain, value};
+use crate::view::frame::Frame;
+use crate::view::words::{how_long, list};
 
 /// The hazard that a coordinate is in.
 pub(crate) fn hazard(model: &Model, frame: &Frame, i: usize) -> Option<&'static HazardRow> {
-    hazard_at(&model.coordinates()[i], frame.angles[i], frame.carried(i)?)
-}
-
-/// The hazard of a coordinate at an angle where passive tissue carries this share of the external torque.
-fn hazard_at(coordinate: &Coordinate, angle: f64, carried: f64) -> Option<&'static HazardRow> {
-    library().hazards().iter().find(|row| row.applies(coordinate, angle, carried))
-}
-
-/// `lumbar extension at −60.0° (74 % of 165 N m)`.
-fn loaded(model: &Model, i: usize, angle: f64, share: f64, external: f64) -> String {
-    let name = plain(&model.coordinates()[i].name);
-    format!("{name} at {} ({} of {:.0} N m)", value(model, i, angle), percent(share), external.abs())
+    Hazard::at(&model.coordinates()[i], frame.angles[i], frame.external[i], frame.passive[i])
 }
 
 /// A sentence for each kind of hazard in the frames, about the coordinates where they are loaded most. `lasts`: the frames follow
@@ -36,8 +25,8 @@ pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<Strin
         for i in 0..model.coordinates().len() {
             let worst = frames.iter().filter(|frame| is_in(frame, i));
             let Some(worst) = worst.max_by(|a, b| a.passive[i].abs().total_cmp(&b.passive[i].abs())) else { continue };
-            let share = worst.carried(i).unwrap_or_default();
-            joints.push(loaded(model, i, worst.angles[i], share, worst.external[i]));
+            let (angle, external, passive) = (worst.angles[i], worst.external[i], worst.passive[i]);
+            joints.push(Hazard { coordinate: i, angle, external, passive, row }.in_words(model));
             let spans = frames.windows(2).filter(|pair| is_in(&pair[0], i)).map(|pair| pair[1].time - pair[0].time);
             longest = longest.max(spans.sum());
         }
@@ -52,25 +41,6 @@ pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<Strin
         };
         let joints = list(&joints);
         sentences.push(format!("Hazard: ligaments hold {joints}{long}; {}{too_long}.", row.finding));
-    }
-    sentences
-}
-
-/// A sentence for each kind of hazard in which a run ends, by the coordinates of its last posture.
-pub(crate) fn hazards_at_end(model: &Model, summary: &Summary) -> Vec<String> {
-    let mut sentences = vec![];
-    for row in library().hazards() {
-        let joint = |(i, (coordinate, end)): (usize, (&Coordinate, &CoordinateSummary))| {
-            let [external, passive, _] = end.final_torques;
-            let share = carried(external, passive)?;
-            let found = hazard_at(coordinate, end.final_value, share)?;
-            std::ptr::eq(found, row).then(|| loaded(model, i, end.final_value, share, external))
-        };
-        let joints: Vec<String> =
-            model.coordinates().iter().zip(&summary.coordinates).enumerate().filter_map(joint).collect();
-        if !joints.is_empty() {
-            sentences.push(format!("Hazard: at the end ligaments hold {}; {}.", list(&joints), row.finding));
-        }
     }
     sentences
 }

@@ -9,7 +9,6 @@ use contrapposto::tasks::Task;
 use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::answer::Answer;
-use crate::view::scene::hazard::hazards_at_end;
 use crate::view::words::MOST_ROWS;
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
@@ -89,10 +88,8 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
         let [page, first, second] = ["report.html", picture, "time-line.svg"].map(|name| folder.path(name));
         format!("report: {}\npictures: {}, {}\n", page.display(), first.display(), second.display())
     });
-    let hazards: String =
-        hazards_at_end(&scenario.model, summary).iter().map(|sentence| format!("{sentence}\n")).collect();
     format!(
-        "{}{hazards}{}\n{table}\n{more}{standing}{reason} after {:.2} s ({} samples)\n{files}",
+        "{}{}\n{table}\n{more}{standing}{reason} after {:.2} s ({} samples)\n{files}",
         answer.first_lines(),
         scenario.title,
         summary.end_time,

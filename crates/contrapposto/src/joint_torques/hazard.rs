@@ -1,0 +1,66 @@
+//! Finds coordinates that ligaments and relaxed muscles carry at an angle where that is a hazard (`data/hazards.toml`).
+
+use crate::model::data::{HazardRow, library};
+use crate::model::{Coordinate, Model, plain_name};
+
+/// Below this external torque, N m, nobody asks what carries it. Assumed.
+const SMALL_TORQUE: f64 = 0.5;
+
+/// A coordinate that passive tissue carries at an angle where that is a hazard.
+#[derive(Clone, Copy, Debug)]
+pub struct Hazard {
+    /// The coordinate.
+    pub coordinate: usize,
+    /// Its angle, rad.
+    pub angle: f64,
+    /// External torque, N m.
+    pub external: f64,
+    /// Passive torque, N m.
+    pub passive: f64,
+    /// The kind of hazard, with its finding and sources.
+    pub row: &'static HazardRow,
+}
+
+/// Share of an external torque that passive tissue carries, 0..=1; `None` below 0.5 N m.
+pub fn carried(external: f64, passive: f64) -> Option<f64> {
+    (external.abs() > SMALL_TORQUE).then(|| (-passive / external).clamp(0.0, 1.0))
+}
+
+impl Hazard {
+    /// The hazard of a coordinate at an angle (rad) under these torques, N m.
+    pub fn at(coordinate: &Coordinate, angle: f64, external: f64, passive: f64) -> Option<&'static HazardRow> {
+        let share = carried(external, passive)?;
+        library().hazards().iter().find(|row| row.applies(coordinate, angle, share))
+    }
+
+    /// The hazards among all coordinates, with their angles (rad), external and passive torques (N m).
+    pub fn all(model: &Model, angles: &[f64], external: &[f64], passive: &[f64]) -> Vec<Self> {
+        let torques = external.iter().zip(passive);
+        let all = model.coordinates().iter().zip(angles).zip(torques).enumerate();
+        all.filter_map(|(i, ((coordinate, angle), (external, passive)))| {
+            let row = Self::at(coordinate, *angle, *external, *passive)?;
+            Some(Self { coordinate: i, angle: *angle, external: *external, passive: *passive, row })
+        })
+        .collect()
+    }
+
+    /// Share of the external torque that passive tissue carries, 0..=1.
+    pub fn carried(&self) -> f64 {
+        carried(self.external, self.passive).unwrap_or_default()
+    }
+
+    /// `lumbar extension at −60.0° (74 % of 165 N m)`.
+    pub fn in_words(&self, model: &Model) -> String {
+        let name = plain_name(&model.coordinates()[self.coordinate].name);
+        let angle = format!("{:.1}°", self.angle.to_degrees()).replace('-', "\u{2212}");
+        format!("{name} at {angle} ({:.0}\u{a0}% of {:.0} N m)", 100.0 * self.carried(), self.external.abs())
+    }
+}
+
+/// Equal coordinates, angles, torques and kinds of hazard.
+impl PartialEq for Hazard {
+    fn eq(&self, other: &Self) -> bool {
+        let numbers = |hazard: &Self| (hazard.coordinate, [hazard.angle, hazard.external, hazard.passive]);
+        numbers(self) == numbers(other) && std::ptr::eq(self.row, other.row)
+    }
+}
