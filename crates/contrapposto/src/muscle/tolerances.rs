@@ -44,8 +44,10 @@ pub(super) const TORUS_FIRST_STEP: f64 = 0.2;
 pub(super) const TORUS_NUDGE: f64 = 1e-5;
 /// Its greatest number of steps.
 pub(super) const TORUS_STEPS: usize = 500;
-/// Sections of a geodesic, each of which is extrapolated from [`GEODESIC_PARTS`].
-pub(super) const GEODESIC_SECTIONS: usize = 3;
+/// Greatest section of a geodesic that is extrapolated from [`GEODESIC_PARTS`], rad.
+pub(super) const GEODESIC_SECTION: f64 = 0.75;
+/// Greatest number of sections.
+pub(super) const GEODESIC_SECTIONS: usize = 16;
 /// Numbers of parts into which a section of a geodesic is divided for the extrapolation.
 pub(super) const GEODESIC_PARTS: [u32; 6] = [2, 4, 6, 8, 10, 12];
 /// Steps in which a geodesic is brought to pass through the end of a line.
@@ -54,6 +56,8 @@ pub(super) const GEODESIC_STEPS: usize = 25;
 pub(super) const GEODESIC_FOUND: f64 = 1e-11;
 /// Greatest step of the angle at which a geodesic starts, rad.
 pub(super) const GEODESIC_TURN: f64 = 0.3;
+/// Step of that angle from which on the derivatives of the step before are kept, rad.
+pub(super) const GEODESIC_SMALL: f64 = 1e-4;
 /// Difference of that angle for its derivative, rad.
 pub(super) const GEODESIC_NUDGE: f64 = 1e-6;
 /// Least distance of an end from a surface, as a share of its size: a nearer end counts as this far outside.

@@ -25,12 +25,13 @@ pub(super) fn wrap(half_axes: &V, quadrant: Quadrant, from: &V, to: &V) -> Wrapp
         return Wrapping::Free;
     }
     let [p1, p2] = [p1, p2].map(|p| p * ((1.0 + GEODESIC_OUTSIDE) / p.norm()).max(1.0));
-    let ellipsoid = Ellipsoid { half_axes: *half_axes, mean: half_axes.mean() };
+    let ellipsoid = Ellipsoid { half_axes: *half_axes, bend: half_axes.map(|a| (half_axes.mean() / a).powi(2)) };
+    let restricted = quadrant != Quadrant::All;
     let allowed = |middle: &V| match quadrant {
         Quadrant::All => true,
         Quadrant::Half { axis, positive } => Quadrant::on(axis, positive, middle),
     };
-    let Some(mut contact) = ellipsoid.line(&p1, &p2, allowed) else { return Wrapping::Free };
+    let Some(mut contact) = ellipsoid.line(&p1, &p2, restricted, allowed) else { return Wrapping::Free };
     contact.first.component_mul_assign(half_axes);
     contact.second.component_mul_assign(half_axes);
     Wrapping::Crosses(contact)
@@ -38,7 +39,8 @@ pub(super) fn wrap(half_axes: &V, quadrant: Quadrant, from: &V, to: &V) -> Wrapp
 
 struct Ellipsoid {
     half_axes: V,
-    mean: f64,
+    /// Inverse squares of the half axes over their mean.
+    bend: V,
 }
 
 /// Two unit vectors across a vector.
@@ -64,13 +66,17 @@ impl Surface for Ellipsoid {
     }
 
     fn rates(&self, state: &State) -> State {
-        let scaled = state.place.zip_map(&self.half_axes, |y, a| y * (self.mean / a).powi(2));
+        let scaled = state.place.component_mul(&self.bend);
         let force = scaled - scaled.dot(&state.direction) * state.direction;
         State {
             place: state.direction,
             direction: -force / state.place.dot(&scaled),
             length: state.direction.component_mul(&self.half_axes).norm(),
         }
+    }
+
+    fn radius(&self) -> f64 {
+        1.0
     }
 
     fn normal(&self, place: &V) -> V {
@@ -99,7 +105,7 @@ impl Section {
 impl Ellipsoid {
     /// The geodesic whose middle is allowed, from the shortest allowed plane section; where it leads to another half, from the longest one:
     /// the way over the far side, which no shortest line takes by itself. The shortest section where neither is found.
-    fn line(&self, p1: &V, p2: &V, allowed: impl Fn(&V) -> bool) -> Option<Contact> {
+    fn line(&self, p1: &V, p2: &V, restricted: bool, allowed: impl Fn(&V) -> bool) -> Option<Contact> {
         let along = (p2 - p1).normalize();
         let foot = p1 - p1.dot(&along) * along;
         let (beside, _) = across(&along);
@@ -125,7 +131,8 @@ impl Ellipsoid {
         }
         let (shortest, longest) = ends?;
         let found = [shortest, longest].iter().find_map(|section| {
-            find(self, p1, p2, (number(p1, &section.first), section.angle)).filter(|found| allowed(&found.middle))
+            find(self, p1, p2, (number(p1, &section.first), section.angle))
+                .filter(|found| !restricted || allowed(&found.middle(self)))
         });
         Some(found.map_or_else(|| shortest.contact(), |found| found.contact()))
     }

@@ -4,13 +4,14 @@
 //! geodesic ends. Residuals at its end, with p the second point, x the end, n the unit normal and v the direction there: n (p - x) and
 //! (n x v) (p - x), which are zero where the tangent leads to p. Newton's method; near the solution the first residual alone changes
 //! with the extent, by the distance of p times the normal curvature. The geodesic is integrated by Gragg's midpoint rule,
-//! extrapolated over fixed numbers of parts, so that the length is a smooth function of the points.
+//! extrapolated over fixed numbers of parts of sections so short that the length is a smooth function of the points to rounding.
 
 use nalgebra::Vector3;
 
 use super::contact::Contact;
 use crate::muscle::tolerances::{
-    GEODESIC_FOUND, GEODESIC_NUDGE, GEODESIC_PARTS, GEODESIC_SECTIONS, GEODESIC_STEPS, GEODESIC_TURN,
+    GEODESIC_FOUND, GEODESIC_NUDGE, GEODESIC_PARTS, GEODESIC_SECTION, GEODESIC_SECTIONS, GEODESIC_SMALL,
+    GEODESIC_STEPS, GEODESIC_TURN,
 };
 
 type V = Vector3<f64>;
@@ -49,18 +50,25 @@ pub(super) trait Surface {
     fn tangent(&self, from: &V, number: f64) -> Option<State>;
     /// Rates of the state by the extent.
     fn rates(&self, state: &State) -> State;
+    /// Extent of about one radian.
+    fn radius(&self) -> f64;
     /// Unit normal, outward.
     fn normal(&self, place: &V) -> V;
 }
 
 /// A geodesic between tangents from two points.
 pub(super) struct Geodesic {
-    pub(super) first: State,
-    pub(super) middle: V,
-    pub(super) second: State,
+    first: State,
+    extent: f64,
+    second: State,
 }
 
 impl Geodesic {
+    /// The place half way of its extent.
+    pub(super) fn middle(&self, surface: &impl Surface) -> V {
+        integrated(surface, self.first, 0.5 * self.extent).place
+    }
+
     pub(super) fn contact(&self) -> Contact {
         Contact { first: self.first.place, second: self.second.place, length: self.second.length }
     }
@@ -71,32 +79,32 @@ impl Geodesic {
 pub(super) fn find(surface: &impl Surface, from: &V, to: &V, guess: (f64, f64)) -> Option<Geodesic> {
     let (mut number, mut extent) = guess;
     let longest = 2.0 * extent.abs() + 1.0;
+    let (mut turn, mut slopes) = (f64::INFINITY, [0.0; 2]);
     for _ in 0..GEODESIC_STEPS {
         let first = surface.tangent(from, number)?;
         let second = integrated(surface, first, extent);
         let residual = residual(surface, &second, to);
-        let nudged = integrated(surface, surface.tangent(from, number + GEODESIC_NUDGE)?, extent);
-        let beside = self::residual(surface, &nudged, to);
-        let [by_number, across_by_number] = [0, 1].map(|i| (beside[i] - residual[i]) / GEODESIC_NUDGE);
+        if turn.abs() > GEODESIC_SMALL {
+            let nudged = integrated(surface, surface.tangent(from, number + GEODESIC_NUDGE)?, extent);
+            let beside = self::residual(surface, &nudged, to);
+            slopes = [0, 1].map(|i| (beside[i] - residual[i]) / GEODESIC_NUDGE);
+        }
         let rates = surface.rates(&second);
         let curvature = -surface.normal(&second.place).dot(&rates.direction);
         let by_extent = second.direction.dot(&(to - second.place)) * curvature;
-        let mut turn = -residual[1] / across_by_number;
-        let mut more = -(residual[0] + by_number * turn) / by_extent;
+        turn = -residual[1] / slopes[1];
+        let mut more = -(residual[0] + slopes[0] * turn) / by_extent;
         let furthest = (0.5 * extent).max(GEODESIC_TURN / curvature.abs());
         let scale = (GEODESIC_TURN / turn.abs()).min(furthest / more.abs()).min(1.0);
         (turn, more) = (scale * turn, scale * more);
         if !turn.is_finite() || !more.is_finite() {
             return None;
         }
-        (number, extent) = (number + turn, (extent + more).clamp(0.0, longest));
         if turn.abs() < GEODESIC_FOUND && more.abs() < GEODESIC_FOUND {
-            let first = surface.tangent(from, number)?;
-            let second = integrated(surface, first, extent);
             let ahead = second.direction.dot(&(to - second.place)) >= 0.0;
-            let middle = integrated(surface, first, 0.5 * extent).place;
-            return ahead.then_some(Geodesic { first, middle, second });
+            return ahead.then_some(Geodesic { first, extent, second });
         }
+        (number, extent) = (number + turn, (extent + more).clamp(0.0, longest));
     }
     None
 }
@@ -109,8 +117,9 @@ fn residual(surface: &impl Surface, end: &State, to: &V) -> [f64; 2] {
 
 /// The state at an extent from a first one.
 fn integrated(surface: &impl Surface, first: State, extent: f64) -> State {
-    let section = extent / GEODESIC_SECTIONS as f64;
-    (0..GEODESIC_SECTIONS).fold(first, |state, _| extrapolated(surface, &state, section))
+    let sections = ((extent / (GEODESIC_SECTION * surface.radius())).ceil() as usize).clamp(1, GEODESIC_SECTIONS);
+    let section = extent / sections as f64;
+    (0..sections).fold(first, |state, _| extrapolated(surface, &state, section))
 }
 
 /// One section, extrapolated to parts of no extent.

@@ -92,6 +92,10 @@ impl Surface for Torus {
         State { place: *direction, direction: -bend * self.normal(place), length: 1.0 }
     }
 
+    fn radius(&self) -> f64 {
+        self.tube
+    }
+
     fn normal(&self, place: &V) -> V {
         let flat = V::new(place.x, place.y, 0.0);
         (place - self.circle / flat.norm() * flat) / self.tube
