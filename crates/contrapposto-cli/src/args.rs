@@ -4,6 +4,8 @@ mod joint;
 mod model;
 mod scenario;
 
+use std::path::PathBuf;
+
 use clap::{Parser, Subcommand};
 
 pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
@@ -26,6 +28,9 @@ pub(crate) struct Args {
     /// Show no notes. Warnings are always shown.
     #[arg(long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
+    /// A folder whose files a scenario may name, too; without it those in the scenario's own folder and below. May be repeated.
+    #[arg(long, global = true, value_name = "DIR")]
+    pub(crate) allow_path: Vec<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]

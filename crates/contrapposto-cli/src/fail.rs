@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::process::ExitCode;
 
-use contrapposto_formats::InputError;
+use contrapposto_formats::{InputError, escaped_lines};
 
 /// Why the program stops.
 pub(crate) enum Fail {
@@ -32,8 +32,8 @@ impl Fail {
     pub(crate) fn report(self) -> ExitCode {
         let (text, code) = match self {
             Self::Input(error) => (format!("{:?}", miette::Report::new(*error)), 2),
-            Self::Refused(message) => (format!("error: {message}\n"), 2),
-            Self::Job(message) => (format!("error: {message}\n"), 1),
+            Self::Refused(message) => (format!("error: {}\n", escaped_lines(&message)), 2),
+            Self::Job(message) => (format!("error: {}\n", escaped_lines(&message)), 1),
             Self::Answered => (String::new(), 1),
             Self::Told => (String::new(), 2),
             Self::BrokenPipe => return ExitCode::SUCCESS,

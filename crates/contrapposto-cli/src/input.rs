@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use crate::fail::Fail;
 
@@ -11,6 +11,27 @@ use crate::fail::Fail;
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 /// The first bytes of a file that zip made.
 const ZIP: &[u8] = b"PK\x03\x04";
+
+/// Folders that the user allows scenarios to name files of.
+static ALLOWED: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// Says once, at the start, which folders scenarios may name files of beside their own.
+pub(crate) fn allow(folders: Vec<PathBuf>) {
+    let _ = ALLOWED.set(folders);
+}
+
+/// The file that a scenario in `folder` names: beside the scenario, below it, or in a folder that the user allows, wherever names and
+/// links lead. Otherwise why it is refused.
+pub(crate) fn confined(folder: &Path, name: &str) -> Result<PathBuf, String> {
+    let path = folder.join(name);
+    // A file that is not there is told where it is opened.
+    let Ok(real) = path.canonicalize() else { return Ok(path) };
+    let mut allowed = std::iter::once(folder).chain(ALLOWED.get().into_iter().flatten().map(PathBuf::as_path));
+    if allowed.any(|allowed| allowed.canonicalize().is_ok_and(|allowed| real.starts_with(allowed))) {
+        return Ok(path);
+    }
+    Err("is not in the scenario's folder or below; --allow-path DIR allows the files of DIR, too".to_owned())
+}
 
 /// Every file that was read.
 static READ: Mutex<Vec<PathBuf>> = Mutex::new(vec![]);

@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         (_, true) => Notes::Quiet,
         _ => Notes::Folded,
     });
+    input::allow(args.allow_path);
     let result = match args.verb {
         Verb::New(args) => new::new(&args),
         Verb::Simulate(args) => simulate::simulate(&args),

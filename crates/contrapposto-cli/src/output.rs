@@ -5,6 +5,7 @@ mod leftover;
 mod manifest;
 mod result_set;
 
+use contrapposto_formats::escaped_lines;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -15,7 +16,7 @@ use crate::fail::Fail;
 /// Writes text to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Fail> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(stdout_failed)
+    out.write_all(escaped_lines(text).as_bytes()).and_then(|()| out.flush()).map_err(stdout_failed)
 }
 
 /// How many notes standard error gets.
@@ -51,7 +52,7 @@ pub(crate) fn print_note(kind: &str, text: &str) {
             }
         }
         // Nothing is left to try when standard error is closed.
-        _ => drop(writeln!(std::io::stderr(), "{kind}: {text}")),
+        _ => drop(writeln!(std::io::stderr(), "{kind}: {}", escaped_lines(text))),
     }
 }
 
@@ -63,7 +64,7 @@ pub(crate) fn print_waiting_notes() {
     if folded > 0 {
         text += &format!("note: {folded} more notes; --verbose shows all of them\n");
     }
-    let _ = std::io::stderr().write_all(text.as_bytes());
+    let _ = std::io::stderr().write_all(escaped_lines(&text).as_bytes());
 }
 
 /// The notes to show, in their order, and the number of the others: those about a single coordinate, which begin with its name, and

@@ -1,7 +1,7 @@
 //! SCENARIO on the command line: its bytes, its name, and the model file that it names.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use contrapposto::model::Model;
 use contrapposto_formats::model_ir::RootAttachment;
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::args::{ModelArgs, RootChoice};
 use crate::fail::Fail;
-use crate::input::read;
+use crate::input::{confined, read};
 use crate::model_file::open;
 use crate::output::print_note;
 
@@ -82,7 +82,7 @@ fn refuse_model(path: &Path, name: &str) -> Result<(), Fail> {
 /// The model file that a scenario names, if it names one.
 fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<Model>, Fail> {
     let Some(file) = scenario_model(name, bytes)? else { return Ok(None) };
-    let opened = open(&model_args(scenario, &file), true)?.with_fatigue(&file.fatigue);
+    let opened = open(&model_args(scenario, name, &file)?, true)?.with_fatigue(&file.fatigue);
     if opened.model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
         let unknown = "no strength of its joints is known: their load, fatigue and effort are unknown, not 0";
         let model = opened.model.name();
@@ -93,12 +93,14 @@ fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<Model>, 
 }
 
 /// How the scenario's model file is opened: its paths are seen from the scenario's folder.
-fn model_args(scenario: &Path, file: &ModelFile) -> ModelArgs {
+fn model_args(scenario: &Path, shown: &str, file: &ModelFile) -> Result<ModelArgs, Fail> {
     let folder = scenario.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let path = |name: &String| -> PathBuf { folder.join(name) };
-    ModelArgs {
-        model: path(&file.file),
-        overlay: file.overlay.as_ref().map(path),
+    let path = |key: &str, name: &String| {
+        confined(folder, name).map_err(|why| Fail::Refused(format!("{shown}: [model] {key} = {name:?}: {why}")))
+    };
+    Ok(ModelArgs {
+        model: path("file", &file.file)?,
+        overlay: file.overlay.as_ref().map(|name| path("overlay", name)).transpose()?,
         root: file.root.map(|root| match root {
             RootAttachment::Fixed => RootChoice::Fixed,
             RootAttachment::Free => RootChoice::Free,
@@ -106,5 +108,5 @@ fn model_args(scenario: &Path, file: &ModelFile) -> ModelArgs {
         passive: None,
         no_strength: !file.strength,
         person: Some(file.person),
-    }
+    })
 }

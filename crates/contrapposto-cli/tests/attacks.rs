@@ -174,3 +174,108 @@ fn a_hostile_title_is_text() {
         }
     }
 }
+
+/// Two hinges and three links whose names are made for terminals, tables and pages.
+const HOSTILE_NAMES: &str = r#"<robot name="r&#x202e;x">
+<link name="base"/>
+<link name="a&#10;b"><inertial><origin xyz="0.2 0 0"/><mass value="2"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="c"><inertial><origin xyz="0.2 0 0"/><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="=cmd|'/C calc'!A0" type="revolute"><parent link="base"/><child link="a&#10;b"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" effort="100" velocity="1"/></joint>
+<joint name="d&#x202e;e&#13;f" type="revolute"><parent link="a&#10;b"/><child link="c"/><origin xyz="0.4 0 0"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" effort="100" velocity="1"/></joint>
+</robot>"#;
+
+/// What a terminal would obey, or a reader would not see.
+fn is_obeyed(c: char) -> bool {
+    (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c) || ('\u{2066}'..='\u{2069}').contains(&c)
+}
+
+#[test]
+fn names_reach_terminals_and_tables_without_power() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("robot.urdf"), HOSTILE_NAMES).unwrap();
+    let scenario = folder.path().join("job.toml");
+    let text = "format = 1\ntitle = \"A turned \u{202e}title\"\n[model]\nfile = \"robot.urdf\"\n[fatigue.start]\n\
+                \"=cmd|'/C calc'!A0\" = { positive = 0.8, negative = 0.8 }\n[strategy]\nkind = \"active\"\n[run]\n\
+                duration_s = 2\nstep_s = 0.1\n";
+    std::fs::write(&scenario, text).unwrap();
+    let out = folder.path().join("out");
+    let run = contrapposto(["simulate"]).arg(&scenario).arg("--out").arg(&out).run();
+    assert!(run.code < 2, "{}", run.stderr);
+    for words in [&run.stdout, &run.stderr] {
+        assert_eq!(words.chars().find(|&c| is_obeyed(c)), None, "{words:?}");
+    }
+    assert!(run.stdout.contains(r"A turned \u202etitle"), "{}", run.stdout);
+    for (name, bytes) in contents(&out) {
+        let text = String::from_utf8_lossy(&bytes);
+        if name.ends_with(".csv") {
+            for cell in text.split([',', '\n']) {
+                let cell = cell.trim_start_matches('"');
+                let number = cell.parse::<f64>().is_ok();
+                assert!(number || !cell.starts_with(['=', '+', '-', '@']), "{name}: {cell}");
+            }
+        }
+        if !name.ends_with(".png") && !name.ends_with(".glb") {
+            assert_eq!(text.chars().find(|&c| is_obeyed(c) && !matches!(c, '\t' | '\r')), None, "{name}");
+        }
+    }
+    // The table is read back by its own names.
+    let table = out.join("trajectory.csv");
+    let run = contrapposto(["torques"]).arg(folder.path().join("robot.urdf")).arg(&table).arg("--json").run();
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(!run.stderr.contains("not in the model"), "{}", run.stderr);
+}
+
+#[test]
+fn a_scenario_names_files_in_its_own_folder_only_unless_others_are_allowed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (own, other) = (folder.path().join("own"), folder.path().join("other"));
+    std::fs::create_dir_all(own.join("below")).unwrap();
+    std::fs::create_dir(&other).unwrap();
+    std::fs::write(other.join("secret.toml"), "a secret line").unwrap();
+    for place in [own.join("below"), other.clone()] {
+        std::fs::write(place.join("robot.urdf"), HOSTILE_NAMES).unwrap();
+    }
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(other.join("robot.urdf"), own.join("link.urdf")).unwrap();
+    let inspected = |model: &str, arguments: &[&str]| {
+        let scenario = own.join("job.toml");
+        let text = format!("format = 1\n[model]\n{model}\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n");
+        std::fs::write(&scenario, text).unwrap();
+        contrapposto(["inspect"]).arg(&scenario).args(arguments).run()
+    };
+    let below = inspected("file = \"below/robot.urdf\"", &[]);
+    assert_eq!(below.code, 0, "{}", below.stderr);
+    let absolute = format!("file = {:?}", other.join("robot.urdf"));
+    let overlay = format!("file = \"below/robot.urdf\"\noverlay = {:?}", other.join("secret.toml"));
+    let mut outside = vec!["file = \"../other/robot.urdf\"", &absolute, &overlay];
+    if cfg!(unix) {
+        outside.push("file = \"link.urdf\"");
+    }
+    for model in outside {
+        let run = inspected(model, &[]);
+        assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{model}: {}", run.stderr);
+        assert!(run.stderr.contains("--allow-path DIR") && !run.stderr.contains("secret line"), "{}", run.stderr);
+    }
+    let allowed = inspected("file = \"../other/robot.urdf\"", &["--allow-path", other.to_str().unwrap()]);
+    assert_eq!(allowed.code, 0, "{}", allowed.stderr);
+}
+
+#[test]
+fn too_many_tables_are_refused_by_name_at_once() {
+    let head = "format = 1\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n";
+    let tables = [
+        ("task", "[[task]]\nkind = \"posture\"\n", 200),
+        ("load", "[[load]]\nsegment = \"hand_r\"\nmass_kg = 0.001\n", 1000),
+        ("event", "[[event]]\nat_s = 0.5\nload = []\n", 1000),
+    ];
+    for (name, table, most) in tables {
+        let said = with("many.toml", head.to_owned() + &table.repeat(most + 1));
+        let words = format!("{} tables [[{name}]]; {most} at most", most + 1);
+        assert!(said.contains(&words), "{said}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("most.toml");
+    std::fs::write(&path, head.to_owned() + &tables[0].1.repeat(200)).unwrap();
+    let run = contrapposto(["inspect"]).arg(&path).run();
+    assert_eq!(run.code, 0, "{}", run.stderr);
+}

@@ -6,6 +6,8 @@ use contrapposto::hybrid::{Outcome, Strategy, goal_in_words};
 use contrapposto::model::{Coordinate, CoordinateKind, Model, Side};
 use contrapposto::simulation::{Attempt, ReliefLog, ReliefRecord};
 
+use crate::motion::csv_cell;
+
 /// Nearer to its goal than this it has got there, rad or m.
 const REACHED: f64 = 0.01;
 
@@ -27,11 +29,11 @@ pub fn decisions_csv(model: &Model, log: &ReliefLog) -> String {
             "{},{},{},{},{},{},{},{case},{outcome},{},{goal},{},{},{},{},{},{},{},{},{},{}",
             record.time.0,
             record.time.1,
-            quoted(&coordinate.name),
-            quoted(group(coordinate, record)),
+            csv_cell(&coordinate.name),
+            csv_cell(group(coordinate, record)),
             record.fatigue,
             strategy(record.strategy),
-            quoted(&attempt(model, record.attempt)),
+            csv_cell(&attempt(model, record.attempt)),
             shown(record.value.0),
             shown(record.value.1),
             record.active.0,
@@ -42,7 +44,7 @@ pub fn decisions_csv(model: &Model, log: &ReliefLog) -> String {
             record.deferred,
             record.taken_back,
             record.idle,
-            quoted(&relief_sentence(model, record)),
+            csv_cell(&relief_sentence(model, record)),
         );
     }
     text
@@ -125,12 +127,6 @@ fn attempt(model: &Model, attempt: Attempt) -> String {
         Attempt::OtherJoint { coordinate, .. } => format!("other_joint {}", model.coordinates()[coordinate].name),
         Attempt::GivenUp => "given_up".to_owned(),
     }
-}
-
-/// A text as one field of the table.
-fn quoted(text: &str) -> String {
-    let plain: String = text.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
-    if plain.contains([',', '"']) { format!("\"{}\"", plain.replace('"', "\"\"")) } else { plain }
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ pub mod xml;
 
 mod adult_text;
 mod decisions_csv;
+mod escaped;
 mod input_error;
 mod minimize;
 mod model_file;
@@ -32,6 +33,7 @@ mod verdict;
 
 pub use adult_text::{AdultTextError, adult_size, person};
 pub use decisions_csv::{decisions_csv, relief_sentence};
+pub use escaped::{escaped, escaped_lines};
 pub use input_error::{InputError, nearest};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
 pub use model_file::{ModelFileError, ModelFormat, read_model};

@@ -6,6 +6,8 @@ use contrapposto::hybrid::Case;
 use contrapposto::joint_torques::active_torque;
 use contrapposto::model::{CoordinateKind, Model};
 
+use crate::motion::plain;
+
 /// The numbers of a row, one entry a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct TableRow<'a> {
@@ -27,14 +29,13 @@ pub struct TableRow<'a> {
 pub fn csv_header(model: &Model) -> String {
     let mut line = "time".to_owned();
     for coordinate in model.coordinates() {
-        let name = quoted(&coordinate.name);
+        let name = plain(&coordinate.name, true);
         let (value, unit) = match coordinate.kind {
             CoordinateKind::Rotation => ("angle_deg", "nm"),
             CoordinateKind::Translation => ("position_m", "n"),
             CoordinateKind::Quaternion => ("value", "nm"),
         };
         let goal = if coordinate.kind == CoordinateKind::Translation { "goal_m" } else { "goal_deg" };
-        // Names of strangers may hold commas and quotes; ours do not.
         for column in [value, &format!("external_{unit}"), &format!("passive_{unit}"), &format!("active_{unit}")] {
             let _ = write!(line, ",{name}.{column}");
         }
@@ -66,9 +67,4 @@ pub fn csv_row(model: &Model, row: &TableRow, line: &mut String) {
         }
     }
     line.push('\n');
-}
-
-/// A name that is safe inside a column title.
-fn quoted(name: &str) -> String {
-    name.chars().map(|c| if c == ',' || c == '"' || c.is_control() { '_' } else { c }).collect()
 }

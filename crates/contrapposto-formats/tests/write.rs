@@ -406,3 +406,16 @@ fn odd_names_and_what_programs_refuse() {
     let error = write::mjcf(&build(vec![long])).unwrap_err().to_string();
     assert_eq!(error, "segment `long`: more than six motions before the next mass; MuJoCo's bodies have six at most");
 }
+
+/// Turned by its own frame, an inertia that no solid body has gets a moment below 0, which a URDF file may not hold.
+#[test]
+fn an_inertia_of_no_body_is_written_as_one_that_urdf_readers_take() {
+    let text = r#"<robot name="r"><link name="base"/><link name="a"><inertial><origin rpy="0 0.8 0"/><mass value="1"/>
+        <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="5" iyz="0"/></inertial></link>
+        <joint name="j" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
+        <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"#;
+    let written = write::urdf(&read(text, Urdf)).unwrap();
+    assert!(written.lost.iter().any(|lost| lost.starts_with("The inertia of `a` is not that of a solid body")));
+    let back = read(&written.text, Urdf);
+    assert!((back.segments()[1].inertia - nalgebra::Matrix3::from_diagonal_element(0.1)).amax() < 1e-12);
+}

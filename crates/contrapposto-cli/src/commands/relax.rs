@@ -7,7 +7,7 @@ use contrapposto::joint_torques::{Hazard, active_torque};
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
 use contrapposto::verdict::{HeldPosture, Missed, Verdict};
-use contrapposto_formats::motion::write_sto;
+use contrapposto_formats::motion::{csv_cell, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};
@@ -134,7 +134,7 @@ fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
                 CoordinateKind::Translation => (value, "m"),
                 CoordinateKind::Quaternion => (value, "1"),
             };
-            let _ = write!(csv, "{},{},{value},{unit}", number + 1, coordinate.name);
+            let _ = write!(csv, "{},{},{value},{unit}", number + 1, csv_cell(&coordinate.name));
             let Some(rate) = coordinate.rate else {
                 csv.push_str(",,,,\n");
                 continue;

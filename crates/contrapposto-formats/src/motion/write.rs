@@ -155,11 +155,11 @@ fn body<R: AsRef<[f64]>>(
 }
 
 /// A name as it can stand in a table: without control characters; without blanks, at which OpenSim's `Storage` cuts labels,
-/// or, for CSV, without commas, quotes and blanks around it.
+/// or, for CSV, without commas, quotes and blanks around it, and nothing that a spreadsheet would run.
 pub(crate) fn plain(name: &str, csv: bool) -> String {
     let bad = |c: char| c.is_control() || if csv { c == ',' || c == '"' } else { c == ' ' };
     let mut plain: String = name.chars().map(|c| if bad(c) { '_' } else { c }).collect();
-    if plain.starts_with(' ') {
+    if plain.starts_with(' ') || csv && is_formula(&plain) {
         plain.replace_range(..1, "_");
     }
     if plain.is_empty() || plain.ends_with(' ') {
@@ -167,6 +167,20 @@ pub(crate) fn plain(name: &str, csv: bool) -> String {
         plain.push('_');
     }
     plain
+}
+
+/// A text as a cell of a CSV file: one line, quoted where it has to be, and nothing that a spreadsheet would run.
+pub fn csv_cell(text: &str) -> String {
+    let mut plain: String = text.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
+    if is_formula(&plain) {
+        plain.replace_range(..1, "_");
+    }
+    if plain.contains([',', '"']) { format!("\"{}\"", plain.replace('"', "\"\"")) } else { plain }
+}
+
+/// Whether a spreadsheet takes a cell for a formula.
+fn is_formula(cell: &str) -> bool {
+    cell.starts_with(['=', '+', '-', '@', '\t'])
 }
 
 /// A first line that no reader takes for anything but a name.

@@ -10,6 +10,7 @@ use super::fatigue_text::FatigueText;
 use super::obstacle_text::ObstacleText;
 use super::task_text::{SolverText, SupportText, TaskText};
 use super::world::text::{BagText, BoxText, FloorText, HandleText, SeatText, StepText, TableText, ToolText, WallText};
+use crate::escaped::{escaped, turns_direction};
 use crate::passive_law::PassiveText;
 use crate::toml_file::numbers;
 
@@ -20,7 +21,7 @@ pub(crate) struct ScenarioText {
     /// Version of this format; 1.
     pub(crate) format: u32,
     /// Name of the experiment.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "title")]
     pub(crate) title: String,
     /// The body; the built-in reference man when left out.
     #[serde(default)]
@@ -277,6 +278,14 @@ pub(crate) struct StrategyText {
     /// Other strategies for regions (`spine`, `neck`, `arms`, `legs`) or coordinates; `by_region` is the same.
     #[serde(default, alias = "by_region")]
     pub(crate) of: BTreeMap<String, StrategyKindText>,
+}
+
+fn title<'de, D: serde::Deserializer<'de>>(text: D) -> Result<String, D::Error> {
+    let mut title = String::deserialize(text)?;
+    if title.contains(turns_direction) {
+        title = escaped(&title).into_owned();
+    }
+    Ok(title)
 }
 
 fn default_ratio() -> f64 {

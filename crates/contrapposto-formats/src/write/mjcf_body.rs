@@ -188,5 +188,10 @@ pub(super) fn solid(inertia: &Matrix3<f64>) -> (Matrix3<f64>, bool) {
     if fits {
         return (*inertia, false);
     }
-    (Matrix3::from_diagonal_element((inertia.trace() / 3.0).abs().max(1e-6)), true)
+    (ball_of_size(inertia), true)
+}
+
+/// The inertia of a ball in place of one that no solid body has.
+pub(super) fn ball_of_size(inertia: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_diagonal_element((inertia.trace() / 3.0).abs().max(1e-6))
 }

@@ -10,6 +10,7 @@ use contrapposto::model::{Coordinate, JointKind, Model, Motion, Placement, Segme
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
 use super::law;
+use super::mjcf_body::ball_of_size;
 use super::names::Names;
 use super::steps::{By, moved, steps};
 use super::xml::{Xml, moments, number, numbers};
@@ -55,7 +56,7 @@ pub fn urdf(model: &Model) -> Result<Written, WriteError> {
                 Some(root) => root.clone(),
                 None => {
                     let name = writer.names[index].clone();
-                    writer.link(&name, Some(segment));
+                    writer.link(&name, Some(segment), &mut lost);
                     continue;
                 }
             },
@@ -117,14 +118,20 @@ impl<'m> Writer<'m> {
         Self { model, xml: Xml::new(), names, links, joints, coordinates }
     }
 
-    fn link(&mut self, name: &str, segment: Option<&Segment>) {
+    fn link(&mut self, name: &str, segment: Option<&Segment>, lost: &mut Vec<String>) {
         let heavy = segment.filter(|s| s.mass != 0.0 || s.inertia != Matrix3::zeros());
         let Some(segment) = heavy else { return self.xml.leaf("link", &[("name", name)]) };
         self.xml.open("link", &[("name", name)]);
         self.xml.open("inertial", &[]);
         self.xml.leaf("origin", &[("xyz", &numbers(&segment.center_of_mass))]);
         self.xml.leaf("mass", &[("value", &number(segment.mass))]);
-        let values = moments(&segment.inertia).map(number);
+        let mut inertia = segment.inertia;
+        if inertia.diagonal().min() < 0.0 {
+            inertia = ball_of_size(&inertia);
+            let changed = "is not that of a solid body; the file has a ball's of that size.";
+            lost.push(format!("The inertia of `{name}` {changed}"));
+        }
+        let values = moments(&inertia).map(number);
         let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
         let attributes: Vec<(&str, &str)> = names.into_iter().zip(values.iter().map(String::as_str)).collect();
         self.xml.leaf("inertia", &attributes);
@@ -180,14 +187,14 @@ impl<'m> Writer<'m> {
                 self.xml.leaf("axis", &[("xyz", &numbers(&exact::axis(axis)))]);
             }
             self.xml.close();
-            self.link(&child, if n + 1 == last && !fixed { Some(segment) } else { None });
+            self.link(&child, if n + 1 == last && !fixed { Some(segment) } else { None }, lost);
             parent = child;
         }
         if fixed {
             let name = self.joints.take(&segment.joint);
             self.joint(&name, "fixed", &parent, &own, &rest);
             self.xml.close();
-            self.link(&own, Some(segment));
+            self.link(&own, Some(segment), lost);
         }
         let own_joint = last == 1 && !fixed && self.coordinates[segment.coordinates.start] == segment.joint;
         if !matches!(segment.joint_kind, JointKind::Weld) && !free(segment) && !planar && !own_joint {

@@ -1,7 +1,10 @@
 //! Parses bytes to the tree.
 
+use std::borrow::Cow;
+
 use super::error::{Malformed, XmlError};
 use super::{Attribute, Document, Element, Limits, NONE, Position, Span, Text};
+use crate::escaped;
 use quick_xml::Reader;
 use quick_xml::errors::{Error, IllFormedError};
 use quick_xml::events::{BytesStart, Event};
@@ -244,7 +247,7 @@ impl<'a> Builder<'a> {
         Ok((first as u32, self.document.attributes.len() as u32))
     }
 
-    /// An attribute's value: references resolved, each line end or tab a space, as XML says.
+    /// An attribute's value: references resolved, each line end or tab a space, as XML says, and what a terminal obeys [`escaped`].
     fn value(&mut self, raw: &str, base: usize) -> Result<Span, XmlError> {
         let start = self.document.pool.len() as u32;
         let mut rest = raw;
@@ -272,6 +275,11 @@ impl<'a> Builder<'a> {
             }
         }
         self.document.pool.push_str(rest);
+        // Names reach terminals, tables and pages.
+        if let Cow::Owned(shown) = escaped(&self.document.pool[start as usize..]) {
+            self.document.pool.truncate(start as usize);
+            self.document.pool.push_str(&shown);
+        }
         Ok(Span { start, end: self.document.pool.len() as u32 })
     }
 

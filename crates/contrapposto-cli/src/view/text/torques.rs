@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use contrapposto::model::{CoordinateKind, Model, Side};
+use contrapposto_formats::motion::csv_cell;
 use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
 
@@ -130,7 +131,7 @@ pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: cha
     let separator = separator.to_string();
     for label in labels {
         text.push_str(between);
-        text.push_str(&label);
+        text.push_str(&if separator == "," { csv_cell(&label) } else { label });
         between = &separator;
     }
     text.push('\n');
