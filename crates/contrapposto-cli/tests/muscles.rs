@@ -49,6 +49,10 @@ fn a_muscle_has_the_length_moment_arm_and_forces_of_its_path() {
         let strength = &frame["strength_nm"]["q"];
         assert!((strength["positive"]["sum"].as_f64().unwrap() - all("max_forces_n")).abs() < 1e-9);
         assert!((strength["negative"]["sum"].as_f64().unwrap() - all("tendon_forces_n")).abs() < 1e-9);
+        // No other joint limits the torque about the only one.
+        for (sense, key) in [("positive", "max_forces_n"), ("negative", "tendon_forces_n")] {
+            assert!((strength[sense]["coupled"].as_f64().unwrap() - all(key)).abs() < 1e-9);
+        }
         assert!((number("passive_torques_nm", "q") - all("passive_forces_n")).abs() < 1e-9);
     }
     let table = run(&["muscles", &file]);

@@ -243,8 +243,8 @@ pub(crate) struct ConvertArgs {
 #[command(after_help = "Examples:\n  contrapposto muscles gait2392.osim\n  \
     contrapposto muscles subject.osim gait.mot --json > muscles.jsonl\n\n\
     Fibres and tendons are in equilibrium at rest. A moment arm is the torque about a coordinate for each newton of tension; those of \
-    coordinates that follow others are part of theirs. Strength is a plain sum: muscles that pull one way at full activation, all \
-    others at --activation.")]
+    coordinates that follow others are part of theirs. Strength is a plain sum, muscles that pull one way at full activation and \
+    all others at --activation; and a coupled one, the greatest torque while the muscles give no torque about any other joint.")]
 pub(crate) struct MusclesArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::muscle::{FiberState, PathGeometry, PathRule, bushing_torque, passive_torque, strength};
+use contrapposto::muscle::{
+    FiberState, PathGeometry, PathRule, bushing_torque, coupled_strength, passive_torque, strength,
+};
 use contrapposto::posture::Posture;
 use contrapposto_formats::tissue::SourcedModel;
 
@@ -58,6 +60,7 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
     let mut geometry = PathGeometry::new(model, &muscles.paths);
     let (mut strengths, mut passive) = (vec![[0.0; 2]; model.rates().len()], vec![0.0; model.rates().len()]);
     let mut of_bushings = passive.clone();
+    let none = vec![0.0; model.rates().len()];
     for (index, (time, posture)) in frames.iter().enumerate() {
         kinematics.update(model, posture).map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
         geometry.update(model, &kinematics, &muscles.paths, rule);
@@ -70,6 +73,7 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
         passive_torque(muscles, &geometry, &rest, &mut passive);
         bushing_torque(&muscles.bushings, model, &kinematics, &mut of_bushings);
         passive.iter_mut().zip(&of_bushings).for_each(|(passive, more)| *passive += more);
+        let coupled = coupled_strength(muscles, &geometry, &rest, &full, &geometry.crossed(model), &none);
         let frame = MuscleFrame {
             index,
             time: *time,
@@ -79,6 +83,7 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
             rest: &rest,
             full: &full,
             strength: &strengths,
+            coupled: &coupled,
             passive: &passive,
         };
         print(&if args.json { json(opened, &frame)? } else { readable(opened, &frame) })?;

@@ -31,6 +31,19 @@ pub struct PathGeometry {
     /// Force and moment about ground's origin on each mobility, N for each newton of tension and m.
     wrenches: Vec<(Vector3<f64>, Vector3<f64>)>,
     routing: Routing,
+    /// By path: its line.
+    lines: Vec<Line>,
+    /// The rule of the last update.
+    rule: PathRule,
+}
+
+/// The line of a path in a posture.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Line {
+    /// Its corners.
+    pub(crate) nodes: Vec<Node>,
+    /// Length on the surface, by wrap of the path, m.
+    pub(crate) on_surface: Vec<f64>,
 }
 
 impl PathGeometry {
@@ -52,6 +65,8 @@ impl PathGeometry {
                 .collect(),
             wrenches: vec![(Vector3::zeros(), Vector3::zeros()); model.mobilities.len()],
             routing: Routing::new(paths),
+            lines: paths.paths.iter().map(Line::new).collect(),
+            rule: PathRule::default(),
         }
     }
 
@@ -66,14 +81,59 @@ impl PathGeometry {
         &self.moment_arms[path * self.rates..(path + 1) * self.rates]
     }
 
+    /// The rates about which paths can turn a body: all that move some part of a path against another, but for slides, locked coordinates
+    /// and those that follow others, which count where they lead.
+    pub fn crossed(&self, model: &Model) -> Vec<usize> {
+        let mut lead: Vec<Option<usize>> = (0..model.rates.len()).map(Some).collect();
+        for coupling in &model.couplings {
+            let [dependent, independent] =
+                [coupling.dependent, coupling.independent].map(|coordinate| model.coordinates[coordinate].rate);
+            if let Some(dependent) = dependent {
+                lead[dependent] = independent.and_then(|independent| lead[independent]);
+            }
+        }
+        let mut crossed = vec![false; model.rates.len()];
+        for rate in self.moving.iter().flatten().flat_map(|&mobility| model.rates_of(mobility)) {
+            lead[rate].into_iter().for_each(|rate| crossed[rate] = true);
+        }
+        let free = |rate: &usize| {
+            let of = &model.rates[*rate];
+            of.rotational && of.coordinate.is_none_or(|coordinate| !model.coordinates[coordinate].locked)
+        };
+        (0..crossed.len()).filter(|&rate| crossed[rate]).filter(free).collect()
+    }
+
+    /// The line of a path.
+    pub(crate) fn line(&self, path: usize) -> &Line {
+        &self.lines[path]
+    }
+
+    /// The frames of segments in ground.
+    pub(crate) fn segment_frame(&self, segment: usize) -> &FrameInGround {
+        &self.segments[segment]
+    }
+
+    /// The frame of a surface in ground.
+    pub(crate) fn object_frame(&self, object: usize) -> &FrameInGround {
+        &self.objects[object]
+    }
+
+    /// The rule of the last update.
+    pub(crate) fn rule(&self) -> PathRule {
+        self.rule
+    }
+
     /// Lays all paths anew. Does not allocate.
     pub fn update(&mut self, model: &Model, kinematics: &Kinematics, paths: &Paths, rule: PathRule) {
         self.place(model, kinematics, paths);
+        self.rule = rule;
         self.moment_arms.fill(0.0);
         for (index, path) in paths.paths.iter().enumerate() {
             let scene =
                 Scene { paths, values: kinematics.values(), segments: &self.segments, objects: &self.objects, rule };
             self.lengths[index] = self.routing.lay(scene, path);
+            self.lines[index].nodes.clone_from(&self.routing.nodes);
+            self.lines[index].on_surface.clone_from(&self.routing.lengths);
             let arms = &mut self.moment_arms[index * self.rates..(index + 1) * self.rates];
             let mut tension = Tension { model, kinematics, points: &path.points, segments: &self.segments, rule, arms };
             let unbalanced = rule == PathRule::OpenSim && path.wraps.len() > 1;
@@ -101,6 +161,14 @@ impl PathGeometry {
                 (axes * own, axes * at + origin)
             });
         }
+    }
+}
+
+impl Line {
+    /// Space for the longest line of a path.
+    fn new(path: &super::path::Path) -> Self {
+        let (points, wraps) = (path.points.len(), path.wraps.len());
+        Self { nodes: Vec::with_capacity(points + 2 * wraps), on_surface: Vec::with_capacity(wraps) }
     }
 }
 

@@ -5,26 +5,34 @@
 //! ([`PathRule`]): shortest lines, whose moment arms are minus the derivatives of the length, or OpenSim's.
 
 mod bushing;
+mod coupled_strength;
 mod fiber;
 mod geometry;
 mod ligament;
+mod linear_program;
 mod path;
 mod routing;
 mod rule;
+mod static_optimisation;
 mod tolerances;
 mod torque;
 mod wrap;
 
 pub use bushing::{Bushing, bushing_torque};
+pub use coupled_strength::{CoupledStrength, coupled_strength};
 pub use fiber::{
     ActiveCurve, DeGrooteFregly2016, FiberLaw, FiberState, Millard2012, Muscle, MuscleError, MuscleSpec,
     PassiveFiberCurve, PassiveShape, Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
+pub(crate) use geometry::Line;
 pub use geometry::PathGeometry;
 pub use ligament::{Ligament, LigamentLaw};
 pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
+pub(crate) use routing::{Node, NodeKind};
 pub use rule::{PathRule, WrapMethod};
-pub use torque::{passive_torque, strength};
+pub use static_optimisation::{Recruitment, StaticOptimisation};
+pub use torque::{Tension, passive_tensions, passive_torque, strength};
+pub(crate) use wrap::Spread;
 pub use wrap::{Quadrant, WrapObject, WrapShape};
 
 /// The muscles of a body, with its ligaments and springs.

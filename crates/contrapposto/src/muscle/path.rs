@@ -56,6 +56,15 @@ impl MovingPoint {
         (place.coords, self.frame.rotation * Vector3::new(x[1], y[1], z[1]))
     }
 
+    /// First and second derivative of the place by the coordinate, in the segment's frame; zero where the point does not move.
+    pub(crate) fn slope_and_curvature(&self, values: &[f64]) -> [Vector3<f64>; 2] {
+        let Some(at) = self.coordinate.map(|c| values[c]).filter(|_| !self.stays(values)) else {
+            return [Vector3::zeros(); 2];
+        };
+        let [x, y, z] = self.place.each_ref().map(|function| function.value_slope_curvature(at));
+        [1, 2].map(|order| self.frame.rotation * Vector3::new(x[order], y[order], z[order]))
+    }
+
     /// The derivative of the place by the coordinate as OpenSim takes it: also outside of the range, with the coordinate's own value.
     pub(super) fn slope_beyond_range(&self, values: &[f64]) -> Vector3<f64> {
         let at = self.coordinate.map_or(0.0, |c| values[c]);

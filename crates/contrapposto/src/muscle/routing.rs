@@ -8,25 +8,25 @@ use super::tolerances::{GEODESIC_AT_REST, GEODESIC_ROUNDS, OPENSIM_AT_REST, OPEN
 use super::wrap::{Contact, Manner, Wrapping};
 
 /// Origin and axes of a frame in ground.
-pub(super) type FrameInGround = (Matrix3<f64>, Vector3<f64>);
+pub(crate) type FrameInGround = (Matrix3<f64>, Vector3<f64>);
 
 /// A corner of a path's line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// Its place in ground, m.
-    pub(super) place: Vector3<f64>,
+    pub(crate) place: Vector3<f64>,
     /// The place from which lengths and directions are taken. By OpenSim's rule that is the first place of this corner in the posture: OpenSim
     /// keeps a point's place in ground when surfaces move the point on their surface again.
     pub(super) seen: Vector3<f64>,
     /// The segment that carries it.
-    pub(super) segment: Option<usize>,
+    pub(crate) segment: Option<usize>,
     /// Its origin.
-    pub(super) kind: NodeKind,
+    pub(crate) kind: NodeKind,
 }
 
 /// Where a corner comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum NodeKind {
+pub(crate) enum NodeKind {
     /// The path's point of this number.
     Point(usize),
     /// The line touches the surface of the path's wrap of this number.
@@ -40,12 +40,14 @@ pub(super) enum NodeKind {
 pub(super) struct Routing {
     /// The corners.
     pub(super) nodes: Vec<Node>,
-    /// Length on the surface, by wrap of the path.
-    lengths: Vec<f64>,
+    /// Length on the surface, by wrap of the path, m.
+    pub(super) lengths: Vec<f64>,
     /// The places of both corners on the surface when they were first asked for, by wrap of the path; for OpenSim's rule.
     first_seen: Vec<[Option<Vector3<f64>>; 2]>,
     /// Order in which the wraps are applied.
     order: Vec<usize>,
+    /// The corners of the round before.
+    before: Vec<Vector3<f64>>,
 }
 
 /// What a path's line depends on.
@@ -79,6 +81,7 @@ impl Routing {
             lengths: Vec::with_capacity(wraps),
             first_seen: Vec::with_capacity(wraps),
             order: Vec::with_capacity(wraps),
+            before: Vec::with_capacity(nodes),
         }
     }
 
@@ -136,11 +139,12 @@ impl Routing {
         let count = path.wraps.len();
         self.order.clear();
         self.order.extend(0..count);
-        let (rounds, at_rest) = match scene.rule {
-            PathRule::Geodesic => (GEODESIC_ROUNDS, GEODESIC_AT_REST),
-            PathRule::OpenSim => (OPENSIM_ROUNDS, OPENSIM_AT_REST),
+        let rounds = match scene.rule {
+            _ if count < 2 => 1,
+            PathRule::Geodesic => GEODESIC_ROUNDS,
+            PathRule::OpenSim => OPENSIM_ROUNDS,
         };
-        let rounds = if count < 2 { 1 } else { rounds };
+        self.before.clear();
         let mut before = f64::INFINITY;
         for round in 0..rounds {
             let mut first_two = [Found::Free; 2];
@@ -151,7 +155,11 @@ impl Routing {
                 }
             }
             let length = self.length(scene.rule);
-            if (length - before).abs() < at_rest {
+            let at_rest = match scene.rule {
+                PathRule::Geodesic => self.has_come_to_rest(),
+                PathRule::OpenSim => (length - before).abs() < OPENSIM_AT_REST,
+            };
+            if at_rest {
                 break;
             }
             before = length;
@@ -161,6 +169,17 @@ impl Routing {
                 self.remove(0);
             }
         }
+    }
+
+    /// Whether no corner has moved since the last call by more than rounding. The length is at rest long before the corners are, because
+    /// it is the least.
+    fn has_come_to_rest(&mut self) -> bool {
+        let places = self.nodes.iter().map(|node| node.place);
+        let stays = |(place, before): (Vector3<f64>, &Vector3<f64>)| (place - before).amax() < GEODESIC_AT_REST;
+        let at_rest = self.nodes.len() == self.before.len() && places.clone().zip(&self.before).all(stays);
+        self.before.clear();
+        self.before.extend(places);
+        at_rest
     }
 
     /// Removes the corners of a wrap.

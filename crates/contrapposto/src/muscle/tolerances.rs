@@ -70,8 +70,8 @@ pub(super) const GEODESIC_PIECES: usize = 8;
 pub(super) const TORUS_BENDS: usize = 12;
 /// Rounds in which several surfaces of a path move each other's lines, by the geodesic rule.
 pub(super) const GEODESIC_ROUNDS: usize = 200;
-/// Change of length between two rounds below which a path over several surfaces is at rest by the geodesic rule, m.
-pub(super) const GEODESIC_AT_REST: f64 = 1e-15;
+/// Way of a corner between two rounds below which a path over several surfaces is at rest by the geodesic rule, m.
+pub(super) const GEODESIC_AT_REST: f64 = 1e-14;
 /// OpenSim's number of such rounds.
 pub(super) const OPENSIM_ROUNDS: usize = 8;
 /// OpenSim's change of length below which it stops them, m.
@@ -89,6 +89,9 @@ pub(super) const OPENSIM_PIECE: f64 = 0.002;
 /// Distance from the range of a conditional point within which OpenSim counts it as inside, rad or m.
 pub(super) const RANGE_SLACK: f64 = 1e-5;
 
+/// Steps in which the spread of neighbouring lines on an ellipsoid or a torus is integrated.
+pub(super) const SPREAD_STEPS: usize = 96;
+
 // Curves (`curve.rs`).
 
 /// Newton steps to the parameter of a Bezier curve, each safeguarded by bisection.
@@ -104,3 +107,19 @@ pub(super) const EQUILIBRIUM: f64 = 1e-13;
 pub(super) const EQUILIBRIUM_STEPS: usize = 200;
 /// Stretch of the tendon beyond its slack length from which the search starts.
 pub(super) const FIRST_STRETCH: f64 = 0.01;
+
+// Linear programs (`linear_program.rs`).
+
+/// Reduced cost, as a share of the largest cost, below which no unknown can raise the value.
+pub(super) const REDUCED_COST: f64 = 1e-11;
+/// Smallest entry of the tableau that counts.
+pub(super) const LEAST_PIVOT: f64 = 1e-9;
+/// Steps of one phase after which the first unknown that raises the value is taken, not the best.
+pub(super) const STEPS_TO_BLAND: usize = 2000;
+/// Most steps of one phase.
+pub(super) const SIMPLEX_STEPS: usize = 20_000;
+
+// Static optimisation (`static_optimisation.rs`).
+
+/// Singular value of the equations over their largest entry below which their multipliers are not determined.
+pub(super) const LEAST_SINGULAR: f64 = 1e-12;

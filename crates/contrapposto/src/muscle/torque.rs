@@ -4,6 +4,41 @@ use super::Musculature;
 use super::fiber::FiberState;
 use super::geometry::PathGeometry;
 
+/// The tension of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tension {
+    /// N.
+    pub force: f64,
+    /// Its derivative by the path's length, N/m.
+    pub stiffness: f64,
+}
+
+/// Tensions of paths from the fibres' passive forces and those of ligaments, overwritten; one state a muscle, one tension a path. Does not allocate.
+///
+/// # Panics
+/// Unless there is a state for every muscle and a tension for every path.
+pub fn passive_tensions(
+    muscles: &Musculature,
+    geometry: &PathGeometry,
+    states: &[FiberState],
+    tensions: &mut [Tension],
+) {
+    assert_eq!(states.len(), muscles.muscles.len(), "one state a muscle");
+    assert_eq!(tensions.len(), muscles.paths.paths.len(), "one tension a path");
+    tensions.fill(Tension::default());
+    for (muscle, state) in muscles.muscles.iter().zip(states) {
+        let tension = &mut tensions[muscle.spec().path];
+        tension.force += state.passive_force;
+        tension.stiffness += state.passive_stiffness;
+    }
+    for ligament in &muscles.ligaments {
+        let (force, slope) = ligament.law.tension_and_slope(geometry.lengths()[ligament.path]);
+        let tension = &mut tensions[ligament.path];
+        tension.force += force;
+        tension.stiffness += slope;
+    }
+}
+
 /// Torque of the fibres' passive forces and of ligaments by rate, N m (N for slides), overwritten; one state a muscle. That of bushings
 /// is [`super::bushing_torque`]. Does not allocate.
 ///

@@ -9,8 +9,11 @@ mod load;
 mod passive_arc;
 mod passive_gradient;
 mod passive_torque;
+mod path_curvature;
+mod path_tension;
 
 pub use external::ExternalTorque;
 pub use fold::Gradient;
 pub use load::{FixedIn, Load, LoadError, LoadKind, LoadQuantity};
 pub use passive_torque::{PassiveTorque, PassiveTorqueError};
+pub use path_tension::PathTension;

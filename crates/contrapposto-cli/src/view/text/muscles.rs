@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use contrapposto::model::{Model, Rate};
-use contrapposto::muscle::{FiberState, Muscle, PathGeometry};
+use contrapposto::muscle::{CoupledStrength, FiberState, Muscle, PathGeometry};
 use contrapposto_formats::tissue::SourcedModel;
 use serde::Serialize;
 
@@ -24,6 +23,8 @@ pub(crate) struct MuscleFrame<'a> {
     pub(crate) full: &'a [FiberState],
     /// By rate, positive first.
     pub(crate) strength: &'a [[f64; 2]],
+    /// Strength about each crossed rate while all others carry no torque.
+    pub(crate) coupled: &'a [CoupledStrength],
     /// Torque of passive fibre forces by rate.
     pub(crate) passive: &'a [f64],
 }
@@ -50,15 +51,19 @@ struct FrameText<'a> {
 
 #[derive(Serialize)]
 struct StrengthText {
-    positive: SumText,
-    negative: SumText,
+    positive: SenseText,
+    negative: SenseText,
+    /// What the muscles lack to keep all other joints without torque, summed over them.
+    missing_nm: f64,
 }
 
 /// Strength of one sense.
 #[derive(Serialize)]
-struct SumText {
+struct SenseText {
     /// The muscles that pull this way at full activation, all others at that of the frame.
     sum: f64,
+    /// The same while the muscles give no torque about any other joint.
+    coupled: f64,
 }
 
 pub(crate) fn json(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> Result<String, Fail> {
@@ -82,13 +87,17 @@ pub(crate) fn json(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> Result<Str
         passive_forces_n: by_muscle(&|i, _| frame.rest[i].passive_force),
         max_forces_n: by_muscle(&|i, _| frame.full[i].tendon_force),
         passive_torques_nm: Named(
-            crossed(opened, frame).map(|(i, rate)| (rate.name.as_str(), frame.passive[i])).collect(),
+            frame.coupled.iter().map(|c| (opened.model.rates()[c.rate].name.as_str(), frame.passive[c.rate])).collect(),
         ),
         strength_nm: Named(
-            crossed(opened, frame)
-                .map(|(i, rate)| {
-                    let [positive, negative] = frame.strength[i].map(|sum| SumText { sum });
-                    (rate.name.as_str(), StrengthText { positive, negative })
+            frame
+                .coupled
+                .iter()
+                .map(|coupled| {
+                    let sense =
+                        |k: usize| SenseText { sum: frame.strength[coupled.rate][k], coupled: coupled.torque[k] };
+                    let text = StrengthText { positive: sense(0), negative: sense(1), missing_nm: coupled.missing };
+                    (opened.model.rates()[coupled.rate].name.as_str(), text)
                 })
                 .collect(),
         ),
@@ -101,14 +110,6 @@ fn word(rule: RuleChoice) -> &'static str {
         RuleChoice::Geodesic => "geodesic",
         RuleChoice::Opensim => "opensim",
     }
-}
-
-/// Turning rates that some muscle crosses.
-fn crossed<'a>(opened: &'a SourcedModel, frame: &MuscleFrame<'_>) -> impl Iterator<Item = (usize, &'a Rate)> {
-    let model: &Model = &opened.model;
-    let crossed =
-        |i: usize| opened.muscles.muscles.iter().any(|muscle| frame.geometry.moment_arms(muscle.spec().path)[i] != 0.0);
-    model.rates().iter().enumerate().filter(move |(i, rate)| rate.rotational && crossed(*i))
 }
 
 pub(crate) fn readable(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> String {
@@ -138,13 +139,16 @@ pub(crate) fn readable(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> String
     }
     let _ = writeln!(text, "{table}\n");
     let mut table = plain_table();
-    table.set_header(["coordinate", "passive, N m", "strength +/-, N m"]);
-    for (i, rate) in crossed(opened, frame) {
-        let [positive, negative] = frame.strength[i];
+    table.set_header(["coordinate", "passive, N m", "strength +/-, N m", "other joints without torque"]);
+    for coupled in frame.coupled {
+        let both = |[positive, negative]: [f64; 2]| format!("{positive:.1} / {negative:.1}");
+        let lacks =
+            if coupled.missing > LEAST_LACK { format!(" (lacks {:.1})", coupled.missing) } else { String::new() };
         table.add_row([
-            rate.name.clone(),
-            format!("{:.2}", frame.passive[i]),
-            format!("{positive:.1} / {negative:.1}"),
+            opened.model.rates()[coupled.rate].name.clone(),
+            format!("{:.2}", frame.passive[coupled.rate]),
+            both(frame.strength[coupled.rate]),
+            both(coupled.torque) + &lacks,
         ]);
     }
     let _ = writeln!(text, "{table}\n");
@@ -153,3 +157,5 @@ pub(crate) fn readable(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> String
 
 /// Smallest moment arm that the table shows, m.
 const LEAST_ARM: f64 = 5e-5;
+/// Smallest torque that muscles lack at other joints of which the table tells, N m.
+const LEAST_LACK: f64 = 0.05;

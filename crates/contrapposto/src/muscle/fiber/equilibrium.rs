@@ -37,6 +37,8 @@ pub struct FiberState {
     pub active_force: f64,
     /// Passive force of the fibres along the tendon, N.
     pub passive_force: f64,
+    /// Derivative of `passive_force` by the path's length, in equilibrium, N/m.
+    pub passive_stiffness: f64,
     /// Fibre force along the tendon less tendon force, over the greatest isometric force: zero but for rounding. Not so where a file's passive
     /// curve is negative and larger than the active force: no tendon can hold such fibres, which stay at the length of a slack one.
     pub imbalance: f64,
@@ -52,6 +54,10 @@ struct Forces {
     tendon: f64,
     /// Derivative of the imbalance by fibre length, per m.
     slope: f64,
+    /// Derivative of the imbalance by the path's length, per m.
+    path_slope: f64,
+    /// Derivative of the passive force along the tendon by fibre length, per m.
+    passive_slope: f64,
 }
 
 impl Forces {
@@ -117,18 +123,23 @@ impl Fibers {
         let fibers_slope = (activation * active_slope + passive_slope) / self.optimal_length;
         let cos_slope = self.width * self.width / (length * length * length * cos);
         let slope = fibers_slope * cos + fibers * cos_slope + tendon_slope / (self.slack_length * cos);
-        Forces { cos, active: activation * active, passive, tendon, slope }
+        let path_slope = if self.slack_length > 0.0 { -tendon_slope / self.slack_length } else { 0.0 };
+        let passive_slope = passive_slope / self.optimal_length * cos + passive * cos_slope;
+        Forces { cos, active: activation * active, passive, tendon, slope, path_slope, passive_slope }
     }
 
     fn state(&self, length: f64, forces: &Forces, shortest: bool) -> FiberState {
         let most = self.max_isometric_force;
         let carried = if shortest { 0.0 } else { most * forces.cos };
+        // The length of fibres at a rigid tendon changes with the path's by the cosine of their angle.
+        let stretched = if self.rigid { forces.cos } else { -forces.path_slope / forces.slope };
         FiberState {
             fiber_length: length,
             cos_pennation: forces.cos,
             tendon_force: if shortest && self.rigid { 0.0 } else { most * forces.tendon },
             active_force: carried * forces.active,
             passive_force: carried * forces.passive,
+            passive_stiffness: if shortest { 0.0 } else { most * forces.passive_slope * stretched },
             imbalance: if shortest { 0.0 } else { forces.imbalance() },
             shortest,
         }

@@ -138,12 +138,21 @@ impl Muscle {
 
     /// The equilibrium at rest at a path length (m) and an activation; activations below the least one count as that. Does not allocate.
     pub fn at_rest(&self, path_length: f64, activation: f64) -> FiberState {
+        self.solve(&self.fibers, path_length, activation)
+    }
+
+    /// As [`Muscle::at_rest`], as if the tendon did not stretch. Does not allocate.
+    pub fn at_rest_on_rigid_tendon(&self, path_length: f64, activation: f64) -> FiberState {
+        self.solve(&Fibers { rigid: true, ..self.fibers }, path_length, activation)
+    }
+
+    fn solve(&self, fibers: &Fibers, path_length: f64, activation: f64) -> FiberState {
         let activation = activation.max(self.spec.least_activation).min(1.0);
         match &self.curves {
-            CurveSet::Thelen(curves) => self.fibers.solve(curves, path_length, activation),
-            CurveSet::Millard(curves) => self.fibers.solve(&**curves, path_length, activation),
-            CurveSet::DeGrooteFregly(curves) => self.fibers.solve(curves, path_length, activation),
-            CurveSet::Schutte(curves) => self.fibers.solve(&**curves, path_length, activation),
+            CurveSet::Thelen(curves) => fibers.solve(curves, path_length, activation),
+            CurveSet::Millard(curves) => fibers.solve(&**curves, path_length, activation),
+            CurveSet::DeGrooteFregly(curves) => fibers.solve(curves, path_length, activation),
+            CurveSet::Schutte(curves) => fibers.solve(&**curves, path_length, activation),
         }
     }
 

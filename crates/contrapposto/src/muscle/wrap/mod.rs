@@ -8,12 +8,14 @@ mod ellipsoid_opensim;
 mod geodesic;
 mod nearest;
 mod sphere;
+mod spread;
 mod tangency;
 mod torus;
 mod torus_opensim;
 
 pub use contact::Quadrant;
 pub(super) use contact::{Contact, Wrapping};
+pub(crate) use spread::Spread;
 
 use nalgebra::Vector3;
 
@@ -76,6 +78,16 @@ pub(super) struct Manner {
 }
 
 impl WrapObject {
+    /// Outward normal at a point of the surface, both in the surface's frame.
+    pub(crate) fn normal(&self, place: &Vector3<f64>) -> Vector3<f64> {
+        self.shape.normal(place)
+    }
+
+    /// How shortest lines on the surface spread along the one that starts at a place in a direction, over a length, m.
+    pub(crate) fn spread(&self, place: &Vector3<f64>, direction: &Vector3<f64>, length: f64) -> Spread {
+        self.shape.spread(place, direction, length)
+    }
+
     /// What it does to a part of a path between two points in its frame. A search that ends in no number leaves the part straight.
     pub(super) fn wrap(&self, from: &Vector3<f64>, to: &Vector3<f64>, manner: Manner) -> Wrapping {
         match self.laid(from, to, manner) {

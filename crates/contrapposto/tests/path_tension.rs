@@ -1,0 +1,264 @@
+//! Tests the gradient of torques of tensions along paths on the built-in adult: against central differences, and its symmetry.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::math::{Function, Spline};
+use contrapposto::model::{Adult, Model, Placement, adult};
+use contrapposto::muscle::{
+    FiberLaw, FiberState, Location, MovingPoint, Muscle, MuscleSpec, Musculature, Path, PathGeometry, PathPoint,
+    PathRule, PathWrap, Paths, Quadrant, Tension, Thelen2003, WrapMethod, WrapObject, WrapShape, passive_tensions,
+};
+use contrapposto::posture::Posture;
+use contrapposto::statics::PathTension;
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+type V = Vector3<f64>;
+
+fn random() -> Pcg64 {
+    let seed = std::env::var("CONTRAPPOSTO_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(20_261_122);
+    println!("path tension: seed {seed}");
+    Pcg64::seed_from_u64(seed)
+}
+
+/// Anywhere inside the ranges; the root about its default.
+fn inside(rng: &mut Pcg64, model: &Model) -> Posture {
+    let values = model.coordinates().iter().map(|c| {
+        let (low, high) = (c.range.0.max(c.default - 1.0), c.range.1.min(c.default + 1.0));
+        low + rng.random_range(0.02..0.98) * (high - low)
+    });
+    Posture::new(values.collect())
+}
+
+fn segment(model: &Model, name: &str) -> Option<usize> {
+    Some(model.segment(name).unwrap_or_else(|| panic!("no segment {name}")))
+}
+
+fn point(segment: Option<usize>, x: f64, y: f64, z: f64) -> PathPoint {
+    PathPoint { segment, location: Location::Fixed(V::new(x, y, z)) }
+}
+
+fn cylinder(segment: Option<usize>, at: V, turn: (f64, f64, f64), radius: f64) -> WrapObject {
+    WrapObject {
+        name: "roll".to_owned(),
+        segment,
+        pose: Placement::from_parts(Translation3::from(at), UnitQuaternion::from_euler_angles(turn.0, turn.1, turn.2)),
+        quadrant: Quadrant::All,
+        active: true,
+        shape: WrapShape::Cylinder { radius, length: 1.0 },
+    }
+}
+
+fn over(points: Vec<PathPoint>, objects: &[usize]) -> Path {
+    let wraps = objects.iter().map(|&object| PathWrap { object, method: WrapMethod::Hybrid, range: (None, None) });
+    Path { points, wraps: wraps.collect() }
+}
+
+/// Paths of the right arm: from ground over the trunk with a moving point, over one cylinder, over two, between two branches, over a
+/// sphere and over an ellipsoid.
+fn arm(model: &Model) -> Paths {
+    let [torso, upper, lower, hand] = ["torso", "humerus_r", "ulna_r", "hand_r"].map(|name| segment(model, name));
+    let elbow = model.coordinate("elbow_flex_r").unwrap();
+    let spline = Function::Spline(Spline::simm(&[-1.0, 0.0, 1.0, 2.0, 3.0], &[0.0, 0.02, -0.01, 0.03, 0.01]).unwrap());
+    let moving = MovingPoint {
+        frame: Placement::from_parts(
+            Translation3::new(0.1, 0.0, 0.2),
+            UnitQuaternion::from_euler_angles(0.3, 0.2, 0.1),
+        ),
+        coordinate: Some(elbow),
+        range: (-1.0, 3.0),
+        place: [spline, Function::Constant(0.01), Function::Linear { slope: 0.02, intercept: 0.1 }],
+    };
+    let end = model.segments()[lower.unwrap()].in_parent.translation.vector;
+    let moved = PathPoint { segment: upper, location: Location::Moving(Box::new(moving)) };
+    let over_elbow = |x| vec![point(upper, x, end.y + 0.15, 0.0), point(lower, x, -0.15, 0.02)];
+    let wrist = model.segments()[hand.unwrap()].in_parent.translation.vector;
+    Paths {
+        paths: vec![
+            over(
+                vec![point(None, 0.1, 0.4, 0.2), point(torso, 0.05, 0.2, 0.1), moved, point(hand, 0.02, -0.05, 0.01)],
+                &[],
+            ),
+            over(over_elbow(0.01), &[0]),
+            over(vec![point(upper, 0.01, end.y + 0.15, 0.0), point(hand, 0.05, -0.1, 0.0)], &[0, 1]),
+            over(vec![point(upper, 0.03, -0.1, 0.0), point(segment(model, "humerus_l"), 0.03, -0.15, 0.0)], &[]),
+            over(over_elbow(0.005), &[2]),
+            over(over_elbow(0.006), &[3]),
+        ],
+        wrap_objects: vec![
+            cylinder(lower, V::new(0.0, 0.0, 0.01), (0.1, 0.2, 0.0), 0.03),
+            cylinder(lower, V::new(0.02, 0.6 * wrist.y, 0.0), (-0.2, 0.1, 0.3), 0.03),
+            WrapObject {
+                shape: WrapShape::Sphere { radius: 0.03 },
+                ..cylinder(lower, V::new(0.0, 0.0, 0.01), (0.0, 0.0, 0.0), 0.03)
+            },
+            WrapObject {
+                shape: WrapShape::Ellipsoid { half_axes: V::new(0.03, 0.025, 0.05) },
+                ..cylinder(lower, V::new(0.0, 0.0, 0.01), (0.2, 0.1, 0.3), 0.03)
+            },
+        ],
+    }
+}
+
+/// A body with its paths, each with a spring from the length 0.1 m.
+struct Bench {
+    model: Model,
+    paths: Paths,
+    kinematics: Kinematics,
+    geometry: PathGeometry,
+    torque: PathTension,
+}
+
+const STIFFNESS: f64 = 3.0;
+
+impl Bench {
+    fn new() -> Self {
+        let model = adult(&Adult::default()).unwrap();
+        let paths = arm(&model);
+        let (geometry, torque) = (PathGeometry::new(&model, &paths), PathTension::new(&model, &paths));
+        Self { kinematics: Kinematics::new(&model), geometry, torque, paths, model }
+    }
+
+    /// The springs of one path alone.
+    fn update(&mut self, posture: &Posture, path: usize) {
+        self.kinematics.update(&self.model, posture).unwrap();
+        self.geometry.update(&self.model, &self.kinematics, &self.paths, PathRule::Geodesic);
+        let mut tensions = [Tension::default(); 6];
+        tensions[path] = Tension { force: STIFFNESS * (self.geometry.lengths()[path] - 0.1), stiffness: STIFFNESS };
+        self.torque.update(&self.model, &self.kinematics, &self.paths, &self.geometry, &tensions).unwrap();
+    }
+
+    /// Corners of the path: it wraps if it has more than points.
+    fn wraps(&self, path: usize) -> bool {
+        let mut bare = self.paths.clone();
+        bare.paths.iter_mut().for_each(|path| path.wraps.clear());
+        let mut straight = PathGeometry::new(&self.model, &bare);
+        straight.update(&self.model, &self.kinematics, &bare, PathRule::Geodesic);
+        self.geometry.lengths()[path] > straight.lengths()[path] + 1e-5
+    }
+}
+
+#[test]
+fn the_gradient_of_springs_along_paths_is_their_central_difference_and_symmetric() {
+    let mut rng = random();
+    let mut bench = Bench::new();
+    let mut wrapped = [0; 6];
+    for number in 0..60 {
+        let mut posture = inside(&mut rng, &bench.model);
+        let elbow = bench.model.coordinate("elbow_flex_r").unwrap();
+        // Flexed elbows wrap.
+        if number % 2 == 0 {
+            posture.values_mut()[elbow] = rng.random_range(0.05..1.2);
+        }
+        for (path, wrapped) in wrapped.iter_mut().enumerate() {
+            bench.update(&posture, path);
+            *wrapped += usize::from(bench.wraps(path));
+            let n = bench.model.rates().len();
+            let gradient: Vec<Vec<f64>> = (0..n).map(|row| bench.torque.gradient_row(row).to_vec()).collect();
+            let coordinates: Vec<usize> = bench.model.rates().iter().map(|rate| rate.coordinate.unwrap()).collect();
+            for (column, coordinate) in coordinates.into_iter().enumerate() {
+                let mut at = |step: f64| {
+                    let mut moved = posture.clone();
+                    moved.values_mut()[coordinate] += step;
+                    bench.update(&moved, path);
+                    bench.torque.torques().to_vec()
+                };
+                let h = 1e-4;
+                let sides = [at(h), at(-h), at(2.0 * h), at(-2.0 * h)];
+                for row in 0..n {
+                    let [near, far] =
+                        [(0, 2.0 * h), (2, 4.0 * h)].map(|(k, way)| (sides[k][row] - sides[k + 1][row]) / way);
+                    let difference = near + (near - far) / 3.0;
+                    let entry = gradient[row][column];
+                    let names = [row, column].map(|i| &bench.model.rates()[i].name);
+                    let off = (entry - difference).abs();
+                    assert!(off < 1e-7, "posture {number}, path {path}, {names:?}: {entry} for {difference}");
+                    assert!((entry - gradient[column][row]).abs() < 1e-9, "path {path}, {names:?}");
+                }
+            }
+        }
+    }
+    println!("postures in which the paths wrap: {wrapped:?}");
+    assert!(wrapped[1] > 10 && wrapped[2] > 10 && wrapped[4] > 10 && wrapped[5] > 10, "{wrapped:?}");
+}
+
+#[test]
+fn the_torque_of_springs_along_paths_is_their_tension_times_their_moment_arms() {
+    let mut bench = Bench::new();
+    let posture = inside(&mut random(), &bench.model);
+    bench.update(&posture, 0);
+    let force = STIFFNESS * (bench.geometry.lengths()[0] - 0.1);
+    for (torque, arm) in bench.torque.torques().iter().zip(bench.geometry.moment_arms(0)) {
+        assert!((torque - force * arm).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_gradient_of_tensions_allocates_nothing() {
+    let mut rng = random();
+    let mut bench = Bench::new();
+    let tensions = [Tension { force: 10.0, stiffness: 100.0 }; 6];
+    for _ in 0..10 {
+        let posture = inside(&mut rng, &bench.model);
+        bench.update(&posture, 2);
+        let Bench { model, paths, kinematics, geometry, torque } = &mut bench;
+        let update = || torque.update(model, kinematics, paths, geometry, &tensions).unwrap();
+        assert_eq!(allocation_counter::measure(update).count_total, 0);
+    }
+}
+
+#[test]
+fn the_passive_stiffness_of_fibres_is_the_slope_of_their_passive_force() {
+    for rigid_tendon in [false, true] {
+        let spec = MuscleSpec {
+            name: "m".to_owned(),
+            path: 0,
+            max_isometric_force: 500.0,
+            optimal_fiber_length: 0.1,
+            tendon_slack_length: 0.2,
+            pennation: 0.3,
+            max_pennation: 1.4,
+            least_activation: 0.01,
+            rigid_tendon,
+            law: FiberLaw::Thelen2003(Thelen2003::default()),
+        };
+        let muscle = Muscle::new(spec).unwrap();
+        for step in 0..40 {
+            let length = 0.26 + 0.003 * f64::from(step) + 1e-4;
+            let force = |length: f64| muscle.at_rest(length, 0.01).passive_force;
+            let h = 1e-6;
+            let slope = (force(length + h) - force(length - h)) / (2.0 * h);
+            let state = muscle.at_rest(length, 0.01);
+            let off = (state.passive_stiffness - slope).abs();
+            assert!(off < 1e-5 * (1.0 + slope.abs()), "{rigid_tendon}, {length}: {state:?}, {slope}");
+        }
+    }
+}
+
+#[test]
+fn passive_tensions_of_two_muscles_on_one_path_add_up() {
+    let spec = |name: &str, path| MuscleSpec {
+        name: name.to_owned(),
+        path,
+        max_isometric_force: 500.0,
+        optimal_fiber_length: 0.1,
+        tendon_slack_length: 0.2,
+        pennation: 0.0,
+        max_pennation: 1.4,
+        least_activation: 0.01,
+        rigid_tendon: false,
+        law: FiberLaw::Thelen2003(Thelen2003::default()),
+    };
+    let model = adult(&Adult::default()).unwrap();
+    let muscles = [spec("a", 1), spec("b", 1), spec("c", 2)].map(|spec| Muscle::new(spec).unwrap()).to_vec();
+    let muscles = Musculature { paths: arm(&model), muscles, ..Musculature::default() };
+    let geometry = PathGeometry::new(&model, &muscles.paths);
+    let state =
+        |force: f64| FiberState { passive_force: force, passive_stiffness: 10.0 * force, ..FiberState::default() };
+    let mut tensions = [Tension { force: 9.0, stiffness: 9.0 }; 6];
+    passive_tensions(&muscles, &geometry, &[state(1.0), state(2.0), state(4.0)], &mut tensions);
+    let expected = [0.0, 3.0, 4.0, 0.0, 0.0, 0.0].map(|force| Tension { force, stiffness: 10.0 * force });
+    assert_eq!(tensions, expected);
+}
