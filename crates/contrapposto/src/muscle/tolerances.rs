@@ -90,7 +90,7 @@ pub(super) const OPENSIM_PIECE: f64 = 0.002;
 pub(super) const RANGE_SLACK: f64 = 1e-5;
 
 /// Steps in which the spread of neighbouring lines on an ellipsoid or a torus is integrated.
-pub(super) const SPREAD_STEPS: usize = 96;
+pub(super) const SPREAD_STEPS: usize = 192;
 
 // Curves (`curve.rs`).
 
