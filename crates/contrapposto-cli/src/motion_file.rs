@@ -32,10 +32,19 @@ pub(crate) fn loads_of(
     Ok((loads, ground))
 }
 
+/// Whether a file is one of markers (.trc).
+fn holds_markers(name: &str, bytes: &[u8]) -> bool {
+    name.to_ascii_lowercase().ends_with(".trc") || bytes.starts_with(b"PathFileType")
+}
+
 /// The table of --grf; notes say on which segments its plates are taken to act.
 fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<String>) -> Result<GroundReaction, Fail> {
     let name = path.display().to_string();
     let bytes = read(path, motion::MOST_TABLE_BYTES as u64)?;
+    if holds_markers(&name, &bytes) {
+        let why = "is a marker file, which holds no forces; --grf is a table of ground reactions (.mot, .sto) or an ExternalLoads file";
+        return Err(Fail::Refused(format!("{name}: {why}")));
+    }
     let is_xml = bytes.trim_ascii_start().first() == Some(&b'<');
     let ground = if is_xml {
         external(path, &bytes, on, model)
@@ -89,7 +98,7 @@ pub(crate) fn read_motion(
         Fail::Refused(why) => Fail::Refused(format!("{why}\n  {accepted}")),
         other => other,
     })?;
-    if name.to_ascii_lowercase().ends_with(".trc") || bytes.starts_with(b"PathFileType") {
+    if holds_markers(&name, &bytes) {
         let why = "is a marker file; run OpenSim's inverse kinematics first, and give the motion that it writes (.mot)";
         return Err(Fail::Refused(format!("{name}: {why}")));
     }

@@ -23,6 +23,7 @@ mod solid;
 pub(crate) mod stage;
 mod surfaces;
 pub(crate) mod tables;
+pub(crate) mod targets;
 pub(crate) mod text;
 pub(crate) mod three_axis;
 pub(crate) mod torque_rows;

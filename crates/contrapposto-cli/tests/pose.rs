@@ -67,7 +67,8 @@ fn shown_as_found(page: &Value, found: &Value) {
     for k in 0..3 {
         assert!((column(&page["center"][k], 1)[0] - center[k]).abs() < 1e-4);
     }
-    assert_eq!(page["targets"][0], serde_json::json!([0.45, 1.55, 0.25]));
+    let target: Vec<f64> = page["targets"][0]["at"].as_array().unwrap().iter().map(|k| column(k, 1)[0]).collect();
+    assert!(target.iter().zip([0.45, 1.55, 0.25]).all(|(a, b)| (a - b).abs() < 1e-9), "{target:?}");
     assert_eq!(page["table"]["rows"].as_array().unwrap().len(), 7);
     assert_eq!(page["list"]["entries"], serde_json::json!([]));
 }
@@ -100,7 +101,7 @@ fn a_seat_is_under_who_sits() {
     let (seat, sole) = (patch("pelvis"), patch("calcn_r"));
     let surfaces = page["surfaces"].as_array().unwrap();
     assert_eq!(surfaces.len(), 1);
-    let corners: Vec<Vec<f64>> = surfaces[0].as_array().unwrap().iter().map(numbers).collect();
+    let corners: Vec<Vec<f64>> = surfaces[0]["corners"].as_array().unwrap().iter().map(numbers).collect();
     for corner in &seat {
         assert!(corners.iter().all(|drawn| (drawn[1] - corner.y).abs() < 1e-3), "{corners:?} {corner}");
         for (axis, value) in [(0, corner.x), (2, corner.z)] {
@@ -145,4 +146,22 @@ fn a_wrong_name_is_shown_where_it_stands() {
         run.stderr
     );
     assert!(!out.exists());
+}
+
+/// A target in centimetres is 193 m away: the cell says metres, and no cell is empty.
+#[test]
+fn a_target_a_hundred_metres_away_is_missed_by_metres_and_every_task_has_a_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "format = 1\n[model]\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75 }\n\
+        [[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n\
+        [[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [0.4, 195, 0.2]\n[[task]]\nkind = \"effort\"\n";
+    let run = contrapposto(["pose", "-", "--out"]).arg(folder.path()).stdin(text).run();
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let row = run.stdout.lines().find(|line| line.contains(" point hand_r ")).unwrap();
+    assert!(row.contains("193 m ") && row.contains("limited by higher priorities"), "{row}");
+    let page = support::page(folder.path());
+    for row in page["table"]["rows"].as_array().unwrap() {
+        assert!(row.as_array().unwrap().iter().all(|cell| !cell.as_str().unwrap().is_empty()), "{row}");
+    }
+    assert!(page["table"]["rows"].as_array().unwrap().iter().any(|row| row[2] == "193 m"), "{}", page["table"]);
 }

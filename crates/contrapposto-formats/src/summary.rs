@@ -168,7 +168,7 @@ pub struct GroupText {
     /// The parameters of its fatigue law.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fatigue: Option<FatigueParametersText>,
-    /// Greatest fatigue, 0 to 1.
+    /// Greatest fatigue while no support was put elsewhere, 0 to 1.
     pub peak_fatigue: f64,
     /// When it could no longer hold its load, s.
     pub exhausted_s: Option<f64>,

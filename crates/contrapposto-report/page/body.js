@@ -1,5 +1,6 @@
 // The body in three dimensions: every segment is the hull of a few balls, coloured by a measure; with contact forces, loads, centre
 // of mass, targets, surfaces, things, and the start as a ghost.
+const NEAR_TARGET = 0.005, FAR_TARGET = 1.2, FAR_ARROW = 0.6; // m
 const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.16, ARROW_HEAD = 0.09, LEAST_DRAG = 4; // m; px
 
 // Largest sum of contact forces in any frame, N; of a body without supports, of loads.
@@ -37,10 +38,13 @@ class Body {
     this.ball = painter.hullMesh([[0, 0, 0, 1]]);
     this.shaft = painter.hullMesh([[0, 0, 0, 0.012], [0, 1, 0, 0.012]]);
     this.tip = painter.hullMesh([[0, -ARROW_HEAD, 0, 0.034], [0, -0.002, 0, 0.002]]);
-    this.slabs = report.surfaces.map(slabPoints).flatMap(({ faces, edges }) => [
-      { mesh: painter.listMesh(gl.TRIANGLES, faces), alpha: 0.45 },
-      { mesh: painter.listMesh(gl.LINES, edges), alpha: 0.85 },
-    ]);
+    this.slabs = report.surfaces.flatMap(({ corners, only }) => {
+      const { faces, edges } = slabPoints(corners);
+      return [
+        { mesh: painter.listMesh(gl.TRIANGLES, faces), alpha: 0.45, only },
+        { mesh: painter.listMesh(gl.LINES, edges), alpha: 0.85, only },
+      ];
+    });
     const box = boxPoints();
     [this.boxFaces, this.boxEdges] = [painter.listMesh(gl.TRIANGLES, box.faces), painter.listMesh(gl.LINES, box.edges)];
     this.grid = report.ground === null ? null : painter.listMesh(gl.LINES, gridPoints(this.camera.middle, report.ground));
@@ -63,7 +67,7 @@ class Body {
     painter.flatness(0.6);
     gl.enable(gl.BLEND);
     gl.depthMask(false);
-    for (const { mesh, alpha } of this.slabs) painter.list(mesh, styleColor("--surface"), alpha);
+    for (const { mesh, alpha } of this.slabs.filter((slab) => isIn(slab, frame))) painter.list(mesh, styleColor("--surface"), alpha);
     this.drawThings(frame);
     gl.depthMask(true);
     this.drawGhost(frame);
@@ -135,7 +139,20 @@ class Body {
         dot([x, ground + 0.002, z], 0.025, 0.004, color);
       }
     }
-    for (const target of report.targets) dot(target, 0.022, 0.022, styleColor("--target"));
+    for (const { at: place, from } of report.targets) {
+      dot(at(place), 0.022, 0.022, styleColor("--target"));
+      if (from) this.drawMiss(at(from), at(place), alpha);
+    }
+  }
+
+  // A line from a point of the body to the target that it misses; to one far away an arrow.
+  drawMiss(from, to, alpha) {
+    const way = to.map((v, k) => v - from[k]), length = Math.hypot(...way), color = styleColor("--target");
+    if (length < NEAR_TARGET) return;
+    const far = length > FAR_TARGET, drawn = far ? FAR_ARROW : length;
+    const tip = from.map((v, k) => v + way[k] * drawn / length);
+    this.painter.hull(this.shaft, pointing(from, way, 0.7, far ? drawn - ARROW_HEAD : drawn), color, alpha);
+    if (far) this.painter.hull(this.tip, pointing(tip, way, 1, 1), color, alpha);
   }
 
   // An arrow in proportion to the force, but not shorter than `shortest`; none of a force of next to nothing.

@@ -30,8 +30,8 @@ function stretched(matrix, size) {
   return matrix.map((v, i) => i < 12 ? v * (size[i >> 2]) : v);
 }
 
-// Bounds of the segments in some frames and at the start, of the surfaces, the targets and the things: of these at most
-// FARTHEST_THING beyond the rest, so that a wall does not make the body small.
+// Bounds of the segments in some frames and at the start, of the surfaces, the targets and the things: of the last two at most
+// FARTHEST_THING beyond the rest, so that neither a wall nor a target out of reach makes the body small.
 function sceneBounds() {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   const include = (k, from, to) => {
@@ -49,15 +49,18 @@ function sceneBounds() {
     const places = [placement(segment.start, 0), ...frames.map((frame) => placement(segment.places, frame))];
     for (const place of places) for (const ball of segment.balls) includeBall(place, ball);
   }
-  for (const corner of [...report.surfaces.flat(), ...report.targets]) corner.forEach((c, k) => include(k, c, c));
+  for (const corner of report.surfaces.flatMap(({ corners }) => corners)) corner.forEach((c, k) => include(k, c, c));
   const [lowest, highest] = [low.map((v) => v - FARTHEST_THING), high.map((v) => v + FARTHEST_THING)];
+  const within = (k, v) => Math.min(highest[k], Math.max(lowest[k], v));
+  for (const { at } of report.targets) {
+    for (const frame of frames) at.forEach((column, k) => include(k, within(k, column[frame]), within(k, column[frame])));
+  }
   for (const thing of report.things) {
     for (const frame of [0, frames.at(-1)]) {
       const m = stretched(placement(thing.places, frame), thing.size);
       for (let k = 0; k < 3; k++) {
         const half = (Math.abs(m[k]) + Math.abs(m[4 + k]) + Math.abs(m[8 + k])) / 2;
-        const within = (v) => Math.min(highest[k], Math.max(lowest[k], v));
-        include(k, within(m[12 + k] - half), within(m[12 + k] + half));
+        include(k, within(k, m[12 + k] - half), within(k, m[12 + k] + half));
       }
     }
   }

@@ -24,9 +24,11 @@ const report = (() => {
     push.force = push.force.map(list);
     push.at = push.at.map(list);
   }
+  for (const target of read.targets) [target.at, target.from] = [target.at.map(list), target.from && target.from.map(list)];
   for (const support of read.supports) support.share = list(support.share);
   for (const joint of read.joints) {
     for (const key of ["angle", "external", "passive", "load"]) joint[key] = list(joint[key]);
+    joint.coordinate = list(joint.coordinate);
     joint.active = joint.external.map((external, i) => -(external + joint.passive[i]) || 0);
     joint.unit = joint.slides ? "m" : "°";
     joint.torque = joint.slides ? "N" : "N m";
@@ -68,6 +70,11 @@ const measures = {
     },
   },
 };
+
+// Whether a part of the picture is in a frame.
+function isIn({ only }, frame) {
+  return only === null || only === frame;
+}
 
 // Whether ligaments carry a joint of a segment where that is a hazard.
 function inHazard(segment, frame) {

@@ -53,6 +53,10 @@ function duration(s) {
   return s < 5400 ? `${(s / 60).toFixed(0)} min` : `${(s / 3600).toFixed(1)} h`;
 }
 
+function metres(far) {
+  return far < 0.9995 ? `${(100 * far).toFixed(1)}\u00a0cm` : `${far.toPrecision(Math.max(3, Math.ceil(Math.log10(far))))}\u00a0m`;
+}
+
 // The frame nearest to a time.
 function frameAt(time) {
   let low = 0, high = LAST_FRAME;
@@ -97,6 +101,7 @@ function hideUnknown() {
   };
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
   find("things").textContent = [...new Set(report.things.map((thing) => thing.label))].join(", ");
+  find("surfaces").textContent = [...new Set(report.surfaces.map((surface) => surface.label))].join(", ");
   const loads = report.loads.map((load) => load.label);
   find("loads").textContent = loads.length && loads.length <= MOST_LOADS ? `: ${loads.join(", ")}` : "";
   document.documentElement.toggleAttribute("data-still", !MOVES);
@@ -222,6 +227,7 @@ class Page {
     this.paintBody();
     this.charts.drawFrame(this.frame);
     this.describeJoint();
+    this.describeTargets();
     this.listGroups(name);
     const latest = Math.max(...report.list.entries.map((entry) => entry.frame).filter((of) => of <= this.frame));
     const current = report.list.entries.findIndex((entry) => entry.frame === latest);
@@ -234,9 +240,19 @@ class Page {
     if (!joint) return;
     const share = joint.groups ? ` (${percent(joint.load[i])} of strength)` : "";
     const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1);
-    const value = joint.angle[i].toFixed(joint.slides ? 3 : 1).replace("-", "−") + (joint.slides ? " m" : "°");
+    const shown = (value) => value.toFixed(joint.slides ? 3 : 1).replace("-", "−") + (joint.slides ? " m" : "°");
+    const value = shown(joint.angle[i]) + (joint.coordinate && Math.abs(joint.coordinate[i] - joint.angle[i]) >= 0.05 ? ` about its axis (${joint.name} = ${shown(joint.coordinate[i])})` : "");
     find("now").textContent = `${name}, ${value}: weight and contact pull with ${signed(joint.external[i])} ${joint.torque}, ` +
       `ligaments answer with ${signed(joint.passive[i])}, muscles with ${signed(joint.active[i])}${share}.`;
+  }
+
+  // How far points of the body are from the targets that they miss.
+  describeTargets() {
+    const i = this.frame, missed = report.targets.filter(({ from }) => from).map(({ label, at, from }) => {
+      return [label, Math.hypot(...at.map((column, k) => column[i] - from[k][i]))];
+    });
+    const words = missed.filter(([, far]) => far >= NEAR_TARGET).map(([label, far]) => `${metres(far)} from ${label}`);
+    find("targets").textContent = words.length ? `: ${words.join(", ")}` : "";
   }
 
   // The hardest worked muscle groups of the frame.

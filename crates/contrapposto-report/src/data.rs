@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::column::{column, columns};
-use crate::{Balance, Entry, Group, Joint, Moments, Push, Report, Segment, Support, Thing};
+use crate::{Balance, Entry, Group, Joint, Moments, Push, Report, Segment, Support, Surface, Target, Thing};
 
 /// Steps to which numbers are rounded: the smallest visible differences.
 const SECONDS: f64 = 1e-3;
@@ -41,10 +41,10 @@ pub(crate) fn data(report: &Report) -> String {
         "levels": report.levels,
         "supports": report.supports.iter().map(|s| support(s, n)).collect::<Value>(),
         "ground": report.ground.map(|height| short(&[height], METRES)[0].clone()),
-        "surfaces": report.surfaces.iter().map(|corners| points(corners)).collect::<Value>(),
+        "surfaces": report.surfaces.iter().map(surface).collect::<Value>(),
         "things": report.things.iter().map(|t| thing(t, n)).collect::<Value>(),
         "loads": report.loads.iter().map(|l| push(l, n)).collect::<Value>(),
-        "targets": points(&report.targets),
+        "targets": report.targets.iter().map(|t| target(t, n)).collect::<Value>(),
         "center": known(&report.center_of_mass, || columns(&report.center_of_mass, n, [METRES; 3])),
         "list": {
             "heading": report.list.heading,
@@ -89,6 +89,7 @@ fn joint(joint: &Joint, n: usize) -> Value {
         "about_axis": joint.about_axis,
         "groups": joint.groups.as_ref().map(|groups| groups.iter().map(|g| group(g, n)).collect::<Value>()),
         "angle": list(&joint.angle, angle),
+        "coordinate": known(&joint.coordinate, || list(&joint.coordinate, angle)),
         "external": list(&joint.external, TORQUE),
         "passive": list(&joint.passive, TORQUE),
         "load": list(&joint.load, LOAD),
@@ -124,8 +125,17 @@ fn support(support: &Support, n: usize) -> Value {
     })
 }
 
+fn surface(surface: &Surface) -> Value {
+    json!({ "label": surface.label, "corners": points(&surface.corners), "only": surface.only })
+}
+
 fn thing(thing: &Thing, n: usize) -> Value {
     json!({ "label": thing.label, "size": short(&thing.size, METRES), "places": places(&thing.places, n) })
+}
+
+fn target(target: &Target, n: usize) -> Value {
+    let place = |points: &[[f64; 3]]| known(points, || columns(points, n, [METRES; 3]));
+    json!({ "label": target.label, "at": columns(&target.at, n, [METRES; 3]), "from": place(&target.from) })
 }
 
 fn push(push: &Push, n: usize) -> Value {

@@ -45,14 +45,14 @@ pub struct Report {
     pub supports: Vec<Support>,
     /// Height of the ground, m; with `None` no ground is drawn.
     pub ground: Option<f64>,
-    /// Other surfaces that carry the body, a seat, a table, a wall: the four corners of each in order, m.
-    pub surfaces: Vec<[[f64; 3]; 4]>,
+    /// Other surfaces that carry the body: a seat, a table, a wall.
+    pub surfaces: Vec<Surface>,
     /// Things around the body and in its hands.
     pub things: Vec<Thing>,
     /// Loads on the body besides its weight.
     pub loads: Vec<Push>,
-    /// Targets of tasks, m.
-    pub targets: Vec<[f64; 3]>,
+    /// Targets of tasks.
+    pub targets: Vec<Target>,
     /// Centre of mass in every frame; may be empty.
     pub center_of_mass: Vec<[f64; 3]>,
     /// Texts about single frames.
@@ -132,6 +132,8 @@ pub struct Joint {
     pub groups: Option<[Group; 2]>,
     /// Value in every frame, degrees (m for slides).
     pub angle: Vec<f64>,
+    /// Value of the coordinate itself in every frame, degrees, where `angle` is about an axis; else empty.
+    pub coordinate: Vec<f64>,
     /// External torque in every frame.
     pub external: Vec<f64>,
     /// Passive torque in every frame. The active one is minus the sum of both.
@@ -179,6 +181,28 @@ pub struct Support {
     pub at: Vec<[f64; 3]>,
     /// Share of the body's weight in every frame.
     pub share: Vec<f64>,
+}
+
+/// A flat piece that carries the body.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// Its name.
+    pub label: String,
+    /// Its four corners in order, m.
+    pub corners: [[f64; 3]; 4],
+    /// The only frame that has it; `None` for all.
+    pub only: Option<usize>,
+}
+
+/// A place that a point of the body is to reach, or that it looks at.
+#[derive(Clone, Debug, Default)]
+pub struct Target {
+    /// Name of the part of the body.
+    pub label: String,
+    /// The place in every frame, m.
+    pub at: Vec<[f64; 3]>,
+    /// The point of the body in every frame, m; empty where it need not come to the place.
+    pub from: Vec<[f64; 3]>,
 }
 
 /// A thing, drawn as a box.

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
-    Balance, Entry, Figure, Group, Joint, List, Moments, Push, Report, Segment, Support, Table, Thing, balls_of, write,
+    Balance, Entry, Figure, Group, Joint, List, Moments, Push, Report, Segment, Support, Surface, Table, Target, Thing,
+    balls_of, write,
 };
 use serde_json::json;
 use support::chromium::Chromium;
@@ -110,7 +111,7 @@ fn postures(count: usize) -> Report {
         segment.places = segment.places.iter().step_by(20).copied().collect();
     }
     report.list.entries = (0..count).map(|frame| entry(frame, frame % 2, HOSTILE)).collect();
-    report.targets = vec![[0.2, 0.5, 0.1]];
+    report.targets = vec![Target { at: vec![[0.2, 0.5, 0.1]], ..Target::default() }];
     report
 }
 
@@ -232,10 +233,10 @@ fn a_seat_is_drawn() {
     let mut report = report();
     // Seen from as far away, a seat without any width.
     let [a, b] = [[-0.2, 0.1, 0.2], [0.2, 0.1, -0.2]];
-    report.surfaces = vec![[a, b, b, a]];
+    report.surfaces = vec![Surface { corners: [a, b, b, a], ..Surface::default() }];
     let mut page = open_page("edge.html", &report);
     let without = page.evaluate(PICTURE);
-    report.surfaces = vec![[a, [0.2, 0.1, 0.2], b, [-0.2, 0.1, -0.2]]];
+    report.surfaces = vec![Surface { corners: [a, [0.2, 0.1, 0.2], b, [-0.2, 0.1, -0.2]], ..Surface::default() }];
     page.open(&file("seat.html", &write(&report)));
     assert_ne!(page.evaluate(PICTURE), without);
     assert_eq!(page.evaluate("document.getElementById('key-surface').hidden"), false);
@@ -367,6 +368,28 @@ fn a_joint_in_hazard_changes_the_picture_and_has_a_key() {
     page.open(&file("hazard.html", &write(&report)));
     assert_ne!(page.evaluate(PICTURE), without);
     assert_eq!(page.evaluate("document.getElementById('key-hazard').hidden"), false);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn a_missed_target_has_its_distance_in_the_key_and_a_far_one_leaves_the_body_its_size() {
+    let mut report = report();
+    let mut page = open_page("untargeted.html", &report);
+    let without = page.evaluate(PICTURE);
+    let target =
+        |at: [f64; 3]| Target { label: "right hand".to_owned(), at: vec![at; 50], from: vec![[0.0, 0.6, 0.0]; 50] };
+    report.targets = vec![target([0.0, 0.6, 100.0])];
+    page.open(&file("far.html", &write(&report)));
+    assert_ne!(page.evaluate(PICTURE), without);
+    assert_eq!(page.evaluate("document.getElementById('targets').textContent"), ": 100\u{a0}m from right hand");
+    assert!(page.evaluate("sceneBounds().high[2]").as_f64().unwrap() < 1.0);
+    report.targets = vec![target([0.0, 0.6, 0.3])];
+    page.open(&file("near.html", &write(&report)));
+    assert_eq!(page.evaluate("document.getElementById('targets').textContent"), ": 30.0\u{a0}cm from right hand");
+    report.targets = vec![target([0.0, 0.6, 0.0])];
+    page.open(&file("reached.html", &write(&report)));
+    assert_eq!(page.evaluate("document.getElementById('targets').textContent"), "");
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
 

@@ -29,19 +29,24 @@ pub(crate) fn convert(args: &ConvertArgs) -> Result<(), Fail> {
     written.lost.iter().for_each(|lost| print_note("lost", lost));
     let model = &opened.model;
     print(&format!(
-        "{shown}: {} segments, {} coordinates, {:.4} kg; {}{} things lost\n",
+        "{shown}: {} segments, {} coordinates, {:.4} kg; {}\n",
         model.segments().len(),
         model.coordinates().len(),
         model.mass(),
-        not_carried_over(&opened.left_out),
-        written.lost.len()
+        not_carried_over(&opened.left_out, written.lost.len())
     ))
 }
 
-/// `80 muscles, 66 markers not carried over, `: what the file holds and the model does not.
-fn not_carried_over(left_out: &[(String, usize)]) -> String {
-    let all: Vec<String> = left_out.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-    if all.is_empty() { String::new() } else { format!("{} not carried over; ", all.join(", ")) }
+/// `80 muscles, 66 markers not carried over`: parts of the file that the model does not have, and parts of the model that the format
+/// cannot hold.
+fn not_carried_over(left_out: &[(String, usize)], lost: usize) -> String {
+    let mut all: Vec<String> = left_out.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    match lost {
+        0 => {}
+        1 => all.push("1 part that the format cannot hold".to_owned()),
+        more => all.push(format!("{more} parts that the format cannot hold")),
+    }
+    if all.is_empty() { "everything carried over".to_owned() } else { format!("{} not carried over", all.join(", ")) }
 }
 
 fn writer(out: &Path) -> Result<Writer, Fail> {

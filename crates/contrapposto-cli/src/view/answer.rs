@@ -5,7 +5,7 @@ use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::statics::{Load, LoadKind};
 use contrapposto::suggestions::Suggestion;
-use contrapposto::verdict::Verdict;
+use contrapposto::verdict::{Verdict, VerdictKind, Who};
 use contrapposto_formats::VerdictText;
 use serde::Serialize;
 
@@ -40,6 +40,11 @@ impl Answer {
         let advice = self.advice.as_ref().map_or(String::new(), |advice| format!("{advice}\n"));
         first_lines(&self.verdict) + &advice
     }
+}
+
+/// The group whose load the sentence states; where it states none, the group that it names.
+pub(crate) fn group_of_title(verdict: &Verdict) -> Option<Who> {
+    verdict.hardest.filter(|_| verdict.kind == VerdictKind::Holds).or(verdict.who)
 }
 
 /// The sentence, and below it the findings of studies about its hazards, and the targets of lower priority that are missed.

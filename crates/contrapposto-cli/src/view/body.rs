@@ -90,7 +90,7 @@ fn around(model: &Model, stage: &Stage<'_>, frame: &Frame) -> Result<BodyPosture
     let loads = stage.loads_at(frame.time).iter().filter_map(|load| push(model, &kinematics, load));
     Ok(BodyPosture {
         ground: surroundings.ground,
-        surfaces: surroundings.surfaces,
+        surfaces: surroundings.surfaces.into_iter().map(|surface| surface.corners).collect(),
         things: stage.things.iter().map(thing).collect(),
         loads: loads.map(load).collect(),
         ..BodyPosture::default()

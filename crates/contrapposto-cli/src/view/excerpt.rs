@@ -1,4 +1,5 @@
-//! Selects the moments of a run that a page shows: some hundred frames, those of decisions among them.
+//! Selects the moments of a run that a page shows: some hundred frames, those of decisions, of failures and of the greatest load among
+//! them.
 
 use contrapposto::hybrid::Decision;
 use contrapposto::simulation::{Scenario, Summary};
@@ -67,12 +68,23 @@ impl RunExcerpt {
         let stride = times.len().div_ceil(MOST_FRAMES).max(1);
         let mut rows: Vec<usize> = (0..times.len()).filter(|row| row % stride == 0 || row + 1 == times.len()).collect();
         rows.extend(events.iter().map(|event| row_of(event.time)));
+        let failures = summary.coordinates.iter().flat_map(|coordinate| coordinate.exhausted_at).flatten();
+        rows.extend(failures.map(row_of));
         rows.sort_unstable();
         rows.dedup();
-        Self {
-            frames: rows.into_iter().map(|row| Frame::of_row(&scenario.model, recording.row(row))).collect(),
-            events,
-            happened,
+        let mut frames: Vec<Frame> =
+            rows.into_iter().map(|row| Frame::of_row(&scenario.model, recording.row(row))).collect();
+        if let Some(hardest) = recording.hardest().map(|row| Frame::of_row(&scenario.model, row))
+            && let Err(place) = frames.binary_search_by(|frame| frame.time.total_cmp(&hardest.time))
+        {
+            frames.insert(place, hardest);
         }
+        Self { frames, events, happened }
+    }
+
+    /// The frame nearest to a time.
+    pub(crate) fn nearest(&self, time: f64) -> usize {
+        let away = |i: &usize| (self.frames[*i].time - time).abs();
+        (0..self.frames.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
     }
 }

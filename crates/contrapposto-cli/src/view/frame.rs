@@ -13,6 +13,9 @@ use super::recording::Row;
 use super::three_axis::angles;
 use crate::fail::Fail;
 
+/// Passive tissue gives more than the external torque from this share of it on.
+const MORE_THAN_ALL: f64 = 1.005;
+
 /// One moment.
 #[derive(Clone, Debug)]
 pub(crate) struct Frame {
@@ -113,6 +116,11 @@ impl Frame {
         let shares: Vec<f64> = contacts.map(|contact| contact.share).collect();
         let all: f64 = shares.iter().sum();
         if all > 0.0 { shares.iter().map(|share| share / all).collect() } else { shares }
+    }
+
+    /// Whether passive tissue gives more than the external torque of a coordinate, so that muscles hold the rest against it.
+    pub(crate) fn against_muscles(&self, i: usize) -> bool {
+        -self.passive[i] * self.external[i].signum() > MORE_THAN_ALL * self.external[i].abs()
     }
 
     /// Share of the external torque of a coordinate that passive tissue carries, 0..=1; `None` below 0.5 N m.

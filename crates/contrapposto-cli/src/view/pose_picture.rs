@@ -48,11 +48,6 @@ fn pose_posture(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<BodyPos
     Ok(posture)
 }
 
-/// Targets of the tasks of a pose, ground, m.
-pub(crate) fn targets(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<Vec<Vector3<f64>>, Fail> {
-    Ok(marks(scenario, pose)?.targets)
-}
-
 fn marks(scenario: &PoseScenario, pose: &SolvedPosture) -> Result<Marks, Fail> {
     let model = &scenario.model;
     let mut kinematics = Kinematics::new(model);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 const MOST_VALUES: f64 = 200_000.0;
 
 /// Rows of samples, one after the other.
-#[derive(Serialize, Deserialize)]
+#[derive(Default, Serialize, Deserialize)]
 pub(crate) struct Recording {
     /// Samples from one row to the next.
     every: u64,
@@ -27,6 +27,8 @@ pub(crate) struct Recording {
     /// By support: share of weight, force, where it acts, couple about that point.
     contacts: Vec<[f64; 10]>,
     centers: Vec<[f64; 3]>,
+    /// The sample with the greatest relative load while no support is put elsewhere: its number, that load, and its row.
+    hardest: Option<(u64, f64, Box<Self>)>,
 }
 
 /// One row.
@@ -62,14 +64,30 @@ impl Recording {
             asked: vec![],
             contacts: vec![],
             centers: vec![],
+            hardest: None,
         }
+    }
+
+    /// Without rows.
+    fn emptied(&self) -> Self {
+        let &Self { every, coordinates, supports, .. } = self;
+        Self { every, coordinates, supports, ..Self::default() }
     }
 
     /// Takes in sample number `number`, counted from 0, if it is one of those that are kept.
     pub(crate) fn record(&mut self, number: u64, sample: &Sample) {
-        if !number.is_multiple_of(self.every) {
-            return;
+        let load = sample.load.iter().copied().fold(0.0, f64::max);
+        if !sample.stepping && load > self.hardest.as_ref().map_or(0.0, |(_, hardest, _)| *hardest) {
+            let mut row = Box::new(self.emptied());
+            row.push(sample);
+            self.hardest = Some((number, load, row));
         }
+        if number.is_multiple_of(self.every) {
+            self.push(sample);
+        }
+    }
+
+    fn push(&mut self, sample: &Sample) {
         self.times.push(sample.time);
         self.posture.extend_from_slice(sample.posture);
         self.external.extend_from_slice(sample.external);
@@ -92,7 +110,12 @@ impl Recording {
             return None;
         }
         self.truncate(rows);
-        self.fits(scenario, rows).then_some(self)
+        self.hardest.take_if(|(number, ..)| *number >= samples);
+        let one = |(_, load, row): &(u64, f64, Box<Self>)| {
+            let same = (row.every, row.coordinates, row.supports) == (new.every, new.coordinates, new.supports);
+            same && load.is_finite() && row.hardest.is_none() && row.fits(scenario, 1)
+        };
+        (self.fits(scenario, rows) && self.hardest.as_ref().is_none_or(one)).then_some(self)
     }
 
     /// Forgets all rows but the first `rows`.
@@ -128,6 +151,11 @@ impl Recording {
                 .chain(self.contacts.iter().flatten())
                 .chain(self.centers.iter().flatten())
                 .all(|v| v.is_finite())
+    }
+
+    /// The sample with the greatest relative load.
+    pub(crate) fn hardest(&self) -> Option<Row<'_>> {
+        self.hardest.as_ref().map(|(_, _, row)| row.row(0))
     }
 
     pub(crate) fn times(&self) -> &[f64] {

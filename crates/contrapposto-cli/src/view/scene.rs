@@ -137,9 +137,17 @@ impl<'a> Scene<'a> {
         Ok(pushes)
     }
 
+    /// Names of what carries the body, by `carried`.
+    pub(crate) fn names_of_supports(&self) -> Vec<String> {
+        let posture = self.frames.first().map_or(self.start, |frame| &frame.posture);
+        let known = self.stage.support_names(self.model, posture);
+        let more = self.carried.iter().skip(known.len());
+        let more = more.map(|&segment| words::plain(&self.model.segments()[segment].name));
+        known.iter().cloned().chain(more).collect()
+    }
+
     fn supports(&self, turn: &Turn) -> Vec<contrapposto_report::Support> {
-        let support = |(i, &segment): (usize, &usize)| {
-            let label = words::plain(&self.model.segments()[segment].name);
+        let support = |(i, label): (usize, String)| {
             let mut shown = contrapposto_report::Support { label, ..Default::default() };
             let mut at = Vector3::zeros();
             for contact in self.frames.iter().filter_map(|frame| frame.standing.as_ref()?.contacts.get(i)) {
@@ -150,12 +158,13 @@ impl<'a> Scene<'a> {
             }
             shown
         };
-        self.carried.iter().enumerate().map(support).collect()
+        self.names_of_supports().into_iter().enumerate().map(support).collect()
     }
 
     fn joint(&self, i: usize, bent: &[&Frame]) -> Result<Joint, Fail> {
         let coordinate = &self.model.coordinates()[i];
         let over = |value: &dyn Fn(&Frame) -> f64| self.frames.iter().map(value).collect::<Vec<f64>>();
+        let about_axis = self.model.three_axis_joint_of(i).is_some();
         let tires = self.frames.iter().all(|frame| frame.fatigue.is_some());
         let group = |side: Side| {
             let group = &coordinate.groups.as_ref()?[side.index()];
@@ -172,9 +181,10 @@ impl<'a> Scene<'a> {
             label: words::plain(&coordinate.name),
             positive: coordinate.positive.clone(),
             slides: coordinate.kind == CoordinateKind::Translation,
-            about_axis: self.model.three_axis_joint_of(i).is_some(),
+            about_axis,
             groups: group(Side::Positive).zip(group(Side::Negative)).map(|(a, b)| [a, b]),
             angle: over(&|frame| visible(coordinate, frame.angles[i])),
+            coordinate: if about_axis { over(&|frame| visible(coordinate, frame.posture[i])) } else { vec![] },
             external: over(&|frame| frame.external[i]),
             passive: over(&|frame| frame.passive[i]),
             load: over(&|frame| frame.load[i]),

@@ -3,15 +3,19 @@
 use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
+use contrapposto::posture::Posture;
 use contrapposto::simulation::Scenario;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
 use contrapposto_formats::Thing;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::words::plain;
 
 /// An event is due at samples from so long before it on, s.
-const EVENT_TOLERANCE: f64 = 1e-9;
+pub(crate) const EVENT_TOLERANCE: f64 = 1e-9;
+
+/// Points so near to a box, m, are on it.
+const ON_BOX: f64 = 0.02;
 
 /// Supports, things and loads of a body.
 #[derive(Clone, Debug, Default)]
@@ -44,6 +48,32 @@ impl<'a> Stage<'a> {
         self.loads[..begun].last().map_or(&[], |(_, loads)| loads)
     }
 
+    /// What carries each support in a posture, in words: `seat`, `backrest`; `None` for the floor, and where nothing has a name.
+    pub(crate) fn carriers(&self, model: &Model, posture: &[f64]) -> Vec<Option<String>> {
+        let mut kinematics = Kinematics::new(model);
+        if kinematics.update(model, &Posture::new(posture.to_vec())).is_err() {
+            return vec![None; self.supports.len()];
+        }
+        let sits = self.things.iter().any(|thing| thing.name == "seat");
+        let carrier = |support: &Support| {
+            let corners = support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner));
+            let corners: Vec<Vector3<f64>> = corners.collect();
+            let on = |thing: &&Thing| 2 * corners.iter().filter(|at| is_on(thing, at)).count() >= corners.len();
+            let name = &model.segments()[support.segment].name;
+            self.things.iter().find(on).map(|thing| thing.name.clone()).or_else(|| rest(name).filter(|_| sits))
+        };
+        self.supports.iter().map(carrier).collect()
+    }
+
+    /// A name for each support: `backrest (torso)`, `right foot`.
+    pub(crate) fn support_names(&self, model: &Model, posture: &[f64]) -> Vec<String> {
+        let name = |(support, carrier): (&Support, Option<String>)| {
+            let part = plain(&model.segments()[support.segment].name);
+            carrier.map_or_else(|| part.clone(), |carrier| format!("{carrier} ({part})"))
+        };
+        self.supports.iter().zip(self.carriers(model, posture)).map(name).collect()
+    }
+
     /// All loads, each once.
     pub(crate) fn all_loads(&self) -> Vec<Load> {
         let mut all: Vec<Load> = vec![];
@@ -54,6 +84,21 @@ impl<'a> Stage<'a> {
         }
         all
     }
+}
+
+/// The part of a seat that carries a segment and is no thing of its own.
+fn rest(segment: &str) -> Option<String> {
+    match segment {
+        "torso" => Some("backrest".to_owned()),
+        "radius_r" | "radius_l" => Some("armrest".to_owned()),
+        _ => None,
+    }
+}
+
+/// Whether a point of ground is in or on a thing that stands in ground.
+pub(crate) fn is_on(thing: &Thing, point: &Vector3<f64>) -> bool {
+    let inside = thing.place.inverse_transform_point(&Point3::from(*point));
+    thing.segment.is_none() && (0..3).all(|k| inside[k].abs() <= 0.5 * thing.size[k] + ON_BOX)
 }
 
 /// Point and force of a load in ground, m and N; `None` of a couple.

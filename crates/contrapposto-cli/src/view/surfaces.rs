@@ -4,12 +4,12 @@ use contrapposto::contact::Support;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
-use contrapposto_formats::Thing;
-use nalgebra::{Point3, Vector3};
+use contrapposto_report::Surface;
+use nalgebra::Vector3;
 
 use super::axes::Turn;
 use super::frame::Frame;
-use super::stage::Stage;
+use super::stage::{Stage, is_on};
 use crate::fail::Fail;
 
 /// Planes that are nearer to each other, m, are one.
@@ -25,14 +25,16 @@ const WIDTH: f64 = 0.4;
 pub(super) struct Surroundings {
     /// Height, m, where there is a ground.
     pub(super) ground: Option<f64>,
-    /// Corners of each piece, counter-clockwise as seen from the body, m.
-    pub(super) surfaces: Vec<[[f64; 3]; 4]>,
+    /// The pieces, their corners counter-clockwise as seen from the body, m.
+    pub(super) surfaces: Vec<Surface>,
 }
 
 /// A support in page axes.
 struct Patch {
     normal: Vector3<f64>,
     points: Vec<Vector3<f64>>,
+    /// Name of what carries it.
+    label: String,
     /// A thing that is drawn carries it.
     on_thing: bool,
 }
@@ -41,13 +43,15 @@ struct Patch {
 struct Plane {
     normal: Vector3<f64>,
     points: Vec<Vector3<f64>>,
+    /// Name of what carries the first of the patches.
+    label: String,
     /// Things that are drawn carry all patches on it.
     on_things: bool,
 }
 
 impl Plane {
     fn of(patch: Patch) -> Self {
-        Self { normal: patch.normal, points: patch.points, on_things: patch.on_thing }
+        Self { normal: patch.normal, points: patch.points, label: patch.label, on_things: patch.on_thing }
     }
 
     fn height(&self) -> f64 {
@@ -63,7 +67,7 @@ impl Plane {
     }
 
     /// A rectangle about all points: its sides level or upright.
-    fn piece(&self) -> [[f64; 3]; 4] {
+    fn piece(&self) -> Surface {
         let n = self.normal;
         let level = if n.y.abs() > 0.9 { n.cross(&Vector3::z()) } else { Vector3::y().cross(&n) };
         let u = -level.normalize();
@@ -76,7 +80,8 @@ impl Plane {
         };
         let (along, across, height) = (side(u), side(v), self.height());
         let corner = |a: usize, b: usize| (u * along[a] + v * across[b] + n * height).into();
-        [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]
+        let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+        Surface { label: self.label.clone(), corners, ..Surface::default() }
     }
 }
 
@@ -90,16 +95,18 @@ pub(super) fn surroundings(
 ) -> Result<Surroundings, Fail> {
     let supports = stage.supports;
     let mut kinematics = Kinematics::new(model);
+    let carriers = stage.carriers(model, start);
     let mut place = |posture: &[f64]| -> Result<Vec<Patch>, Fail> {
         kinematics.update(model, &Posture::new(posture.to_vec())).map_err(|error| Fail::job("report", error))?;
-        let patch = |support: &Support| {
+        let patch = |(support, carrier): (&Support, &Option<String>)| {
             let corners = support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner));
             let corners: Vec<Vector3<f64>> = corners.collect();
-            let on_thing = stage.things.iter().any(|thing| carries(thing, &corners));
+            let on_thing = stage.things.iter().any(|thing| corners.iter().all(|corner| is_on(thing, corner)));
+            let label = carrier.clone().unwrap_or_else(|| "surface".to_owned());
             let points = corners.iter().map(|corner| turn.0 * corner).collect();
-            Patch { normal: turn.0 * support.normal, points, on_thing }
+            Patch { normal: turn.0 * support.normal, points, label, on_thing }
         };
-        Ok(supports.iter().map(patch).collect())
+        Ok(supports.iter().zip(&carriers).map(patch).collect())
     };
     let mut planes: Vec<Plane> = vec![];
     let at_start = place(start)?;
@@ -129,15 +136,6 @@ pub(super) fn surroundings(
         |plane: &&Plane| !(plane.is_level() && ground.is_some_and(|height| plane.height() < height + SAME_PLANE));
     let surfaces = planes.iter().filter(other).filter(|plane| !plane.on_things).map(Plane::piece).collect();
     Ok(Surroundings { ground: ground.or_else(|| pushed_from(supports, frames, turn)), surfaces })
-}
-
-/// Whether all points are in or on a thing that stands in ground.
-fn carries(thing: &Thing, points: &[Vector3<f64>]) -> bool {
-    let within = |point: &Vector3<f64>| {
-        let inside = thing.place.inverse_transform_point(&Point3::from(*point));
-        (0..3).all(|k| inside[k].abs() <= 0.5 * thing.size[k] + SAME_PLANE)
-    };
-    thing.segment.is_none() && points.iter().all(within)
 }
 
 /// Where forces that were measured come from: the height of the lowest one.

@@ -35,6 +35,16 @@ pub(crate) fn value(model: &Model, i: usize, value: f64) -> String {
     text.replace('-', "\u{2212}")
 }
 
+/// A distance from 1 m on in metres: `1.37 m`, `193 m`; `None` of a shorter one.
+pub(crate) fn metres(distance: f64) -> Option<String> {
+    match distance {
+        _ if distance < 0.9995 => None,
+        _ if distance < 9.995 => Some(format!("{distance:.2} m")),
+        _ if distance < 99.95 => Some(format!("{distance:.1} m")),
+        _ => Some(format!("{distance:.0} m")),
+    }
+}
+
 /// `70 %`, in one piece.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
@@ -43,6 +53,13 @@ pub(crate) fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn distances_from_one_metre_on_have_three_digits_and_shorter_ones_are_left_to_smaller_units() {
+        assert_eq!(metres(0.999), None);
+        let shown = [1.0, 1.374, 12.34, 192.920_941].map(metres);
+        assert_eq!(shown.map(Option::unwrap), ["1.00 m", "1.37 m", "12.3 m", "193 m"]);
+    }
 
     #[test]
     fn the_first_letter_becomes_large() {

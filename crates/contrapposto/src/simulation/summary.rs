@@ -84,7 +84,7 @@ pub struct CoordinateSummary {
     pub final_torques: [f64; 3],
     /// Greatest relative load while no support was put elsewhere.
     pub peak_load: f64,
-    /// Greatest fatigue of the positive and negative group.
+    /// Greatest fatigue of the positive and negative group while no support was put elsewhere.
     pub peak_fatigue: [f64; 2],
     /// The positive and negative group in the last sample in which no support was put elsewhere.
     pub final_groups: [GroupAtEnd; 2],
@@ -131,10 +131,6 @@ impl CoordinateSummary {
         if !sample.stepping {
             self.take_load(i, sample);
         }
-        for side in Side::BOTH.map(Side::index) {
-            let fatigue = sample.fatigue[i][side];
-            self.peak_fatigue[side] = self.peak_fatigue[side].max(fatigue);
-        }
         let Some(decision) = &sample.decisions[i] else { return };
         self.iterations[decision.case as usize] += 1;
         if self.last_decision.is_none_or(|last| last.case != decision.case) {
@@ -146,10 +142,11 @@ impl CoordinateSummary {
         self.last_decision = Some(*decision);
     }
 
-    /// Loads and exhaustion; not of a sample in which a support is put elsewhere.
+    /// Loads, fatigue and exhaustion; not of a sample in which a support is put elsewhere.
     fn take_load(&mut self, i: usize, sample: &Sample) {
         self.peak_load = self.peak_load.max(sample.load[i]);
         for side in Side::BOTH.map(Side::index) {
+            self.peak_fatigue[side] = self.peak_fatigue[side].max(sample.fatigue[i][side]);
             let works = Side::of(sample.active[i]).index() == side;
             let load = if works { sample.load[i] } else { 0.0 };
             self.loads[side].push(sample.time, load);

@@ -13,6 +13,7 @@ use contrapposto_report::{Entry, Figure, List, Moments, Table};
 use nalgebra::Vector3;
 
 use crate::fail::Fail;
+use crate::view::answer::group_of_title;
 use crate::view::decision::answer;
 use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
@@ -40,7 +41,8 @@ impl<'a> AssessedFrames<'a> {
         Self { opened, model: &opened.model, instants, frames: vec![], hardest: (0.0, None), pushed: vec![] }
     }
 
-    /// Takes in an instant, if it is one of those that are shown or has the greatest load so far. `measured` adds the measured forces of the ground.
+    /// Takes in an instant, if it is one of those that are shown or has the greatest load so far. `measured` adds the measured
+    /// forces of the ground.
     pub(crate) fn record(&mut self, instant: &Instant, measured: impl FnOnce(&mut Vec<Load>)) {
         let stride = self.instants.div_ceil(MOST_FRAMES).max(1);
         let chosen = instant.index.is_multiple_of(stride) || instant.index + 1 == self.instants;
@@ -120,7 +122,7 @@ pub(crate) fn report_of_assessment(
     let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, stage) };
     scene.carried.extend(&assessed_frames.pushed);
     let times = frames.iter().map(|frame| frame.time).collect();
-    let main = verdict.who.map(|group| group.coordinate).or(working.first().map(|group| group.coordinate));
+    let main = group_of_title(verdict).map(|group| group.coordinate).or(working.first().map(|group| group.coordinate));
     let mut report = scene.report(Moments::Times(times), main.unwrap_or(0))?;
     for group in &found.groups {
         let place = shown.iter().position(|&i| i == group.coordinate);

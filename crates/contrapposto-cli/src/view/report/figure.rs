@@ -6,11 +6,11 @@ use contrapposto_report::{Figure, Report};
 use crate::view::frame::Frame;
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
-use crate::view::words::{how_long, percent, plain, sentence};
+use crate::view::words::{how_long, percent, sentence};
 
-/// Names of the segments that carry the body.
+/// Names of what carries the body.
 pub(super) fn carriers(scene: &Scene<'_>) -> Vec<String> {
-    scene.carried.iter().map(|&segment| plain(&scene.model.segments()[segment].name)).collect()
+    scene.names_of_supports()
 }
 
 /// `right foot 85 %, left foot 15 %`.

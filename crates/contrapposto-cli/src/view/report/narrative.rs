@@ -3,11 +3,12 @@
 use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
 use contrapposto_report::{Figure, Report};
 
-use crate::view::answer::{Answer, also_missed};
+use crate::view::answer::{Answer, also_missed, group_of_title};
 use crate::view::axes::pelvis_list;
 use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
 use crate::view::muscles::{hardest_of_run, tired};
+use crate::view::selection::main_coordinate;
 use crate::view::words::{how_long, percent, plain, sentence, value};
 
 /// A pelvis that hangs more than this, degrees, is no level one.
@@ -17,23 +18,21 @@ const STAYED: f64 = 0.5;
 
 /// Fills in headline, reasons and figures.
 pub(super) fn write(
-    scenario: &Scenario,
+    (scenario, names): (&Scenario, &[String]),
     excerpt: &RunExcerpt,
     summary: &Summary,
     answer: &Answer,
-    shown: &[usize],
     report: &mut Report,
 ) {
-    let (Some(first), Some(last), Some(&main)) =
-        (excerpt.frames.first(), excerpt.frames.last(), shown.get(report.main))
-    else {
-        return;
-    };
-    let narrative = Narrative { scenario, first, last, main };
+    let (Some(first), Some(last)) = (excerpt.frames.first(), excerpt.frames.last()) else { return };
+    // The joint that was relieved; without reliefs that of the title.
+    let of_title = group_of_title(&answer.verdict).filter(|_| excerpt.happened == 0).map(|group| group.coordinate);
+    let main = of_title.unwrap_or_else(|| main_coordinate(scenario, summary));
+    let narrative = Narrative { scenario, names, first, last, main };
     let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
-    let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated);
+    let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated && pelvis_was_relieved(scenario, summary));
     report.headline.clone_from(&answer.verdict.sentence);
     report.reasons = also_missed(&answer.verdict).into_iter().chain(answer.advice.clone()).collect();
     // Of a job that cannot be done nothing else is said to hold.
@@ -58,8 +57,17 @@ fn of_rest(seconds: f64) -> String {
     format!("In {} no muscle became so tired that it needed relief.", how_long(seconds))
 }
 
+/// Whether muscles that carry the pelvis to a side needed relief.
+fn pelvis_was_relieved(scenario: &Scenario, summary: &Summary) -> bool {
+    let carries = |name: &str| name.starts_with("hip_adduction") || name.starts_with("pelvis_list");
+    let mut records = summary.reliefs.records.iter();
+    records.any(|record| carries(&scenario.model.coordinates()[record.coordinate].name))
+}
+
 struct Narrative<'a> {
     scenario: &'a Scenario,
+    /// Of the supports.
+    names: &'a [String],
     first: &'a Frame,
     last: &'a Frame,
     main: usize,
@@ -102,13 +110,12 @@ impl Narrative<'_> {
 
     /// The support that carries most at the end, and its share.
     fn heaviest(&self) -> Option<(String, f64)> {
-        let name = |i: usize| plain(&self.scenario.model.segments()[self.scenario.supports[i].segment].name);
         let (i, share) = self.last.shares().into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some((name(i), share))
+        Some((self.names.get(i)?.clone(), share))
     }
 
     fn reasons(&self, standing: bool) -> Vec<String> {
-        let Self { scenario, first, last, main } = *self;
+        let Self { scenario, first, last, main, .. } = *self;
         let name = plain(&scenario.model.coordinates()[main].name);
         let mut reasons = vec![];
         let critical = scenario.hysteresis.critical_level;
@@ -129,6 +136,14 @@ impl Narrative<'_> {
         }
         if let Some(share) = last.carried(main) {
             let whole = last.external[main].abs();
+            if last.against_muscles(main) {
+                let [ligaments, muscles] = [last.passive[main], last.active(main)].map(f64::abs);
+                reasons.push(format!(
+                    "Ligaments of {name} pull with {ligaments:.1} N m, more than the external torque of {whole:.1} N m; muscles hold the \
+                     difference of {muscles:.1} N m against them."
+                ));
+                return reasons;
+            }
             let before =
                 first.carried(main).map(|before| format!(", at the start {}", percent(before))).unwrap_or_default();
             let part = match share {
@@ -173,7 +188,7 @@ impl Narrative<'_> {
     }
 
     fn figures(&self, standing: Option<(f64, f64)>, summary: &Summary) -> Vec<Figure> {
-        let Self { scenario, first, last, main } = *self;
+        let Self { scenario, names, first, last, main } = *self;
         let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
         let mut figures = vec![];
         if let Some((before, after)) = standing {
@@ -182,8 +197,7 @@ impl Narrative<'_> {
             let note = format!("{down}; {:.1}° at the start", before.abs());
             figures.push(figure("Pelvis drops", format!("{:.1}°", after.abs()), note));
         }
-        for (i, (before, after)) in first.shares().into_iter().zip(last.shares()).enumerate().take(4) {
-            let name = plain(&scenario.model.segments()[scenario.supports[i].segment].name);
+        for (name, (before, after)) in names.iter().zip(first.shares().into_iter().zip(last.shares())).take(4) {
             figures.push(figure(
                 &format!("Weight on {name}"),
                 percent(after),
@@ -204,7 +218,7 @@ impl Narrative<'_> {
                 format!("{before:.1} N m at the start"),
             ));
         }
-        if let Some(share) = last.carried(main) {
+        if let Some(share) = last.carried(main).filter(|_| !last.against_muscles(main)) {
             figures.push(figure(
                 "Ligaments carry",
                 percent(share),

@@ -7,15 +7,14 @@ use contrapposto_report::{Moments, Table};
 
 use super::figure::{carriers, figure, figures_of};
 use crate::fail::Fail;
-use crate::view::axes::turn;
 use crate::view::figures::figures_of_postures;
 use crate::view::held::{Held, held};
-use crate::view::pose_picture::targets;
 use crate::view::scene::Scene;
 use crate::view::scene::hazard::{hazards, tell};
 use crate::view::stage::Stage;
-use crate::view::text::pose::{reached, tasks};
-use crate::view::words::{list, percent, plain};
+use crate::view::targets::targets;
+use crate::view::text::pose::{mark, reached, tasks as tasks_of};
+use crate::view::words::{list, metres, percent, plain};
 
 /// The page of a solved pose.
 pub(crate) fn report_of_pose(
@@ -36,9 +35,9 @@ pub(crate) fn report_of_pose(
     let [frame] = &frames;
     let worst = (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]));
     let mut report = scene.report(Moments::Postures(vec!["the posture".to_owned()]), worst.unwrap_or(0))?;
-    let turn = turn(model);
-    report.targets = targets(scenario, pose)?.into_iter().map(|target| turn.point(target)).collect();
-    let all: Vec<_> = tasks(text).collect();
+    let tasks = || scenario.goals.iter().filter(|goal| !goal.hard).flat_map(|goal| &goal.tasks).collect();
+    report.targets = targets(model, &frames, |_| tasks())?;
+    let all: Vec<_> = tasks_of(text).collect();
     let done = all.iter().filter(|entries| reached(entries)).count();
     // Posture and effort tasks take what tasks of higher priority leave.
     let rest = |task: &str| task.starts_with("posture") || task.starts_with("effort");
@@ -54,12 +53,12 @@ pub(crate) fn report_of_pose(
     report.figures.push(figure("Tasks reached", format!("{done} of {}", all.len()), "supports among them"));
     figures_of(model, frame, &carriers(&scene), &mut report);
     let row = |entries: &&[PoseLevelText]| {
-        let mark = if reached(entries) { "reached" } else { "limited by higher priorities" };
-        vec![entries[0].priority.to_string(), plain_task(&entries[0].task), remaining(entries), mark.to_owned()]
+        let mark = mark(entries).to_owned();
+        vec![entries[0].priority.to_string(), plain_task(&entries[0].task), remaining(entries), mark]
     };
     report.table = Table {
         heading: "Remaining errors of the tasks, highest priority first".to_owned(),
-        columns: ["Priority", "Task", "Remaining error", ""].map(str::to_owned).to_vec(),
+        columns: ["Priority", "Task", "Remaining error", "Result"].map(str::to_owned).to_vec(),
         rows: all.iter().map(row).collect(),
     };
     tell(&mut report, hazards(model, &frames, false));
@@ -101,7 +100,7 @@ fn plain_task(task: &str) -> String {
 /// `12.3 mm, 4.5°`; `nothing` where it is reached.
 fn remaining(entries: &[PoseLevelText]) -> String {
     let text = |level: &PoseLevelText| match level.unit {
-        "m" => format!("{:.1} mm", 1e3 * level.residual),
+        "m" => metres(level.residual).unwrap_or_else(|| format!("{:.1} mm", 1e3 * level.residual)),
         "rad" => format!("{:.1}°", level.residual.to_degrees()),
         _ => format!("{} of strength", percent(level.residual)),
     };

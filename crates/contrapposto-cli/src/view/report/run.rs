@@ -2,12 +2,13 @@
 
 use contrapposto::hybrid::Strategy;
 use contrapposto::simulation::{FootStep, Scenario, Summary};
+use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::Thing;
 use contrapposto_report::{Entry, List, Moments};
 
 use super::narrative;
 use crate::fail::Fail;
-use crate::view::answer::Answer;
+use crate::view::answer::{Answer, group_of_title};
 use crate::view::decision::{alike, merged};
 use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::frame::Frame;
@@ -16,6 +17,7 @@ use crate::view::scene::Scene;
 use crate::view::scene::hazard::{hazards, tell};
 use crate::view::selection::{main_coordinate, shown};
 use crate::view::stage::{Stage, load_in_words};
+use crate::view::targets::missed_targets;
 use crate::view::words::{how_long, list, plain};
 
 /// The page of a run.
@@ -33,7 +35,11 @@ pub(crate) fn report_of_run(
         ..Scene::of(&scenario.title, &scenario.model, start, &excerpt.frames, Stage::of_run(scenario, things))
     };
     let times = excerpt.frames.iter().map(|frame| frame.time).collect();
-    let mut report = scene.report(Moments::Times(times), main_coordinate(scenario, summary))?;
+    let main =
+        group_of_title(&answer.verdict).map_or_else(|| main_coordinate(scenario, summary), |group| group.coordinate);
+    let mut report = scene.report(Moments::Times(times), main)?;
+    report.targets = missed_targets(scenario, &excerpt.frames)?;
+    report.open = excerpt.nearest(moment(&answer.verdict, summary));
     report.levels = Some([scenario.hysteresis.critical_level, scenario.hysteresis.recovery_level]);
     report.list = List {
         heading: "Decisions, changes and steps".to_owned(),
@@ -41,9 +47,18 @@ pub(crate) fn report_of_run(
         none: "None: no muscle group needed relief.".to_owned(),
     };
     let hazards = hazards(&scenario.model, &excerpt.frames, true);
-    narrative::write(scenario, &excerpt, summary, answer, &shown, &mut report);
+    narrative::write((scenario, &scene.names_of_supports()), &excerpt, summary, answer, &mut report);
     tell(&mut report, hazards);
     Ok(contrapposto_report::write(&report))
+}
+
+/// The time that the verdict is about, s.
+fn moment(verdict: &Verdict, summary: &Summary) -> f64 {
+    match verdict.kind {
+        VerdictKind::CannotBeDone | VerdictKind::Holds => summary.hardest.map_or(summary.end_time, |(_, time)| time),
+        VerdictKind::HeldUntil => verdict.seconds.unwrap_or(summary.end_time),
+        VerdictKind::CannotStand | VerdictKind::NotReached => summary.end_time,
+    }
 }
 
 /// Decisions, those that repeat told once; changes of the scenario; and steps of feet. In the order of time.
@@ -108,5 +123,9 @@ fn step_in_words(scenario: &Scenario, step: &FootStep) -> String {
     let ([from_x, _, from_z], [x, _, z]) = step.place;
     let far = 100.0 * (x - from_x).hypot(z - from_z);
     let why = plain(&scenario.model.coordinates()[step.coordinate].name);
-    format!("Step: {support} is put {far:.0} cm away, to relieve {why}; it is there at {}.", how_long(step.time.1))
+    format!(
+        "Step: {support} is put {far:.0} cm away, to relieve {why}; it is there at {}. Nobody is judged while \
+             it is in the air.",
+        how_long(step.time.1)
+    )
 }

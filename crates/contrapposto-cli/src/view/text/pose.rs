@@ -8,6 +8,7 @@ use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::answer::first_lines;
+use crate::view::words::metres;
 
 /// `remaining: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
 pub(crate) fn subtitle(text: &PoseText) -> String {
@@ -27,12 +28,20 @@ pub(crate) fn reached(entries: &[PoseLevelText]) -> bool {
     entries.iter().all(|entry| entry.reached)
 }
 
+/// Whether the task is reached, or why not.
+pub(crate) fn mark(entries: &[PoseLevelText]) -> &'static str {
+    if reached(entries) { "reached" } else { "limited by higher priorities" }
+}
+
 pub(crate) fn all_remaining(entries: &[PoseLevelText]) -> String {
     entries.iter().map(remaining).collect::<Vec<_>>().join(", ")
 }
 
 /// `0.412 mm`, in units that people read.
 fn remaining(level: &PoseLevelText) -> String {
+    if let Some(text) = metres(level.residual).filter(|_| level.unit == "m") {
+        return text;
+    }
     let (value, unit) = match level.unit {
         "m" => (1e3 * level.residual, " mm"),
         "rad" => (level.residual.to_degrees(), " deg"),
@@ -68,7 +77,7 @@ pub(crate) fn report(
             entries[0].priority.to_string(),
             entries[0].task.clone(),
             all_remaining(entries),
-            if reached(entries) { "reached" } else { "" }.to_owned(),
+            mark(entries).to_owned(),
         ]);
     }
     let reason = match pose.reason {

@@ -9,10 +9,16 @@ use contrapposto::tasks::Task;
 use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::answer::Answer;
+use crate::view::three_axis::angles;
 use crate::view::words::MOST_ROWS;
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
 const REACHED: f64 = 1e-3;
+/// Angles nearer than this, degrees, are one.
+const ALIKE_ANGLES: f64 = 0.05;
+/// The note about joints with three axes.
+const ABOUT_AXES: &str = "angles and torques of a joint with three axes are those about each axis; `final_deg` in summary.json is the \
+                          coordinate itself\n";
 
 /// `active, R_min 0.2: cases 3.1 x6, 3.3 x33, 2.1 x1`.
 pub(crate) fn strategy_and_cases(scenario: &Scenario, summary: &CoordinateSummary) -> String {
@@ -41,17 +47,22 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
     format!("cases {}", list.join(", "))
 }
 
-pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: Option<&ResultSet>) -> String {
+/// The table of the coordinates with the greatest loads, and the notes below it.
+fn coordinates(scenario: &Scenario, summary: &Summary) -> (comfy_table::Table, String) {
     let mut table = plain_table();
     table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
-    let all = scenario.model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free);
+    let last: Vec<f64> = summary.coordinates.iter().map(|coordinate| coordinate.final_value).collect();
+    let angles = angles(&scenario.model, &last);
+    let all = scenario.model.coordinates().iter().zip(&angles).zip(&summary.coordinates).zip(&scenario.free);
     let mut all: Vec<_> = all.collect();
     let more = all.len().saturating_sub(MOST_ROWS);
     if more > 0 {
         all.sort_by(|((_, a), _), ((_, b), _)| b.peak_load.total_cmp(&a.peak_load));
         all.truncate(MOST_ROWS);
     }
-    for ((coordinate, summary), free) in all {
+    let mut about_axes = false;
+    for (((coordinate, angle), summary), free) in all {
+        about_axes |= (angle - summary.final_value).abs().to_degrees() >= ALIKE_ANGLES;
         let [external, passive, active] = summary.final_torques;
         let [positive, negative] = summary.peak_fatigue;
         // Without a strength there is neither load nor fatigue.
@@ -59,7 +70,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
         table.add_row([
             format!("{}{}", coordinate.name, if *free { "" } else { " (locked)" }),
             match coordinate.kind {
-                CoordinateKind::Rotation => format!("{:.1} deg", summary.final_value.to_degrees()),
+                CoordinateKind::Rotation => format!("{:.1} deg", angle.to_degrees()),
                 CoordinateKind::Translation => format!("{:.3} m", summary.final_value),
                 CoordinateKind::Quaternion => format!("{:.4}", summary.final_value),
             },
@@ -71,6 +82,15 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
             if *free { cases(summary) } else { String::new() },
         ]);
     }
+    let more = match more {
+        0 => String::new(),
+        more => format!("and {more} coordinates with lower loads, which summary.json lists\n"),
+    };
+    (table, if about_axes { more + ABOUT_AXES } else { more })
+}
+
+pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: Option<&ResultSet>) -> String {
+    let (table, notes) = coordinates(scenario, summary);
     let reason = match summary.reason {
         StopReason::Settled => "settled",
         StopReason::Duration => "ran its full duration",
@@ -80,16 +100,12 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
     let picture = if scenario.has_supports_or_tasks() { "postures.svg" } else { "torque-balance.svg" };
     let standing =
         summary.standing.as_ref().map_or(String::new(), |standing| standing_text(scenario, summary, standing));
-    let more = match more {
-        0 => String::new(),
-        more => format!("and {more} coordinates with lower loads, which summary.json lists\n"),
-    };
     let files = folder.map_or(String::new(), |folder| {
         let [page, first, second] = ["report.html", picture, "time-line.svg"].map(|name| folder.path(name));
         format!("report: {}\npictures: {}, {}\n", page.display(), first.display(), second.display())
     });
     format!(
-        "{}{}\n{table}\n{more}{standing}{reason} after {:.2} s ({} samples)\n{files}",
+        "{}{}\n{table}\n{notes}{standing}{reason} after {:.2} s ({} samples)\n{files}",
         answer.first_lines(),
         scenario.title,
         summary.end_time,
