@@ -18,6 +18,23 @@ use crate::output::print_note;
 /// Opens MODEL, with --overlay and --passive. `filled`: unknown passive laws of a file are filled in from the built-in library
 /// where neither --passive nor --overlay is given.
 pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
+    open_with(args, filled, SourcedModel::read)
+}
+
+/// Opens MODEL for a command in which mass has no part, or which says that it is missing: a body whose mass comes from a mesh has none.
+pub(crate) fn open_without_mesh_mass(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
+    open_with(args, filled, SourcedModel::read_without_mesh_mass)
+}
+
+/// A function that reads a model file.
+type Read = fn(
+    &str,
+    &[u8],
+    Option<RootAttachment>,
+    &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<SourcedModel, ModelFileError>;
+
+fn open_with(args: &ModelArgs, filled: bool, read_file: Read) -> Result<SourcedModel, Fail> {
     let root = args.root.map(RootChoice::body);
     let mut opened = match args.model.to_str().and_then(adult_size) {
         Some(_) if root.is_some() => {
@@ -29,8 +46,8 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail>
             return Err(Fail::Refused(format!("--person: {why}")));
         }
         Some(size) => SourcedModel::adult(&size.map_err(refused)?).map_err(refused)?,
-        None if args.no_strength => file(&args.model, root)?.without_strength(),
-        None => file(&args.model, root)?,
+        None if args.no_strength => file(&args.model, root, read_file)?.without_strength(),
+        None => file(&args.model, root, read_file)?,
     };
     opened.warnings().iter().for_each(|warning| print_note("warning", warning));
     if let Some(path) = &args.overlay {
@@ -52,11 +69,11 @@ fn refused(error: impl std::fmt::Display) -> Fail {
     Fail::Refused(error.to_string())
 }
 
-fn file(path: &Path, root: Option<RootAttachment>) -> Result<SourcedModel, Fail> {
+fn file(path: &Path, root: Option<RootAttachment>, read_file: Read) -> Result<SourcedModel, Fail> {
     let most = Limits::default().file_bytes as u64;
     let bytes = read(path, most)?;
     let name = path.display().to_string();
-    SourcedModel::read(&name, &bytes, root, &mut include::confined(path, most)).map_err(|error| match error {
+    read_file(&name, &bytes, root, &mut include::confined(path, most)).map_err(|error| match error {
         ModelFileError::RootGiven(_) => Fail::Refused(format!("--root: {error}")),
         // These name the file themselves.
         ModelFileError::OpenSim(_) => refused(error),

@@ -17,10 +17,13 @@ mod geom;
 mod inertial;
 mod item;
 mod joint;
+mod muscle;
 mod options;
 mod orientation;
 mod schema;
+mod site;
 mod springdamper;
+mod tendon;
 mod tree;
 mod value;
 
@@ -66,6 +69,7 @@ pub fn read(
     }
     let built = walk.finish(root)?;
     other_sections(root, &mut body, (&settings, &classes, &built), &mut ignored)?;
+    body.muscles = muscle::read(root, (&settings, &classes, &built))?;
     springdamper::apply(&mut body, &built, root)?;
     unique_coordinates(&body).map_err(|value| MjcfError::DuplicateName { place: root.place(), value })?;
     if let Some(segment) = first_too_large(&body) {
@@ -124,7 +128,9 @@ fn tendons<'a>(
         if settings.springs && attributes.merged("stiffness")?.iter().any(|&k| k != 0.0) {
             return Err(Unsupported::TendonSpring.at_attribute(tendon, "stiffness"));
         }
-        ignored.add("tendon", 1);
+        if attributes.limits("range", "limited", settings.automatic_limits)?.is_some() {
+            ignored.add("limit of a tendon", 1);
+        }
     }
     Ok(())
 }

@@ -82,7 +82,8 @@ pub enum ModelFileError {
 }
 
 /// Reads a model file named `name`. `root`: how the root of a URDF or MJCF model is attached; as the file says (URDF: fixed) for
-/// `None`. `include` gives the bytes of a file that an MJCF file includes, by its name relative to the model's folder.
+/// `None`. `include` gives the bytes of a file that an MJCF file includes, by its name relative to the model's folder, which leads
+/// at most two folders up, and there to an `.xml`.
 ///
 /// # Errors
 /// [`ModelFileError`] says what is wrong, with the place where the format's reader gives one.
@@ -90,6 +91,16 @@ pub fn read_model(
     name: &str,
     bytes: &[u8],
     root: Option<RootAttachment>,
+    include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<(Imported, ModelFormat), ModelFileError> {
+    read_model_with(name, bytes, (root, false), include)
+}
+
+/// Reads a model file; `omit_mesh_mass` as in [`mjcf::Options`].
+pub(crate) fn read_model_with(
+    name: &str,
+    bytes: &[u8],
+    (root, omit_mesh_mass): (Option<RootAttachment>, bool),
     include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<(Imported, ModelFormat), ModelFileError> {
     let limits = Limits::default();
@@ -106,7 +117,8 @@ pub fn read_model(
             urdf::read(bytes, &own(Path::new(name).file_stem()), &options)?
         }
         ModelFormat::Mjcf | ModelFormat::Adult => {
-            mjcf::read(bytes, &own(Path::new(name).file_name()), include, &mjcf::Options { root, limits })?
+            let options = mjcf::Options { root, omit_mesh_mass, limits };
+            mjcf::read(bytes, &own(Path::new(name).file_name()), include, &options)?
         }
     };
     Ok((body.model()?, format))

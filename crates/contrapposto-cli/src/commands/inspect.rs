@@ -8,7 +8,7 @@ use contrapposto_plot::body_map;
 
 use crate::args::InspectArgs;
 use crate::fail::Fail;
-use crate::model_file::open;
+use crate::model_file::open_without_mesh_mass;
 use crate::output::{Folder, json_text, print};
 use crate::scenario_file::ScenarioFile;
 use crate::view::body_map::map_of_body;
@@ -19,7 +19,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Fail> {
     if args.model.model.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         return inspect_scenario(&args.model.model, args);
     }
-    let opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
+    let opened = open_without_mesh_mass(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
     let file = args.model.model.display().to_string();
     draw(&opened.model, args)?;
     if args.json {

@@ -11,7 +11,7 @@ use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::{MusclesArgs, RuleChoice};
 use crate::fail::Fail;
-use crate::model_file::open;
+use crate::model_file::open_without_mesh_mass;
 use crate::motion_file::{note_values_out_of_range, read_motion};
 use crate::output::{print, print_note};
 use crate::view::text::muscles::{MuscleFrame, json, readable};
@@ -20,7 +20,7 @@ pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
     if args.model.model == Path::new("-") && args.postures == Path::new("-") {
         return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
     }
-    let mut opened = open(&args.model, false)?;
+    let mut opened = open_without_mesh_mass(&args.model, false)?;
     if opened.muscles.muscles.is_empty() {
         let file = args.model.model.display();
         let why = "no muscle could be read from it; MODEL is an OpenSim file with muscles, and `contrapposto inspect` counts them";

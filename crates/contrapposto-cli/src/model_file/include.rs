@@ -1,4 +1,5 @@
-//! Files that an MJCF model includes: inside the model's own folder, whatever the names and links in it say.
+//! Files that an MJCF model includes: inside the model's own folder, or an `.xml` inside the folder two above it, whatever the names and
+//! links in it say.
 
 use std::path::{Component, Path};
 
@@ -16,13 +17,15 @@ pub(super) fn confined(main: &Path, most: u64) -> impl FnMut(&str) -> Result<Vec
     move |name| {
         let folder = folder.as_ref().map_err(String::clone)?;
         let relative = Path::new(name);
-        if !relative.components().all(|part| matches!(part, Component::Normal(_))) {
-            return Err("it does not stay inside the model's folder".to_owned());
+        if !relative.components().all(|part| matches!(part, Component::Normal(_) | Component::ParentDir)) {
+            return Err("it is no path relative to the model's folder".to_owned());
         }
         // Links are followed before the folder is compared: one that leads out is refused, whatever its name.
         let real = folder.join(relative).canonicalize().map_err(|error| error.to_string())?;
-        if !real.starts_with(folder) {
-            return Err("it is a link that leads out of the model's folder".to_owned());
+        let beside = || folder.ancestors().take(3).last().is_some_and(|above| real.starts_with(above));
+        let xml = || real.extension().is_some_and(|ending| ending == "xml");
+        if !real.starts_with(folder) && !(beside() && xml()) {
+            return Err("it leads out of the model's folder to no .xml at most two folders above it".to_owned());
         }
         read(&real, most).map_err(|fail| match fail {
             Fail::Refused(why) => why,

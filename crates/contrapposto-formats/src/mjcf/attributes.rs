@@ -26,6 +26,13 @@ impl<'a, 'c> Attributes<'a, 'c> {
         Value::of(self.item, name).or_else(|| self.classes.get(self.class, self.tag, name))
     }
 
+    /// The elements of its classes, outermost first, and the element itself.
+    pub(super) fn elements(&self) -> Vec<Item<'a>> {
+        let mut elements = self.classes.elements(self.class, self.tag);
+        elements.push(self.item);
+        elements
+    }
+
     pub(super) fn orientation(&self) -> Result<Option<Value<'a>>, MjcfError> {
         Ok(own_orientation(self.item)?.or_else(|| self.classes.get(self.class, self.tag, ORIENTATION)))
     }

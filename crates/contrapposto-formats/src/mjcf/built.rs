@@ -1,7 +1,12 @@
 //! Holds the results of the walk through the bodies that later steps need.
 
+use super::attributes::Attributes;
+use super::compiler::Settings;
+use super::error::MjcfError;
+use super::geom::surface;
 use super::item::Item;
 use crate::xml::Place;
+use contrapposto::muscle::TendonGeom;
 use nalgebra::{Isometry3, Vector3};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,7 +34,25 @@ pub(super) struct Built<'a> {
     pub(super) root_named: bool,
     pub(super) body_names: BTreeSet<&'a str>,
     pub(super) joint_names: BTreeSet<&'a str>,
-    pub(super) site_names: BTreeSet<&'a str>,
+    /// Sites by name: segment, `None` for the world, and place in its frame.
+    pub(super) sites: BTreeMap<&'a str, (Option<usize>, Vector3<f64>)>,
+    /// Geoms by name as surfaces of tendons, or why a geom is none.
+    pub(super) geoms: BTreeMap<&'a str, Result<TendonGeom, MjcfError>>,
+}
+
+impl<'a> Built<'a> {
+    /// Keeps a geom of a segment, `None` for the world, for tendons to name.
+    pub(super) fn add_geom(
+        &mut self,
+        geom: &Attributes<'a, '_>,
+        segment: Option<usize>,
+        frame: &Isometry3<f64>,
+        settings: &Settings,
+    ) {
+        if let Some(name) = geom.item.attribute("name") {
+            self.geoms.entry(name).or_insert_with(|| surface(geom, segment, frame, settings));
+        }
+    }
 }
 
 /// One degree of freedom in the world at the file's configuration.

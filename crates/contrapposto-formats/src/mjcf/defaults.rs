@@ -18,6 +18,7 @@ pub(super) struct Classes<'a> {
 struct Class<'a> {
     parent: Option<usize>,
     values: BTreeMap<(Tag, &'a str), Value<'a>>,
+    elements: Vec<(Tag, Item<'a>)>,
 }
 
 impl<'a> Classes<'a> {
@@ -37,7 +38,7 @@ impl<'a> Classes<'a> {
                 // Classes inherit what "main" was when they were made, so a further section makes a further "main".
                 let parent = Some(classes.main());
                 classes.names.insert("main", classes.classes.len());
-                classes.classes.push(Class { parent, values: BTreeMap::new() });
+                classes.classes.push(Class { parent, ..Class::default() });
             }
             classes.fill(section, classes.main(), limits.depth)?;
         }
@@ -63,6 +64,7 @@ impl<'a> Classes<'a> {
                 return Err(MjcfError::unknown_element(child, schema::DEFAULT_CHILDREN));
             };
             tag.attributes().map_or(Ok(()), |known| check(child, known))?;
+            self.classes[class].elements.push((tag, child));
             let values = &mut self.classes[class].values;
             if let Some(value) = own_orientation(child)? {
                 values.insert((tag, ORIENTATION), value);
@@ -81,7 +83,7 @@ impl<'a> Classes<'a> {
             if self.names.insert(name, index).is_some() {
                 return Err(MjcfError::DuplicateName { place: child.attribute_place("class"), value: shorten(name) });
             }
-            self.classes.push(Class { parent: Some(class), values: BTreeMap::new() });
+            self.classes.push(Class { parent: Some(class), ..Class::default() });
             self.fill(child, index, depth_left)?;
         }
         Ok(())
@@ -111,6 +113,13 @@ impl<'a> Classes<'a> {
         let mut layers: Vec<_> = self.chain(class).filter_map(|c| c.values.get(&(tag, name)).copied()).collect();
         layers.reverse();
         layers
+    }
+
+    /// The elements of a kind in a class and those around it, outermost first.
+    pub(super) fn elements(&self, class: usize, tag: Tag) -> Vec<Item<'a>> {
+        let mut chain: Vec<_> = self.chain(class).collect();
+        chain.reverse();
+        chain.iter().flat_map(|c| &c.elements).filter(|(kind, _)| *kind == tag).map(|(_, item)| *item).collect()
     }
 
     fn chain(&self, class: usize) -> impl Iterator<Item = &Class<'a>> {

@@ -4,9 +4,10 @@ use super::item::Item;
 use crate::model_ir::near;
 use crate::numbers::NumberError;
 use crate::xml::{Place, XmlError, shorten};
+use contrapposto::muscle::MuscleError;
 
 /// Why an MJCF file is refused.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MjcfError {
     /// Not acceptable XML.
@@ -108,6 +109,14 @@ pub enum MjcfError {
         /// The accepted alternative.
         needs: MjcfRule,
     },
+    /// Numbers of a muscle without a meaning.
+    #[error("{place}: {why}")]
+    Muscle {
+        /// Of its element.
+        place: Place,
+        /// The number.
+        why: MuscleError,
+    },
     /// Bodies, frames, defaults inside each other beyond the cap, includes counted.
     #[error("{place}: lies more than {cap} elements deep")]
     TooDeep {
@@ -155,8 +164,10 @@ pub enum IncludeRule {
     /// An absolute path.
     #[error("absolute paths are not followed; name a file inside the model's folder")]
     Absolute,
-    /// A path with `..`.
-    #[error("paths with `..` are not followed; name a file inside the model's folder")]
+    /// A path that leads too far up.
+    #[error(
+        "a path leads at most two folders up (`../../`), and there to an .xml; name a file in or beside the model's folder"
+    )]
     Outside,
     /// The same file again, or the main file.
     #[error("this file is part of the model already; a file is included once")]
@@ -214,6 +225,27 @@ pub enum Unsupported {
     /// Springs of tendons.
     #[error("springs of tendons are not supported; write stiffness=\"0\"")]
     TendonSpring,
+    /// Surfaces of tendons.
+    #[error("a tendon passes round geoms of type sphere and cylinder, with sizes in the file")]
+    TendonShape,
+    /// Muscles on sites and the like.
+    #[error("a muscle pulls on a tendon, hinge or slide; other transmissions are not supported")]
+    MuscleTransmission,
+    /// A muscle's gain without its bias.
+    #[error("gaintype=\"muscle\" goes with biastype \"muscle\" or \"none\", and with no other")]
+    HalfMuscle,
+    /// Active and passive curves of different muscles.
+    #[error("the first three numbers of gainprm and biasprm, and lmax, must be the same")]
+    MuscleBias,
+    /// forcerange.
+    #[error("a muscle with a forcerange is not supported; write forcelimited=\"false\"")]
+    MuscleForceRange,
+    /// force.
+    #[error("no force is given; MuJoCo takes it from scale and inertia as it compiles the model: write the force")]
+    MuscleForce,
+    /// lengthrange.
+    #[error("no lengthrange is given; MuJoCo finds it as it compiles the model: write the one of the compiled model")]
+    MuscleLengthRange,
     /// springdamper and armature that depends on tendons or actuators.
     #[error("springdamper takes its stiffness from an inertia that this armature changes; write stiffness instead")]
     SpringdamperArmature,
@@ -339,6 +371,21 @@ pub enum MjcfRule {
     /// springdamper without inertia.
     #[error("springdamper needs a body with inertia about every joint")]
     SpringdamperInertia,
+    /// Elements of a spatial tendon.
+    #[error("geoms and pulleys of a spatial tendon stand between two sites")]
+    BetweenSites,
+    /// Length of a tendon.
+    #[error("a tendon has at least two sites, or a joint")]
+    TwoSites,
+    /// divisor.
+    #[error("a divisor is from 1e-9 to 1e9")]
+    Divisor,
+    /// Places and factors of tendons.
+    #[error("at most 1e9 in size")]
+    TooFar,
+    /// range and lengthrange.
+    #[error("the first number of range and lengthrange is smaller than the second")]
+    MuscleRange,
     /// Couplings.
     #[error(
         "a joint follows one other joint, by a polynomial of at most 32 powers, and no joints follow each other in a circle"

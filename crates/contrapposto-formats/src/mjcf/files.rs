@@ -36,7 +36,7 @@ pub(super) fn load(
             let name = confined(text).map_err(refuse)?;
             // As MuJoCo: from the main file's folder, otherwise from the folder of the file that includes.
             let folder = loaded.files[next].name.rsplit_once('/').map(|(folder, _)| folder);
-            let beside = folder.map(|folder| format!("{folder}/{name}"));
+            let beside = folder.and_then(|folder| confined(&format!("{folder}/{name}")).ok());
             let (name, bytes) = match (include(&name), beside) {
                 (Ok(bytes), _) => (name, bytes),
                 (Err(reason), None) => return Err(refuse(IncludeRule::NotRead { reason: shorten(&reason) })),
@@ -72,7 +72,10 @@ fn parse(name: String, bytes: &[u8], limits: &Limits) -> Result<File, MjcfError>
     }
 }
 
-/// A path that stays in its folder, `.` and doubled `/` removed.
+/// Folders above that of the model from which files may be included: MyoSuite's models include the files of bodies that stand beside theirs.
+const FOLDERS_UP: usize = 2;
+
+/// A path that leads at most [`FOLDERS_UP`] above the model's folder, and there to an `.xml` only; `.`, doubled `/` and `a/..` are removed.
 fn confined(path: &str) -> Result<String, IncludeRule> {
     let path = path.trim();
     if path.starts_with('/') {
@@ -81,8 +84,15 @@ fn confined(path: &str) -> Result<String, IncludeRule> {
     if path.is_empty() || path.len() > 1024 || path.contains([':', '\\']) || path.contains(char::is_control) {
         return Err(IncludeRule::Plain);
     }
-    let parts: Vec<&str> = path.split('/').filter(|part| !part.is_empty() && *part != ".").collect();
-    if parts.contains(&"..") {
+    let mut parts: Vec<&str> = vec![];
+    for part in path.split('/').filter(|part| !part.is_empty() && *part != ".") {
+        match parts.last() {
+            Some(&last) if part == ".." && last != ".." => drop(parts.pop()),
+            _ => parts.push(part),
+        }
+    }
+    let up = parts.iter().filter(|part| **part == "..").count();
+    if up > FOLDERS_UP || up > 0 && !path.ends_with(".xml") {
         return Err(IncludeRule::Outside);
     }
     if parts.is_empty() { Err(IncludeRule::Plain) } else { Ok(parts.join("/")) }

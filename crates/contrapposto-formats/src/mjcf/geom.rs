@@ -6,6 +6,7 @@ use super::error::{MjcfError, MjcfRule, Unsupported};
 use super::orientation::{rotation, to_z};
 use super::value::Value;
 use crate::model_ir::{SolidIr, SolidShape, turned, unit};
+use contrapposto::muscle::{RoundShape, TendonGeom};
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 use std::f64::consts::PI;
 
@@ -114,6 +115,25 @@ pub(super) fn contact_shape(
         _ => SolidShape::Box([a, b, c]),
     };
     Ok(Some(SolidIr { segment, pose: outer * placed, shape }))
+}
+
+/// A geom of a segment, `None` for the world, as a surface that tendons pass round.
+pub(super) fn surface(
+    geom: &Attributes<'_, '_>,
+    segment: Option<usize>,
+    outer: &Isometry3<f64>,
+    settings: &Settings,
+) -> Result<TendonGeom, MjcfError> {
+    let kind = geom.get("type").map_or(Ok(2), |v| v.keyword(SHAPES)).map(|i| SHAPES[i])?;
+    let shape = match kind {
+        _ if geom.get("mesh").is_some() => return Err(Unsupported::TendonShape.at(geom.item)),
+        "sphere" => RoundShape::Sphere,
+        "cylinder" => RoundShape::Cylinder,
+        _ => return Err(Unsupported::TendonShape.at(geom.item)),
+    };
+    let (placed, [radius, ..]) = frame_and_size(geom, kind, settings)?;
+    let name = geom.item.attribute("name").unwrap_or_default().to_owned();
+    Ok(TendonGeom { name, segment, pose: outer * placed, shape, radius })
 }
 
 /// Frame of a geom, and the sizes that its shape needs.

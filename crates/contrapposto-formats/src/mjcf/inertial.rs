@@ -2,13 +2,14 @@
 
 use super::attributes::Attributes;
 use super::compiler::{MassFrom, Settings};
-use super::error::{MjcfError, MjcfRule};
+use super::error::{MjcfError, MjcfRule, Unsupported};
 use super::geom::{Solid, solid};
 use super::item::Item;
+use super::options::Options;
 use super::orientation::pose;
 use super::schema;
 use super::value::{Value, check, own_orientation};
-use crate::model_ir::turned;
+use crate::model_ir::{Ignored, turned};
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 /// A body's mass in its own frame, bounds and balance applied; total mass is not scaled yet.
@@ -37,6 +38,21 @@ pub(super) fn mass(
         explicit.unwrap_or_default()
     };
     bounded(body, summed, settings)
+}
+
+/// A body's mass, or none where it comes from a mesh and the caller does without.
+pub(super) fn known(
+    found: Result<Solid, MjcfError>,
+    options: &Options,
+    ignored: &mut Ignored,
+) -> Result<Solid, MjcfError> {
+    match found {
+        Err(MjcfError::Unsupported { what: Unsupported::MeshMass, .. }) if options.omit_mesh_mass => {
+            ignored.add("mass of a body that comes from a mesh: the body has none, and torques would be wrong", 1);
+            Ok(Solid::default())
+        }
+        found => found,
+    }
 }
 
 fn explicit(item: Item<'_>, frame: &Isometry3<f64>, settings: &Settings) -> Result<Solid, MjcfError> {

@@ -8,6 +8,8 @@ use crate::xml::Limits;
 pub struct Options {
     /// How the outermost body is attached to the ground; `None`: as the file says. `Free` adds `root_tx` ... `root_qz`.
     pub root: Option<RootAttachment>,
+    /// Bodies whose mass comes from a mesh have none, and are counted: for questions in which mass has no part. Else they are refused.
+    pub omit_mesh_mass: bool,
     /// Caps.
     pub limits: Limits,
 }

@@ -6,13 +6,14 @@ use super::chain::Chain;
 use super::compiler::{MassFrom, Settings};
 use super::defaults::Classes;
 use super::error::{MjcfError, MjcfRule, Unsupported};
-use super::geom::{contact_shape, middle};
+use super::geom::contact_shape;
 use super::inertial;
 use super::item::Item;
 use super::joint::{Joint, Kind};
 use super::options::Options;
 use super::orientation::pose;
 use super::schema::{self, LEAST_MASS, Tag};
+use super::site;
 use super::value::{Value, check};
 use crate::model_ir::{Ignored, ModelIr, RootAttachment, SegmentIr};
 use crate::xml::shorten;
@@ -132,8 +133,12 @@ impl<'a, 'w> Walk<'a, 'w> {
                     into.joints.push(Joint::read(&joint, &context.frame, self.settings)?);
                 }
                 "freejoint" => into.joints.push(Joint::free(child)?),
-                "geom" => into.geoms.push((Attributes::new(child, Tag::Geom, classes, class)?, context.frame)),
-                "site" => self.site(&Attributes::new(child, Tag::Site, classes, class)?, &context.frame, into)?,
+                "geom" => {
+                    let geom = Attributes::new(child, Tag::Geom, classes, class)?;
+                    self.built.add_geom(&geom, context.parent, &context.frame, self.settings);
+                    into.geoms.push((geom, context.frame));
+                }
+                "site" => self.site(&Attributes::new(child, Tag::Site, classes, class)?, &context, into)?,
                 "camera" | "light" => self.ignored.add(child.name(), 1),
                 "attach" | "replicate" => return Err(Unsupported::Generated.at(child)),
                 "composite" | "flexcomp" => return Err(Unsupported::Deformable.at(child)),
@@ -147,19 +152,16 @@ impl<'a, 'w> Walk<'a, 'w> {
     fn site(
         &mut self,
         site: &Attributes<'a, '_>,
-        frame: &Isometry3<f64>,
+        context: &Context,
         into: &mut Contents<'a, '_>,
     ) -> Result<(), MjcfError> {
-        let at = match site.get("fromto") {
-            Some(fromto) => middle(&fromto, site)?.0,
-            None => Vector3::from(site.numbers::<3>("pos")?.unwrap_or_default()),
+        let Some((name, at)) = site::read(site, &context.frame)? else {
+            self.ignored.add("site without name", 1);
+            return Ok(());
         };
-        match site.item.attribute("name").filter(|n| !n.is_empty()) {
-            None => self.ignored.add("site without name", 1),
-            Some(name) if !self.built.site_names.insert(name) => return Err(duplicate(site.item, name)),
-            Some(name) => into.stations.push((name.to_owned(), (frame * nalgebra::Point3::from(at)).coords)),
-        }
-        Ok(())
+        into.stations.push((name.to_owned(), at));
+        let twice = self.built.sites.insert(name, (context.parent, at)).is_some();
+        if twice { Err(duplicate(site.item, name)) } else { Ok(()) }
     }
 
     /// A body and those inside it.
@@ -184,7 +186,8 @@ impl<'a, 'w> Walk<'a, 'w> {
         let freed = self.options.root == Some(RootAttachment::Free) && context.parent.is_none() && joints.is_empty();
         let moves = !joints.is_empty() || freed;
         let carried = context.parent.is_some_and(|p| self.built.moves[p]);
-        let solid = inertial::mass(item, contents.inertial, &contents.geoms, settings, moves || carried)?;
+        let solid = inertial::mass(item, contents.inertial, &contents.geoms, settings, moves || carried);
+        let solid = inertial::known(solid, self.options, self.ignored)?;
         let known = self.body.solids.len();
         for (geom, frame) in &contents.geoms {
             self.body.solids.extend(contact_shape(geom, frame, settings, index)?);
@@ -381,7 +384,7 @@ impl<'a, 'w> Walk<'a, 'w> {
                 if let Some(parent) = segment.parent {
                     heavy[parent] |= heavy[index];
                 }
-            } else if !heavy[index] {
+            } else if !heavy[index] && !options.omit_mesh_mass {
                 let (place, value) = (built.places[index].clone(), shorten(&segment.name));
                 return Err(MjcfError::Invalid { place, value, needs: MjcfRule::MovingMass });
             }

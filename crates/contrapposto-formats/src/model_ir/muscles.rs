@@ -59,6 +59,12 @@ impl ModelIr {
             let name = &self.coordinates[*coordinate].name;
             *coordinate = model.coordinate(name).unwrap_or(*coordinate);
         };
+        for path in &mut musculature.paths.paths {
+            path.tendon
+                .iter_mut()
+                .flat_map(|tendon| &mut tendon.coordinates)
+                .for_each(|(coordinate, _)| own(coordinate));
+        }
         for point in musculature.paths.paths.iter_mut().flat_map(|path| &mut path.points) {
             match &mut point.location {
                 Location::Fixed(_) => {}

@@ -68,7 +68,7 @@ fn muscle<'a>(around: &Surroundings<'_, 'a>, node: Node<'a>, all: &mut MusclesIr
     };
     let least_activation = match law {
         FiberLaw::Thelen2003(_) | FiberLaw::Millard2012(_) => number("minimum_activation", 0.01)?,
-        FiberLaw::DeGrooteFregly2016(_) | FiberLaw::Schutte1993(_) => 0.0,
+        _ => 0.0,
     };
     let pennation = if reader.property(node, "pennation_angle_at_optimal").is_some() {
         "pennation_angle_at_optimal"

@@ -53,7 +53,7 @@ impl<'a> Surroundings<'_, 'a> {
         for wrap in objects(set("PathWrapSet", "MuscleWrapSet")) {
             wraps.push(self.wrap(wrap, points.len())?);
         }
-        Ok((Path { points, wraps }, kinds))
+        Ok((Path { points, wraps, tendon: None }, kinds))
     }
 
     fn point(&self, node: Node<'a>, within: &str) -> Result<PathPoint, OsimProblem> {

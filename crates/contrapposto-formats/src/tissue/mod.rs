@@ -17,7 +17,7 @@ use contrapposto::model::{Adult, AdultError, Model, Sex, adult};
 use contrapposto::muscle::Musculature;
 
 use crate::input_error::InputError;
-use crate::model_file::{ModelFileError, ModelFormat, read_model};
+use crate::model_file::{ModelFileError, ModelFormat, read_model, read_model_with};
 use crate::model_ir::{Imported, MuscleTally, RootAttachment};
 use crate::overlay::overlay;
 
@@ -71,13 +71,29 @@ impl SourcedModel {
         root: Option<RootAttachment>,
         include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, ModelFileError> {
-        let (imported, format) = read_model(name, bytes, root, include)?;
+        read_model(name, bytes, root, include).map(Self::imported)
+    }
+
+    /// Reads a model file for questions in which mass has no part: a body whose mass comes from a mesh has none, and a note tells of it.
+    ///
+    /// # Errors
+    /// As [`read_model`].
+    pub fn read_without_mesh_mass(
+        name: &str,
+        bytes: &[u8],
+        root: Option<RootAttachment>,
+        include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, ModelFileError> {
+        read_model_with(name, bytes, (root, true), include).map(Self::imported)
+    }
+
+    fn imported((imported, format): (Imported, ModelFormat)) -> Self {
         let origins = vec![Origins::default(); imported.model.coordinates().len()];
         let mut notes = imported.notes;
         notes.splice(0..0, left_out_note(&imported.left_out));
         notes.extend(strength_note(&imported.model, format));
         let Imported { model, muscles, muscle_tally, left_out, .. } = imported;
-        Ok(Self { model, muscles, muscle_tally, format, sex: None, origins, left_out, notes })
+        Self { model, muscles, muscle_tally, format, sex: None, origins, left_out, notes }
     }
 
     /// The model without the strength that its file gives to motors; its notes no longer tell of it. For a model file as it was read.

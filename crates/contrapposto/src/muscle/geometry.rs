@@ -23,6 +23,7 @@ pub struct PathGeometry {
     offsets: Vec<FrameInGround>,
     segments: Vec<FrameInGround>,
     objects: Vec<FrameInGround>,
+    geoms: Vec<FrameInGround>,
     /// By path: the mobilities that move some of its points and not all, outermost first.
     moving: Vec<Vec<usize>>,
     /// By path over several surfaces: all mobilities that move any of its points; empty for other paths. The forces of OpenSim's rule are
@@ -59,6 +60,7 @@ impl PathGeometry {
             offsets: model.segments.iter().map(|segment| frame(&segment.offset)).collect(),
             segments: model.segments.iter().map(|segment| frame(&segment.offset)).collect(),
             objects: paths.wrap_objects.iter().map(|object| frame(&object.pose)).collect(),
+            geoms: paths.geoms.iter().map(|geom| frame(&geom.pose)).collect(),
             moving: (0..paths.paths.len()).map(|path| moving(model, paths, path, false)).collect(),
             carrying: (0..paths.paths.len())
                 .map(|path| if paths.paths[path].wraps.len() > 1 { moving(model, paths, path, true) } else { vec![] })
@@ -129,12 +131,22 @@ impl PathGeometry {
         self.rule = rule;
         self.moment_arms.fill(0.0);
         for (index, path) in paths.paths.iter().enumerate() {
+            // MuJoCo's tendons have one rule.
+            let rule = if path.tendon.is_some() { PathRule::Geodesic } else { rule };
             let scene =
                 Scene { paths, values: kinematics.values(), segments: &self.segments, objects: &self.objects, rule };
-            self.lengths[index] = self.routing.lay(scene, path);
+            let arms = &mut self.moment_arms[index * self.rates..(index + 1) * self.rates];
+            self.lengths[index] = match &path.tendon {
+                None => self.routing.lay(scene, path),
+                Some(tendon) => {
+                    let drives = tendon.coordinates.iter();
+                    let rate = |coordinate: usize| model.coordinates[coordinate].rate;
+                    drives.filter_map(|&(c, by)| Some((rate(c)?, by))).for_each(|(rate, by)| arms[rate] -= by);
+                    self.routing.lay_tendon(scene, &self.geoms, path, tendon)
+                }
+            };
             self.lines[index].nodes.clone_from(&self.routing.nodes);
             self.lines[index].on_surface.clone_from(&self.routing.lengths);
-            let arms = &mut self.moment_arms[index * self.rates..(index + 1) * self.rates];
             let mut tension = Tension { model, kinematics, points: &path.points, segments: &self.segments, rule, arms };
             let unbalanced = rule == PathRule::OpenSim && path.wraps.len() > 1;
             let moving = if unbalanced { &self.carrying[index] } else { &self.moving[index] };
@@ -153,10 +165,12 @@ impl PathGeometry {
                 *frame = (rotation * offset.0, rotation * offset.1 + kinematics.origins[m]);
             }
         }
-        for (object, frame) in paths.wrap_objects.iter().zip(&mut self.objects) {
-            let own: Matrix3<f64> = object.pose.rotation.to_rotation_matrix().into_inner();
-            let at = object.pose.translation.vector;
-            *frame = object.segment.map_or((own, at), |s| {
+        let objects = paths.wrap_objects.iter().map(|object| (object.segment, &object.pose));
+        let geoms = paths.geoms.iter().map(|geom| (geom.segment, &geom.pose));
+        for ((segment, pose), frame) in objects.chain(geoms).zip(self.objects.iter_mut().chain(&mut self.geoms)) {
+            let own: Matrix3<f64> = pose.rotation.to_rotation_matrix().into_inner();
+            let at = pose.translation.vector;
+            *frame = segment.map_or((own, at), |s| {
                 let (axes, origin) = &self.segments[s];
                 (axes * own, axes * at + origin)
             });
@@ -177,7 +191,9 @@ impl Line {
 fn moving(model: &Model, paths: &Paths, path: usize, any: bool) -> Vec<usize> {
     let path = &paths.paths[path];
     let of_wraps = path.wraps.iter().map(|wrap| paths.wrap_objects[wrap.object].segment);
-    let carriers: Vec<_> = path.points.iter().map(|point| point.segment).chain(of_wraps).collect();
+    let parts = path.tendon.iter().flat_map(|tendon| &tendon.parts);
+    let of_geoms = parts.filter_map(|part| Some(paths.geoms[part.around?.geom].segment));
+    let carriers: Vec<_> = path.points.iter().map(|point| point.segment).chain(of_wraps).chain(of_geoms).collect();
     let mut counts = vec![0; model.mobilities.len()];
     for carrier in &carriers {
         let mut next = carrier.and_then(|segment| model.segments[segment].mobility);
@@ -204,7 +220,7 @@ impl Tension<'_> {
     fn pull(&mut self, nodes: &[Node], moving: &[usize], wrenches: &mut [(Vector3<f64>, Vector3<f64>)]) {
         for pair in nodes.windows(2) {
             let [from, to] = [&pair[0], &pair[1]];
-            if matches!(from.kind, NodeKind::On(_)) {
+            if matches!(from.kind, NodeKind::On(_)) || from.weight == 0.0 {
                 continue;
             }
             let same = from.segment == to.segment;
@@ -217,7 +233,7 @@ impl Tension<'_> {
             if length == 0.0 {
                 continue;
             }
-            let direction = straight / length;
+            let direction = straight * (from.weight / length);
             for (node, force) in [(from, direction), (to, -direction)] {
                 self.slide(node, &force);
                 let mobility = node.segment.and_then(|segment| self.model.segments[segment].mobility);

@@ -2,7 +2,8 @@
 //! torque and strength that follow.
 //!
 //! [`Musculature`] is given and does not change; [`PathGeometry`] and [`FiberState`] depend on the posture. Paths follow one of two rules
-//! ([`PathRule`]): shortest lines, whose moment arms are minus the derivatives of the length, or OpenSim's.
+//! ([`PathRule`]): shortest lines, whose moment arms are minus the derivatives of the length, or OpenSim's. Tendons of MuJoCo
+//! ([`Tendon`]) have MuJoCo's rule always.
 
 mod bushing;
 mod coupled_strength;
@@ -14,6 +15,7 @@ mod path;
 mod routing;
 mod rule;
 mod static_optimisation;
+mod tendon;
 mod tolerances;
 mod torque;
 mod wrap;
@@ -21,7 +23,7 @@ mod wrap;
 pub use bushing::{Bushing, bushing_torque};
 pub use coupled_strength::{CoupledStrength, coupled_strength};
 pub use fiber::{
-    ActiveCurve, DeGrooteFregly2016, FiberLaw, FiberState, Millard2012, Muscle, MuscleError, MuscleSpec,
+    ActiveCurve, DeGrooteFregly2016, FiberLaw, FiberState, Millard2012, MujocoMuscle, Muscle, MuscleError, MuscleSpec,
     PassiveFiberCurve, PassiveShape, Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
 pub(crate) use geometry::Line;
@@ -31,6 +33,7 @@ pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
 pub(crate) use routing::{Node, NodeKind};
 pub use rule::{PathRule, WrapMethod};
 pub use static_optimisation::{Recruitment, StaticOptimisation};
+pub use tendon::{Around, RoundShape, SidePoint, Tendon, TendonGeom, TendonPart};
 pub use torque::{Tension, passive_tensions, passive_torque, strength};
 pub(crate) use wrap::Spread;
 pub use wrap::{Quadrant, WrapObject, WrapShape};

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::rule::WrapMethod;
+use super::tendon::{Tendon, TendonGeom};
 use super::wrap::WrapObject;
 use crate::math::Function;
 use crate::model::Placement;
@@ -92,10 +93,12 @@ pub struct PathWrap {
 /// A path: points in order, and the surfaces that it may wrap over.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path {
-    /// At least two points.
+    /// At least two points; none where a tendon depends on coordinates only.
     pub points: Vec<PathPoint>,
     /// Surfaces, in the order in which they are tried.
     pub wraps: Vec<PathWrap>,
+    /// A tendon of MuJoCo: all points are fixed, and it has no `wraps`.
+    pub tendon: Option<Tendon>,
 }
 
 /// All paths of a body and the surfaces that they share.
@@ -105,4 +108,6 @@ pub struct Paths {
     pub paths: Vec<Path>,
     /// The surfaces.
     pub wrap_objects: Vec<WrapObject>,
+    /// The surfaces of MuJoCo's tendons.
+    pub geoms: Vec<TendonGeom>,
 }

@@ -22,6 +22,8 @@ pub(crate) struct Node {
     pub(crate) segment: Option<usize>,
     /// Its origin.
     pub(crate) kind: NodeKind,
+    /// Factor of tension and length of the line behind it: below 1 behind a pulley, 0 between its branches.
+    pub(crate) weight: f64,
 }
 
 /// Where a corner comes from.
@@ -29,7 +31,7 @@ pub(crate) struct Node {
 pub(crate) enum NodeKind {
     /// The path's point of this number.
     Point(usize),
-    /// The line touches the surface of the path's wrap of this number.
+    /// The line touches the surface of the path's wrap, or of the tendon's part, of this number.
     On(usize),
     /// It leaves that surface.
     Off(usize),
@@ -40,7 +42,7 @@ pub(crate) enum NodeKind {
 pub(super) struct Routing {
     /// The corners.
     pub(super) nodes: Vec<Node>,
-    /// Length on the surface, by wrap of the path, m.
+    /// Length on the surface, by wrap of the path, or by part of the tendon, m.
     pub(super) lengths: Vec<f64>,
     /// The places of both corners on the surface when they were first asked for, by wrap of the path; for OpenSim's rule.
     first_seen: Vec<[Option<Vector3<f64>>; 2]>,
@@ -74,8 +76,9 @@ enum Found {
 impl Routing {
     /// Space for the largest of the paths.
     pub(super) fn new(paths: &Paths) -> Self {
-        let wraps = paths.paths.iter().map(|path| path.wraps.len()).max().unwrap_or(0);
-        let nodes = paths.paths.iter().map(|path| path.points.len() + 2 * path.wraps.len()).max().unwrap_or(0);
+        let surfaces = |path: &Path| path.tendon.as_ref().map_or(path.wraps.len(), |tendon| tendon.parts.len());
+        let wraps = paths.paths.iter().map(surfaces).max().unwrap_or(0);
+        let nodes = paths.paths.iter().map(|path| path.points.len() + 2 * surfaces(path)).max().unwrap_or(0);
         Self {
             nodes: Vec::with_capacity(nodes),
             lengths: Vec::with_capacity(wraps),
@@ -101,7 +104,13 @@ impl Routing {
                 Location::Moving(point) => point.place_and_slope(scene.values).0,
             };
             let place = point.segment.map_or(place, |s| scene.segments[s].0 * place + scene.segments[s].1);
-            self.nodes.push(Node { place, seen: place, segment: point.segment, kind: NodeKind::Point(index) });
+            self.nodes.push(Node {
+                place,
+                seen: place,
+                segment: point.segment,
+                kind: NodeKind::Point(index),
+                weight: 1.0,
+            });
         }
         self.lengths.clear();
         self.lengths.resize(path.wraps.len(), 0.0);
@@ -234,7 +243,7 @@ impl Routing {
         if let Some((at, contact, _)) = best {
             let node = |place: Vector3<f64>, kind| {
                 let place = axes * place + origin;
-                Node { place, seen: place, segment: object.segment, kind }
+                Node { place, seen: place, segment: object.segment, kind, weight: 1.0 }
             };
             self.lengths[wrap] = contact.length;
             self.nodes.insert(at + 1, node(contact.first, NodeKind::On(wrap)));

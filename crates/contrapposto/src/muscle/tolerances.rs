@@ -92,6 +92,13 @@ pub(super) const RANGE_SLACK: f64 = 1e-5;
 /// Steps in which the spread of neighbouring lines on an ellipsoid or a torus is integrated.
 pub(super) const SPREAD_STEPS: usize = 192;
 
+// Tendons of MuJoCo (`tendon/`).
+
+/// Radius, distance or square of a distance below which MuJoCo counts it as nothing, m or m^2.
+pub(super) const MUJOCO_LEAST: f64 = 1e-15;
+/// Steps to the point at which a line touches a surface from within, each safeguarded by bisection.
+pub(super) const INSIDE_STEPS: usize = 100;
+
 // Curves (`curve.rs`).
 
 /// Newton steps to the parameter of a Bezier curve, each safeguarded by bisection.

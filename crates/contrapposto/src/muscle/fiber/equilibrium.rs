@@ -153,6 +153,9 @@ impl Fibers {
 
     /// Cosine of the pennation of fibres of a length.
     fn cos_pennation(&self, length: f64) -> f64 {
+        if self.width == 0.0 {
+            return 1.0;
+        }
         let sin = self.width / length;
         ((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
     }

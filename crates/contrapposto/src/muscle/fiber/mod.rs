@@ -8,6 +8,7 @@ mod curves;
 mod degroote_fregly2016;
 mod equilibrium;
 mod millard2012;
+mod mujoco;
 mod schutte1993;
 mod thelen2003;
 
@@ -15,6 +16,7 @@ pub use curves::MuscleError;
 pub use degroote_fregly2016::DeGrooteFregly2016;
 pub use equilibrium::FiberState;
 pub use millard2012::{ActiveCurve, Millard2012, PassiveFiberCurve, PassiveShape, TendonCurve, TendonShape};
+pub use mujoco::MujocoMuscle;
 pub use schutte1993::Schutte1993;
 pub use thelen2003::Thelen2003;
 
@@ -35,6 +37,8 @@ pub enum FiberLaw {
     DeGrooteFregly2016(DeGrooteFregly2016),
     /// Schutte 1993.
     Schutte1993(Schutte1993),
+    /// MuJoCo's muscle.
+    Mujoco(MujocoMuscle),
 }
 
 /// The numbers of a muscle.
@@ -76,6 +80,7 @@ enum CurveSet {
     Millard(Box<Millard>),
     DeGrooteFregly(DeGrooteFregly2016),
     Schutte(Box<Schutte1993>),
+    Mujoco(MujocoMuscle),
 }
 
 impl Muscle {
@@ -92,8 +97,10 @@ impl Muscle {
                 return refuse(what, value, "above 0 and at most 1e9");
             }
         }
-        if !(spec.tendon_slack_length >= 0.0 && spec.tendon_slack_length <= crate::model::LARGEST) {
-            return refuse("tendon_slack_length", spec.tendon_slack_length, "0 to 1e9");
+        // MuJoCo's lengths begin anywhere: those of a muscle on a joint are angles.
+        let least_slack = if let FiberLaw::Mujoco(_) = spec.law { -crate::model::LARGEST } else { 0.0 };
+        if !(least_slack..=crate::model::LARGEST).contains(&spec.tendon_slack_length) {
+            return refuse("tendon_slack_length", spec.tendon_slack_length, "0 to 1e9 (MuJoCo's muscles: -1e9 to 1e9)");
         }
         if !(0.0..=1.0).contains(&spec.least_activation) {
             return refuse("minimum_activation", spec.least_activation, "0 to 1");
@@ -110,12 +117,13 @@ impl Muscle {
             FiberLaw::Millard2012(law) => CurveSet::Millard(Box::new(law.curves()?)),
             FiberLaw::DeGrooteFregly2016(law) => CurveSet::DeGrooteFregly(law.checked()?),
             FiberLaw::Schutte1993(law) => CurveSet::Schutte(Box::new(law.clone())),
+            FiberLaw::Mujoco(law) => CurveSet::Mujoco(law.checked()?),
         };
         let width = spec.optimal_fiber_length * spec.pennation.sin();
         let pennate = width / spec.max_pennation.sin();
         // Shortest length over optimal length, beside that of the greatest pennation.
         let least = match &curves {
-            CurveSet::Thelen(_) => 0.0,
+            CurveSet::Thelen(_) | CurveSet::Mujoco(_) => 0.0,
             CurveSet::Millard(curves) => curves.least_length,
             CurveSet::DeGrooteFregly(_) | CurveSet::Schutte(_) => LEAST_LENGTH,
         };
@@ -125,7 +133,7 @@ impl Muscle {
             least_length,
             optimal_length: spec.optimal_fiber_length,
             slack_length: spec.tendon_slack_length,
-            rigid: spec.rigid_tendon || spec.tendon_slack_length == 0.0,
+            rigid: spec.rigid_tendon || spec.tendon_slack_length <= 0.0,
             max_isometric_force: spec.max_isometric_force,
         };
         Ok(Self { spec, curves, fibers })
@@ -153,6 +161,7 @@ impl Muscle {
             CurveSet::Millard(curves) => fibers.solve(&**curves, path_length, activation),
             CurveSet::DeGrooteFregly(curves) => fibers.solve(curves, path_length, activation),
             CurveSet::Schutte(curves) => fibers.solve(&**curves, path_length, activation),
+            CurveSet::Mujoco(curves) => fibers.solve(curves, path_length, activation),
         }
     }
 
@@ -166,6 +175,7 @@ impl Muscle {
             CurveSet::Millard(curves) => self.fibers.at(&**curves, path_length, activation, length),
             CurveSet::DeGrooteFregly(curves) => self.fibers.at(curves, path_length, activation, length),
             CurveSet::Schutte(curves) => self.fibers.at(&**curves, path_length, activation, length),
+            CurveSet::Mujoco(curves) => self.fibers.at(curves, path_length, activation, length),
         }
     }
 }
