@@ -58,7 +58,7 @@ pub(crate) enum Verb {
     Inspect(InspectArgs),
     /// External, passive and active torque of every coordinate, for one posture or a motion.
     Torques(TorquesArgs),
-    /// Path, forces and moment arms of every muscle of an OpenSim model, and the strength of its joints, for one posture or a motion.
+    /// Path, forces and moment arms of every muscle of an OpenSim or MJCF model, and the strength of its joints, for one posture or a motion.
     Muscles(MusclesArgs),
     /// Find the muscle group that fails first in a recorded motion, when, and which change of posture would relieve it.
     Assess(AssessArgs),

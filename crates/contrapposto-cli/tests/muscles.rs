@@ -95,3 +95,35 @@ fn a_model_without_muscles_is_refused() {
     assert!(refused(&["muscles", "adult"]).contains("MODEL is an OpenSim file with muscles"));
     assert!(refused(&["muscles", &file, "--activation", "2"]).contains("from 0 to 1"));
 }
+
+/// An MJCF arm with a muscle of the class `strong`, `more` beside it.
+fn mjcf(more: &str) -> String {
+    format!(
+        r#"<mujoco><compiler angle="radian"/>
+        <default><default class="strong"><muscle range="0.5 1.5" force="100" lengthrange="0.3 0.7"/></default></default>
+        <worldbody><site name="base" pos="0.04 0.2 0"/>
+          <body name="arm"><joint name="turn" axis="0 0 1"/><geom type="mesh" mesh="bone"/>
+            <site name="tip" pos="0.04 -0.3 0"/></body></worldbody>
+        <tendon><spatial name="t"><site site="base"/><site site="tip"/></spatial></tendon>
+        <actuator><muscle class="strong" name="m" tendon="t"/>{more}</actuator></mujoco>"#
+    )
+}
+
+#[test]
+fn a_muscle_of_an_mjcf_file_has_mujocos_forces_even_where_the_mass_of_a_mesh_is_unknown() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(folder.path(), "arm.xml", &mjcf(r#"<muscle name="n" tendon="t" force="3"/>"#));
+    let frame = json(&["muscles", &file, "--json"]);
+    assert!((frame["lengths_m"]["m"].as_f64().unwrap() - 0.5).abs() < 1e-15, "{frame}");
+    assert!((frame["moment_arms_m"]["m"]["turn"].as_f64().unwrap() - 0.04).abs() < 1e-15, "{frame}");
+    // At its optimal length: all its force, and no passive one.
+    assert!((frame["max_forces_n"]["m"].as_f64().unwrap() - 100.0).abs() < 1e-9, "{frame}");
+    assert_eq!(frame["passive_forces_n"]["m"], 0.0);
+    let kinds = &json(&["inspect", &file, "--json"])["muscles"];
+    assert_eq!((&kinds["muscle"]["read"], &kinds["muscle"]["refused"]), (&1.into(), &1.into()), "{kinds}");
+    assert_eq!(kinds["spatial"]["read"], 1);
+    let told = run(&["inspect", &file]);
+    assert!(told.stdout.contains("no lengthrange is given"), "{}", told.stdout);
+    // Torques need the mass.
+    assert!(refused(&["torques", &file, "default"]).contains("comes from a mesh"));
+}

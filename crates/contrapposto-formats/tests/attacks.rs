@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 fn message(name: &str, bytes: &[u8]) -> Option<String> {
     let folder = here().join("tests/attacks");
     let mut include = |file: &str| {
-        assert!(!file.contains("..") && !file.starts_with('/') && !file.contains(':'), "asked for {file}");
+        let up = file.matches("..").count();
+        assert!(up <= 2 && !file.starts_with('/') && !file.contains(':'), "asked for {file}");
         std::fs::read(folder.join(file)).map_err(|_| "the file is missing".to_owned())
     };
     if name.ends_with(".urdf") {

@@ -57,7 +57,7 @@ fn paths(model: &Model, rng: &mut Pcg64) -> Paths {
     let place = within(rng, 0.2);
     points[2].location = Location::Conditional { place, coordinate: elbow, range };
     points[3].location = Location::Moving(Box::new(moving));
-    Paths { paths: vec![Path { points, wraps: vec![] }], wrap_objects: vec![] }
+    Paths { paths: vec![Path { points, ..Path::default() }], ..Paths::default() }
 }
 
 /// A path past a cylinder on the forearm's elbow, from the upper arm to the forearm.
@@ -83,7 +83,7 @@ fn past(model: &Model, shape: WrapShape, quadrant: Quadrant, x: f64) -> Paths {
     let upper_end = model.segments()[lower.unwrap()].in_parent.translation.vector;
     let points = vec![point(upper, upper_end.y + 0.15, 0.0), point(lower, -0.15, 0.02)];
     let wraps = vec![PathWrap { object: 0, method: WrapMethod::Hybrid, range: (None, None) }];
-    Paths { paths: vec![Path { points, wraps }], wrap_objects: vec![object] }
+    Paths { paths: vec![Path { points, wraps, ..Path::default() }], wrap_objects: vec![object], ..Paths::default() }
 }
 
 /// Largest difference of the moment arms from minus the central differences of the length, over postures of an open set; the number of

@@ -241,10 +241,11 @@ pub(crate) struct ConvertArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto muscles gait2392.osim\n  \
-    contrapposto muscles subject.osim gait.mot --json > muscles.jsonl\n\n\
+    contrapposto muscles subject.osim gait.mot --json > muscles.jsonl\n  \
+    contrapposto muscles myo_sim/leg/myolegs.xml --json\n\n\
     Fibres and tendons are in equilibrium at rest. A moment arm is the torque about a coordinate for each newton of tension; those of \
-    coordinates that follow others are part of theirs. Strength is a plain sum, muscles that pull one way at full activation and \
-    all others at --activation; and a coupled one, the greatest torque while the muscles give no torque about any other joint.")]
+    coordinates that follow others are part of theirs. Muscles of an MJCF file have MuJoCo's curves and a rigid tendon. Strength \
+    is a plain sum, muscles that pull one way at full activation and all others at --activation; and a coupled one, the greatest torque while the muscles give no torque about any other joint.")]
 pub(crate) struct MusclesArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
@@ -253,7 +254,7 @@ pub(crate) struct MusclesArgs {
     pub(crate) postures: PathBuf,
     #[command(flatten)]
     pub(crate) frames: FrameArgs,
-    /// The rule by which paths lie on the surfaces that they wrap over.
+    /// The rule by which paths lie on the surfaces that they wrap over; tendons of MJCF files have MuJoCo's always.
     #[arg(long, value_enum, default_value = "geodesic")]
     pub(crate) rule: RuleChoice,
     /// Activation of all muscles, 0 to 1; a muscle with a least activation of its own has at least that.

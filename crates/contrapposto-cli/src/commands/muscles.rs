@@ -23,7 +23,7 @@ pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
     let mut opened = open_without_mesh_mass(&args.model, false)?;
     if opened.muscles.muscles.is_empty() {
         let file = args.model.model.display();
-        let why = "no muscle could be read from it; MODEL is an OpenSim file with muscles, and `contrapposto inspect` counts them";
+        let why = "no muscle could be read from it; MODEL is an OpenSim or MJCF file with muscles, and `contrapposto inspect` counts them";
         return Err(Fail::Refused(format!("{file}: {why}")));
     }
     let mut notes = std::mem::take(&mut opened.notes);

@@ -57,7 +57,8 @@ impl PathTension {
     /// [`LoadError`] for a tension that is not finite or above [`crate::model::LARGEST`].
     ///
     /// # Panics
-    /// Unless there is one tension a path, and `geometry` was filled by [`PathRule::Geodesic`]: no other rule has a gradient.
+    /// Unless there is one tension a path, and `geometry` was filled by [`PathRule::Geodesic`]: no other rule has a gradient, and
+    /// tendons of MuJoCo have none here.
     pub fn update(
         &mut self,
         model: &Model,
@@ -68,6 +69,7 @@ impl PathTension {
     ) -> Result<(), LoadError> {
         assert_eq!(tensions.len(), paths.paths.len(), "one tension a path");
         assert_eq!(geometry.rule(), PathRule::Geodesic, "the rule of the paths");
+        assert!(paths.paths.iter().all(|path| path.tendon.is_none()), "tendons of MuJoCo have no gradient");
         let n = self.torques.len();
         self.torques.fill(0.0);
         self.gradient.fill(0.0);
