@@ -35,7 +35,7 @@ fn paths(shape: WrapShape, quadrant: Quadrant, method: WrapMethod, ends: [V; 2])
     let wrap_objects =
         vec![WrapObject { name: "surface".to_owned(), segment: None, pose, quadrant, active: true, shape }];
     let wraps = vec![PathWrap { object: 0, method, range: (None, None) }];
-    Paths { paths: vec![Path { points, wraps }], wrap_objects }
+    Paths { paths: vec![Path { points, wraps, ..Path::default() }], wrap_objects, ..Paths::default() }
 }
 
 fn length(model: &Model, kinematics: &Kinematics, paths: &Paths, rule: PathRule) -> f64 {
