@@ -5,7 +5,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::circle::{Turn, round};
 use super::inside::reflect;
-use super::{RoundShape, TendonGeom};
+use super::parts::{RoundShape, TendonGeom};
 use crate::muscle::tolerances::MUJOCO_LEAST;
 use crate::muscle::wrap::Contact;
 
@@ -67,7 +67,7 @@ fn largest(direction: &Vector3<f64>) -> usize {
 }
 
 /// The direction of a vector; x for one of no length.
-pub(super) fn direction(vector: Vector2<f64>) -> Vector2<f64> {
+fn direction(vector: Vector2<f64>) -> Vector2<f64> {
     match vector.norm() {
         size if size >= MUJOCO_LEAST => vector / size,
         _ => Vector2::x(),
