@@ -53,7 +53,7 @@ fn cylinder(segment: Option<usize>, at: V, turn: (f64, f64, f64), radius: f64) -
 
 fn over(points: Vec<PathPoint>, objects: &[usize]) -> Path {
     let wraps = objects.iter().map(|&object| PathWrap { object, method: WrapMethod::Hybrid, range: (None, None) });
-    Path { points, wraps: wraps.collect() }
+    Path { points, wraps: wraps.collect(), ..Path::default() }
 }
 
 /// Paths of the right arm: from ground over the trunk with a moving point, over one cylinder, over two, between two branches, over a
@@ -99,6 +99,7 @@ fn arm(model: &Model) -> Paths {
                 ..cylinder(lower, V::new(0.0, 0.0, 0.01), (0.2, 0.1, 0.3), 0.03)
             },
         ],
+        ..Paths::default()
     }
 }
 

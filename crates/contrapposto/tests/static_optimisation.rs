@@ -17,8 +17,8 @@ fn elbow() -> (Model, Musculature, PathGeometry, usize) {
     let [upper, lower] = ["humerus_r", "ulna_r"].map(|name| model.segment(name));
     let end = model.segments()[lower.unwrap()].in_parent.translation.vector;
     let point = |segment, x: f64, y: f64| PathPoint { segment, location: Location::Fixed(Vector3::new(x, y, 0.0)) };
-    let path = |x, y| Path { points: vec![point(upper, x, end.y + 0.2), point(lower, x, y)], wraps: vec![] };
-    let paths = Paths { paths: vec![path(0.03, -0.1), path(0.02, -0.05), path(-0.03, 0.02)], wrap_objects: vec![] };
+    let path = |x, y| Path { points: vec![point(upper, x, end.y + 0.2), point(lower, x, y)], ..Path::default() };
+    let paths = Paths { paths: vec![path(0.03, -0.1), path(0.02, -0.05), path(-0.03, 0.02)], ..Paths::default() };
     let muscle = |path, force| MuscleSpec {
         name: format!("m{path}"),
         path,
