@@ -151,7 +151,7 @@ fn pulley(item: Item<'_>) -> Result<f64, MjcfError> {
     let value =
         Value::of(item, "divisor").ok_or_else(|| MjcfError::Missing { place: item.attribute_place("divisor") })?;
     let divisor = value.number()?;
-    if divisor >= 1.0 / LARGEST && divisor <= LARGEST { Ok(divisor) } else { Err(value.invalid(MjcfRule::Divisor)) }
+    if (1.0 / LARGEST..=LARGEST).contains(&divisor) { Ok(divisor) } else { Err(value.invalid(MjcfRule::Divisor)) }
 }
 
 /// The thing that an attribute names.

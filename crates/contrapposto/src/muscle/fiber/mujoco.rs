@@ -25,7 +25,7 @@ impl MujocoMuscle {
             Self { greatest, .. } if !(greatest > 1.0 && greatest <= crate::model::LARGEST) => {
                 refuse("lmax", greatest, "above 1 and at most 1e9")
             }
-            Self { passive_force, .. } if !(passive_force >= 0.0 && passive_force <= crate::model::LARGEST) => {
+            Self { passive_force, .. } if !(0.0..=crate::model::LARGEST).contains(&passive_force) => {
                 refuse("fpmax", passive_force, "0 to 1e9")
             }
             itself => Ok(itself),
