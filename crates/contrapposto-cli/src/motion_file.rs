@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use contrapposto::assessment::Peak;
+use contrapposto::assessment::{FAST_SHARE, Peak};
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -216,9 +216,6 @@ fn out_of_range(coordinate: &Coordinate, values: &[f64], outside: f64) -> String
         shown(greatest)
     )
 }
-
-/// Least share of frames with fast motion that gives a warning.
-const FAST_SHARE: f64 = 0.05;
 
 /// The warning about a motion in which the centre of mass accelerates: greatest acceleration (m/s^2), and the share of fast frames.
 pub(crate) fn fast_motion((acceleration, share): (Peak, f64)) -> Option<String> {

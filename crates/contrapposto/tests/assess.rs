@@ -5,9 +5,11 @@
 use contrapposto::assessment::{AssessError, AssessSettings, Assessment, GroupAssessment, PeakKind, assess};
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Strategy;
+use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture::Posture;
-use contrapposto::statics::Load;
+use contrapposto::statics::{FixedIn, Load, LoadKind};
+use contrapposto::verdict::Verdict;
 use nalgebra::Vector3;
 
 fn body() -> Model {
@@ -168,4 +170,45 @@ fn motions_too_long_out_of_order_or_of_another_model_are_refused() {
     }
     assert!(matches!(try_it(&[at(0.0), (1.0, Posture::new(vec![0.0]))]), Err(AssessError::Torques { index: 1, .. })));
     assert_eq!(try_it(&[]).unwrap().groups.iter().filter(|group| group.peak_load.value > 0.0).count(), 0);
+}
+
+#[test]
+fn a_motion_whose_time_begins_at_3_s_has_the_minutes_of_one_that_begins_at_0() {
+    let model = body();
+    let load = Load::weight(&model, model.segment("hand_r").unwrap(), 3.0);
+    let level = bent(&model, &[("elbow_flex_r", 90.0)]);
+    let hang = Load { kind: LoadKind::Force(-model.mass() * model.gravity(), FixedIn::World), ..load };
+    let [early, late] = [0.0, 3.0].map(|start| {
+        let motion = [(start, level.clone()), (start + 600.0, level.clone())];
+        let both = |_: f64, _: &Kinematics, loads: &mut Vec<Load>| loads.extend([load, hang_at_pelvis(&model, hang)]);
+        let found = assess(&model, &motion, both, &AssessSettings::default(), |_| {}).unwrap();
+        Verdict::of_motion(&model, &found, 600.0)
+    });
+    assert!(early.range.is_some(), "{}", early.sentence);
+    assert_eq!(early.sentence, late.sentence);
+}
+
+/// The same load on the pelvis.
+fn hang_at_pelvis(model: &Model, load: Load) -> Load {
+    let segment = model.segment("pelvis").unwrap();
+    Load { segment, point: model.segments()[segment].center_of_mass, ..load }
+}
+
+#[test]
+fn a_motion_that_swings_the_trunk_twice_a_second_is_said_to_be_judged_at_rest() {
+    let model = body();
+    let motion: Vec<_> = (0..=200)
+        .map(|i| {
+            let time = f64::from(i) / 100.0;
+            (time, bent(&model, &[("lumbar_extension", -20.0 - 15.0 * (4.0 * std::f64::consts::PI * time).cos())]))
+        })
+        .collect();
+    let hang = hang_at_pelvis(&model, Load::weight(&model, 0, 0.0));
+    let hang = Load { kind: LoadKind::Force(-model.mass() * model.gravity(), FixedIn::World), ..hang };
+    let found = assess(&model, &motion, |_, _, loads| loads.push(hang), &AssessSettings::default(), |_| {}).unwrap();
+    let verdict = Verdict::of_motion(&model, &found, 2.0);
+    assert!(found.fast_share > 0.2, "{}", found.fast_share);
+    let words = format!("judged at rest; the motion is fast in {:.0}\u{a0}% of its frames.", 100.0 * found.fast_share);
+    assert!(verdict.sentence.ends_with(&words), "{}", verdict.sentence);
+    assert!(!verdict.sentence.contains("Held on like this"), "{}", verdict.sentence);
 }

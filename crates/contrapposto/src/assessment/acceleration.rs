@@ -10,6 +10,8 @@ use crate::posture::Posture;
 const SPAN: f64 = 0.05;
 /// Acceleration up to which a posture counts as held, m/s^2: a tenth of gravity.
 const HELD_ACCELERATION: f64 = 1.0;
+/// A motion is fast where more of its instants than this share are above that acceleration. Assumed.
+pub const FAST_SHARE: f64 = 0.05;
 
 /// Greatest acceleration of the centre of mass (m/s^2, by second differences over `SPAN` to both sides at least), and the
 /// share of the instants in which it is above `HELD_ACCELERATION`.

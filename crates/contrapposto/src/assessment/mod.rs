@@ -19,7 +19,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::Load;
-pub use acceleration::acceleration;
+pub use acceleration::{FAST_SHARE, acceleration};
 pub use error::AssessError;
 use evaluation::Evaluation;
 use groups::Groups;

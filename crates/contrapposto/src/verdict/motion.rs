@@ -3,7 +3,7 @@
 use super::holding::GroupAtEnd;
 use super::spread::spread;
 use super::{Failure, Findings, Verdict, VerdictKind, Who};
-use crate::assessment::{Assessment, GroupAssessment};
+use crate::assessment::{Assessment, FAST_SHARE, GroupAssessment};
 use crate::joint_torques::GroupLoad;
 use crate::model::Model;
 
@@ -24,12 +24,13 @@ impl Verdict {
             asked: Some(seconds),
             hardest: hardest.filter(|group| group.peak_load.value > 0.0).map(|g| (load_of(g), Some(g.peak_load.time))),
             missing: found.missing.map(|(missing, time)| (missing, Some(time))),
+            fast: Some(found.fast_share).filter(|share| *share > FAST_SHARE),
             fails,
             hazards: found.hazards.clone(),
             ..Findings::default()
         };
         // Loads of fast postures at rest say nothing of how long the motion can go on.
-        if findings.kind() == VerdictKind::Holds && found.fast_share == 0.0 {
+        if findings.kind() == VerdictKind::Holds && found.fast_share <= FAST_SHARE {
             let groups: Vec<_> = found.groups.iter().filter_map(|group| at_end(model, group)).collect();
             findings.take_end(&groups, (start, start + seconds));
         }

@@ -22,6 +22,12 @@ impl Findings {
             Some(time) => format!("Interrupted after {}; so far: {sentence}", how_long(time)),
             None => sentence,
         };
+        let sentence = match self.fast.map(percent) {
+            Some(share) => {
+                format!("{sentence} Each posture is judged at rest; the motion is fast in {share} of its frames.")
+            }
+            None => sentence,
+        };
         let fails = match kind {
             VerdictKind::HeldUntil => self.fails,
             VerdictKind::Holds => self.fails_later().copied(),
