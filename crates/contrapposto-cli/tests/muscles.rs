@@ -92,7 +92,7 @@ fn a_model_without_muscles_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = write(folder.path(), "m.osim", &model(""));
     assert!(refused(&["muscles", &file]).contains("no muscle could be read from it"));
-    assert!(refused(&["muscles", "adult"]).contains("MODEL is an OpenSim file with muscles"));
+    assert!(refused(&["muscles", "adult"]).contains("MODEL is an OpenSim or MJCF file with muscles"));
     assert!(refused(&["muscles", &file, "--activation", "2"]).contains("from 0 to 1"));
 }
 
@@ -118,7 +118,7 @@ fn a_muscle_of_an_mjcf_file_has_mujocos_forces_even_where_the_mass_of_a_mesh_is_
     assert!((frame["moment_arms_m"]["m"]["turn"].as_f64().unwrap() - 0.04).abs() < 1e-15, "{frame}");
     // At its optimal length: all its force, and no passive one.
     assert!((frame["max_forces_n"]["m"].as_f64().unwrap() - 100.0).abs() < 1e-9, "{frame}");
-    assert_eq!(frame["passive_forces_n"]["m"], 0.0);
+    assert!(frame["passive_forces_n"]["m"].as_f64().unwrap().abs() < 1e-9, "{frame}");
     let kinds = &json(&["inspect", &file, "--json"])["muscles"];
     assert_eq!((&kinds["muscle"]["read"], &kinds["muscle"]["refused"]), (&1.into(), &1.into()), "{kinds}");
     assert_eq!(kinds["spatial"]["read"], 1);
