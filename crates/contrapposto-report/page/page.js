@@ -72,7 +72,10 @@ function frameAt(time) {
 function fillHeader() {
   document.title = report.title || "contrapposto";
   find("title").textContent = [report.title, report.body].filter(Boolean).join(" · ");
-  find("headline").textContent = report.headline;
+  // The first sentence stands out; the others follow it in smaller letters.
+  const end = report.headline.search(/\. (?=\p{Lu})/u) + 1 || report.headline.length;
+  find("headline").textContent = report.headline.slice(0, end);
+  find("headline").append(make("span", report.headline.slice(end)));
   report.reasons.forEach((reason, i) => {
     find(i < MOST_REASONS ? "reasons" : "more-reasons").append(make("p", reason));
   });
