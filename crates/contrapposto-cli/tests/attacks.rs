@@ -279,3 +279,11 @@ fn too_many_tables_are_refused_by_name_at_once() {
     let run = contrapposto(["inspect"]).arg(&path).run();
     assert_eq!(run.code, 0, "{}", run.stderr);
 }
+
+#[test]
+fn a_motion_where_a_scenario_is_due_is_refused_by_what_it_is() {
+    for name in ["walk.mot", "walk.sto", "walk.trc"] {
+        let said = with(name, "walk\nversion=1\n");
+        assert!(said.contains("is a motion, not a scenario") && said.contains("assess MODEL MOTION"), "{said}");
+    }
+}
