@@ -49,7 +49,7 @@ pub struct TendonPart {
 /// A surface that a part of a tendon may pass round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {
-    /// Index in [`super::Paths::geoms`].
+    /// Index in [`crate::muscle::Paths::geoms`].
     pub geom: usize,
     /// The point on whose side the line passes; if it is inside of the surface, so is the line.
     pub side: Option<SidePoint>,
