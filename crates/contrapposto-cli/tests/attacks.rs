@@ -184,7 +184,7 @@ const HOSTILE_NAMES: &str = r#"<robot name="r&#x202e;x">
 <joint name="d&#x202e;e&#13;f" type="revolute"><parent link="a&#10;b"/><child link="c"/><origin xyz="0.4 0 0"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" effort="100" velocity="1"/></joint>
 </robot>"#;
 
-/// What a terminal would obey, or a reader would not see.
+/// Whether a terminal obeys the character: a control character, or one that turns the reading direction.
 fn is_obeyed(c: char) -> bool {
     (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c) || ('\u{2066}'..='\u{2069}').contains(&c)
 }

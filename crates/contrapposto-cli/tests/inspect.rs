@@ -186,25 +186,27 @@ const PART: &str = r#"<mujocoinclude><worldbody><body name="secret_part"><joint 
     <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujocoinclude>"#;
 
 #[test]
-fn includes_stay_in_the_models_folder_or_are_an_xml_at_most_two_above_it() {
+fn includes_stay_in_the_models_folder_or_are_an_xml_in_the_folder_above() {
     let folder = tempfile::tempdir().unwrap();
     let inside = folder.path().join("far/near/model");
     std::fs::create_dir_all(inside.join("parts")).unwrap();
     let outside = write(folder.path(), "outside.xml", PART);
-    write(&folder.path().join("far"), "beside.xml", &PART.replace("secret_part", "beside"));
-    write(&folder.path().join("far"), "beside.txt", PART);
+    write(&folder.path().join("far/near"), "beside.xml", &PART.replace("secret_part", "beside"));
+    write(&folder.path().join("far/near"), "beside.txt", PART);
+    write(&folder.path().join("far"), "far.xml", PART);
     write(&inside, "part.xml", PART);
     write(&inside.join("parts"), "deep.xml", &PART.replace("secret_part", "deep"));
     let attempt = |name: &str| write(&inside, "main.xml", &including(name));
 
-    for name in ["parts/deep.xml", "../../beside.xml", "parts/../../../beside.xml"] {
+    for name in ["parts/deep.xml", "../beside.xml", "../../near/beside.xml", "parts/../../beside.xml"] {
         assert_eq!(run(&["inspect", &attempt(name)]).code, 0, "{name}");
     }
     let mut attempts = vec![
         outside,
+        "../../far.xml".to_owned(),
         "../../../outside.xml".to_owned(),
         "parts/../../../../outside.xml".to_owned(),
-        "../../beside.txt".to_owned(),
+        "../beside.txt".to_owned(),
         "file:///etc/passwd".to_owned(),
         "/etc/passwd".to_owned(),
         "/dev/zero".to_owned(),
@@ -222,7 +224,7 @@ fn includes_stay_in_the_models_folder_or_are_an_xml_at_most_two_above_it() {
         symlink("../../../outside.xml", inside.join("link.xml")).unwrap();
         symlink("/dev/zero", inside.join("zero.xml")).unwrap();
         symlink(folder.path(), inside.join("up")).unwrap();
-        symlink("../../beside.txt", inside.join("text.xml")).unwrap();
+        symlink("../beside.txt", inside.join("text.xml")).unwrap();
         symlink("loop.xml", inside.join("loop.xml")).unwrap();
         attempts.extend(["link.xml", "text.xml", "zero.xml", "up/outside.xml", "loop.xml"].map(str::to_owned));
         let made = std::process::Command::new("mkfifo").arg(inside.join("pipe.xml")).status();

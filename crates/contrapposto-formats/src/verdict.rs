@@ -46,7 +46,7 @@ pub struct HazardText {
     pub angle_deg: f64,
     /// Share of the external torque that passive tissue carries, 0 to 1.
     pub carried: f64,
-    /// What carries how much, and what a study found.
+    /// The coordinate, the share and the torque, and the finding of a study.
     pub sentence: String,
 }
 

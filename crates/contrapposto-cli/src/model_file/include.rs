@@ -1,5 +1,5 @@
-//! Files that an MJCF model includes: inside the model's own folder, or an `.xml` inside the folder two above it, whatever the names and
-//! links in it say.
+//! Files that an MJCF model includes: inside the model's own folder, or an `.xml` inside the folder above it, whatever names and links
+//! say.
 
 use std::path::{Component, Path};
 
@@ -22,10 +22,12 @@ pub(super) fn confined(main: &Path, most: u64) -> impl FnMut(&str) -> Result<Vec
         }
         // Links are followed before the folder is compared: one that leads out is refused, whatever its name.
         let real = folder.join(relative).canonicalize().map_err(|error| error.to_string())?;
-        let beside = || folder.ancestors().take(3).last().is_some_and(|above| real.starts_with(above));
+        // The root of the disk is no folder of models.
+        let above = folder.parent().filter(|above| above.parent().is_some());
+        let beside = || above.is_some_and(|above| real.starts_with(above));
         let xml = || real.extension().is_some_and(|ending| ending == "xml");
         if !(real.starts_with(folder) || beside() && xml()) {
-            return Err("it leads out of the model's folder to no .xml at most two folders above it".to_owned());
+            return Err("it leads out of the model's folder, and to no .xml in the folder above".to_owned());
         }
         read(&real, most).map_err(|fail| match fail {
             Fail::Refused(why) => why,

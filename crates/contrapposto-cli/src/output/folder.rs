@@ -1,5 +1,6 @@
 //! A folder into which files are put: each is written in a temporary folder inside it, and appears whole under its name.
 
+use std::cell::Cell;
 use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -20,12 +21,17 @@ pub(crate) struct Folder {
     /// It was not there before.
     made: bool,
     temporary: PathBuf,
+    /// Names of a set are changing: the temporary folder tells the next program which.
+    changing: Cell<bool>,
     /// Held while the program lives: tells others that the temporary folder is in use.
     _lock: File,
 }
 
 impl Drop for Folder {
     fn drop(&mut self) {
+        if self.changing.get() {
+            return;
+        }
         remove_temporary(&self.temporary);
         if self.made {
             // Only an empty folder is removed: nothing was put into it.
@@ -56,7 +62,7 @@ impl Folder {
         let lock = File::create_new(temporary.join(LOCK)).map_err(refused)?;
         // Where files cannot be locked, leftovers are not told from folders in use, and stay.
         let _ = lock.try_lock();
-        Ok(Self { path: path.to_owned(), made, temporary, _lock: lock })
+        Ok(Self { path: path.to_owned(), made, temporary, changing: Cell::new(false), _lock: lock })
     }
 
     /// Begins a file of that name; what stands before a `/` is a folder.
@@ -136,6 +142,11 @@ impl Folder {
         self.path.join(name)
     }
 
+    /// Says that names of a set begin to change, or that all have changed. After a failure in between, the temporary folder stays.
+    pub(super) fn set_changing(&self, changing: bool) {
+        self.changing.set(changing);
+    }
+
     /// The folder itself, and the temporary one inside it.
     pub(super) fn paths(&self) -> (&Path, &Path) {
         (&self.path, &self.temporary)
@@ -174,4 +185,24 @@ pub(crate) fn folder_and_name(path: &Path) -> Result<(PathBuf, String), Fail> {
     })?;
     let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     Ok((parent.unwrap_or(Path::new(".")).to_owned(), name.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::{Folder, leftovers};
+
+    #[test]
+    fn a_failure_while_names_change_leaves_the_temporary_folder_for_the_next_program() {
+        let target = tempfile::tempdir().unwrap();
+        let path = target.path();
+        drop(Folder::open(path).ok().unwrap());
+        assert_eq!(std::fs::read_dir(path).unwrap().count(), 0);
+        let folder = Folder::open(path).ok().unwrap();
+        folder.set_changing(true);
+        assert_eq!(leftovers(path, path).len(), 0, "the folder is in use");
+        drop(folder);
+        assert_eq!(leftovers(path, path).len(), 1);
+    }
 }

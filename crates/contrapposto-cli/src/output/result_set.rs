@@ -1,7 +1,7 @@
 //! The files of one run as a set: put in place together, named by a manifest, without a file of an older set.
 //!
-//! While names change there is no manifest, so that a reader can tell a whole set from a broken one; a program that is killed in
-//! between leaves both lists of names in its temporary folder, and the next run removes what they name.
+//! While names change there is no manifest, so that a reader can tell a whole set from a broken one; a program that is killed
+//! or fails in between leaves both lists of names in its temporary folder, and the next run removes what they name.
 
 use std::path::{Path, PathBuf};
 
@@ -39,6 +39,7 @@ impl ResultSet {
         let ready = self.folder.ready(pending)?;
         std::fs::write(&new, manifest_text(files)).map_err(failed)?;
         std::fs::File::open(&new).and_then(|file| file.sync_all()).map_err(failed)?;
+        self.folder.set_changing(true);
         if current.exists() {
             std::fs::rename(&current, &replaced).map_err(failed)?;
         }
@@ -49,6 +50,7 @@ impl ResultSet {
         let older = entries(&replaced).into_iter().flatten().chain(left.iter().flat_map(|left| left.files.clone()));
         older.filter(|entry| files.iter().all(|(name, _)| *name != entry.name)).for_each(|entry| discard(path, &entry));
         std::fs::rename(&new, &current).map_err(failed)?;
+        self.folder.set_changing(false);
         self.folder.sync();
         left.into_iter().for_each(super::leftover::Leftover::remove);
         Ok(())

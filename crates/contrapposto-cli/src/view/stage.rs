@@ -48,7 +48,8 @@ impl<'a> Stage<'a> {
         self.loads[..begun].last().map_or(&[], |(_, loads)| loads)
     }
 
-    /// What carries each support in a posture, in words: `seat`, `backrest`; `None` for the floor, and where nothing has a name.
+    /// The name of the thing under each support in a posture, such as `seat` or `backrest`; `None` for the floor and for a plane without a
+    /// name.
     pub(crate) fn carriers(&self, model: &Model, posture: &[f64]) -> Vec<Option<String>> {
         let mut kinematics = Kinematics::new(model);
         if kinematics.update(model, &Posture::new(posture.to_vec())).is_err() {

@@ -261,7 +261,7 @@ pub fn assert_png(bytes: &[u8]) {
     assert_eq!(bytes[bytes.len() - 8..bytes.len() - 4], *b"IEND");
 }
 
-/// What may be unknown, or without a limit.
+/// Keys of numbers that may be unknown, or without a limit.
 const MAY_BE_NULL: [&str; 13] = [
     "asked_minutes",
     "exhausted_s",

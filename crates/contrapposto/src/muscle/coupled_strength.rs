@@ -21,7 +21,7 @@ pub struct CoupledStrength {
     pub rate: usize,
     /// Greatest and least torque of the tensions, N m.
     pub torque: [f64; 2],
-    /// What the muscles lack to hold the other rates, summed over them, N m; 0 where they can.
+    /// Torque that the muscles lack to hold the other rates, summed over these, N m; 0 where they hold them.
     pub missing: f64,
     /// Greatest gap between primal and dual program, N m: zero but for rounding.
     pub gap: f64,

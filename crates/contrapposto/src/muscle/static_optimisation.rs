@@ -14,7 +14,7 @@ use hierarchical_least_squares::{Level, Problem, ProblemError, Solver, Status};
 use super::Musculature;
 use super::geometry::PathGeometry;
 
-/// What is asked of the muscles in a posture.
+/// The torques that muscles have to give in a posture, and the limits within which they give them.
 #[derive(Clone, Copy, Debug)]
 pub struct Recruitment<'a> {
     /// The rates at which torque is asked for.

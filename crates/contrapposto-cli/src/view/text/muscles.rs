@@ -53,7 +53,7 @@ struct FrameText<'a> {
 struct StrengthText {
     positive: SenseText,
     negative: SenseText,
-    /// What the muscles lack to keep all other joints without torque, summed over them.
+    /// Torque that the muscles lack to keep all other joints without torque, summed over these joints.
     missing_nm: f64,
 }
 

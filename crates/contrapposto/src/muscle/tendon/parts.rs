@@ -31,7 +31,7 @@ pub enum RoundShape {
 /// The parts of a path between its points, by MuJoCo's rule.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tendon {
-    /// What lies between each point of the path and the next one.
+    /// The line between each point of the path and the next one.
     pub parts: Vec<TendonPart>,
     /// Coordinates that lengthen the tendon directly: index, and length for each rad or m.
     pub coordinates: Vec<(usize, f64)>,

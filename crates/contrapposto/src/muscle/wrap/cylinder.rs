@@ -21,7 +21,7 @@ pub(super) struct Touching {
     pub(super) crosses: bool,
 }
 
-/// What a cylinder about z does to the straight line between two points.
+/// Lays the straight line between two points over a cylinder about z.
 pub(super) fn wrap(radius: f64, length: f64, quadrant: Quadrant, from: &Vector3<f64>, to: &Vector3<f64>) -> Wrapping {
     let touching = match touching(radius, quadrant, from, to) {
         Ok(touching) => touching,

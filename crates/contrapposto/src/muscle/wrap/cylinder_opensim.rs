@@ -14,7 +14,7 @@ use crate::muscle::tolerances::{
     OPENSIM_PARALLEL, OPENSIM_PIECE, OPENSIM_REACH, OPENSIM_TANGENCY, OPENSIM_TANGENCY_TRIES,
 };
 
-/// What a cylinder about z does to the straight line between two points. `single`: the path has no other surface.
+/// Lays the straight line between two points over a cylinder about z. `single`: the path has no other surface.
 pub(super) fn wrap(
     radius: f64,
     length: f64,

@@ -15,7 +15,7 @@ use crate::muscle::tolerances::{ELLIPSOID_ON, GEODESIC_OUTSIDE, GEODESIC_PIECES,
 
 type V = Vector3<f64>;
 
-/// What an ellipsoid about the origin does to the straight line between two points.
+/// Lays the straight line between two points over an ellipsoid about the origin.
 pub(super) fn wrap(half_axes: &V, quadrant: Quadrant, from: &V, to: &V) -> Wrapping {
     let [p1, p2] = [from, to].map(|p| p.component_div(half_axes));
     if p1.norm_squared() < 1.0 - ELLIPSOID_ON || p2.norm_squared() < 1.0 - ELLIPSOID_ON {

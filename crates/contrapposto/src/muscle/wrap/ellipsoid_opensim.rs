@@ -21,7 +21,7 @@ use crate::muscle::tolerances::{
 
 type V = Vector3<f64>;
 
-/// What an ellipsoid about the origin does to the straight line between two points.
+/// Lays the straight line between two points over an ellipsoid about the origin.
 pub(super) fn wrap(sizes: &V, quadrant: Quadrant, method: WrapMethod, from: &V, to: &V) -> Wrapping {
     let factor = 3.0 / sizes.sum();
     let (p1, p2, axes) = (factor * from, factor * to, factor * sizes);

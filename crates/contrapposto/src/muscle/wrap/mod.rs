@@ -88,7 +88,7 @@ impl WrapObject {
         self.shape.spread(place, direction, length)
     }
 
-    /// What it does to a part of a path between two points in its frame. A search that ends in no number leaves the part straight.
+    /// Lays the straight part of a path between two points, in the frame of the surface, over it. A search that ends in no number leaves the part straight.
     pub(super) fn wrap(&self, from: &Vector3<f64>, to: &Vector3<f64>, manner: Manner) -> Wrapping {
         match self.laid(from, to, manner) {
             Wrapping::Touches(contact) | Wrapping::Crosses(contact) if !contact.is_finite() => Wrapping::Free,

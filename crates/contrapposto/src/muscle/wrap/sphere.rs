@@ -12,7 +12,7 @@ use super::contact::{Contact, Quadrant, Wrapping, crossings};
 use crate::muscle::rule::PathRule;
 use crate::muscle::tolerances::THROUGH_CENTER;
 
-/// What a sphere about the origin does to the straight line between two points.
+/// Lays the straight line between two points over a sphere about the origin.
 pub(super) fn wrap(
     radius: f64,
     quadrant: Quadrant,

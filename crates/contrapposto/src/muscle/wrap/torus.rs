@@ -13,7 +13,7 @@ use crate::muscle::tolerances::{GEODESIC_TURN, TORUS_BENDS};
 
 type V = Vector3<f64>;
 
-/// What a torus about z does to the straight line between two points.
+/// Lays the straight line between two points over a torus about z.
 pub(super) fn wrap(tube: f64, circle: f64, quadrant: Quadrant, from: &V, to: &V) -> Wrapping {
     let Wrapping::Touches(guess) = over_tube(tube, circle, quadrant, from, to) else { return Wrapping::Free };
     let near = |place: &V| {

@@ -12,7 +12,7 @@ use crate::muscle::tolerances::{TORUS_ACCURACY, TORUS_FIRST_STEP, TORUS_NUDGE, T
 
 type V = Vector3<f64>;
 
-/// What a torus about z does to the straight line between two points.
+/// Lays the straight line between two points over a torus about z.
 pub(super) fn wrap(tube: f64, circle: f64, quadrant: Quadrant, from: &V, to: &V, single: bool) -> Wrapping {
     laid(circle, quadrant, from, to, |p1, p2| cylinder_opensim::wrap(tube, TORUS_TUBE, INNER, p1, p2, single))
 }
