@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 
 use crate::output::print_note;
 
-/// Someone asked the program to end.
+/// Set when a signal asks the program to end.
 static REQUESTED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// Whether someone has asked the program to end.
@@ -20,7 +20,7 @@ pub(crate) fn watch() {
         if REQUESTED.swap(true, Ordering::Relaxed) {
             std::process::exit(1);
         }
-        print_note("note", "interrupted: the results so far are being written; Ctrl-C again leaves without them");
+        print_note("interrupted", "the results so far are being written; Ctrl-C again leaves without them");
     });
     #[cfg(unix)]
     {

@@ -5,9 +5,10 @@ mod leftover;
 mod manifest;
 mod result_set;
 
-use contrapposto_formats::escaped_lines;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, OnceLock, PoisonError};
+
+use contrapposto_formats::escaped_lines;
 
 pub(crate) use self::folder::{Folder, Pending, folder_and_name};
 pub(crate) use self::result_set::ResultSet;

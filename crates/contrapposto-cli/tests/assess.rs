@@ -346,3 +346,17 @@ fn the_page_of_a_failure_between_two_postures_names_its_moment_and_opens_with_th
     let peak = first["peak_load"]["value"].as_f64().unwrap();
     assert!((column(&shown["load"], 2)[open] - peak).abs() < 1e-4);
 }
+
+#[test]
+fn the_page_of_a_motion_that_starts_late_opens_at_its_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..13).map(|i| format!("{},90\n", 1000 + 50 * i)).collect();
+    let motion = write(folder.path(), "late.csv", &format!("time,elbow_flex_r_deg\n{rows}"));
+    let out = folder.path().join("out");
+    let load = ["--load", "hand_r 8kg", "--json", "--out", out.to_str().unwrap()];
+    let found = json(&[&["assess", "adult", &motion][..], &load].concat());
+    let fails = found["groups"][0]["exhausted_at_s"].as_f64().unwrap();
+    assert!(fails > 1050.0 && fails < 1550.0, "{fails}");
+    let open = page(&out)["open"].as_u64().unwrap();
+    assert!((1000.0 + 50.0 * open as f64 - fails).abs() <= 25.0, "frame {open}, failure at {fails} s");
+}

@@ -12,7 +12,7 @@ use serde::Serialize;
 pub struct VerdictText {
     /// `cannot_be_done`, `cannot_stand`, `not_reached`, `held_until` or `holds`.
     pub kind: &'static str,
-    /// The time that was asked for, min.
+    /// The time of the run or motion, min; less than a file asks where its run settled or was interrupted before.
     pub asked_minutes: Option<f64>,
     /// How long the job can be done, min, one that holds with the posture of its end held on; `null`: muscles set no limit, or it
     /// cannot be done.
@@ -25,9 +25,9 @@ pub struct VerdictText {
     pub load: Option<f64>,
     /// The group with the greatest load.
     pub hardest: Option<LoadText>,
-    /// Of a run that holds, the group that is most tired at the end.
+    /// Of a run or motion that holds, the group that is most tired at the end.
     pub tired: Option<TiredText>,
-    /// Of a run that holds, the group that fails before its end in weaker people: one in six, by the spread.
+    /// Of a run or motion that holds, the group that fails before its end in weaker people, or by another published law.
     pub fails_weaker: Option<String>,
     /// Coordinates that ligaments carry at an angle where that is a hazard.
     pub hazards: Vec<HazardText>,

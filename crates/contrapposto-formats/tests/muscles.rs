@@ -195,10 +195,12 @@ fn the_gradient_of_passive_torque_of_published_bodies_is_symmetric_and_their_cen
                 let h = 1e-5;
                 let sides = [moved(h), moved(-h), moved(2.0 * h), moved(-2.0 * h)];
                 for (row, entries) in rows.iter().enumerate() {
+                    assert!(entries[column].is_finite() && sides.iter().all(|side| side[row].is_finite()), "{name}");
                     symmetry = symmetry.max((entries[column] - rows[column][row]).abs());
                     let near = (sides[0][row] - sides[1][row]) / (2.0 * h);
                     let far = (sides[2][row] - sides[3][row]) / (4.0 * h);
-                    compared += 1;
+                    // Most rates share no muscle: zeros say nothing of jumps.
+                    compared += usize::from(near.abs() > 1e-9 || entries[column].abs() > 1e-9);
                     // A muscle that leaves a surface or a point within the step has no derivative there.
                     if (near - far).abs() > 1e-4 * (1.0 + near.abs()) {
                         jumps += 1;

@@ -65,6 +65,7 @@ fn torques_of_ligaments_path_springs_and_bushings_are_opensims() {
         for posture in data["postures"].as_array().unwrap() {
             let ours = springs.torque(&numbers(&posture["q"]));
             for (ours, theirs) in ours.iter().zip(numbers(&posture["torque"])) {
+                assert!(ours.is_finite(), "{kind}: {ours}");
                 worst = worst.max((ours - theirs).abs());
                 most = most.max(theirs.abs());
             }

@@ -120,7 +120,7 @@ fn every_change_gives_the_time_of_its_own_run(seconds: f64) -> Verdict {
 fn a_break_a_minute_every_ten_gives_the_time_of_small_steps_of_the_law() {
     let scenario = read(&text(TARGET, 0.17 * KILOGRAMS, "active", LONG));
     let (summary, verdict) = ran(&scenario);
-    let promised = with_breaks(&scenario, &summary).unwrap();
+    let promised = with_breaks(&scenario, &summary, &Verdict::of_run(&scenario, &summary)).unwrap();
     // The group that fails first without breaks, or is worked hardest: its load and its law in steps of 0.05 s.
     let who = verdict.who.unwrap();
     let groups = scenario.model.coordinates()[who.coordinate].groups.as_ref().unwrap();

@@ -160,6 +160,8 @@ fn fixed_tendons_and_joints_are_sums_of_coordinates() {
     let (length, arms) = lay((&model, &muscles), &posture, 1);
     assert!((length + 3.0 * (0.1 + 0.2 - 0.032)).abs() < 1e-15, "{length}");
     assert!((arms[rate("turn")] - 3.0 * (0.5 - 0.16)).abs() < 1e-15, "{arms:?}");
+    // Both turn the body about `turn`: directly, and by `tilt`, which follows it.
+    assert_eq!(PathGeometry::new(&model, &muscles.paths).crossed(&model), [rate("turn")]);
 }
 
 /// Active force at full activation and passive force.
@@ -306,8 +308,10 @@ fn muscles_that_are_not_read_are_counted_with_their_reasons() {
         <spatial name="c"><site site="base"/><site site="tipp"/></spatial>
         <spatial name="d"><geom geom="sphere"/><site site="tip"/></spatial>
         <spatial name="e"><site site="base"/></spatial>
-        <fixed name="f"><joint joint="turn" coef="1"/></fixed>"#;
-    let actuators = r#"<general class="strong" name="good" tendon="a"/>
+        <fixed name="f"><joint joint="turn" coef="1"/></fixed> <fixed><joint joint="turn" coef="2"/></fixed>
+        <fixed name="f"><joint joint="turn" coef="3"/></fixed>"#;
+    let actuators = r#"<general class="strong" name="good" tendon="a"/> <muscle name="m7" class="unknown" tendon="a"/>
+        <muscle name="m8" tendon="a" force="strong"/>
         <general class="strong" name="box" tendon="b"/> <general class="strong" name="site" tendon="c"/>
         <general class="strong" name="good" tendon="a"/> <general class="strong" name="none" tendon="zz"/>
         <muscle name="m1" tendon="a"/> <muscle name="m2" tendon="a" force="3"/>
@@ -319,9 +323,9 @@ fn muscles_that_are_not_read_are_counted_with_their_reasons() {
     let body = body(tendons, actuators);
     let counts = |kind: &str| (tally(&body, kind).read, tally(&body, kind).left_out, tally(&body, kind).refused);
     assert_eq!(counts("general"), (1, 0, 6));
-    assert_eq!(counts("muscle"), (0, 0, 6));
+    assert_eq!(counts("muscle"), (0, 0, 8));
     assert_eq!(counts("spatial"), (1, 0, 4));
-    assert_eq!(counts("fixed"), (0, 1, 0));
+    assert_eq!(counts("fixed"), (0, 2, 1));
     assert_eq!(counts("site of a tendon"), (2, 0, 0));
     let reasons: Vec<&String> = body.muscles.tally.0.values().flat_map(|tally| tally.reasons.keys()).collect();
     for part in [
@@ -339,6 +343,9 @@ fn muscles_that_are_not_read_are_counted_with_their_reasons() {
         "must be the same",
         "there already",
         "no tendon `zz`",
+        "it has no name",
+        "`unknown`",
+        "`strong`",
     ] {
         assert!(reasons.iter().any(|reason| reason.contains(part)), "{part}: {reasons:#?}");
     }

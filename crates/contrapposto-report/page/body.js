@@ -38,11 +38,11 @@ class Body {
     this.ball = painter.hullMesh([[0, 0, 0, 1]]);
     this.shaft = painter.hullMesh([[0, 0, 0, 0.012], [0, 1, 0, 0.012]]);
     this.tip = painter.hullMesh([[0, -ARROW_HEAD, 0, 0.034], [0, -0.002, 0, 0.002]]);
-    this.slabs = report.surfaces.flatMap(({ corners, only }) => {
+    this.slabs = report.surfaces.flatMap(({ corners }) => {
       const { faces, edges } = slabPoints(corners);
       return [
-        { mesh: painter.listMesh(gl.TRIANGLES, faces), alpha: 0.45, only },
-        { mesh: painter.listMesh(gl.LINES, edges), alpha: 0.85, only },
+        { mesh: painter.listMesh(gl.TRIANGLES, faces), alpha: 0.45 },
+        { mesh: painter.listMesh(gl.LINES, edges), alpha: 0.85 },
       ];
     });
     const box = boxPoints();
@@ -67,7 +67,7 @@ class Body {
     painter.flatness(0.6);
     gl.enable(gl.BLEND);
     gl.depthMask(false);
-    for (const { mesh, alpha } of this.slabs.filter((slab) => isIn(slab, frame))) painter.list(mesh, styleColor("--surface"), alpha);
+    for (const { mesh, alpha } of this.slabs) painter.list(mesh, styleColor("--surface"), alpha);
     this.drawThings(frame);
     gl.depthMask(true);
     this.drawGhost(frame);

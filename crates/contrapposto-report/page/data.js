@@ -71,11 +71,6 @@ const measures = {
   },
 };
 
-// Whether a part of the picture is in a frame.
-function isIn({ only }, frame) {
-  return only === null || only === frame;
-}
-
 // Whether ligaments carry a joint of a segment where that is a hazard.
 function inHazard(segment, frame) {
   return segment.joints.some((j) => report.joints[j].hazard && report.joints[j].hazard[frame] > 0.5);

@@ -126,7 +126,7 @@ fn support(support: &Support, n: usize) -> Value {
 }
 
 fn surface(surface: &Surface) -> Value {
-    json!({ "label": surface.label, "corners": points(&surface.corners), "only": surface.only })
+    json!({ "label": surface.label, "corners": points(&surface.corners) })
 }
 
 fn thing(thing: &Thing, n: usize) -> Value {

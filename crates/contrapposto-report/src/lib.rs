@@ -190,8 +190,6 @@ pub struct Surface {
     pub label: String,
     /// Its four corners in order, m.
     pub corners: [[f64; 3]; 4],
-    /// The only frame that has it; `None` for all.
-    pub only: Option<usize>,
 }
 
 /// A place that a point of the body is to reach, or that it looks at.

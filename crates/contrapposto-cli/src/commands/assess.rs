@@ -136,7 +136,7 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
     let warnings = note_values_out_of_range(opened, &motion, &mut notes);
     warnings.iter().for_each(|warning| print_note("warning", warning));
     notes.iter().for_each(|note| print_note("note", note));
-    let folder = args.out.as_deref().map(ResultSet::open).transpose()?;
+    let folder = args.out.as_deref().map(|out| ResultSet::open(out, &ASSESS_FILES)).transpose()?;
     Ok(Given { motion, held, ground, settings, warnings, folder })
 }
 

@@ -23,16 +23,18 @@ use crate::view::report::comparison::report_of_comparison;
 use crate::view::stage::Stage;
 use crate::view::text::compare::{CompareText, ComparedPosture, report};
 
+const FILES: [&str; 4] = ["compare.json", "report.html", "compare.svg", "compare.png"];
+
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
     if args.scenarios.iter().filter(|path| *path == Path::new("-")).count() > 1 {
         return Err(Fail::Refused("standard input is one file: `-` can stand for one scenario only".to_owned()));
     }
-    let folder = ResultSet::open(&args.out)?;
+    let folder = ResultSet::open(&args.out, &FILES)?;
     let mut postures = vec![];
     for (path, letter) in args.scenarios.iter().zip('A'..) {
         postures.push(carry_out(path, letter)?);
     }
-    let files = ["compare.json", "report.html", "compare.svg", "compare.png"].map(str::to_owned).to_vec();
+    let files = FILES.map(str::to_owned).to_vec();
     let text = CompareText::new(&postures, files);
     let json = json_text("compare.json", &text)?;
     let picture = body_figure(&picture(&postures)?);

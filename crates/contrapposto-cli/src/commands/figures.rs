@@ -133,7 +133,7 @@ pub(crate) fn figures(args: &FiguresArgs) -> Result<(), Fail> {
     if let Some(unknown) = args.only.iter().find(|number| !known.contains(number)) {
         return Err(Fail::Refused(format!("--only {unknown}: there are figures {known:?}")));
     }
-    let folder = ResultSet::open(&args.out)?;
+    let folder = ResultSet::open(&args.out, &[])?;
     let (mut texts, mut files) = (vec![], vec![]);
     let mut table = plain_table();
     table.set_header(["figure", "strategy", "cases", "ends", "kink", "as printed"]);

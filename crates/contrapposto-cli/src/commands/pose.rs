@@ -28,7 +28,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     }
     scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
-    let folder = args.out.as_deref().map(ResultSet::open).transpose()?;
+    let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POSE_FILES)).transpose()?;
     let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
     let (levels, limits) = scenario.levels();
     let mut engine = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options).map_err(refused)?;

@@ -46,7 +46,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     }
     scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
-    let folder = args.out.as_deref().map(ResultSet::open).transpose()?;
+    let folder = args.out.as_deref().map(|out| ResultSet::open(out, &RELAX_FILES)).transpose()?;
     let search = Search {
         model: &scenario.model,
         start: &scenario.start,

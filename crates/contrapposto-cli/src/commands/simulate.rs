@@ -29,6 +29,27 @@ use crate::view::{animation, tables};
 const DEMO: (&str, &str) = ("scenarios/stand-relaxed.toml", include_str!("../../../../scenarios/stand-relaxed.toml"));
 const FIGURE_8: (&str, &str) = ("scenarios/figure-08.toml", include_str!("../../../../scenarios/figure-08.toml"));
 
+/// Files that a run may write, beside figures.
+const RUN_FILES: [&str; 17] = [
+    "decisions.csv",
+    "fatigue.sto",
+    "ground_reaction.mot",
+    "model.osim",
+    "motion.bvh",
+    "motion.glb",
+    "motion.mot",
+    "postures.png",
+    "postures.svg",
+    "report.html",
+    "summary.json",
+    "time-line.png",
+    "time-line.svg",
+    "torque-balance.png",
+    "torque-balance.svg",
+    "torques.sto",
+    "trajectory.csv",
+];
+
 /// A run that takes longer is saved so often, so that a crash of the machine loses little.
 const BETWEEN_SAVES: Duration = Duration::from_secs(20);
 
@@ -68,7 +89,7 @@ struct How {
 /// Runs a scenario; without `out` nothing is recorded, drawn and written.
 fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail> {
     let (RunScenario { scenario, things, .. }, How { resume, figures, json, suggest }) = (run, how);
-    let folder = out.map(ResultSet::open).transpose()?;
+    let folder = out.map(|out| ResultSet::open(out, &RUN_FILES)).transpose()?;
     interruption::watch();
     let failed = |error| Fail::job("simulation", error);
     let resumed =

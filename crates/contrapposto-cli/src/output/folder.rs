@@ -11,14 +11,14 @@ use tempfile::NamedTempFile;
 use super::leftover::{LOCK, PREFIX, leftovers, remove_temporary};
 use crate::fail::Fail;
 
-/// How long, and how often, another program may keep the folder locked.
+/// Time between two attempts to lock the folder, and their greatest number: other programs rename files meanwhile.
 const BETWEEN_TRIES: Duration = Duration::from_millis(50);
-const MOST_TRIES: usize = 200;
+const MOST_TRIES: usize = 1200;
 
 /// See the module's text.
 pub(crate) struct Folder {
     path: PathBuf,
-    /// It was not there before.
+    /// Whether this program made the folder.
     made: bool,
     temporary: PathBuf,
     /// Names of a set are changing: the temporary folder tells the next program which.
@@ -90,8 +90,9 @@ impl Folder {
 
     /// Makes files visible that belong to no set.
     pub(crate) fn commit(&self, files: Vec<Pending>) -> Result<(), Fail> {
+        let ready = self.ready(files)?;
         let _alone = lock_folder(&self.path)?;
-        for (file, path) in self.ready(files)? {
+        for (file, path) in ready {
             file.persist(&path).map_err(|error| Fail::job(path.display(), error.error))?;
         }
         self.sync();
@@ -111,7 +112,11 @@ impl Folder {
             let path = pending.path;
             let failed = |error: std::io::Error| Fail::job(path.display(), error);
             if let Some((folder, _)) = pending.name.rsplit_once('/') {
-                std::fs::create_dir_all(self.path.join(folder)).map_err(failed)?;
+                let folder = self.path.join(folder);
+                std::fs::create_dir_all(&folder).map_err(failed)?;
+                if !folder.canonicalize().map_err(failed)?.starts_with(self.path.canonicalize().map_err(failed)?) {
+                    return Err(Fail::job(folder.display(), "is a link that leads out of the folder of the results"));
+                }
             }
             if path.is_dir() {
                 return Err(Fail::job(path.display(), "is a folder; the results need a file of that name"));

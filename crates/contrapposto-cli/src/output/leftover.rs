@@ -5,9 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::manifest::{Entry, MANIFEST, entries};
 
-/// With it begins the name of a temporary folder.
+/// First part of the name of every temporary folder; [`SUFFIX`] letters and digits follow.
 pub(super) const PREFIX: &str = ".contrapposto-";
-/// The file in a temporary folder that the program locks which uses it.
+const SUFFIX: usize = 6;
+/// First part of the name of every file that is being written there.
+const WRITTEN: &str = ".tmp";
+/// The file that a program keeps locked while it uses its temporary folder.
 pub(super) const LOCK: &str = "lock";
 /// The manifest, in a temporary folder, of the set that is being replaced.
 pub(super) const REPLACED: &str = "replaced";
@@ -23,20 +26,23 @@ pub(super) struct Leftover {
 pub(super) fn leftovers(folder: &Path, own: &Path) -> Vec<Leftover> {
     let Ok(listed) = std::fs::read_dir(folder) else { return vec![] };
     let paths = listed.filter_map(|entry| Some(entry.ok()?.path()));
-    let begun = |path: &PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX));
-    paths.filter(|path| begun(path) && path.file_name() != own.file_name()).filter_map(leftover).collect()
+    let named = |path: &PathBuf| {
+        let name = path.file_name().and_then(|name| name.to_str()?.strip_prefix(PREFIX));
+        name.is_some_and(|suffix| suffix.len() == SUFFIX)
+    };
+    paths.filter(|path| named(path) && path.file_name() != own.file_name()).filter_map(leftover).collect()
 }
 
 fn leftover(path: PathBuf) -> Option<Leftover> {
     if !std::fs::symlink_metadata(&path).is_ok_and(|kind| kind.is_dir()) {
         return None;
     }
-    let unused = match File::open(path.join(LOCK)) {
-        Ok(lock) => lock.try_lock().is_ok(),
-        // Killed before it made the lock, which comes first, or after it removed the lock, which goes last.
-        Err(_) => std::fs::read_dir(&path).is_ok_and(|mut files| files.next().is_none()),
-    };
-    if !unused {
+    let ours = |name: &str| [LOCK, REPLACED, MANIFEST].contains(&name) || name.starts_with(WRITTEN);
+    let mut names = std::fs::read_dir(&path).ok()?.filter_map(|entry| Some(entry.ok()?.file_name()));
+    let all_ours = names.all(|name| name.to_str().is_some_and(ours));
+    // A program that was killed before it made the lock, or after it removed it, left an empty folder.
+    let in_use = File::open(path.join(LOCK)).is_ok_and(|lock| lock.try_lock().is_err());
+    if in_use || !all_ours {
         return None;
     }
     let files = [REPLACED, MANIFEST].iter().filter_map(|name| entries(&path.join(name))).flatten().collect();

@@ -17,13 +17,10 @@ pub(crate) struct ResultSet {
 }
 
 impl ResultSet {
-    /// A set in that folder, which is made if it is not there; nothing of an older set changes yet.
-    pub(crate) fn open(path: &Path) -> Result<Self, Fail> {
-        let manifest = path.join(MANIFEST);
-        if manifest.exists() && entries(&manifest).is_none() {
-            let why = "is there and not of this program; give another folder";
-            return Err(Fail::Refused(format!("--out {}: `{MANIFEST}` {why}", path.display())));
-        }
+    /// A set in that folder, which is made if it is not there; nothing of an older set changes yet. `names`: files of the set that are
+    /// known already.
+    pub(crate) fn open(path: &Path, names: &[&str]) -> Result<Self, Fail> {
+        check(path, names.iter().copied())?;
         Ok(Self { folder: Folder::open(path)? })
     }
 
@@ -35,8 +32,9 @@ impl ResultSet {
         let (path, temporary) = self.folder.paths();
         let [current, new, replaced] = [path.join(MANIFEST), temporary.join(MANIFEST), temporary.join(REPLACED)];
         let failed = |error: std::io::Error| Fail::job(current.display(), error);
-        let _alone = lock_folder(path)?;
         let ready = self.folder.ready(pending)?;
+        let _alone = lock_folder(path)?;
+        check(path, files.iter().map(|(name, _)| *name))?;
         std::fs::write(&new, manifest_text(files)).map_err(failed)?;
         std::fs::File::open(&new).and_then(|file| file.sync_all()).map_err(failed)?;
         self.folder.set_changing(true);
@@ -69,6 +67,25 @@ impl ResultSet {
     /// Where a file of that name stands.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path(name)
+    }
+}
+
+/// Refuses a folder whose manifest is not ours, and one in which a file of the set would replace an input of this job. A file of the older
+/// set that nobody has changed may be both.
+fn check<'a>(path: &Path, mut names: impl Iterator<Item = &'a str>) -> Result<(), Fail> {
+    let manifest = path.join(MANIFEST);
+    let older = entries(&manifest);
+    let refused = |name: &str, why: &str| {
+        Err(Fail::Refused(format!("--out {}: `{name}` there {why}; give another folder", path.display())))
+    };
+    if manifest.exists() && older.is_none() {
+        return refused(MANIFEST, "is not of this program");
+    }
+    let older = older.unwrap_or_default();
+    let ours = |name: &str| older.iter().any(|entry| entry.name == name && entry.is_unchanged(path));
+    match names.find(|name| was_read(&path.join(name)) && !ours(name)) {
+        Some(input) => refused(input, "is read by this job and would be replaced"),
+        None => Ok(()),
     }
 }
 

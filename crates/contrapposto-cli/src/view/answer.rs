@@ -49,8 +49,12 @@ pub(crate) fn group_of_title(verdict: &Verdict) -> Option<Who> {
 
 /// The sentence, and below it the findings of studies about its hazards, and the targets of lower priority that are missed.
 pub(crate) fn first_lines(verdict: &Verdict) -> String {
-    let mut findings: Vec<&str> = verdict.hazards.iter().map(|hazard| hazard.row.finding.as_str()).collect();
-    findings.dedup();
+    let mut findings: Vec<&str> = vec![];
+    for finding in verdict.hazards.iter().map(|hazard| hazard.row.finding.as_str()) {
+        if !findings.contains(&finding) {
+            findings.push(finding);
+        }
+    }
     let hazards: String = findings.iter().map(|finding| format!("Hazard: {finding}.\n")).collect();
     let more = also_missed(verdict).map_or(String::new(), |more| more + "\n");
     format!("{}\n{hazards}{more}", verdict.sentence)

@@ -81,7 +81,7 @@ impl Plane {
         let (along, across, height) = (side(u), side(v), self.height());
         let corner = |a: usize, b: usize| (u * along[a] + v * across[b] + n * height).into();
         let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-        Surface { label: self.label.clone(), corners, ..Surface::default() }
+        Surface { label: self.label.clone(), corners }
     }
 }
 

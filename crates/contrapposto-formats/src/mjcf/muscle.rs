@@ -35,16 +35,19 @@ pub(super) fn read<'a>(
 ) -> Result<MusclesIr, MjcfError> {
     let mut all = MusclesIr::default();
     let mut geoms = tendon::Geoms::default();
-    let mut tendons = tendon::all(root, built, &mut geoms);
+    let mut tendons = tendon::all(root, built, &mut geoms, &mut all.tally);
     let sections = root.children().into_iter().filter(|section| section.name() == "actuator");
     for item in sections.flat_map(Item::children).filter(|item| ACTUATORS.contains(&item.name())) {
-        let actuator = Attributes::new(item, Tag::Actuator, classes, classes.main())?;
-        let parameters = Parameters::read(&actuator)?;
-        if !parameters.is_muscle() {
+        let actuator = Attributes::new(item, Tag::Actuator, classes, classes.main());
+        let known = actuator.and_then(|actuator| Ok((Parameters::read(&actuator)?, actuator)));
+        let is_muscle = known.as_ref().map_or(item.name() == "muscle", |(parameters, _)| parameters.is_muscle());
+        if !is_muscle {
             continue;
         }
-        let path = path(&actuator, built, &mut tendons);
-        let read = path.and_then(|path| Ok((muscle(&actuator, &parameters, settings, &all)?, path)));
+        let read = known.and_then(|(parameters, actuator)| {
+            let path = path(&actuator, built, &mut tendons)?;
+            Ok((muscle(&actuator, &parameters, settings, &all)?, path))
+        });
         match read {
             Ok((muscle, path)) => {
                 all.tally.read(item.name());

@@ -10,7 +10,7 @@ use super::built::Built;
 use super::error::{MjcfError, MjcfRule};
 use super::item::Item;
 use super::value::{Value, check};
-use crate::model_ir::near;
+use crate::model_ir::{MuscleTally, near};
 use crate::xml::shorten;
 
 /// A tendon of the file.
@@ -25,18 +25,31 @@ pub(super) struct Read<'a> {
     pub(super) used: bool,
 }
 
-/// All tendons by name; `geoms` collects the surfaces that they pass round.
-pub(super) fn all<'a>(root: Item<'a>, built: &Built<'a>, geoms: &mut Geoms<'a>) -> BTreeMap<&'a str, Read<'a>> {
+/// All tendons by name; `geoms` collects the surfaces that they pass round. Tendons without a name of their own are counted only.
+pub(super) fn all<'a>(
+    root: Item<'a>,
+    built: &Built<'a>,
+    geoms: &mut Geoms<'a>,
+    tally: &mut MuscleTally,
+) -> BTreeMap<&'a str, Read<'a>> {
     let sections = root.children().into_iter().filter(|section| section.name() == "tendon");
     let mut tendons = BTreeMap::new();
     for item in sections.flat_map(Item::children) {
+        let Some(name) = item.attribute("name").filter(|name| !name.is_empty()) else {
+            tally.left_out(item.name(), "it has no name, so that no muscle pulls on it");
+            continue;
+        };
+        if tendons.contains_key(name) {
+            let (place, value) = (item.attribute_place("name"), name.to_owned());
+            tally.refused(item.name(), MjcfError::DuplicateName { place, value }.to_string());
+            continue;
+        }
         let mut line =
             Line { built, geoms, path: Path::default(), tendon: Tendon::default(), parts: vec![], next: None };
         let read = line.read(item);
         let Line { mut path, tendon, parts, .. } = line;
         path.tendon = Some(tendon);
-        let read = Read { kind: item.name(), path: read.map(|()| path), parts, used: false };
-        tendons.entry(item.attribute("name").unwrap_or_default()).or_insert(read);
+        tendons.insert(name, Read { kind: item.name(), path: read.map(|()| path), parts, used: false });
     }
     tendons
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use contrapposto::model::LARGEST;
 use contrapposto::muscle::{Location, MovingPoint, Path, PathPoint, PathWrap, WrapMethod};
 use nalgebra::{Point3, Vector3};
 
@@ -62,7 +63,11 @@ impl<'a> Surroundings<'_, 'a> {
         let frame = self.scene.frame_of_point(reader, node, &path)?;
         let place = || {
             let place = reader.vector(node, "location", Some(Vector3::zeros()))?;
-            Ok::<_, OsimProblem>((frame.pose * Point3::from(place)).coords)
+            let place = (frame.pose * Point3::from(place)).coords;
+            if place.amax() <= LARGEST {
+                return Ok(place);
+            }
+            Err(OsimProblem::invalid(node.place(), &place.amax().to_string(), "a point is at most 1e9 m away"))
         };
         let location = match node.name() {
             "PathPoint" => Location::Fixed(place()?),
@@ -136,6 +141,13 @@ impl<'a> Surroundings<'_, 'a> {
                 other => Ok(other),
             }
         };
-        Ok(PathWrap { object, method, range: (index(first)?, index(last)?) })
+        let range = (index(first)?, index(last)?);
+        if let (Some(first), Some(last)) = range
+            && first > last
+        {
+            let found = format!("{} {}", first + 1, last + 1);
+            return Err(OsimProblem::invalid(node.place(), &found, "the first point of a range comes before its last"));
+        }
+        Ok(PathWrap { object, method, range })
     }
 }

@@ -1,6 +1,7 @@
 //! Reads ligaments and springs along paths, and bushings. One that is not supported is counted with its reason, and does not refuse the
 //! model.
 
+use contrapposto::model::LARGEST;
 use contrapposto::muscle::{Bushing, Ligament, LigamentLaw};
 use nalgebra::Vector3;
 
@@ -42,10 +43,11 @@ pub(super) fn read<'a>(
 fn law<'a>(reader: &Reader<'a>, node: Node<'a>) -> Result<LigamentLaw, OsimProblem> {
     let number = |name: &str, default: Option<f64>, least: f64| {
         let value = reader.number(node, name, default)?;
-        if value >= least {
+        if value >= least && value <= LARGEST {
             return Ok(value);
         }
-        Err(OsimProblem::invalid(node.place(), &value.to_string(), format!("{name} must be {least} or more")))
+        let needs = format!("{name} must be {least} or more, and at most 1e9");
+        Err(OsimProblem::invalid(node.place(), &value.to_string(), needs))
     };
     let length = |name: &str, default: Option<f64>| {
         let value = number(name, default, 0.0)?;
@@ -88,10 +90,11 @@ fn bushing<'a>(around: &Surroundings<'_, 'a>, node: Node<'a>, name: String) -> R
     let (first, second) = (first?, second?);
     let stiffness = |name: &str| {
         let stiffness = reader.vector(node, name, Some(Vector3::zeros()))?;
-        if stiffness.min() >= 0.0 {
+        if stiffness.min() >= 0.0 && stiffness.max() <= LARGEST {
             return Ok(stiffness);
         }
-        Err(OsimProblem::invalid(node.place(), &stiffness.min().to_string(), format!("{name} must be 0 or more")))
+        let found = format!("{} {} {}", stiffness.x, stiffness.y, stiffness.z);
+        Err(OsimProblem::invalid(node.place(), &found, format!("{name} must be 0 or more, and at most 1e9")))
     };
     Ok(Bushing {
         name,

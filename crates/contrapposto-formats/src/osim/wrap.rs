@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use contrapposto::model::LARGEST;
 use contrapposto::muscle::{Quadrant, WrapObject, WrapShape};
 use nalgebra::Vector3;
 
@@ -54,18 +55,19 @@ impl WrapObjects {
 fn object<'a>(reader: &Reader<'a>, node: Node<'a>, segment: Option<usize>) -> Result<WrapObject, OsimProblem> {
     let length = |name, default| {
         let value = reader.number(node, name, Some(default))?;
-        if value > 0.0 {
+        if value > 0.0 && value <= LARGEST {
             return Ok(value);
         }
-        Err(OsimProblem::invalid(node.place(), &value.to_string(), format!("{name} must be above 0")))
+        let needs = format!("{name} must be above 0 and at most 1e9 m");
+        Err(OsimProblem::invalid(node.place(), &value.to_string(), needs))
     };
     let half_axes = || {
         let sizes = reader.vector(node, "dimensions", Some(Vector3::from_element(0.05)))?;
-        if sizes.min() > 0.0 {
+        if sizes.min() > 0.0 && sizes.max() <= LARGEST {
             return Ok(sizes);
         }
         let found = format!("{} {} {}", sizes.x, sizes.y, sizes.z);
-        Err(OsimProblem::invalid(node.place(), &found, "dimensions must be above 0"))
+        Err(OsimProblem::invalid(node.place(), &found, "dimensions must be above 0 and at most 1e9 m"))
     };
     let torus = || {
         let (tube, circle) = (length("inner_radius", 0.01)?, length("outer_radius", 0.05)?);
@@ -81,10 +83,15 @@ fn object<'a>(reader: &Reader<'a>, node: Node<'a>, segment: Option<usize>) -> Re
         "WrapTorus" => torus()?,
         other => return Err(OsimProblem::unsupported(node.place(), other, WRAP_SHAPES)),
     };
+    let pose = reader.pose(node, "translation", "xyz_body_rotation")?;
+    let far = pose.translation.vector.amax();
+    if far > LARGEST {
+        return Err(OsimProblem::invalid(node.place(), &far.to_string(), "a surface is at most 1e9 m away"));
+    }
     Ok(WrapObject {
         name: reader.unique_name(node)?,
         segment,
-        pose: reader.pose(node, "translation", "xyz_body_rotation")?,
+        pose,
         quadrant: quadrant(&reader.text(node, "quadrant").unwrap_or_default()),
         active: reader.flag(node, "active", true)?,
         shape,

@@ -93,10 +93,13 @@ impl Reference {
     /// Errors of the muscles whose surfaces are of these kinds, in this order.
     pub fn errors(&self, rule: PathRule, wraps: &[&str]) -> Errors {
         let names = strings(&self.numbers["muscles"]);
-        let own = |name: &String| self.muscles.muscles.iter().find(|muscle| muscle.spec().name == *name);
+        let own = |name: &String| {
+            let found = self.muscles.muscles.iter().find(|muscle| muscle.spec().name == *name);
+            found.unwrap_or_else(|| panic!("`{name}` is not read"))
+        };
         let chosen: Vec<(usize, &Muscle)> = (0..names.len())
             .filter(|&i| strings(&self.numbers["wraps"][i]) == wraps)
-            .filter_map(|i| Some((i, own(&names[i])?)))
+            .map(|i| (i, own(&names[i])))
             .collect();
         let mut errors = Errors { muscles: chosen.len(), ..Errors::default() };
         let mut kinematics = Kinematics::new(&self.model);
@@ -127,7 +130,10 @@ impl Reference {
     ) {
         let coordinates = strings(&self.numbers["coordinates"]);
         let arms = geometry.moment_arms(muscle.spec().path);
-        let mut known = vec![0.0; arms.len()];
+        // Pairs that do not cross are not in the file. Over several surfaces OpenSim's forces are not in balance, and its arms about joints
+        // that the path does not cross are not 0.
+        let several = strings(&self.numbers["wraps"][i]).len() > 1;
+        let mut known = vec![if several { None } else { Some(0.0) }; arms.len()];
         for (pair, arm) in
             self.numbers["pairs"].as_array().unwrap().iter().zip(theirs["moment_arm"].as_array().unwrap())
         {
@@ -136,12 +142,12 @@ impl Reference {
             if pair[0].as_u64().unwrap() as usize != i || self.model.is_dependent(coordinate) {
                 continue;
             }
-            known[self.model.coordinates()[coordinate].rate.unwrap()] = arm.as_f64().unwrap();
+            known[self.model.coordinates()[coordinate].rate.unwrap()] = arm.as_f64();
         }
         for ((rate, arm), theirs) in self.model.rates().iter().zip(arms).zip(&known) {
-            // Pairs that do not cross are not in the file; locked coordinates have none.
+            // Locked coordinates have none.
             let locked = rate.coordinate.is_some_and(|c| self.model.coordinates()[c].locked);
-            if !locked {
+            if let (false, Some(theirs)) = (locked, theirs) {
                 take(arm - theirs, &format!(", {}: {arm} for {theirs}", rate.name));
             }
         }

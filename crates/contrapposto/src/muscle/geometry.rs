@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::path::{Location, MovingPoint, PathPoint, Paths};
+use super::path::{Location, MovingPoint, Path, PathPoint, Paths};
 use super::routing::{FrameInGround, Node, NodeKind, Routing, Scene};
 use super::rule::PathRule;
 use crate::kinematics::Kinematics;
@@ -29,6 +29,8 @@ pub struct PathGeometry {
     /// By path over several surfaces: all mobilities that move any of its points; empty for other paths. The forces of OpenSim's rule are
     /// not in balance there ([`super::routing::Node::seen`]), so that it has moment arms about joints that the path does not cross.
     carrying: Vec<Vec<usize>>,
+    /// Coordinates that change the length of some path by themselves.
+    driving: Vec<usize>,
     /// Force and moment about ground's origin on each mobility, N for each newton of tension and m.
     wrenches: Vec<(Vector3<f64>, Vector3<f64>)>,
     routing: Routing,
@@ -65,6 +67,7 @@ impl PathGeometry {
             carrying: (0..paths.paths.len())
                 .map(|path| if paths.paths[path].wraps.len() > 1 { moving(model, paths, path, true) } else { vec![] })
                 .collect(),
+            driving: paths.paths.iter().flat_map(driving).collect(),
             wrenches: vec![(Vector3::zeros(), Vector3::zeros()); model.mobilities.len()],
             routing: Routing::new(paths),
             lines: paths.paths.iter().map(Line::new).collect(),
@@ -83,8 +86,8 @@ impl PathGeometry {
         &self.moment_arms[path * self.rates..(path + 1) * self.rates]
     }
 
-    /// The rates about which paths can turn a body: all that move some part of a path against another, but for slides, locked coordinates
-    /// and those that follow others, which count where they lead.
+    /// The rates about which paths can turn a body: all that move some part of a path against another, or change its length by
+    /// themselves, but for slides, locked coordinates and those that follow others, which count where they lead.
     pub fn crossed(&self, model: &Model) -> Vec<usize> {
         let mut lead: Vec<Option<usize>> = (0..model.rates.len()).map(Some).collect();
         for coupling in &model.couplings {
@@ -95,7 +98,9 @@ impl PathGeometry {
             }
         }
         let mut crossed = vec![false; model.rates.len()];
-        for rate in self.moving.iter().flatten().flat_map(|&mobility| model.rates_of(mobility)) {
+        let moved = self.moving.iter().flatten().flat_map(|&mobility| model.rates_of(mobility));
+        let driven = self.driving.iter().filter_map(|&coordinate| model.coordinates[coordinate].rate);
+        for rate in moved.chain(driven) {
             lead[rate].into_iter().for_each(|rate| crossed[rate] = true);
         }
         let free = |rate: &usize| {
@@ -180,10 +185,19 @@ impl PathGeometry {
 
 impl Line {
     /// Space for the longest line of a path.
-    fn new(path: &super::path::Path) -> Self {
-        let (points, wraps) = (path.points.len(), path.wraps.len());
-        Self { nodes: Vec::with_capacity(points + 2 * wraps), on_surface: Vec::with_capacity(wraps) }
+    fn new(path: &Path) -> Self {
+        let (points, surfaces) = (path.points.len(), path.surfaces());
+        Self { nodes: Vec::with_capacity(points + 2 * surfaces), on_surface: Vec::with_capacity(surfaces) }
     }
+}
+
+/// The coordinates that change a path's length by themselves: those of a tendon, and those that move points in their segments.
+fn driving(path: &Path) -> impl Iterator<Item = usize> {
+    let of_points = path.points.iter().filter_map(|point| match &point.location {
+        Location::Moving(moving) => moving.coordinate,
+        _ => None,
+    });
+    path.tendon.iter().flat_map(|tendon| &tendon.coordinates).map(|(coordinate, _)| *coordinate).chain(of_points)
 }
 
 /// The mobilities that move some of a path's points and not all, outermost first: those of other coordinates do not change it. `any`: also

@@ -101,6 +101,13 @@ pub struct Path {
     pub tendon: Option<Tendon>,
 }
 
+impl Path {
+    /// The greatest number of surfaces that its line can touch.
+    pub(super) fn surfaces(&self) -> usize {
+        self.tendon.as_ref().map_or(self.wraps.len(), |tendon| tendon.parts.len())
+    }
+}
+
 /// All paths of a body and the surfaces that they share.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Paths {

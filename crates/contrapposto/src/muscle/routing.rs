@@ -76,9 +76,8 @@ enum Found {
 impl Routing {
     /// Space for the largest of the paths.
     pub(super) fn new(paths: &Paths) -> Self {
-        let surfaces = |path: &Path| path.tendon.as_ref().map_or(path.wraps.len(), |tendon| tendon.parts.len());
-        let wraps = paths.paths.iter().map(surfaces).max().unwrap_or(0);
-        let nodes = paths.paths.iter().map(|path| path.points.len() + 2 * surfaces(path)).max().unwrap_or(0);
+        let wraps = paths.paths.iter().map(Path::surfaces).max().unwrap_or(0);
+        let nodes = paths.paths.iter().map(|path| path.points.len() + 2 * path.surfaces()).max().unwrap_or(0);
         Self {
             nodes: Vec::with_capacity(nodes),
             lengths: Vec::with_capacity(wraps),

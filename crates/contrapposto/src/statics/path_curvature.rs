@@ -231,7 +231,9 @@ impl PathCurvature {
                 let strip = a * of_i[1] * of_j[1] - of_i[1] * of_j[3] - of_i[3] * of_j[1] + d * of_i[3] * of_j[3];
                 let turned = |w: &V, v: &V| turning.cross(w).dot(&t1) - turning.cross(v).dot(&t2);
                 let back = t1.dot(&self.turning[j].cross(&wi)) - t2.dot(&self.turning[j].cross(&vi));
-                self.block[i * self.width + j] += planes + strip / b + turned(&wj, &vj) + back;
+                // Between conjugate points, which no shortest line has, the strip's share has no number.
+                let strip = if b == 0.0 { 0.0 } else { strip / b };
+                self.block[i * self.width + j] += planes + strip + turned(&wj, &vj) + back;
             }
         }
     }

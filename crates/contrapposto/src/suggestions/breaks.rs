@@ -18,13 +18,14 @@ const STEADY: f64 = 1e-6;
 const LONGEST: f64 = 86_400.0;
 
 /// The job of a run with a break of a minute after every ten minutes of work: in a break no group has a load; between breaks each has
-/// that of the run, and after the run that of its end. Time counts work and breaks. `None` where the run is too short for a break.
-pub fn with_breaks(scenario: &Scenario, summary: &Summary) -> Option<Suggestion> {
+/// that of the run, and after the run that of its end. `verdict` is that of the run. Time counts work and breaks. `None` where the run is too short for a break.
+pub fn with_breaks(scenario: &Scenario, summary: &Summary, verdict: &Verdict) -> Option<Suggestion> {
     let asked = scenario.run.end();
     if asked <= BREAK_EVERY {
         return None;
     }
-    let mut first = LONGEST;
+    let longest = LONGEST.max(asked);
+    let mut first = longest;
     for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
         let Some(groups) = &coordinate.groups else { continue };
         for side in Side::BOTH {
@@ -45,9 +46,9 @@ pub fn with_breaks(scenario: &Scenario, summary: &Summary) -> Option<Suggestion>
         change: "a break of a minute every ten minutes".to_owned(),
         kind: if held { VerdictKind::Holds } else { VerdictKind::HeldUntil },
         asked,
-        seconds: (first < LONGEST).then_some(first),
+        seconds: (first < longest).then_some(first),
         least: None,
-        hazards: Verdict::of_run(scenario, summary).hazards.len(),
+        hazards: verdict.hazards.len(),
         load: summary.hardest.map(|(group, _)| group.load),
     })
 }

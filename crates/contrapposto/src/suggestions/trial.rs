@@ -124,6 +124,7 @@ impl Suggestion {
         match helping {
             _ if verdict.has_reserve() => Some("Nothing needs to change.".to_owned()),
             _ if tried == 0 => None,
+            [] if tried == 1 => Some("The one change that was tried does not help.".to_owned()),
             [] => Some(format!("None of the {tried} changes that were tried helps.")),
             [best] => Some(format!("What would help: {}.", best.in_words())),
             [best, rest @ ..] => {

@@ -94,17 +94,17 @@ impl Findings {
             Some(time) => format!("Holds through the run ({})", how_long(time)),
             None => "Holds without a limit by muscles".to_owned(),
         };
-        let but = self.reservations(model).join(", and ");
+        let but = listed(&self.reservations(model));
         let but = if but.is_empty() { but } else { format!(", but {but}") };
         format!("{head}{but}.{} {}", self.held_on(model), self.hardest_worked(model))
     }
 
-    /// `about one in six people fails before`, `right shoulder flexion is 82 % tired at the end`.
+    /// `some people fail before`, `right shoulder flexion is 82 % tired at the end`.
     fn reservations(&self, model: &Model) -> Vec<String> {
         let weaker = self.fails_weaker().map(|failure| {
             let first = self.fails_later().is_some_and(|other| other.who == failure.who);
             let who = if first { String::new() } else { format!(" ({})", failure.who.name(model)) };
-            format!("about one in six people fails before{who}")
+            format!("some people fail before{who}")
         });
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
         let tired =
@@ -128,11 +128,14 @@ impl Findings {
             };
         };
         let (who, range) = (who.name(model), in_words(*range));
-        let on = if self.asked.is_some() { "Held on like this: " } else { "" };
+        let (on, no) = match self.asked {
+            Some(_) => ("Held on like this: about", "Held on like this: no limit in all"),
+            None => ("About", "No limit for the mean person"),
+        };
         if *time < A_DAY {
-            return format!(" {on}about {} in all ({range}), then {who} fails first.", how_long(*time));
+            return format!(" {on} {} in all ({range}), then {who} fails first.", how_long(*time));
         }
-        format!(" {on}no limit in all ({range}; {who} would fail first).")
+        format!(" {no} ({range}; {who} would fail first).")
     }
 
     /// `Hardest worked: right shoulder flexion at 17 % of its strength.`
@@ -144,6 +147,14 @@ impl Findings {
                 format!("Hardest worked: {} at {} of its strength.", Who::from(group).name(model), percent(group.load))
             },
         )
+    }
+}
+
+/// `a`, `a, and b`, `a, b, and c`.
+fn listed(parts: &[String]) -> String {
+    match parts {
+        [first @ .., last] if !first.is_empty() => format!("{}, and {last}", first.join(", ")),
+        _ => parts.concat(),
     }
 }
 

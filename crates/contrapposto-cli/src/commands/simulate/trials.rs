@@ -29,7 +29,7 @@ pub(super) fn try_changes(
             runs.into_iter().map(|run| run.join().ok().flatten()).collect::<Vec<_>>()
         }));
     }
-    let breaks = verdict.kind.is_done().then(|| with_breaks(scenario, summary)).flatten();
+    let breaks = verdict.kind.is_done().then(|| with_breaks(scenario, summary, verdict)).flatten();
     let tried: Vec<Suggestion> = tried.into_iter().flatten().chain(breaks).collect();
     let number = tried.len();
     let helping = Suggestion::that_help(tried, verdict);

@@ -153,7 +153,7 @@ pub(crate) fn report_of_assessment(
 fn moment(found: &Assessment, verdict: &Verdict) -> f64 {
     let hardest = found.groups.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value));
     let time = match verdict.kind {
-        VerdictKind::HeldUntil => verdict.seconds,
+        VerdictKind::HeldUntil => found.groups.iter().filter_map(|group| group.exhausted_at).min_by(f64::total_cmp),
         VerdictKind::CannotStand => found.missing.map(|(_, time)| time),
         _ => hardest.map(|group| group.peak_load.time),
     };
