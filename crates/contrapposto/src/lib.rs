@@ -25,7 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The crate knows no velocities and no dynamics, and no skin; [`muscle`] computes muscles with paths at rest. [`posture_solver`] finds postures
+//! Inertia comes from given speeds and accelerations ([`dynamics`]); nothing is integrated in time, and there is no skin. [`muscle`] computes muscles with paths at rest. [`posture_solver`] finds postures
 //! from tasks in strict priority, [`equilibria`] those of least effort on their supports, [`simulation`] moves a body that tires.
 
 // Unit tests share bodies with the tests outside, which know this crate by its name.
@@ -36,6 +36,7 @@ pub mod assessment;
 pub mod batch;
 pub mod constraint;
 pub mod contact;
+pub mod dynamics;
 mod effort;
 pub mod equilibria;
 pub mod fatigue;

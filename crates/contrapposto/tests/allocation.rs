@@ -5,6 +5,7 @@
 
 use contrapposto::batch::{Statics, Table, Wanted};
 use contrapposto::contact::{ContactForces, Support};
+use contrapposto::dynamics::Inertia;
 use contrapposto::hybrid::{self, Strategy, minimise, minimise_literal};
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::{self, Kinematics};
@@ -88,6 +89,19 @@ fn statics_allocate_nothing() {
         folded.copy_from_slice(external.torques());
     });
     assert!(folded.iter().any(|&torque| torque != 0.0) && gradient.row(0).len() == folded.len());
+}
+
+#[test]
+fn inertia_allocates_nothing() {
+    let (model, postures) = body();
+    let loads = loads(&model);
+    let (mut kinematics, mut inertia) = (Kinematics::new(&model), Inertia::new(&model));
+    let (speeds, accelerations) = (vec![1.0; model.rates().len()], vec![-2.0; model.rates().len()]);
+    assert_silent("inertia", 1, |i| {
+        kinematics.update(&model, &postures[i]).unwrap();
+        inertia.update(&model, &kinematics, (&speeds, &accelerations), &loads).unwrap();
+    });
+    assert!(inertia.torques().iter().any(|&torque| torque != 0.0));
 }
 
 /// In one thread; more threads are started anew in every call.

@@ -103,7 +103,7 @@ pub fn tree(rng: &mut Pcg64, segments: usize, coupled: bool) -> Model {
             parent: parent.map(|p| format!("segment{p}")),
             mass: if rng.random_range(0..4) == 0 { 0.0 } else { rng.random_range(0.1..5.0) },
             center_of_mass: vector(rng, 0.3),
-            inertia: Matrix3::identity(),
+            inertia: Matrix3::from_diagonal(&V::new(0.9, 1.0 + 0.1 * (n % 4) as f64, 1.1)),
             joint: format!("joint{n}"),
             kind,
             in_parent: place(rng),

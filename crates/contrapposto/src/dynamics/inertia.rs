@@ -1,0 +1,126 @@
+//! Computes the inertia of a moving body as loads, and the torques that they give.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::acceleration::{Acceleration, SpeedError};
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::statics::{ExternalTorque, FixedIn, Load, LoadError, LoadKind};
+
+/// Why the inertia of a body is not known.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InertiaError {
+    /// Speeds or accelerations do not fit the model.
+    #[error(transparent)]
+    Speed(#[from] SpeedError),
+    /// A held weight does not fit the model, or the force of inertia is beyond every body's.
+    #[error("inertia: {0}")]
+    Load(#[from] LoadError),
+}
+
+/// A segment with inertia, in the frame of the mobility that carries it.
+#[derive(Clone, Debug)]
+struct Body {
+    segment: usize,
+    mobility: usize,
+    mass: f64,
+    center: Vector3<f64>,
+    /// About the centre.
+    inertia: Matrix3<f64>,
+}
+
+/// Inertia of a moving body: its loads and their torques. Depends on posture, speeds, accelerations and held weights; filled by
+/// [`Inertia::update`].
+#[derive(Clone, Debug)]
+pub struct Inertia {
+    bodies: Vec<Body>,
+    acceleration: Acceleration,
+    loads: Vec<Load>,
+    torque: ExternalTorque,
+}
+
+impl Inertia {
+    /// Space for `model`, at rest.
+    pub fn new(model: &Model) -> Self {
+        let body = |segment: usize| {
+            let of = &model.segments[segment];
+            let mobility = of.mobility?;
+            let rotation = of.offset.rotation.to_rotation_matrix().into_inner();
+            let inertia = rotation * of.inertia * rotation.transpose();
+            let center = (of.offset * nalgebra::Point3::from(of.center_of_mass)).coords;
+            let counts = of.mass > 0.0 || inertia != Matrix3::zeros();
+            counts.then_some(Body { segment, mobility, mass: of.mass, center, inertia })
+        };
+        Self {
+            bodies: (0..model.segments.len()).filter_map(body).collect(),
+            acceleration: Acceleration::new(model),
+            loads: vec![],
+            torque: ExternalTorque::new(model),
+        }
+    }
+
+    /// Computes it in the posture that `kinematics` holds, for speeds (rad/s or m/s) and accelerations (rad/s^2 or m/s^2), one a rate.
+    /// The weights among `held` move with the body; other loads have no inertia. Does not allocate once it has had as many weights.
+    ///
+    /// # Errors
+    /// [`InertiaError`] when speeds, accelerations or loads do not fit the model.
+    pub fn update(
+        &mut self,
+        model: &Model,
+        kinematics: &Kinematics,
+        (speeds, accelerations): (&[f64], &[f64]),
+        held: &[Load],
+    ) -> Result<(), InertiaError> {
+        self.acceleration.update(model, kinematics, speeds, accelerations)?;
+        self.loads.clear();
+        for body in &self.bodies {
+            let (force, couple) = self.acceleration.inertia(kinematics, body);
+            let load = |kind| Load { segment: body.segment, point: model.segments[body.segment].center_of_mass, kind };
+            self.loads.push(load(LoadKind::Force(force, FixedIn::World)));
+            self.loads.push(load(LoadKind::Couple(couple, FixedIn::World)));
+        }
+        for load in held {
+            load.check(model)?;
+            if let LoadKind::Weight(mass) = load.kind {
+                let force = -mass * self.acceleration.station(model, kinematics, load.segment, load.point);
+                self.loads.push(Load { kind: LoadKind::Force(force, FixedIn::World), ..*load });
+            }
+        }
+        Ok(self.torque.update_weightless(model, kinematics, &self.loads)?)
+    }
+
+    /// Forces and couples of inertia, to be added to the other loads of the same posture.
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// Torque of inertia alone, by rate: the part of the external torque that the body at rest would not have, N m (N for slides).
+    /// Dependent coordinates are folded into their independent ones.
+    pub fn torques(&self) -> &[f64] {
+        self.torque.torques()
+    }
+
+    /// As [`Inertia::torques`], but as if no coordinate followed another one.
+    pub fn uncoupled_torques<'a>(&'a self, model: &Model) -> &'a [f64] {
+        self.torque.uncoupled_torques(model)
+    }
+
+    /// Velocities and accelerations of the segments.
+    pub fn acceleration(&self) -> &Acceleration {
+        &self.acceleration
+    }
+}
+
+impl Acceleration {
+    /// Force (N) and couple (N m) of the inertia of a segment, ground axes.
+    fn inertia(&self, kinematics: &Kinematics, body: &Body) -> (Vector3<f64>, Vector3<f64>) {
+        let Body { mobility, mass, center, inertia, .. } = body;
+        let rotation = &kinematics.rotations[*mobility];
+        let (omega, alpha) = (self.omega[*mobility], self.alpha[*mobility]);
+        let arm = rotation * center;
+        let force = -*mass * (self.origin[*mobility] + alpha.cross(&arm) + omega.cross(&omega.cross(&arm)));
+        let in_ground = |v: &Vector3<f64>| rotation * (inertia * rotation.tr_mul(v));
+        (force, -(in_ground(&alpha) + omega.cross(&in_ground(&omega))))
+    }
+}

@@ -1,0 +1,242 @@
+//! Inertia of moving bodies: against virtual work of point masses moved by central differences, the energy balance, and formulas by hand.
+
+#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+
+mod trees;
+
+use contrapposto::dynamics::{Inertia, InertiaError, SpeedError};
+use contrapposto::joint_torques::{JointTorques, Quantities};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec, adult};
+use contrapposto::posture::Posture;
+use contrapposto::statics::{FixedIn, Load, LoadKind};
+use nalgebra::{Matrix3, Vector3};
+use rand::RngExt;
+
+type V = Vector3<f64>;
+
+/// A posture with speeds and accelerations of its rates.
+struct Moving {
+    posture: Posture,
+    speeds: Vec<f64>,
+    accelerations: Vec<f64>,
+}
+
+impl Moving {
+    /// The posture `t` seconds later under constant accelerations of the rates. The step of a ball from 0 on has the derivatives
+    /// of its generalised speeds there.
+    fn at(&self, model: &Model, t: f64) -> Posture {
+        let step = self.speeds.iter().zip(&self.accelerations).map(|(v, a)| v * t + 0.5 * a * t * t);
+        let mut posture = self.posture.clone();
+        posture.displace(model, &step.collect::<Vec<_>>());
+        posture
+    }
+}
+
+fn moving(rng: &mut rand_pcg::Pcg64, model: &Model) -> Moving {
+    let mut posture = trees::posture(rng, model);
+    posture.displace(model, &vec![0.0; model.rates().len()]);
+    let (speeds, accelerations) = (trees::step(rng, model, 2.0), trees::step(rng, model, 5.0));
+    Moving { posture, speeds, accelerations }
+}
+
+/// Points of the body, each with its mass: of each segment its centre and three pairs of points along the principal axes, whose
+/// inertia is that of the segment. Masses may be negative.
+fn masses(model: &Model) -> Vec<(usize, V, f64)> {
+    let mut points = vec![];
+    for (i, segment) in model.segments().iter().enumerate() {
+        let moments = segment.inertia.diagonal();
+        let half_trace = 0.5 * moments.sum();
+        points.push((i, segment.center_of_mass, segment.mass - 6.0));
+        for k in 0..3 {
+            // Two masses of 1 kg at +-d on axis k: the sum of m x_k^2 is half the trace less the moment about that axis.
+            let d = (0.5 * (half_trace - moments[k])).sqrt();
+            let axis = V::from_fn(|j, _| if j == k { d } else { 0.0 });
+            points.push((i, segment.center_of_mass + axis, 1.0));
+            points.push((i, segment.center_of_mass - axis, 1.0));
+        }
+    }
+    points
+}
+
+fn positions(model: &Model, posture: &Posture, points: &[(usize, V, f64)]) -> Vec<V> {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, posture).unwrap();
+    points.iter().map(|(segment, point, _)| kinematics.station(model, *segment, *point)).collect()
+}
+
+/// `- sum m a . dx/dq` of every rate, by central differences in time and in the coordinates.
+fn virtual_work(model: &Model, moving: &Moving, points: &[(usize, V, f64)]) -> Vec<f64> {
+    let h = 1e-3;
+    let at = |t: f64| positions(model, &moving.at(model, t), points);
+    // Fourth-order second difference.
+    let [a, b, c, d, e] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(k * h));
+    let second = |i: usize| (16.0 * (b[i] + d[i]) - a[i] - e[i] - 30.0 * c[i]) / (12.0 * h * h);
+    let accelerations: Vec<V> = (0..points.len()).map(second).collect();
+    let torque = |rate: usize| {
+        let s = 1e-5;
+        let there = positions(model, &trees::moved(model, &moving.posture, rate, s), points);
+        let back = positions(model, &trees::moved(model, &moving.posture, rate, -s), points);
+        let work = |i: usize| points[i].2 * accelerations[i].dot(&((there[i] - back[i]) / (2.0 * s)));
+        -(0..points.len()).map(work).sum::<f64>()
+    };
+    (0..model.rates().len()).map(torque).collect()
+}
+
+fn inertia(model: &Model, moving: &Moving, held: &[Load]) -> Inertia {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, &moving.posture).unwrap();
+    let mut inertia = Inertia::new(model);
+    inertia.update(model, &kinematics, (&moving.speeds, &moving.accelerations), held).unwrap();
+    inertia
+}
+
+#[test]
+fn inertia_of_random_coupled_bodies_is_the_virtual_work_of_their_point_masses() {
+    let mut rng = trees::random("virtual work of inertia");
+    let mut worst: f64 = 0.0;
+    for i in 0..120 {
+        let model = trees::tree(&mut rng, 1 + i % 7, i % 2 == 0);
+        if model.rates().is_empty() {
+            continue;
+        }
+        let moving = moving(&mut rng, &model);
+        let weight = Load {
+            segment: rng.random_range(0..model.segments().len()),
+            point: trees::vector(&mut rng, 0.3),
+            kind: LoadKind::Weight(3.0),
+        };
+        let rope = Load { kind: LoadKind::Force(V::new(1.0, 2.0, 3.0), FixedIn::World), ..weight };
+        let mut points = masses(&model);
+        points.push((weight.segment, weight.point, 3.0));
+        let expected = virtual_work(&model, &moving, &points);
+        let found = inertia(&model, &moving, &[weight, rope]);
+        let size = trees::largest(expected.iter().copied()).max(1.0);
+        let error = trees::largest(found.torques().iter().zip(&expected).map(|(a, b)| a - b)) / size;
+        assert!(error < 3e-6, "body {i}: {error:.1e} of {size:.1} N m");
+        worst = worst.max(error);
+    }
+    assert!(worst > 0.0);
+}
+
+/// `sum tau_i q_i' = -dT/dt`, with the kinetic energy of point masses by central differences.
+#[test]
+fn power_of_inertia_is_the_loss_of_kinetic_energy() {
+    let mut rng = trees::random("energy of inertia");
+    for i in 0..40 {
+        let model = trees::tree(&mut rng, 1 + i % 6, i % 2 == 0);
+        if model.rates().is_empty() {
+            continue;
+        }
+        let moving = moving(&mut rng, &model);
+        let points = masses(&model);
+        let at = |t: f64| positions(&model, &moving.at(&model, t), &points);
+        let energy = |t: f64| {
+            let h = 1e-4;
+            let (after, before) = (at(t + h), at(t - h));
+            let square = |k: usize| points[k].2 * ((after[k] - before[k]) / (2.0 * h)).norm_squared();
+            0.5 * (0..points.len()).map(square).sum::<f64>()
+        };
+        let h = 1e-3;
+        let loss = -(energy(h) - energy(-h)) / (2.0 * h);
+        let found = inertia(&model, &moving, &[]);
+        let power: f64 = found.torques().iter().zip(&moving.speeds).map(|(torque, speed)| torque * speed).sum();
+        assert!((power - loss).abs() < 1e-4 * loss.abs().max(100.0), "body {i}: {power} and {loss} W");
+    }
+}
+
+#[test]
+fn a_body_at_rest_has_no_inertia_and_twice_the_speed_four_times_as_much() {
+    let mut rng = trees::random("speeds of inertia");
+    let model = trees::tree(&mut rng, 6, true);
+    let mut moving = moving(&mut rng, &model);
+    moving.accelerations.fill(0.0);
+    let once = inertia(&model, &moving, &[]).torques().to_vec();
+    moving.speeds.iter_mut().for_each(|speed| *speed *= 2.0);
+    let twice = inertia(&model, &moving, &[]).torques().to_vec();
+    let size = trees::largest(once.iter().copied());
+    assert!(size > 0.1);
+    once.iter().zip(&twice).for_each(|(once, twice)| assert!((4.0 * once - twice).abs() < 1e-12 * size));
+    moving.speeds.fill(0.0);
+    assert_eq!(trees::largest(inertia(&model, &moving, &[]).torques().iter().copied()), 0.0);
+}
+
+/// Two rods in a plane, about z: the textbook's equations of the double pendulum.
+#[test]
+fn inertia_of_a_planar_double_pendulum_is_the_textbooks() {
+    let (m, l, c, i) = ([2.0, 1.5], 0.6, [0.25, 0.2], [0.04, 0.03]);
+    let mut builder = ModelBuilder::new("pendulum", V::zeros());
+    for (k, parent) in [(0, None), (1, Some("rod0".to_owned()))] {
+        let at = if k == 0 { V::zeros() } else { V::new(l, 0.0, 0.0) };
+        builder
+            .segment(SegmentSpec {
+                name: format!("rod{k}"),
+                parent,
+                mass: m[k],
+                center_of_mass: V::new(c[k], 0.0, 0.0),
+                inertia: Matrix3::from_diagonal(&V::new(0.0, i[k], i[k])),
+                joint: format!("joint{k}"),
+                kind: JointKind::Hinge(V::z_axis()),
+                in_parent: Placement::translation(at.x, at.y, at.z),
+                in_segment: Placement::identity(),
+                coordinates: vec![CoordinateSpec::new(&format!("q{k}"), (-9.0, 9.0))],
+            })
+            .unwrap();
+    }
+    let model = builder.build();
+    let (q, v, a) = ([0.4, 0.9], [1.5, -2.5], [3.0, 4.0]);
+    let moving = Moving { posture: Posture::new(q.to_vec()), speeds: v.to_vec(), accelerations: a.to_vec() };
+    let (sin, cos) = q[1].sin_cos();
+    let both = l * c[1] * m[1];
+    let m11 = i[0] + m[0] * c[0] * c[0] + i[1] + m[1] * (l * l + c[1] * c[1]) + 2.0 * both * cos;
+    let m12 = i[1] + m[1] * c[1] * c[1] + both * cos;
+    let m22 = i[1] + m[1] * c[1] * c[1];
+    let first = m11 * a[0] + m12 * a[1] - both * sin * (2.0 * v[0] * v[1] + v[1] * v[1]);
+    let second = m12 * a[0] + m22 * a[1] + both * sin * v[0] * v[0];
+    let found = inertia(&model, &moving, &[]);
+    assert!((found.torques()[0] + first).abs() < 1e-14 && (found.torques()[1] + second).abs() < 1e-14);
+}
+
+/// Eq. 1 with inertia among the loads: external torque is that at rest plus the torque of inertia, about axes, too.
+#[test]
+fn external_torque_with_the_loads_of_inertia_is_that_at_rest_plus_inertia() {
+    let model = adult(&Adult::default()).unwrap();
+    let mut rng = trees::random("inertia as loads");
+    let moving = Moving {
+        posture: model.default_posture(),
+        speeds: trees::step(&mut rng, &model, 1.0),
+        accelerations: trees::step(&mut rng, &model, 3.0),
+    };
+    let held = [Load::weight(&model, model.segment("hand_r").unwrap(), 5.0)];
+    let inertia = inertia(&model, &moving, &held);
+    let mut torques = JointTorques::new(&model);
+    torques.update(&model, &moving.posture, &held, Quantities::TORQUES).unwrap();
+    let rest = torques.external_torque().torques().to_vec();
+    let loads = [held.as_slice(), inertia.loads()].concat();
+    torques.update(&model, &moving.posture, &loads, Quantities::TORQUES).unwrap();
+    for (rate, ((rest, inertia), both)) in
+        rest.iter().zip(inertia.torques()).zip(torques.external_torque().torques()).enumerate()
+    {
+        assert!((rest + inertia - both).abs() < 1e-10 * (1.0 + both.abs()), "rate {rate}");
+    }
+    assert!(trees::largest(inertia.torques().iter().copied()) > 10.0);
+}
+
+#[test]
+fn speeds_that_do_not_fit_are_refused_by_name() {
+    let model = adult(&Adult::default()).unwrap();
+    let kinematics = Kinematics::new(&model);
+    let mut inertia = Inertia::new(&model);
+    let n = model.rates().len();
+    let short = inertia.update(&model, &kinematics, (&[0.0], &vec![0.0; n]), &[]);
+    assert_eq!(short, Err(SpeedError::Length { quantity: "speed", given: 1, needed: n }.into()));
+    let mut wild = vec![0.0; n];
+    for value in [f64::NAN, f64::INFINITY, -2e9] {
+        wild[3] = value;
+        let Err(InertiaError::Speed(error)) = inertia.update(&model, &kinematics, (&vec![0.0; n], &wild), &[]) else {
+            panic!("an acceleration of {value} is accepted");
+        };
+        let text = error.to_string();
+        assert!(text.contains(&model.rates()[3].name) && text.contains("acceleration"), "{text}");
+    }
+}
