@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 use std::io::Write;
-use std::process::ExitCode;
 
 use contrapposto_formats::{InputError, escaped_lines};
 
@@ -29,18 +28,18 @@ impl Fail {
     }
 
     /// Tells standard error, and the shell by the exit code.
-    pub(crate) fn report(self) -> ExitCode {
+    pub(crate) fn report(self) -> u8 {
         let (text, code) = match self {
             Self::Input(error) => (format!("{:?}", miette::Report::new(*error)), 2),
             Self::Refused(message) => (format!("error: {}\n", escaped_lines(&message)), 2),
             Self::Job(message) => (format!("error: {}\n", escaped_lines(&message)), 1),
             Self::Answered => (String::new(), 1),
             Self::Told => (String::new(), 2),
-            Self::BrokenPipe => return ExitCode::SUCCESS,
+            Self::BrokenPipe => return 0,
         };
         // Nothing is left to try when standard error is closed, too.
         let _ = std::io::stderr().write_all(text.as_bytes());
-        ExitCode::from(code)
+        code
     }
 }
 

@@ -15,6 +15,8 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::output::print_note;
 
+pub(crate) use include::confined;
+
 /// Opens MODEL, with --overlay and --passive. `filled`: unknown passive laws of a file are filled in from the built-in library
 /// where neither --passive nor --overlay is given.
 pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
@@ -73,10 +75,15 @@ fn file(path: &Path, root: Option<RootAttachment>, read_file: Read) -> Result<So
     let most = Limits::default().file_bytes as u64;
     let bytes = read(path, most)?;
     let name = path.display().to_string();
-    read_file(&name, &bytes, root, &mut include::confined(path, most)).map_err(|error| match error {
+    read_file(&name, &bytes, root, &mut confined(path, most)).map_err(|error| refused_file(&name, error))
+}
+
+/// The failure that a model file of that name is.
+pub(crate) fn refused_file(name: &str, error: ModelFileError) -> Fail {
+    match error {
         ModelFileError::RootGiven(_) => Fail::Refused(format!("--root: {error}")),
         // These name the file themselves.
         ModelFileError::OpenSim(_) => refused(error),
         error => Fail::Refused(format!("{name}: {error}")),
-    })
+    }
 }

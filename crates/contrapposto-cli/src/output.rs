@@ -5,6 +5,7 @@ mod leftover;
 mod manifest;
 mod result_set;
 
+use std::cell::RefCell;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -37,6 +38,24 @@ const MOST_NOTES: usize = 4;
 static NOTES: OnceLock<Notes> = OnceLock::new();
 static WAITING: Mutex<Vec<String>> = Mutex::new(vec![]);
 
+thread_local! {
+    /// Kinds and texts of the notes of this thread, while they are kept.
+    static KEPT: RefCell<Option<Vec<(String, String)>>> = const { RefCell::new(None) };
+}
+
+/// Carries out a job whose notes are kept, not printed; gives the notes, too.
+pub(crate) fn keep_notes<T>(job: impl FnOnce() -> T) -> (T, Vec<(String, String)>) {
+    KEPT.with_borrow_mut(|kept| *kept = Some(vec![]));
+    let result = job();
+    (result, KEPT.take().unwrap_or_default())
+}
+
+/// Keeps a note where this thread keeps them.
+fn keep(kind: &str, text: &str) -> bool {
+    let push = |kept: &mut Vec<(String, String)>| kept.push((kind.to_owned(), text.to_owned()));
+    KEPT.with_borrow_mut(|kept| kept.as_mut().map(push).is_some())
+}
+
 /// Says once, at the start, how many notes standard error gets.
 pub(crate) fn show_notes(notes: Notes) {
     let _ = NOTES.set(notes);
@@ -44,6 +63,9 @@ pub(crate) fn show_notes(notes: Notes) {
 
 /// Tells standard error something that is no failure: a `note` waits for [`print_waiting_notes`], everything else appears at once.
 pub(crate) fn print_note(kind: &str, text: &str) {
+    if keep(kind, text) {
+        return;
+    }
     match (kind, NOTES.get().copied().unwrap_or(Notes::All)) {
         ("note", Notes::Quiet) => {}
         ("note", Notes::Folded) => {

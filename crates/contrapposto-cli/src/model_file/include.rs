@@ -7,7 +7,7 @@ use crate::fail::Fail;
 use crate::input::read;
 
 /// A reader of included files for the model at `main`; how many and how deep is the format's own business.
-pub(super) fn confined(main: &Path, most: u64) -> impl FnMut(&str) -> Result<Vec<u8>, String> + use<> {
+pub(crate) fn confined(main: &Path, most: u64) -> impl FnMut(&str) -> Result<Vec<u8>, String> + use<> {
     let parent = main.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let folder = if main == Path::new("-") {
         Err("a model from standard input has no folder to include from".to_owned())

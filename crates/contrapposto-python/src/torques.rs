@@ -1,0 +1,117 @@
+//! Computes the torques of many postures in blocks, between which Ctrl-C is seen.
+
+use contrapposto::joint_torques::JointTorquesError;
+use contrapposto::statics::Load;
+use contrapposto_cli::library::RestTorques;
+use contrapposto_formats::tissue::SourcedModel;
+use pyo3::prelude::*;
+
+use crate::errors::refused_row;
+use crate::loads::Loading;
+
+/// Postures of one thread between two looks for Ctrl-C.
+const BLOCK: usize = 8192;
+
+/// Postures, and all that acts on the body in them.
+pub(crate) struct Given {
+    /// Values of the coordinates, row after row.
+    pub(crate) values: Vec<f64>,
+    pub(crate) width: usize,
+    pub(crate) loads: Vec<Loading>,
+    /// Generalised forces of a device, row after row; empty for none.
+    pub(crate) device: Vec<f64>,
+    pub(crate) threads: usize,
+}
+
+/// External, passive and active torque, row after row.
+pub(crate) type Torques = [Vec<f64>; 3];
+
+/// A refused row, and why.
+type Refused = (usize, JointTorquesError);
+
+impl Given {
+    fn postures(&self) -> usize {
+        if self.width == 0 { 0 } else { self.values.len() / self.width }
+    }
+
+    /// Torques of all postures, `rates` a posture. The number of threads changes no bit of them.
+    pub(crate) fn torques(&self, py: Python<'_>, opened: &SourcedModel, rates: usize) -> PyResult<Torques> {
+        let mut all = [(); 3].map(|()| vec![0.0; self.postures() * rates]);
+        let [external, passive, active] = &mut all;
+        let size = (BLOCK * rates).max(1);
+        let parts = external.chunks_mut(size).zip(passive.chunks_mut(size)).zip(active.chunks_mut(size));
+        let parts =
+            parts.enumerate().map(|(i, ((external, passive), active))| (i * BLOCK, [external, passive, active]));
+        self.in_blocks(py, opened, parts, |body, loads, row, [external, passive, active], at| {
+            let here = at * rates..(at + 1) * rates;
+            let out = [&mut external[here.clone()], &mut passive[here.clone()], &mut active[here]];
+            let device = if self.device.is_empty() { &[] } else { &self.device[row * rates..(row + 1) * rates] };
+            body.update(&opened.model, self.row(row), loads, device, out)
+        })?;
+        Ok(all)
+    }
+
+    /// Gradients of external torque of all postures, `rates * rates` numbers a posture.
+    pub(crate) fn gradients(&self, py: Python<'_>, opened: &SourcedModel, rates: usize) -> PyResult<Vec<f64>> {
+        let square = rates * rates;
+        let mut all = vec![0.0; self.postures() * square];
+        let parts = all.chunks_mut((BLOCK * square).max(1)).enumerate().map(|(i, part)| (i * BLOCK, part));
+        self.in_blocks(py, opened, parts, |body, loads, row, part, at| {
+            body.gradient(&opened.model, self.row(row), loads, &mut part[at * square..(at + 1) * square])
+        })?;
+        Ok(all)
+    }
+
+    fn row(&self, row: usize) -> &[f64] {
+        &self.values[row * self.width..(row + 1) * self.width]
+    }
+
+    /// Fills parts of at most [`BLOCK`] postures, several at once, without the lock; `fill` computes one posture, given its number and
+    /// its place in its part.
+    fn in_blocks<P: Send>(
+        &self,
+        py: Python<'_>,
+        opened: &SourcedModel,
+        mut parts: impl Iterator<Item = (usize, P)>,
+        fill: impl Fn(&mut RestTorques, &[Load], usize, &mut P, usize) -> Result<(), JointTorquesError> + Sync,
+    ) -> PyResult<()> {
+        let mut bodies: Vec<RestTorques> = (0..self.threads.max(1)).map(|_| RestTorques::new(opened)).collect();
+        let part_of = |body: &mut RestTorques, (first, mut part): (usize, P)| -> Result<(), Refused> {
+            let mut loads = vec![];
+            for (at, row) in (first..self.postures().min(first + BLOCK)).enumerate() {
+                loads.clear();
+                loads.extend(self.loads.iter().map(|load| load.at(row)));
+                fill(body, &loads, row, &mut part, at).map_err(|error| (row, error))?;
+            }
+            Ok(())
+        };
+        loop {
+            let round: Vec<(usize, P)> = parts.by_ref().take(bodies.len()).collect();
+            if round.is_empty() {
+                return Ok(());
+            }
+            let done = py.detach(|| at_once(&mut bodies, round, &part_of));
+            done.map_err(|(row, error)| refused_row(py, &opened.model, row, &error))?;
+            py.check_signals()?;
+        }
+    }
+}
+
+/// Computes the parts, each in a thread of its own but the first; the error of the first part counts.
+fn at_once<P: Send>(
+    bodies: &mut [RestTorques],
+    parts: Vec<(usize, P)>,
+    part_of: &(impl Fn(&mut RestTorques, (usize, P)) -> Result<(), Refused> + Sync),
+) -> Result<(), Refused> {
+    let mut jobs = bodies.iter_mut().zip(parts);
+    let Some((body, part)) = jobs.next() else { return Ok(()) };
+    std::thread::scope(|scope| {
+        let others: Vec<_> = jobs.map(|(body, part)| scope.spawn(move || part_of(body, part))).collect();
+        let first = part_of(body, part);
+        let panicked = |panic| std::panic::resume_unwind(panic);
+        others.into_iter().fold(first, |found, other| {
+            let result = other.join().unwrap_or_else(panicked);
+            found.and(result)
+        })
+    })
+}

@@ -1,0 +1,29 @@
+"""Ready and relaxed human postures: joint torques of a body at rest, fatigue, and where a tired joint finds relief.
+
+Units are rad, m, kg, N, N m and s. Torques act in the direction of their coordinate; external + passive + active torque is 0 at
+every joint of a body at rest.
+
+>>> import contrapposto
+>>> model = contrapposto.Model.adult(sex="female", stature=1.65, mass=60)
+>>> torques = model.torques(model.default_posture, loads=["hand_r 3kg"])
+>>> len(torques.names) == torques.active.size
+True
+"""
+
+from contrapposto._native import __version__
+from contrapposto.errors import ContrappostoError, InputError, InternalError, JobError
+from contrapposto.loads import Force, Weight
+from contrapposto.model import Model
+from contrapposto.torques import Torques
+
+__all__ = [
+    "ContrappostoError",
+    "Force",
+    "InputError",
+    "InternalError",
+    "JobError",
+    "Model",
+    "Torques",
+    "Weight",
+    "__version__",
+]

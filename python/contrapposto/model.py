@@ -1,0 +1,170 @@
+"""Defines the body, and computes its torques in postures at rest."""
+
+from __future__ import annotations
+
+import os
+import warnings
+import zlib
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from contrapposto import _native
+from contrapposto._arrays import Array, postures, rows
+from contrapposto.errors import InputError
+from contrapposto.loads import Load, native_loads
+from contrapposto.torques import Torques
+
+
+class Model:
+    """An immutable body: the built-in adult (`Model.adult`), or a model file (`Model.from_file`)."""
+
+    __slots__ = ("_native",)
+    _native: _native.Model
+
+    def __init__(self) -> None:
+        raise TypeError("a model is made by Model.adult(...) or Model.from_file(...)")
+
+    @classmethod
+    def _of(cls, native: _native.Model) -> Model:
+        model = object.__new__(cls)
+        object.__setattr__(model, "_native", native)
+        return model
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError("a model does not change")
+
+    @classmethod
+    def adult(
+        cls,
+        sex: Literal["female", "male"] = "male",
+        stature: float | None = None,
+        mass: float | None = None,
+    ) -> Model:
+        """The built-in adult; stature (m) and mass (kg) are those of de Leva's reference woman or man where they are left out."""
+        if sex not in ("female", "male"):
+            raise InputError(f"sex is {sex!r}; it must be 'female' or 'male'")
+        return cls._of(_native.Model.adult(sex == "female", stature, mass))
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        overlay: str | os.PathLike[str] | None = None,
+        root: Literal["fixed", "free"] | None = None,
+        passive: Literal["library", "file"] | None = None,
+        strength: bool = True,
+        person: str | None = None,
+    ) -> Model:
+        """Reads an OpenSim, URDF or MJCF file.
+
+        overlay: ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the model.
+        root: how the root of a URDF or MJCF model is attached; as the file says when left out.
+        passive: whether passive torque and strength that the file does not have come from the built-in library; without an overlay
+            they do when left out.
+        strength: False leaves out the strength that the file gives to motors.
+        person: the person whom the model stands for: "female,1.65m,60kg", or some of them.
+
+        Warnings of the reader are warnings of Python; `notes` has all that was ignored or filled in.
+        """
+        if passive not in (None, "library", "file"):
+            raise InputError(f"passive is {passive!r}; it must be 'library' or 'file'")
+        fill = None if passive is None else passive == "library"
+        model = cls._of(_native.Model.from_file(path, overlay, root, fill, not strength, person))
+        for kind, text in model._native.notes:
+            if kind == "warning":
+                warnings.warn(text, stacklevel=2)
+        return model
+
+    @classmethod
+    def _from_state(cls, state: bytes) -> Model:
+        return cls._of(_native.Model.from_state(zlib.decompress(state)))
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
+        return (Model._from_state, (zlib.compress(self._native.state(), 1),))
+
+    @property
+    def name(self) -> str:
+        """Name of the body."""
+        return self._native.name
+
+    @property
+    def mass(self) -> float:
+        """Mass of the body, kg."""
+        return self._native.mass
+
+    @property
+    def coordinate_names(self) -> tuple[str, ...]:
+        """Names of the coordinates, in the order of the columns of postures."""
+        return tuple(self._native.coordinate_names)
+
+    @property
+    def coordinate_units(self) -> tuple[str, ...]:
+        """Units of the coordinates: "rad", "m", or "1" for components of quaternions (in the order w, x, y, z)."""
+        return tuple(self._native.coordinate_units)
+
+    @property
+    def ranges(self) -> Array:
+        """Least and greatest value of every coordinate, shape (n, 2)."""
+        return self._native.ranges
+
+    @property
+    def default_posture(self) -> Array:
+        """Every coordinate at its default, shape (n,)."""
+        return self._native.default_posture[0]
+
+    @property
+    def segment_names(self) -> tuple[str, ...]:
+        """Names of the segments, which loads name."""
+        return tuple(self._native.segment_names)
+
+    @property
+    def torque_names(self) -> tuple[str, ...]:
+        """Names of the torques, in the order of the columns of `torques`. They are those of the coordinates, but a free root has
+        forces and moments instead of a position and a quaternion, and coordinates that follow others have none."""
+        return tuple(self._native.torque_names)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The parts of the file that were ignored, changed or filled in, one sentence each."""
+        return tuple(text for _, text in self._native.notes)
+
+    def torques(
+        self,
+        q: Any,
+        loads: Load | Sequence[Load] = (),
+        external: Any | None = None,
+        *,
+        threads: int = 1,
+    ) -> Torques:
+        """External, passive and active torque of postures at rest.
+
+        q: postures (rad, m), shape (N, n), or (n,) for one; or a table or dictionary with names of coordinates, the others of which
+            stay at their default.
+        loads: weights and forces on segments: `Weight`, `Force`, or texts such as "hand_r 3kg".
+        external: generalised forces of a device at the joints (N m, N), in the order of `torque_names`, shape (N, r) or (r,); they
+            count as external torque.
+        threads: number of threads. Each result is the same to the bit for any number.
+        """
+        table, single = postures(self._native, q)
+        device = None if external is None else rows("external", external)
+        results = self._native.torques(table, native_loads(loads), device, _count(threads))
+        return Torques(
+            self.torque_names, tuple(self._native.torque_units), *(array[0] if single else array for array in results)
+        )
+
+    def gradient(self, q: Any, loads: Load | Sequence[Load] = (), *, threads: int = 1) -> Array:
+        """Derivatives of external torque, d external_i / d q_j (N m or N, per rad or m), of shape (N, r, r), or (r, r) of one
+        posture, rows and columns in the order of `torque_names`. Arguments are those of `torques`."""
+        table, single = postures(self._native, q)
+        gradient = self._native.gradient(table, native_loads(loads), _count(threads))
+        return gradient[0] if single else gradient
+
+    def __repr__(self) -> str:
+        return f"<contrapposto.Model {self.name!r}: {len(self.coordinate_names)} coordinates, {self.mass:.1f} kg>"
+
+
+def _count(threads: int) -> int:
+    if not isinstance(threads, int) or isinstance(threads, bool) or not 1 <= threads <= 1024:
+        raise InputError(f"threads is {threads!r}; it must be a whole number from 1 to 1024")
+    return threads
