@@ -31,7 +31,7 @@ type Refused = (usize, JointTorquesError);
 
 impl Given {
     fn postures(&self) -> usize {
-        if self.width == 0 { 0 } else { self.values.len() / self.width }
+        self.values.len().checked_div(self.width).unwrap_or(0)
     }
 
     /// Torques of all postures, `rates` a posture. The number of threads changes no bit of them.
