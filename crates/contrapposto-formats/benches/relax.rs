@@ -43,13 +43,13 @@ fn run(file: &Path, name: &str, standing: bool, options: Options) {
         let ratio = pose.effort / target.effort;
         no_worse += usize::from(ratio <= 1.0 + SAME);
         held += usize::from(effort::holds(&pose));
-        worst = worst.max(pose.levels[0].length).max(pose.slip);
+        worst = worst.max(pose.levels[0].length).max(pose.slip.length());
         println!(
             "{i:2} effort {:9.3} peer {:9.3} ratio {ratio:6.3}  hand {:.0e} m  slip {:.0e}  {:?} {:?}, {} steps, {:.2} ms",
             pose.effort,
             target.effort,
             pose.levels[0].length,
-            pose.slip,
+            pose.slip.length(),
             pose.balance,
             pose.reason,
             pose.steps,

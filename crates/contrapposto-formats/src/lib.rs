@@ -44,7 +44,7 @@ pub use scenario::{
     ContentsTask, MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, ScenarioContents, read_contents,
     read_pose, read_relax, read_run, read_scenario, scenario_model, scenario_runs, scenario_schema,
 };
-pub use summary::{CoordinateText, GroupText, SummaryText, iterations};
+pub use summary::{CoordinateText, GroupText, SlipText, SummaryText, iterations};
 pub use thing::Thing;
 pub use trajectory_csv::{TableRow, csv_header, csv_row};
 pub use verdict::{MissedText, SuggestionText, VerdictText};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contrapposto::contact::Support;
+use contrapposto::contact::{Slip, Support};
 use contrapposto::hybrid::Case;
 use contrapposto::model::{Coordinate, CoordinateKind, Side};
 use contrapposto::simulation::{Contact, CoordinateSummary, FootStep, Scenario, Standing, StopReason, Summary};
@@ -25,7 +25,7 @@ pub struct SummaryText {
     /// Changes of the job that were tried and help, the one that helps most first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub suggestions: Vec<SuggestionText>,
-    /// `duration`, `settled`, `interrupted` or `fell`.
+    /// `duration`, `settled`, `interrupted`, `fell` or `slid`.
     pub stopped: &'static str,
     /// The event that threw the body off balance, if one did.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,8 +93,36 @@ pub struct StandingText {
     pub tasks: Vec<String>,
     /// Length of the error of each of `tasks`, in its units.
     pub task_errors: Vec<f64>,
-    /// How far supports are off their places, m and rad together.
-    pub slip: f64,
+    /// How far supports are off their places.
+    pub slip: SlipText,
+    /// The greatest slip of the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub greatest_slip: Option<GreatestSlipText>,
+}
+
+/// How far supports are off their places: errors of all supports together.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SlipText {
+    /// Distance, m.
+    pub distance_m: f64,
+    /// Angle, degrees.
+    pub angle_deg: f64,
+}
+
+impl From<Slip> for SlipText {
+    fn from(slip: Slip) -> Self {
+        Self { distance_m: slip.distance, angle_deg: slip.angle.to_degrees() }
+    }
+}
+
+/// The greatest slip of a run.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct GreatestSlipText {
+    /// Its size.
+    #[serde(flatten)]
+    pub slip: SlipText,
+    /// When, s.
+    pub at_s: f64,
 }
 
 /// A support that was put elsewhere.
@@ -278,7 +306,8 @@ impl StandingText {
             supports: scenario.supports.iter().zip(&standing.contacts).map(support).collect(),
             tasks: scenario.tasks.iter().map(|task| task.label(&scenario.model)).collect(),
             task_errors: standing.errors.clone(),
-            slip: standing.slip,
+            slip: standing.slip.into(),
+            greatest_slip: summary.slip.map(|(slip, at_s)| GreatestSlipText { slip: slip.into(), at_s }),
         }
     }
 }

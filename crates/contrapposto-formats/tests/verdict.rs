@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use contrapposto::contact::Slip;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Side};
 use contrapposto::posture::Posture;
-use contrapposto::simulation::{Run, Scenario, ScenarioError, Summary};
-use contrapposto::verdict::{Verdict, VerdictKind};
+use contrapposto::simulation::{Run, Scenario, ScenarioError, StopReason, Summary};
+use contrapposto::verdict::{HeldPosture, Verdict, VerdictKind};
 use contrapposto_formats::{VerdictText, read_scenario};
 use nalgebra::Vector3;
 
@@ -247,6 +248,86 @@ fn a_weight_before_the_body_with_every_joint_locked_cannot_stand_where_the_line_
     assert!(verdict.sentence.contains("beyond the supports"), "{}", verdict.sentence);
     let said: f64 = verdict.sentence.split(" act ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((said - beyond).abs() < 0.01, "{said} and {beyond}");
+}
+
+#[test]
+fn a_body_on_its_hands_that_slide_cannot_stand_by_the_distance_and_angle_of_its_segments_and_the_run_ends_there() {
+    // Hands on the floor, bent legs in the air: balance, which is above places, drags the hands along.
+    let text = r#"
+format = 1
+title = "on the hands"
+[model]
+adult = { sex = "male", stature_m = 1.952, mass_kg = 135.367, lengths_m = { femur = 0.455 } }
+[posture]
+ankle_angle_r_deg = 10
+ankle_angle_l_deg = 10
+elbow_flex_l_deg = 12.97
+hip_flexion_r_deg = 20
+hip_flexion_l_deg = 20
+knee_angle_r_deg = 30
+knee_angle_l_deg = 30
+[[support]]
+segment = "hand_r"
+[[support]]
+segment = "hand_l"
+friction = 0.483
+[[task]]
+kind = "orientation"
+segment = "abdomen"
+target = "start"
+[strategy]
+kind = "passive"
+[relief]
+max_step_deg = 5.594
+[run]
+duration_s = 5
+step_s = 0.5
+"#;
+    let scenario = read_scenario("hands.toml", text.as_bytes(), None).unwrap();
+    let model = &scenario.model;
+    let first = Run::new(&scenario).unwrap().next_sample().unwrap().unwrap().posture.to_vec();
+    let (summary, verdict, last) = run(&scenario);
+    let (slip, time) = summary.slip.unwrap();
+    assert!(time > 1.0, "{time} s");
+    assert_eq!((summary.reason, time), (StopReason::Slid, summary.end_time), "{slip:?}");
+    assert!(slip.exceeds(Slip::GREATEST) && slip.exceeds(Slip::NOTICED), "{slip:?}");
+    let [start, end] = [&Posture::new(first), &last].map(|posture| {
+        let mut kinematics = Kinematics::new(model);
+        kinematics.update(model, posture).unwrap();
+        kinematics
+    });
+    let (mut distance, mut angle) = (0.0_f64, 0.0_f64);
+    for segment in ["hand_r", "hand_l"].map(|name| model.segment(name).unwrap()) {
+        let (from, to) = (start.placement(model, segment), end.placement(model, segment));
+        distance = distance.hypot((to.translation.vector - from.translation.vector).norm());
+        angle = angle.hypot(from.rotation.angle_to(&to.rotation));
+    }
+    assert!(
+        (slip.distance - distance).abs() < 1e-9 && (slip.angle - angle).abs() < 1e-7,
+        "{slip:?} {distance} {angle}"
+    );
+    assert_eq!(verdict.kind, VerdictKind::CannotStand);
+    let said = format!("Cannot stand: supports slide by {:.1} cm and {:.1}°", 100.0 * distance, angle.to_degrees());
+    assert!(verdict.sentence.starts_with(&said), "{} and {said}", verdict.sentence);
+    assert_eq!(verdict.slip, Some((slip, Some(time))));
+}
+
+#[test]
+fn slip_is_noticed_from_a_millimetre_or_a_tenth_of_a_degree_and_ends_a_job_from_five_millimetres_or_a_degree() {
+    let slip = |millimetres: f64, degrees: f64| Slip { distance: 1e-3 * millimetres, angle: degrees.to_radians() };
+    let model = &arm(1.0, 1.0).model;
+    for (slip, noticed, ends) in [
+        (slip(0.9, 0.09), false, false),
+        (slip(1.1, 0.0), true, false),
+        (slip(0.0, 0.11), true, false),
+        (slip(4.9, 0.9), true, false),
+        (slip(5.1, 0.0), true, true),
+        (slip(0.0, 1.1), true, true),
+    ] {
+        let verdict = Verdict::of_posture(model, &HeldPosture { slip, ..HeldPosture::default() });
+        assert_eq!(verdict.slip.is_some(), noticed, "{slip:?}");
+        assert_eq!(verdict.kind == VerdictKind::CannotStand, ends, "{slip:?}: {}", verdict.sentence);
+    }
 }
 
 #[test]

@@ -104,7 +104,7 @@ fn every_sample_is_in_equilibrium() {
                 let left = sample.external[coordinate].abs();
                 if i < 3 { force = force.max(left / weight) } else { moment = moment.max(left / (weight * stature)) }
             }
-            slip = slip.max(standing.slip);
+            slip = slip.max(standing.slip.length());
             for i in 0..sample.posture.len() {
                 assert_eq!(sample.external[i] + sample.passive[i] + sample.active[i], 0.0);
                 let range = model.coordinates()[i].range;

@@ -1,5 +1,6 @@
 //! `contrapposto pose`: one posture from tasks in order of priority.
 
+use contrapposto::contact::Slip;
 use contrapposto::posture_solver::{Engine, EngineError, Reason, SolvedPosture};
 use contrapposto::verdict::{HeldPosture, Missed, Verdict};
 use contrapposto_formats::motion::{write_csv, write_sto};
@@ -75,11 +76,14 @@ fn write(
 /// The answer of a posture that is held.
 pub(super) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held) -> Verdict {
     let levels = || scenario.goals.iter().zip(&pose.levels);
-    let slip = levels().filter(|(goal, _)| goal.hard).map(|(_, level)| level.length).sum();
     let targets = levels().filter(|(goal, _)| !goal.hard).map(|(goal, level)| (goal, level.length));
-    let missed = Missed::of_supports(slip).into_iter().chain(Missed::of_levels(&scenario.model, targets)).collect();
-    let posture =
-        HeldPosture { groups: held.groups.clone(), missing: held.missing, missed, hazards: held.hazards.clone() };
+    let posture = HeldPosture {
+        groups: held.groups.clone(),
+        missing: held.missing,
+        slip: levels().filter(|(goal, _)| goal.hard).fold(Slip::default(), |slip, (_, level)| slip.with(level.slip())),
+        missed: Missed::of_levels(&scenario.model, targets),
+        hazards: held.hazards.clone(),
+    };
     Verdict::of_posture(&scenario.model, &posture)
 }
 

@@ -93,7 +93,6 @@ fn verdict(scenario: &RelaxScenario, found: &Equilibria) -> Result<Verdict, Fail
     };
     let lengths = best.relaxed.levels.iter().map(|level| level.length);
     let missed = Missed::of_levels(&scenario.model, scenario.goals.iter().zip(lengths));
-    let missed = Missed::of_supports(best.relaxed.slip).into_iter().chain(missed).collect();
     let frame = frame_of_posture(&scenario.model, best)?;
     let hazards = Hazard::all(&scenario.model, &frame.angles, &frame.external, &frame.passive);
     let posture = HeldPosture { hazards, ..HeldPosture::of_equilibrium(best, missed) };

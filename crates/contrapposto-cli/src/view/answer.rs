@@ -5,7 +5,7 @@ use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::statics::{Load, LoadKind};
 use contrapposto::suggestions::Suggestion;
-use contrapposto::verdict::{Verdict, VerdictKind, Who};
+use contrapposto::verdict::{Verdict, VerdictKind, Who, how_long, slip_in_words};
 use contrapposto_formats::VerdictText;
 use serde::Serialize;
 
@@ -56,7 +56,7 @@ pub(crate) fn first_lines(verdict: &Verdict) -> String {
         }
     }
     let hazards: String = findings.iter().map(|finding| format!("Hazard: {finding}.\n")).collect();
-    let more = also_missed(verdict).map_or(String::new(), |more| more + "\n");
+    let more: String = also_missed(verdict).into_iter().chain(also_slid(verdict)).map(|line| line + "\n").collect();
     format!("{}\n{hazards}{more}", verdict.sentence)
 }
 
@@ -65,6 +65,13 @@ pub(crate) fn also_missed(verdict: &Verdict) -> Option<String> {
     let lower = verdict.missed.iter().filter(|missed| !missed.decides);
     let list: Vec<String> = lower.map(|missed| format!("{} by {}", missed.task, missed.by())).collect();
     (!list.is_empty()).then(|| format!("Missed besides, of lower priority: {}.", list.join(", ")))
+}
+
+/// `The supports slid by 0.2 cm and 0.3° (the greatest slip, at 12 s).`, of a job that is done all the same.
+pub(crate) fn also_slid(verdict: &Verdict) -> Option<String> {
+    let (slip, time) = verdict.slip.filter(|_| verdict.kind != VerdictKind::CannotStand)?;
+    let when = time.map_or(String::new(), |time| format!(" (the greatest slip, at {})", how_long(time)));
+    Some(format!("The supports slid by {}{when}.", slip_in_words(slip)))
 }
 
 /// Exit code 1 for a job that cannot be done.

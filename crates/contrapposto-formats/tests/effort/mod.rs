@@ -139,5 +139,5 @@ pub(crate) fn targets(file: &Path, problem: &str) -> Vec<Target> {
 
 /// Hand, feet and root where they should be?
 pub(crate) fn holds(pose: &SolvedPosture) -> bool {
-    pose.levels[0].length < 1e-6 && pose.slip < 1e-6 && pose.balance == Balance::Held
+    pose.levels[0].length < 1e-6 && pose.slip.length() < 1e-6 && pose.balance == Balance::Held
 }

@@ -6,10 +6,12 @@
 mod forces;
 mod missing;
 mod rows;
+mod slip;
 mod support;
 
 pub use forces::{Balance, ContactForces};
 pub use missing::{Condition, Missing};
 pub(crate) use rows::{Unknowns, bounds, friction_rows, share_row};
+pub use slip::Slip;
 pub(crate) use support::rates_that_move;
 pub use support::{FACES, Place, Region, Support, SupportError, root_rates};

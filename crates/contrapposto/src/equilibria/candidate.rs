@@ -51,7 +51,9 @@ impl Candidate {
 
     /// Distance of the levels above `slot` and of the supports from their targets.
     pub(super) fn distance(&self, slot: usize) -> f64 {
-        self.excess + self.relaxed.slip + self.relaxed.levels[..slot].iter().map(|level| level.length).sum::<f64>()
+        self.excess
+            + self.relaxed.slip.length()
+            + self.relaxed.levels[..slot].iter().map(|level| level.length).sum::<f64>()
     }
 }
 

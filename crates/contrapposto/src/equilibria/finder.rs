@@ -356,7 +356,7 @@ impl<'a> Finder<'a> {
     fn selected(&self, stage: Stage) -> Vec<usize> {
         let allowed = ALLOWED_ERROR[stage as usize];
         let mut selected: Vec<usize> =
-            (0..self.found.len()).filter(|&i| self.found[i].relaxed.slip <= allowed).collect();
+            (0..self.found.len()).filter(|&i| self.found[i].relaxed.slip.length() <= allowed).collect();
         for level in 0..=self.slot {
             let error = |i: usize| {
                 let found = &self.found[i];
@@ -383,7 +383,7 @@ impl<'a> Finder<'a> {
         let mut selected = self.selected(Stage::Converged);
         if selected.is_empty() {
             // All slip or have not converged: the one that slips least, whose figures say so.
-            let slip = |i: &usize| self.found[*i].relaxed.slip;
+            let slip = |i: &usize| self.found[*i].relaxed.slip.length();
             selected.extend((0..self.found.len()).min_by(|a, b| slip(a).total_cmp(&slip(b))));
         }
         selected.sort_by(|&a, &b| self.found[a].relaxed.effort.total_cmp(&self.found[b].relaxed.effort));

@@ -21,7 +21,7 @@ use super::settings::{Rates, Settings};
 use super::slope::SlopeAlongMotion;
 use super::step_rule::StepRule;
 use super::tolerances::OTHER_STARTS;
-use crate::contact::{Balance, ContactForces, Support};
+use crate::contact::{Balance, ContactForces, Slip, Support};
 use crate::effort::basin_hopping::BasinHopping;
 use crate::effort::hessian::HessianModel;
 use crate::joint_torques::JointTorques;
@@ -170,9 +170,9 @@ impl<'a> Engine<'a> {
         self.error_of(&self.settings.levels[level]).length
     }
 
-    /// Distance of the supports from their places: length of the errors in m and rad together.
-    pub(crate) fn slip(&self) -> f64 {
-        self.settings.placements.as_ref().map_or(0.0, |placements| self.error_of(placements).length)
+    /// Distance of the supports from their places.
+    pub(crate) fn slip(&self) -> Slip {
+        self.settings.placements.as_ref().map_or_else(Slip::default, |placements| self.error_of(placements).slip())
     }
 
     fn error_of(&self, level: &PriorityLevel) -> LevelError {

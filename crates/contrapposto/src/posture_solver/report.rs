@@ -2,7 +2,7 @@
 
 use super::Reason;
 use super::tolerances::NEARER;
-use crate::contact::Balance;
+use crate::contact::{Balance, Slip};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture::Posture;
@@ -17,8 +17,8 @@ pub struct SolvedPosture {
     pub levels: Vec<LevelError>,
     /// Sum of squares of the effort level, as shares of strength; 0 without one.
     pub effort: f64,
-    /// Distance of the supports from their places: length of the errors in m and rad together; 0 without supports.
-    pub slip: f64,
+    /// Distance of the supports from their places; 0 without supports.
+    pub slip: Slip,
     /// Equilibrium of the root; [`Balance::Held`] without supports.
     pub balance: Balance,
     /// Why the steps ended.
@@ -72,6 +72,15 @@ impl LevelError {
         }));
         let length = rows.iter().map(|row| row.value * row.value).sum::<f64>().sqrt();
         Self { rows, length }
+    }
+
+    /// Lengths and angles of the rows, apart: the slip of a level that holds places of supports.
+    pub fn slip(&self) -> Slip {
+        let length = |angles: bool| {
+            let rows = self.rows.iter().filter(|row| (row.unit == Unit::Radian) == angles);
+            rows.map(|row| row.value * row.value).sum::<f64>().sqrt()
+        };
+        Slip { distance: length(false), angle: length(true) }
     }
 
     /// Sum of squares of the shares of strength among the rows.

@@ -43,8 +43,9 @@ pub(super) fn easiest(
     scenario.locked_rates().for_each(|rate| locked[rate] = true);
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
     let (found, steps) = search(scenario, now, supports, &locked)?;
-    let better =
-        |best: &RelaxedPosture| best.relaxed.slip <= MOST_SLIP && best.relaxed.effort < WORTH_A_MOTION * now.effort;
+    let better = |best: &RelaxedPosture| {
+        best.relaxed.slip.length() <= MOST_SLIP && best.relaxed.effort < WORTH_A_MOTION * now.effort
+    };
     let better = found.into_iter().next().filter(better);
     Ok((better.map(|best| best.relaxed.posture), steps))
 }

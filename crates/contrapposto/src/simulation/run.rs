@@ -6,6 +6,7 @@ use super::relief_log::ReliefLog;
 use super::state::State;
 use super::step::TIME_TOLERANCE;
 use super::{CoordinateSummary, Fall, Sample, Scenario, ScenarioError, Simulation, Standing, StopReason, Summary};
+use crate::contact::Slip;
 use crate::joint_torques::GroupLoad;
 use crate::model::Side;
 
@@ -23,6 +24,7 @@ pub struct Snapshot {
     reliefs: ReliefLog,
     effort_at_start: Option<f64>,
     hardest: Option<(GroupLoad, f64)>,
+    slip: Option<(Slip, f64)>,
     errors: Errors,
 }
 
@@ -93,6 +95,7 @@ impl<'a> Run<'a> {
             reliefs: ReliefLog::new(n),
             effort_at_start: None,
             hardest: None,
+            slip: None,
             errors: Errors::default(),
         };
         Ok(Self::with(scenario, simulation, start))
@@ -166,6 +169,10 @@ impl<'a> Run<'a> {
             }
             self.so_far.effort_at_start.get_or_insert(standing.effort);
             self.standing.get_or_insert_default().clone_from(standing);
+            if take_slip(&mut self.so_far.slip, standing, sample.time).exceeds(Slip::GREATEST) {
+                self.reason = Some(StopReason::Slid);
+                return Ok(Some(sample));
+            }
         }
         if sample.settled && self.stop_when_settled && sample.time + TIME_TOLERANCE >= self.last_event {
             self.reason = Some(StopReason::Settled);
@@ -184,6 +191,7 @@ impl<'a> Run<'a> {
         errors.count(self.scenario, false);
         Summary {
             hardest: self.so_far.hardest,
+            slip: self.so_far.slip,
             errors: errors.counted,
             reason: self.reason.unwrap_or(StopReason::Interrupted),
             fall: self.fall,
@@ -210,6 +218,15 @@ fn take_hardest(hardest: &mut Option<(GroupLoad, f64)>, sample: &Sample) {
         let torque = sample.active[coordinate];
         *hardest = Some((GroupLoad { coordinate, side: Side::of(torque), torque, load }, sample.time));
     }
+}
+
+/// Takes in the slip of a sample, and gives it.
+fn take_slip(greatest: &mut Option<(Slip, f64)>, standing: &Standing, time: f64) -> Slip {
+    let slip = standing.slip;
+    if !standing.contacts.is_empty() && greatest.is_none_or(|(greatest, _)| slip.length() > greatest.length()) {
+        *greatest = Some((slip, time));
+    }
+    slip
 }
 
 /// Runs a scenario, showing every sample to `record`. Memory grows with the number of changes of load, not with the length of the run.

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use crate::contact::Slip;
 use crate::hybrid::{Decision, Strategy};
 use crate::model::Side;
 
@@ -123,8 +124,8 @@ pub struct Standing {
     pub contacts: Vec<Contact>,
     /// Length of the error of each task, in its units.
     pub errors: Vec<f64>,
-    /// Distance of the supports from their places, m and rad together.
-    pub slip: f64,
+    /// Distance of the supports from their places.
+    pub slip: Slip,
     /// Centre of mass, ground, m.
     pub center_of_mass: Vector3<f64>,
     /// Sum of the squared relative loads: see [`crate::joint_torques::effort`].

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::{FootStep, ReliefLog, Sample, Standing};
-use crate::contact::Missing;
+use crate::contact::{Missing, Slip};
 use crate::fatigue::LoadHistory;
 use crate::hybrid::{Case, Decision};
 use crate::joint_torques::GroupLoad;
@@ -25,6 +25,8 @@ pub enum StopReason {
     Interrupted,
     /// An event has thrown the body off balance: [`Summary::fall`].
     Fell,
+    /// Supports slid by more than [`Slip::GREATEST`]: [`Summary::slip`].
+    Slid,
 }
 
 /// The end of a body that an event has thrown off balance.
@@ -47,13 +49,14 @@ impl fmt::Display for Fall {
 }
 
 impl StopReason {
-    /// `duration`, `settled`, `interrupted` or `fell`.
+    /// `duration`, `settled`, `interrupted`, `fell` or `slid`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Duration => "duration",
             Self::Settled => "settled",
             Self::Interrupted => "interrupted",
             Self::Fell => "fell",
+            Self::Slid => "slid",
         }
     }
 }
@@ -120,6 +123,8 @@ pub struct Summary {
     pub effort_at_start: Option<f64>,
     /// Supports that were put elsewhere.
     pub foot_steps: Vec<FootStep>,
+    /// The greatest distance of the supports from their places, and when that was, s; `None` without supports.
+    pub slip: Option<(Slip, f64)>,
     /// How it stood in the last sample.
     pub standing: Option<Standing>,
 }

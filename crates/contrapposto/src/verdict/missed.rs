@@ -17,21 +17,11 @@ pub struct Missed {
     pub distance: f64,
     /// The unit; `None` where metres and radians are taken together.
     pub unit: Option<Unit>,
-    /// It is the most important target, or the places of the supports.
+    /// It is the most important target.
     pub decides: bool,
 }
 
 impl Missed {
-    /// Supports that are off their places by `distance`, m and rad together; `None` where that is nothing.
-    pub fn of_supports(distance: f64) -> Option<Self> {
-        (distance > MISSED_DISTANCE).then(|| Self {
-            task: "the places of the supports".to_owned(),
-            distance,
-            unit: None,
-            decides: true,
-        })
-    }
-
     /// The missed targets among the levels of a posture, the most important first, with the lengths of their errors. Only the first
     /// level with a target decides.
     pub fn of_levels<'a>(model: &Model, levels: impl IntoIterator<Item = (&'a PriorityLevel, f64)>) -> Vec<Self> {

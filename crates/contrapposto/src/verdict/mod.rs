@@ -4,8 +4,9 @@
 //!
 //! 1. [`VerdictKind::CannotBeDone`]: a muscle group would need more than its strength in a posture that is held. A posture that misses
 //!    its most important target is the best of those that do not do the job, and nobody need hold it: it is judged by that;
-//! 2. [`VerdictKind::CannotStand`]: the supports do not hold the body; of a posture that misses its target, too, it is not said;
-//! 3. [`VerdictKind::NotReached`]: the most important target is missed, or supports leave their places;
+//! 2. [`VerdictKind::CannotStand`]: the supports do not hold the body; of a posture that misses its target, too, it is not said. Supports
+//!    that slide by more than [`Slip::GREATEST`] do not hold it, and the loads of such a posture are those of another job;
+//! 3. [`VerdictKind::NotReached`]: the most important target is missed;
 //! 4. [`VerdictKind::HeldUntil`]: a group tires until it can no longer hold its load, before the end of the asked time;
 //! 5. [`VerdictKind::Holds`]: none of these.
 //!
@@ -25,9 +26,9 @@ mod words;
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed};
 pub use posture::HeldPosture;
 pub use spread::spread;
-pub use words::how_long;
+pub use words::{how_long, slip_in_words};
 
-use crate::contact::Missing;
+use crate::contact::{Missing, Slip};
 use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Side;
 
@@ -129,6 +130,8 @@ pub struct Verdict {
     pub fails_weaker: Option<Who>,
     /// Coordinates that ligaments carry at an angle where that is a hazard: at the end of a run, at the worst of a motion.
     pub hazards: Vec<Hazard>,
+    /// Distance of the supports from their places where it exceeds [`Slip::NOTICED`]; of a run the greatest, and when, s.
+    pub slip: Option<(Slip, Option<f64>)>,
     /// The first sentence of every result.
     pub sentence: String,
     /// Targets that are missed, the most important first.
@@ -153,6 +156,8 @@ pub(crate) struct Findings {
     pub(crate) hardest: Option<(GroupLoad, Option<f64>)>,
     /// What the supports lack; when, s, where that matters.
     pub(crate) missing: Option<(Missing, Option<f64>)>,
+    /// Distance of the supports from their places: the greatest of a run, when, s, where that matters.
+    pub(crate) slip: Option<(Slip, Option<f64>)>,
     /// All targets that are missed, the most important first.
     pub(crate) missed: Vec<Missed>,
     /// The group that fails first.
@@ -183,11 +188,18 @@ impl Findings {
         first.filter(|failure| self.asked.is_some_and(|asked| failure.range.0 < asked))
     }
 
+    /// The slip that lets the body down.
+    fn slides(&self) -> Option<(Slip, Option<f64>)> {
+        self.slip.filter(|(slip, _)| slip.exceeds(Slip::GREATEST))
+    }
+
     /// The kind, by precedence.
     fn kind(&self) -> VerdictKind {
         let misses = self.missed.first().is_some_and(|missed| missed.decides);
         let ends_in_a_fall = self.missing.is_some_and(|(_, time)| time.is_some());
-        if misses && !ends_in_a_fall {
+        if self.slides().is_some() {
+            VerdictKind::CannotStand
+        } else if misses && !ends_in_a_fall {
             VerdictKind::NotReached
         } else if self.hardest.is_some_and(|(group, _)| group.load > 1.0) {
             VerdictKind::CannotBeDone

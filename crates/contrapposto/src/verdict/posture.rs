@@ -2,7 +2,7 @@
 
 use super::holding::failures;
 use super::{Findings, Missed, Verdict};
-use crate::contact::Missing;
+use crate::contact::{Missing, Slip};
 use crate::equilibria::{RelaxedPosture, Work};
 use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Model;
@@ -14,6 +14,8 @@ pub struct HeldPosture {
     pub groups: Vec<GroupLoad>,
     /// What the supports lack; `None` in equilibrium.
     pub missing: Option<Missing>,
+    /// Distance of the supports from their places.
+    pub slip: Slip,
     /// Targets that are missed, the most important first.
     pub missed: Vec<Missed>,
     /// Coordinates in hazard.
@@ -23,7 +25,8 @@ pub struct HeldPosture {
 impl HeldPosture {
     /// A posture of least effort with the targets that it misses.
     pub fn of_equilibrium(found: &RelaxedPosture, missed: Vec<Missed>) -> Self {
-        Self { groups: found.work.iter().map(GroupLoad::from).collect(), missing: None, missed, hazards: vec![] }
+        let groups = found.work.iter().map(GroupLoad::from).collect();
+        Self { groups, slip: found.relaxed.slip, missed, ..Self::default() }
     }
 }
 
@@ -58,6 +61,7 @@ impl Verdict {
         Findings {
             hardest: hardest.map(|group| (*group, None)),
             missing: posture.missing.map(|missing| (missing, None)),
+            slip: Some((posture.slip, None)),
             missed: posture.missed.clone(),
             fails: first.filter(|failure| failure.time.is_finite()).copied(),
             later,

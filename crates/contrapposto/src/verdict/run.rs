@@ -11,13 +11,13 @@ impl Verdict {
     /// Of a run, whether it went to its end or not.
     pub fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
         let levels = scenario.tasks.iter().map(|task| &task.goal).zip(summary.errors.iter().copied());
-        let slip = summary.standing.as_ref().and_then(|standing| Missed::of_supports(standing.slip));
         let interrupted = summary.reason == StopReason::Interrupted;
         let mut findings = Findings {
             asked: Some(summary.end_time),
             hardest: summary.hardest.map(|(group, time)| (group, Some(time))),
             missing: summary.fall.map(|fall| (fall.missing, Some(fall.time))),
-            missed: slip.into_iter().chain(Missed::of_levels(&scenario.model, levels)).collect(),
+            slip: summary.slip.map(|(slip, time)| (slip, Some(time))),
+            missed: Missed::of_levels(&scenario.model, levels),
             fails: fails(scenario, summary),
             hazards: at_end(scenario, summary),
             interrupted: interrupted.then_some(summary.end_time),

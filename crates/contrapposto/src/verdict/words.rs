@@ -1,6 +1,7 @@
 //! Says a verdict in one sentence.
 
 use super::{Failure, Findings, Missed, TIRED, Verdict, VerdictKind, Who};
+use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
 use crate::tasks::Unit;
 
@@ -45,6 +46,7 @@ impl Findings {
             tired: self.tired,
             fails_weaker: self.fails_weaker().map(|failure| failure.who),
             hazards: self.hazards,
+            slip: self.slip.filter(|(slip, _)| slip.exceeds(Slip::NOTICED)),
             sentence,
             missed: self.missed,
         }
@@ -64,8 +66,14 @@ impl Findings {
     }
 
     fn falls(&self) -> String {
+        let when =
+            |time: Option<f64>| time.filter(|time| *time > 0.0).map(|time| format!(" from {} on", how_long(time)));
+        if let Some((slip, time)) = self.slides() {
+            let when = when(time).unwrap_or_default();
+            return format!("Cannot stand: supports slide by {}{when}.", slip_in_words(slip));
+        }
         let Some((missing, time)) = self.missing else { return String::new() };
-        let when = time.filter(|time| *time > 0.0).map(|time| format!(" from {} on", how_long(time)));
+        let when = when(time);
         format!("Cannot stand: the supports do not hold the body{}; {missing}.", when.unwrap_or_default())
     }
 
@@ -163,8 +171,7 @@ impl Missed {
     pub fn by(&self) -> String {
         match self.unit {
             Some(Unit::Radian) => format!("{:.1}°", self.distance.to_degrees()),
-            Some(Unit::Metre) if self.distance < 0.995 => format!("{:.1} cm", 100.0 * self.distance),
-            Some(Unit::Metre) => format!("{:.2} m", self.distance),
+            Some(Unit::Metre) => centimetres(self.distance),
             _ => format!("{:.3} (m and rad together)", self.distance),
         }
     }
@@ -181,10 +188,20 @@ impl Who {
     }
 }
 
+/// `12.0 cm`, `1.20 m`.
+fn centimetres(distance: f64) -> String {
+    if distance < 0.995 { format!("{:.1} cm", 100.0 * distance) } else { format!("{distance:.2} m") }
+}
+
 /// `14 min to 27 min in two of three people`.
 fn in_words((least, greatest): (f64, f64)) -> String {
     let most = if greatest < A_DAY { how_long(greatest) } else { "no limit".to_owned() };
     format!("{} to {most} for two of three people", how_long(least))
+}
+
+/// `5.3 cm and 2.1°`.
+pub fn slip_in_words(slip: Slip) -> String {
+    format!("{} and {:.1}°", centimetres(slip.distance), slip.angle.to_degrees())
 }
 
 fn percent(share: f64) -> String {

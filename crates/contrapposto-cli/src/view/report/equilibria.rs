@@ -11,7 +11,7 @@ use contrapposto_report::{Entry, List, Moments, Table};
 
 use super::figure::{carriers, figure, figures_of, weight};
 use crate::fail::Fail;
-use crate::view::answer::also_missed;
+use crate::view::answer::{also_missed, also_slid};
 use crate::view::figures::figures_of_postures;
 use crate::view::frame::{Frame, frame_of_posture};
 use crate::view::muscles::{fails_first, hardest};
@@ -69,7 +69,7 @@ pub(crate) fn report_of_equilibria(
     };
     let more = found.postures.get(1).map(|next| percent(next.relaxed.effort / best.relaxed.effort - 1.0));
     report.headline.clone_from(&verdict.sentence);
-    report.reasons.extend(also_missed(verdict));
+    report.reasons.extend(also_missed(verdict).into_iter().chain(also_slid(verdict)));
     report.reasons.push(match (found.postures.len(), &more) {
         (n, Some(more)) => {
             format!(

@@ -3,7 +3,7 @@
 use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
 use contrapposto_report::{Figure, Report};
 
-use crate::view::answer::{Answer, also_missed, group_of_title};
+use crate::view::answer::{Answer, also_missed, also_slid, group_of_title};
 use crate::view::axes::pelvis_list;
 use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
@@ -34,7 +34,11 @@ pub(super) fn write(
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
     let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated && pelvis_was_relieved(scenario, summary));
     report.headline.clone_from(&answer.verdict.sentence);
-    report.reasons = also_missed(&answer.verdict).into_iter().chain(answer.advice.clone()).collect();
+    report.reasons = also_missed(&answer.verdict)
+        .into_iter()
+        .chain(also_slid(&answer.verdict))
+        .chain(answer.advice.clone())
+        .collect();
     // Of a job that cannot be done nothing else is said to hold.
     if answer.verdict.kind.is_done() {
         report.reasons.push(match standing {
@@ -177,6 +181,7 @@ impl Narrative<'_> {
             StopReason::Duration => "its full duration",
             StopReason::Interrupted => "it was interrupted",
             StopReason::Fell => "the supports could no longer hold the body",
+            StopReason::Slid => "the supports slid",
         };
         let why = summary.fall.map_or(String::new(), |fall| format!(" {}.", sentence(&fall.to_string())));
         let told = excerpt.events.len() as u64;

@@ -11,7 +11,7 @@ use contrapposto::posture_solver::Reason;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::Task;
 use contrapposto::verdict::Verdict;
-use contrapposto_formats::{RelaxScenario, VerdictText};
+use contrapposto_formats::{RelaxScenario, SlipText, VerdictText};
 use serde::Serialize;
 
 use super::group::GroupName;
@@ -19,6 +19,9 @@ use super::plain_table;
 use crate::view::three_axis::angles;
 use crate::view::words::MOST_JOINTS_SHOWN;
 use crate::view::words::how_long;
+
+/// Slip that a table shows, m or degrees.
+const SLIP_SHOWN: f64 = 1e-6;
 
 /// The whole file.
 #[derive(Serialize)]
@@ -58,7 +61,7 @@ pub(crate) struct RelaxedPostureText {
     supports: Vec<CarriedText>,
     /// Errors of the tasks, lengths in their units.
     tasks: Vec<TaskErrorText>,
-    slip: f64,
+    slip: SlipText,
     /// Joints whose ligaments carry half or more of the external torque.
     hanging: Vec<HangingText>,
     /// Groups that work, the hardest first.
@@ -193,7 +196,7 @@ impl RelaxedPostureText {
             tasks: tasks
                 .map(|((_, labels), level)| TaskErrorText { task: labels.join(" + "), error: level.length })
                 .collect(),
-            slip: found.relaxed.slip,
+            slip: found.relaxed.slip.into(),
             hanging: hanging.collect(),
             groups: found.work.iter().map(group).collect(),
             fails_first: found.fails_first().map(group),
@@ -305,8 +308,9 @@ impl RelaxedPostureText {
         line("unstable", unstable.collect());
         let left = self.tasks.iter().filter(|task| task.error > 1e-6);
         line("not reached", left.map(|task| format!("{} by {:.4} (m, rad)", task.task, task.error)).collect());
-        if self.slip > 1e-6 {
-            line("supports slip", vec![format!("by {:.1e} (m, rad)", self.slip)]);
+        let SlipText { distance_m, angle_deg } = self.slip;
+        if distance_m > SLIP_SHOWN || angle_deg > SLIP_SHOWN {
+            line("supports slip", vec![format!("by {distance_m:.1e} m and {angle_deg:.1e} degrees")]);
         }
         if !self.settled {
             line("not converged", vec!["the step limit was reached; effort may still fall a little".to_owned()]);

@@ -96,6 +96,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
         StopReason::Duration => "ran its full duration",
         StopReason::Interrupted => "interrupted",
         StopReason::Fell => "fell",
+        StopReason::Slid => "stopped because the supports slid,",
     };
     let picture = if scenario.has_supports_or_tasks() { "postures.svg" } else { "torque-balance.svg" };
     let standing =
