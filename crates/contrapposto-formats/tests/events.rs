@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use contrapposto::contact::Slip;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Fall, Run, Sample, Scenario, StopReason, Summary};
 use contrapposto_formats::read_scenario;
@@ -89,6 +90,8 @@ fn a_load_is_picked_up_and_put_down() {
         carried.push((sample.time, up / gravity - model.mass()));
     });
     assert_eq!((summary.reason, summary.fall), (StopReason::Duration, None));
+    let (slip, time) = summary.slip.unwrap();
+    assert!(!slip.exceeds(Slip::NOTICED), "{slip:?} at {time} s");
     for (time, more) in carried {
         let load = if (2.0..6.0).contains(&(time + 1e-9)) { 60.0 } else { 0.0 };
         assert!((more - load).abs() < 1e-7, "{time} s: {more} kg more than the body weighs");

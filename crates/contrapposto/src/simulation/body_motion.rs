@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::{Balance, ContactForces, Missing, Place, Support};
+use crate::contact::{Balance, ContactForces, Missing, Place, Slip, Support};
 use crate::joint_torques::JointTorques;
 use crate::model::Model;
 use crate::posture::Posture;
@@ -205,7 +205,7 @@ impl<'a> BodyMotion<'a> {
         posture.values_mut().copy_from_slice(self.before.values());
     }
 
-    /// After an event: moves until the supports hold the body again, within the same time step, as a body does that anticipates a
+    /// After an event: moves until the supports hold the body again and are in their places, within the same time step, as a body does that anticipates a
     /// load. Where no such posture is found `posture` stays; the answer is the force and moment that are missing there.
     pub(super) fn recover_balance(&mut self, posture: &mut Posture) -> Result<Option<Missing>, ScenarioError> {
         self.update(posture)?;
@@ -217,10 +217,13 @@ impl<'a> BodyMotion<'a> {
         for _ in 0..RECOVERY_STEPS {
             self.engine.step(posture)?;
             self.update(posture)?;
-            if self.contact().balance() == Balance::Held {
-                self.restart_convergence();
-                return Ok(None);
+            if self.contact().balance() == Balance::Held && !self.engine.slip().exceeds(Slip::NOTICED) {
+                break;
             }
+        }
+        if self.contact().balance() == Balance::Held {
+            self.restart_convergence();
+            return Ok(None);
         }
         self.take_back(posture);
         self.update(posture)?;

@@ -10,6 +10,8 @@ use crate::contact::Slip;
 use crate::joint_torques::GroupLoad;
 use crate::model::Side;
 
+/// Supports that slide for so long, s, are not put back by a recovery of balance (assumed).
+const LONGEST_SLIDE: f64 = 1.0;
 /// Steps between two snapshots.
 const SNAPSHOT_STEPS: u64 = 900;
 
@@ -25,6 +27,7 @@ pub struct Snapshot {
     effort_at_start: Option<f64>,
     hardest: Option<(GroupLoad, f64)>,
     slip: Option<(Slip, f64)>,
+    sliding_since: Option<f64>,
     errors: Errors,
 }
 
@@ -96,6 +99,7 @@ impl<'a> Run<'a> {
             effort_at_start: None,
             hardest: None,
             slip: None,
+            sliding_since: None,
             errors: Errors::default(),
         };
         Ok(Self::with(scenario, simulation, start))
@@ -169,7 +173,10 @@ impl<'a> Run<'a> {
             }
             self.so_far.effort_at_start.get_or_insert(standing.effort);
             self.standing.get_or_insert_default().clone_from(standing);
-            if take_slip(&mut self.so_far.slip, standing, sample.time).exceeds(Slip::GREATEST) {
+            take_slip(&mut self.so_far.slip, standing, sample.time);
+            let since = self.so_far.sliding_since.unwrap_or(sample.time);
+            self.so_far.sliding_since = standing.slip.exceeds(Slip::GREATEST).then_some(since);
+            if self.so_far.sliding_since.is_some_and(|since| sample.time - since + TIME_TOLERANCE >= LONGEST_SLIDE) {
                 self.reason = Some(StopReason::Slid);
                 return Ok(Some(sample));
             }
@@ -192,6 +199,7 @@ impl<'a> Run<'a> {
         Summary {
             hardest: self.so_far.hardest,
             slip: self.so_far.slip,
+            sliding_since: self.so_far.sliding_since,
             errors: errors.counted,
             reason: self.reason.unwrap_or(StopReason::Interrupted),
             fall: self.fall,
@@ -220,13 +228,12 @@ fn take_hardest(hardest: &mut Option<(GroupLoad, f64)>, sample: &Sample) {
     }
 }
 
-/// Takes in the slip of a sample, and gives it.
-fn take_slip(greatest: &mut Option<(Slip, f64)>, standing: &Standing, time: f64) -> Slip {
+/// Takes in the slip of a sample.
+fn take_slip(greatest: &mut Option<(Slip, f64)>, standing: &Standing, time: f64) {
     let slip = standing.slip;
     if !standing.contacts.is_empty() && greatest.is_none_or(|(greatest, _)| slip.length() > greatest.length()) {
         *greatest = Some((slip, time));
     }
-    slip
 }
 
 /// Runs a scenario, showing every sample to `record`. Memory grows with the number of changes of load, not with the length of the run.

@@ -25,7 +25,7 @@ pub enum StopReason {
     Interrupted,
     /// An event has thrown the body off balance: [`Summary::fall`].
     Fell,
-    /// Supports slid by more than [`Slip::GREATEST`]: [`Summary::slip`].
+    /// Supports slid by more than [`Slip::GREATEST`] for a second: [`Summary::sliding_since`].
     Slid,
 }
 
@@ -125,6 +125,8 @@ pub struct Summary {
     pub foot_steps: Vec<FootStep>,
     /// The greatest distance of the supports from their places, and when that was, s; `None` without supports.
     pub slip: Option<(Slip, f64)>,
+    /// Since when the supports of the last sample have been farther away than [`Slip::GREATEST`], s.
+    pub sliding_since: Option<f64>,
     /// How it stood in the last sample.
     pub standing: Option<Standing>,
 }

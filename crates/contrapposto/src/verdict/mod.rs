@@ -158,6 +158,8 @@ pub(crate) struct Findings {
     pub(crate) missing: Option<(Missing, Option<f64>)>,
     /// Distance of the supports from their places: the greatest of a run, when, s, where that matters.
     pub(crate) slip: Option<(Slip, Option<f64>)>,
+    /// Distance of supports that do not hold the body; since when, s, where that matters.
+    pub(crate) slides: Option<(Slip, Option<f64>)>,
     /// All targets that are missed, the most important first.
     pub(crate) missed: Vec<Missed>,
     /// The group that fails first.
@@ -188,16 +190,11 @@ impl Findings {
         first.filter(|failure| self.asked.is_some_and(|asked| failure.range.0 < asked))
     }
 
-    /// The slip that lets the body down.
-    fn slides(&self) -> Option<(Slip, Option<f64>)> {
-        self.slip.filter(|(slip, _)| slip.exceeds(Slip::GREATEST))
-    }
-
     /// The kind, by precedence.
     fn kind(&self) -> VerdictKind {
         let misses = self.missed.first().is_some_and(|missed| missed.decides);
         let ends_in_a_fall = self.missing.is_some_and(|(_, time)| time.is_some());
-        if self.slides().is_some() {
+        if self.slides.is_some() {
             VerdictKind::CannotStand
         } else if misses && !ends_in_a_fall {
             VerdictKind::NotReached

@@ -62,6 +62,7 @@ impl Verdict {
             hardest: hardest.map(|group| (*group, None)),
             missing: posture.missing.map(|missing| (missing, None)),
             slip: Some((posture.slip, None)),
+            slides: posture.slip.exceeds(Slip::GREATEST).then_some((posture.slip, None)),
             missed: posture.missed.clone(),
             fails: first.filter(|failure| failure.time.is_finite()).copied(),
             later,

@@ -17,6 +17,7 @@ impl Verdict {
             hardest: summary.hardest.map(|(group, time)| (group, Some(time))),
             missing: summary.fall.map(|fall| (fall.missing, Some(fall.time))),
             slip: summary.slip.map(|(slip, time)| (slip, Some(time))),
+            slides: summary.sliding_since.zip(summary.standing.as_ref()).map(|(since, last)| (last.slip, Some(since))),
             missed: Missed::of_levels(&scenario.model, levels),
             fails: fails(scenario, summary),
             hazards: at_end(scenario, summary),

@@ -68,7 +68,7 @@ impl Findings {
     fn falls(&self) -> String {
         let when =
             |time: Option<f64>| time.filter(|time| *time > 0.0).map(|time| format!(" from {} on", how_long(time)));
-        if let Some((slip, time)) = self.slides() {
+        if let Some((slip, time)) = self.slides {
             let when = when(time).unwrap_or_default();
             return format!("Cannot stand: supports slide by {}{when}.", slip_in_words(slip));
         }
