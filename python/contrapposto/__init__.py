@@ -11,19 +11,31 @@ True
 """
 
 from contrapposto._native import __version__
+from contrapposto.engine import Engine
 from contrapposto.errors import ContrappostoError, InputError, InternalError, JobError
+from contrapposto.jobs import minimize, pose, relax, simulate
 from contrapposto.loads import Force, Weight
 from contrapposto.model import Model
+from contrapposto.results import Equilibria, Pose, Record, Run
 from contrapposto.torques import Torques
 
 __all__ = [
     "ContrappostoError",
+    "Engine",
+    "Equilibria",
     "Force",
     "InputError",
     "InternalError",
     "JobError",
     "Model",
+    "Pose",
+    "Record",
+    "Run",
     "Torques",
     "Weight",
     "__version__",
+    "minimize",
+    "pose",
+    "relax",
+    "simulate",
 ]

@@ -37,6 +37,14 @@ def rows(what: str, values: Any) -> Array:
     return array
 
 
+def line(what: str, values: Any) -> Array:
+    """The values as one axis; a single number is an axis of one."""
+    array = np.atleast_1d(numbers(what, values))
+    if array.ndim != 1:
+        raise InputError(f"{what} has shape {array.shape}; it must be (N,)")
+    return array
+
+
 def postures(model: _native.Model, given: Any) -> tuple[Array, bool]:
     """Rows of coordinates, and whether one posture was given alone. Columns of a table and keys of a dictionary are names of
     coordinates; coordinates without one stay at their default."""

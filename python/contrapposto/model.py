@@ -6,26 +6,33 @@ import os
 import warnings
 import zlib
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 from contrapposto import _native
-from contrapposto._arrays import Array, postures, rows
+from contrapposto._native import Model as NativeModel
+from contrapposto._arrays import Array, line, postures, rows
 from contrapposto.errors import InputError
 from contrapposto.loads import Load, native_loads
 from contrapposto.torques import Torques
+
+#: Sense of a coordinate: that of the torque of a muscle group.
+Sense: TypeAlias = Literal["positive", "negative"]
 
 
 class Model:
     """An immutable body: the built-in adult (`Model.adult`), or a model file (`Model.from_file`)."""
 
     __slots__ = ("_native",)
-    _native: _native.Model
+    _native: NativeModel
 
     def __init__(self) -> None:
         raise TypeError("a model is made by Model.adult(...) or Model.from_file(...)")
 
     @classmethod
-    def _of(cls, native: _native.Model) -> Model:
+    def _of(cls, native: NativeModel) -> Model:
         model = object.__new__(cls)
         object.__setattr__(model, "_native", native)
         return model
@@ -111,7 +118,8 @@ class Model:
     @property
     def default_posture(self) -> Array:
         """Every coordinate at its default, shape (n,)."""
-        return self._native.default_posture[0]
+        posture: Array = self._native.default_posture[0]
+        return posture
 
     @property
     def segment_names(self) -> tuple[str, ...]:
@@ -160,8 +168,62 @@ class Model:
         gradient = self._native.gradient(table, native_loads(loads), _count(threads))
         return gradient[0] if single else gradient
 
+    def passive(self, coordinate: str, angles: npt.ArrayLike) -> Array:
+        """Passive torque (N m) of a coordinate at angles (rad), the other coordinates at their default."""
+        if coordinate not in self.torque_names:
+            raise _unknown(coordinate)
+        angles = line("angles", angles)
+        return self.torques({coordinate: angles}).passive[:, self.torque_names.index(coordinate)]
+
+    def strength(self, coordinate: str, angles: npt.ArrayLike) -> Array:
+        """Greatest voluntary torque (N m, both positive) of the muscle groups of the positive and the negative sense of a coordinate at
+        angles (rad), shape (N, 2)."""
+        angles = line("angles", angles)
+        both = [_native.strength(self._native, coordinate, positive, angles) for positive in (True, False)]
+        return np.stack(both, axis=1)
+
+    def group_names(self, coordinate: str) -> tuple[str, str]:
+        """Names of the muscle groups of the positive and the negative sense of a coordinate."""
+        positive, negative = (_native.group_names(self._native, coordinate, sense)[0] for sense in (True, False))
+        return (positive, negative)
+
+    def endurance_time(self, coordinate: str, loads: npt.ArrayLike, sense: Sense = "positive") -> Array:
+        """How long (s) a rested muscle group holds relative loads (torque over strength), shape (N,); inf where for ever."""
+        return _native.endurance_time(self._native, coordinate, _positive(sense), _loads(loads))
+
+    def fatigue(
+        self, coordinate: str, loads: npt.ArrayLike, seconds: float, sense: Sense = "positive", start: float = 0.0
+    ) -> Array:
+        """Fatigue of a muscle group, 0 rested and 1 where its load can no longer be held, after each of the relative loads, which last
+        `seconds` each, one after the other; `start` is the fatigue before. Shape (N,)."""
+        if not (0 < seconds < np.inf):
+            raise InputError(f"seconds is {seconds}; it must be greater than 0 and finite (s)")
+        if not 0 <= start <= 1:
+            raise InputError(f"start is {start}; it must lie in 0..1")
+        return _native.fatigue(self._native, coordinate, _positive(sense), (_loads(loads), seconds, start))
+
     def __repr__(self) -> str:
         return f"<contrapposto.Model {self.name!r}: {len(self.coordinate_names)} coordinates, {self.mass:.1f} kg>"
+
+
+def _unknown(coordinate: str) -> InputError:
+    error = InputError(f"the model has no coordinate `{coordinate}` with a torque; Model.torque_names lists them")
+    error.coordinate = coordinate
+    return error
+
+
+def _positive(sense: Sense) -> bool:
+    if sense not in ("positive", "negative"):
+        raise InputError(f"sense is {sense!r}; it must be 'positive' or 'negative'")
+    return sense == "positive"
+
+
+def _loads(loads: npt.ArrayLike) -> Array:
+    checked = line("loads", loads)
+    odd = checked[~((checked >= 0) & (checked < np.inf))]
+    if odd.size:
+        raise InputError(f"a relative load is {odd[0]}; it must be at least 0 and finite")
+    return checked
 
 
 def _count(threads: int) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from contrapposto._arrays import Array
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas  # type: ignore[import-untyped, unused-ignore]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,15 @@
 //! Gives the results of the commands as values, for programs that have no command line.
 
+mod controller;
 mod failure;
+mod frames;
+mod jobs;
 mod model;
 mod torques;
 
+pub use controller::Controller;
 pub use failure::{Failure, Note, Place};
+pub use frames::Frames;
+pub use jobs::{Posed, Relaxed, ScenarioSource, Simulated};
 pub use model::{ModelOptions, ModelSource};
 pub use torques::{RestTorques, TorqueRow};

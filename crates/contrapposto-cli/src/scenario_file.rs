@@ -31,6 +31,19 @@ impl ScenarioFile {
         Ok(Self { name, bytes, model })
     }
 
+    /// From a text; the files that it names are in the present folder.
+    pub(crate) fn of_text(text: &str) -> Result<Self, Fail> {
+        let name = "scenario.toml".to_owned();
+        if text.len() as u64 > MOST_BYTES {
+            return Err(Fail::Refused(format!(
+                "the scenario is {} bytes long; {MOST_BYTES} at most are read",
+                text.len()
+            )));
+        }
+        let model = model_of(Path::new(&name), &name, text.as_bytes())?;
+        Ok(Self { name, bytes: text.as_bytes().to_vec(), model })
+    }
+
     /// As [`Self::read`]; the body starts in the posture of a result, if one is given.
     pub(crate) fn read_from(path: &Path, start: Option<&Path>) -> Result<Self, Fail> {
         let mut file = Self::read(path)?;

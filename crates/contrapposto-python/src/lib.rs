@@ -6,7 +6,10 @@
 use pyo3::prelude::*;
 
 mod arrays;
+mod engine;
 mod errors;
+mod groups;
+mod job;
 mod loads;
 mod model;
 mod program;
@@ -17,7 +20,13 @@ mod unlocked;
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use super::engine::Engine;
+    #[pymodule_export]
     use super::errors::panic_for_tests;
+    #[pymodule_export]
+    use super::groups::{endurance_time, fatigue, group_names, minimize, strength};
+    #[pymodule_export]
+    use super::job::Job;
     #[pymodule_export]
     use super::model::Model;
     #[pymodule_export]

@@ -21,22 +21,11 @@ use crate::view::text::pose::{report, subtitle};
 const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
-    let ScenarioFile { name, bytes, model } = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
-    let scenario = read_pose(&name, &bytes, model)?;
-    if !scenario.unused.is_empty() {
-        let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
-        print_note("note", &format!("{} is ignored by `pose`; it is for `simulate`", list.join(", ")));
-    }
-    scenario.notes.iter().for_each(|note| print_note("note", note));
-    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
+    let file = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
+    let name = file.name.clone();
+    let scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POSE_FILES)).transpose()?;
-    let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
-    let (levels, limits) = scenario.levels();
-    let mut engine = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options).map_err(refused)?;
-    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
-    let mut pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
-    // The limits are not among the goals that are reported.
-    limits.map(|place| pose.levels.remove(place));
+    let pose = solve(&name, &scenario)?;
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let files = if args.out.is_some() { names.collect() } else { vec![] };
@@ -49,6 +38,31 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     }
     print(&if args.json { json } else { report(&scenario, &pose, &text, &verdict, folder.as_ref()) })?;
     exit(&pose, &verdict)
+}
+
+/// The scenario of a file; notes about it go to standard error.
+pub(crate) fn read(file: ScenarioFile) -> Result<PoseScenario, Fail> {
+    let ScenarioFile { name, bytes, model } = file;
+    let scenario = read_pose(&name, &bytes, model)?;
+    if !scenario.unused.is_empty() {
+        let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
+        print_note("note", &format!("{} is ignored by `pose`; it is for `simulate`", list.join(", ")));
+    }
+    scenario.notes.iter().for_each(|note| print_note("note", note));
+    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
+    Ok(scenario)
+}
+
+/// The posture of a scenario named `name`, with the errors of its goals.
+pub(crate) fn solve(name: &str, scenario: &PoseScenario) -> Result<SolvedPosture, Fail> {
+    let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
+    let (levels, limits) = scenario.levels();
+    let mut engine = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options).map_err(refused)?;
+    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
+    let mut pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
+    // The limits are not among the goals that are reported.
+    limits.map(|place| pose.levels.remove(place));
+    Ok(pose)
 }
 
 /// Writes all files.
@@ -74,7 +88,7 @@ fn write(
 }
 
 /// The answer of a posture that is held.
-pub(super) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held) -> Verdict {
+pub(crate) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held) -> Verdict {
     let levels = || scenario.goals.iter().zip(&pose.levels);
     let targets = levels().filter(|(goal, _)| !goal.hard).map(|(goal, level)| (goal, level.length));
     let posture = HeldPosture {

@@ -32,32 +32,12 @@ const STEP: f64 = 0.1;
 const STEPS: usize = 300;
 
 pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
-    let ScenarioFile { name, bytes, model } = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
-    let scenario = read_relax(&name, &bytes, model)?;
-    if !scenario.unused.is_empty() {
-        let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
-        print_note(
-            "note",
-            &format!("{} {} ignored by `relax`", list.join(", "), if list.len() == 1 { "is" } else { "are" }),
-        );
-    }
-    if scenario.effort_added {
-        print_note("note", "no task is of kind `effort`; the effort of all muscles was added as the last task");
-    }
-    scenario.notes.iter().for_each(|note| print_note("note", note));
-    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
+    let file = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
+    let name = file.name.clone();
+    let scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &RELAX_FILES)).transpose()?;
-    let search = Search {
-        model: &scenario.model,
-        start: &scenario.start,
-        supports: &scenario.supports,
-        limits: &scenario.limits,
-        goals: &scenario.goals,
-        loads: &scenario.loads,
-        locked: &scenario.locked,
-    };
     let spinner = spinner();
-    let found = equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::least_effort() });
+    let found = find(&scenario);
     spinner.finish_and_clear();
     let found = match found {
         Ok(found) => found,
@@ -86,8 +66,41 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     answered(&verdict)
 }
 
+/// The scenario of a file; notes about it go to standard error.
+pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
+    let ScenarioFile { name, bytes, model } = file;
+    let scenario = read_relax(&name, &bytes, model)?;
+    if !scenario.unused.is_empty() {
+        let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
+        print_note(
+            "note",
+            &format!("{} {} ignored by `relax`", list.join(", "), if list.len() == 1 { "is" } else { "are" }),
+        );
+    }
+    if scenario.effort_added {
+        print_note("note", "no task is of kind `effort`; the effort of all muscles was added as the last task");
+    }
+    scenario.notes.iter().for_each(|note| print_note("note", note));
+    fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
+    Ok(scenario)
+}
+
+/// The postures of least effort.
+pub(crate) fn find(scenario: &RelaxScenario) -> Result<Equilibria, SearchError> {
+    let search = Search {
+        model: &scenario.model,
+        start: &scenario.start,
+        supports: &scenario.supports,
+        limits: &scenario.limits,
+        goals: &scenario.goals,
+        loads: &scenario.loads,
+        locked: &scenario.locked,
+    };
+    equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::least_effort() })
+}
+
 /// The answer: that of the posture of least effort.
-fn verdict(scenario: &RelaxScenario, found: &Equilibria) -> Result<Verdict, Fail> {
+pub(crate) fn verdict(scenario: &RelaxScenario, found: &Equilibria) -> Result<Verdict, Fail> {
     let Some(best) = found.postures.first() else {
         return Ok(Verdict::of_posture(&scenario.model, &HeldPosture::default()));
     };

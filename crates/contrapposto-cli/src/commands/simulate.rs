@@ -11,7 +11,7 @@ use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 
 use self::snapshot::{SNAPSHOT, go_on, save};
-use self::trials::try_changes;
+pub(crate) use self::trials::try_changes;
 use crate::args::{DemoArgs, SimulateArgs};
 use crate::fail::Fail;
 use crate::interruption;
@@ -152,7 +152,12 @@ fn interrupted(summary: &Summary, duration: f64, out: Option<&Path>) -> String {
 }
 
 /// The text of `summary.json`.
-fn summary_json(scenario: &Scenario, summary: &Summary, answer: &Answer, files: Vec<String>) -> Result<String, Fail> {
+pub(crate) fn summary_json(
+    scenario: &Scenario,
+    summary: &Summary,
+    answer: &Answer,
+    files: Vec<String>,
+) -> Result<String, Fail> {
     json_text("summary.json", &SummaryText::new(scenario, summary, &answer.verdict, &answer.helping, files))
 }
 

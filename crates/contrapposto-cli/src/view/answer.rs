@@ -79,6 +79,12 @@ pub(crate) fn answered(verdict: &Verdict) -> Result<(), Fail> {
     if verdict.kind.is_done() { Ok(()) } else { Err(Fail::Answered) }
 }
 
+/// The text of the JSON file `name` of a body that no posture near the start keeps in balance.
+pub(crate) fn text_without_posture(name: &str, title: &str, model: &Model, missing: Missing) -> Result<String, Fail> {
+    let verdict = Verdict::of_fall(model, missing);
+    json_text(name, &AnswerText { title, model: model.name(), verdict: VerdictText::new(model, &verdict) })
+}
+
 /// Answers for a body that no posture near the start keeps in balance: prints the verdict, and writes it to the file `name`.
 pub(crate) fn without_posture(
     name: &str,
@@ -89,8 +95,7 @@ pub(crate) fn without_posture(
     json: bool,
 ) -> Result<(), Fail> {
     let verdict = Verdict::of_fall(model, missing);
-    let text = AnswerText { title, model: model.name(), verdict: VerdictText::new(model, &verdict) };
-    let text = json_text(name, &text)?;
+    let text = text_without_posture(name, title, model, missing)?;
     folder.map(|folder| folder.write(&[(name, text.as_bytes())])).transpose()?;
     let heavy = heavy(model, loads).map_or(String::new(), |heavy| heavy + "\n");
     print(&if json { text } else { first_lines(&verdict) + &heavy })?;

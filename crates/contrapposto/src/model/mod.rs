@@ -16,6 +16,7 @@ mod names;
 mod reduced;
 mod segment_spec;
 mod shape;
+mod shared;
 mod three_axis;
 
 pub use adult::{AdultError, AdultMeasure, CoordinateSources, adult};
@@ -28,6 +29,7 @@ pub use names::{plain_group_name, plain_name};
 pub(crate) use reduced::reduced;
 pub use segment_spec::SegmentSpec;
 pub use shape::{Capsule, Shape};
+pub use shared::SharedModel;
 pub use three_axis::{Orientation, ThreeAxisJoint};
 
 use nalgebra::{Isometry3, Matrix3, Vector3};

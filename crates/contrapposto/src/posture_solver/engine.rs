@@ -25,7 +25,7 @@ use crate::contact::{Balance, ContactForces, Slip, Support};
 use crate::effort::basin_hopping::BasinHopping;
 use crate::effort::hessian::HessianModel;
 use crate::joint_torques::JointTorques;
-use crate::model::Model;
+use crate::model::SharedModel;
 use crate::posture::Posture;
 use crate::statics::Load;
 use crate::tasks::{PriorityLevel, Task};
@@ -52,14 +52,15 @@ impl<'a> Engine<'a> {
     /// # Errors
     /// [`EngineError`] names the first thing that does not fit the model.
     pub fn new(
-        model: &'a Model,
+        model: impl Into<SharedModel<'a>>,
         levels: Vec<PriorityLevel>,
         loads: &[Load],
         options: Options,
     ) -> Result<Self, EngineError> {
-        let settings = Settings::new(model, levels, loads, options)?;
+        let settings = Settings::new(model.into(), levels, loads, options)?;
         let rule = StepRule::Priorities(Box::new(PriorityRule::new(&settings)));
-        Ok(Self::with_rule(settings, ContactForces::without_supports(model), rule))
+        let contact = ContactForces::without_supports(&settings.model);
+        Ok(Self::with_rule(settings, contact, rule))
     }
 
     /// For a body on supports, in equilibrium, or with a fixed root: supports keep the placements that they have in
@@ -68,17 +69,17 @@ impl<'a> Engine<'a> {
     /// # Errors
     /// As [`Engine::new`].
     pub fn with_supports(
-        model: &'a Model,
+        model: impl Into<SharedModel<'a>>,
         start: &Posture,
         supports: Vec<Support>,
         levels: Vec<PriorityLevel>,
         loads: &[Load],
         options: Options,
     ) -> Result<Self, EngineError> {
-        let mut settings = Settings::new(model, levels, loads, options)?;
-        supports.iter().try_for_each(|support| support.check(model))?;
+        let mut settings = Settings::new(model.into(), levels, loads, options)?;
+        supports.iter().try_for_each(|support| support.check(&settings.model))?;
         settings.place_supports(start, &supports)?;
-        let contact = ContactForces::new(model, supports)?;
+        let contact = ContactForces::new(&settings.model, supports)?;
         let rule = StepRule::Merit(Box::new(MeritRule::new(&settings, contact.forces().len())));
         Ok(Self::with_rule(settings, contact, rule))
     }
@@ -91,8 +92,8 @@ impl<'a> Engine<'a> {
             rule,
             last: settings.model.default_posture(),
             slope: SlopeAlongMotion::new(&settings, &contact),
-            basin_hopping: BasinHopping::new(settings.model),
-            iterate: Iterate::new(settings.model, contact),
+            basin_hopping: BasinHopping::new(&settings.model),
+            iterate: Iterate::new(&settings.model, contact),
             settings,
         }
     }
@@ -176,7 +177,7 @@ impl<'a> Engine<'a> {
     }
 
     fn error_of(&self, level: &PriorityLevel) -> LevelError {
-        LevelError::of(level, self.settings.model, &self.iterate.torques)
+        LevelError::of(level, &self.settings.model, &self.iterate.torques)
     }
 
     /// The error of each level at a posture.
@@ -208,7 +209,7 @@ impl<'a> Engine<'a> {
         let status = self.solver.solve_next(&self.linearisation.problem)?;
         let change = &self.solver.solution()[..self.settings.model.rates().len()];
         let largest = change.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-        posture.displace(self.settings.model, change);
+        posture.displace(&self.settings.model, change);
         self.settings.keep_ranges(posture);
         let step = Step { largest, rejected_previous, status, changes: self.solver.changes() };
         self.rule.finish(&self.settings, &mut self.iterate, &self.solver, posture, &step)?;

@@ -27,7 +27,7 @@ impl Iterate {
             return Ok(());
         }
         self.is_current = false;
-        let (model, loads) = (settings.model, &settings.loads);
+        let (model, loads) = (&settings.model, &settings.loads);
         if settings.on_supports() {
             self.torques.update_with_contact(model, posture, loads, &mut self.contact, Quantities::ALL)?;
         } else {

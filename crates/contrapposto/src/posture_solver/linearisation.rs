@@ -64,7 +64,7 @@ impl Linearisation {
     }
 
     fn write_level(&mut self, settings: &Settings<'_>, iterate: &Iterate, level: &PriorityLevel, k: usize) {
-        let model = settings.model;
+        let model = &settings.model;
         let to = &mut self.problem.levels[k];
         to.hard = level.hard;
         for task in &level.tasks {
@@ -114,7 +114,7 @@ impl Linearisation {
     /// Bounds of the step: ranges, `trust_radius` (rad or m), and contact forces that only push. Locked rates do not
     /// change; a coordinate outside its range comes back by at most the trust radius.
     pub(super) fn bound(&mut self, settings: &Settings<'_>, iterate: &Iterate, trust_radius: f64) {
-        let (model, posture) = (settings.model, iterate.torques.posture());
+        let (model, posture) = (&settings.model, iterate.torques.posture());
         let Problem { lower, upper, .. } = &mut self.problem;
         for (i, rate) in model.rates().iter().enumerate() {
             let (least, greatest) = match rate.coordinate {
@@ -170,7 +170,7 @@ fn append_forces(
         if let Task::Effort(effort) = task {
             let (columns, error) = (iterate.contact.columns(), -by_rates.upper[i]);
             let coordinate = effort.coordinates[i];
-            fill_force_columns(settings.model, &iterate.torques, columns, coordinate, error, &mut row[rates..]);
+            fill_force_columns(&settings.model, &iterate.torques, columns, coordinate, error, &mut row[rates..]);
         }
         to.push(row, by_rates.lower[i], by_rates.upper[i]);
     }

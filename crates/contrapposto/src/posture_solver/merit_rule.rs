@@ -76,7 +76,7 @@ impl MeritRule {
             largest: f64::INFINITY,
             idle: 0,
             hessian_model: HessianModel::Full,
-            hessian: Hessian::new(settings.model),
+            hessian: Hessian::new(&settings.model),
             newton_level: NewtonLevel::new(unknowns, unknowns, unknowns),
             multipliers: vec![],
         }

@@ -73,7 +73,7 @@ impl PriorityRule {
             steps: 0,
             largest: [f64::INFINITY; 2],
             newton_level: NewtonLevel::new(n, most, settings.levels.iter().map(rows).sum()),
-            hessian: ErrorHessian::new(settings.model, settings.levels.iter().flat_map(|level| &level.tasks)),
+            hessian: ErrorHessian::new(&settings.model, settings.levels.iter().flat_map(|level| &level.tasks)),
             restoration_solver: restoration.new_solver(),
             restoration,
         };
@@ -243,7 +243,7 @@ impl PriorityRule {
             multipliers = multipliers.split_at_checked(level.half_spaces.len()).map_or(&[], |(_, rest)| rest);
         }
         add_tasks(&mut self.hessian, settings, iterate, &settings.levels[k], &newton.residual);
-        if let Some(hessian) = self.hessian.evaluate(settings.model, iterate.torques.kinematics()) {
+        if let Some(hessian) = self.hessian.evaluate(&settings.model, iterate.torques.kinematics()) {
             let n = hessian.size();
             for (e, entry) in newton.matrix.iter_mut().enumerate() {
                 *entry = 0.5 * (hessian.get(e / n, e % n) + hessian.get(e % n, e / n));
@@ -273,7 +273,7 @@ impl PriorityRule {
         self.restoration.bound(settings, iterate, settings.options.max_step.min(self.ceiling));
         self.restoration.ask_for_least_motion(k);
         self.restoration_solver.solve_next(&self.restoration.problem)?;
-        posture.displace(settings.model, self.restoration_solver.solution());
+        posture.displace(&settings.model, self.restoration_solver.solution());
         settings.keep_ranges(posture);
         Ok(())
     }
@@ -289,7 +289,7 @@ fn add_tasks<'w>(
 ) -> &'w [f64] {
     for task in &level.tasks {
         let (own, rest) = weights.split_at(Task::rows(task).min(weights.len()));
-        hessian.add(settings.model, iterate.torques.kinematics(), task, own);
+        hessian.add(&settings.model, iterate.torques.kinematics(), task, own);
         weights = rest;
     }
     weights

@@ -10,7 +10,7 @@ use crate::contact::{ContactForces, Support};
 use crate::effort::problem::EffortProblem;
 use crate::joint_torques::{JointTorquesError, Quantities};
 use crate::kinematics::Kinematics;
-use crate::model::{LARGEST, Model};
+use crate::model::{LARGEST, Model, SharedModel};
 use crate::posture::Posture;
 use crate::statics::Load;
 use crate::tasks::{PriorityLevel, Task, free_place, held_place};
@@ -22,7 +22,7 @@ const CONTACT_LEVELS: usize = 4;
 /// See the module's text.
 #[derive(Clone, Debug)]
 pub(super) struct Settings<'a> {
-    pub(super) model: &'a Model,
+    pub(super) model: SharedModel<'a>,
     /// The caller's levels, the most important first.
     pub(super) levels: Vec<PriorityLevel>,
     /// Placements that the supported segments keep; `None` without equilibrium.
@@ -46,7 +46,7 @@ pub(super) struct Settings<'a> {
 impl<'a> Settings<'a> {
     /// Checks levels, loads and options. Locked and dependent coordinates do not change on their own.
     pub(super) fn new(
-        model: &'a Model,
+        model: SharedModel<'a>,
         levels: Vec<PriorityLevel>,
         loads: &[Load],
         options: Options,
@@ -55,30 +55,31 @@ impl<'a> Settings<'a> {
         let mut quantities = Quantities::default();
         for (k, level) in levels.iter().enumerate() {
             for task in &level.tasks {
-                task.check(model).map_err(|error| EngineError::Task { level: k, error })?;
+                task.check(&model).map_err(|error| EngineError::Task { level: k, error })?;
                 quantities = quantities.with(task.quantities());
             }
             for space in &level.half_spaces {
-                check_half_space(model, space).map_err(|problem| EngineError::HalfSpace { level: k, problem })?;
+                check_half_space(&model, space).map_err(|problem| EngineError::HalfSpace { level: k, problem })?;
             }
         }
         let effort = |task: &Task| matches!(task, Task::Effort(_));
         let locked = model
             .rates()
             .iter()
-            .map(|rate| rate.coordinate.is_some_and(|c| model.coordinates()[c].locked || model.is_dependent(c)));
+            .map(|rate| rate.coordinate.is_some_and(|c| model.coordinates()[c].locked || model.is_dependent(c)))
+            .collect();
         let mut settings = Self {
-            model,
             effort_level: levels.iter().position(|level| level.tasks.iter().any(effort)),
             levels,
             placements: None,
             limits: PriorityLevel::default(),
             loads: vec![],
             options,
-            locked: locked.collect(),
+            locked,
             free: vec![],
             rates: (0..model.rates().len()).collect(),
             quantities,
+            model,
         };
         settings.list_free_rates();
         settings.set_loads(loads)?;
@@ -87,14 +88,14 @@ impl<'a> Settings<'a> {
 
     /// Supported segments keep the placements that they have in `start`, free ones lie flat within their regions.
     pub(super) fn place_supports(&mut self, start: &Posture, supports: &[Support]) -> Result<(), EngineError> {
-        let mut kinematics = Kinematics::new(self.model);
-        kinematics.update(self.model, start).map_err(JointTorquesError::from)?;
+        let mut kinematics = Kinematics::new(&self.model);
+        kinematics.update(&self.model, start).map_err(JointTorquesError::from)?;
         let mut placements = PriorityLevel { hard: true, ..PriorityLevel::default() };
         for support in supports {
-            let place = held_place(support, self.model, &kinematics);
+            let place = held_place(support, &self.model, &kinematics);
             if !placements.tasks.contains(&place) {
                 placements.tasks.push(place);
-                self.limits.tasks.extend(free_place(support, self.model, &kinematics));
+                self.limits.tasks.extend(free_place(support, &self.model, &kinematics));
             }
         }
         self.placements = Some(placements);
@@ -103,7 +104,7 @@ impl<'a> Settings<'a> {
 
     /// Adds an inequality above the caller's levels.
     pub(super) fn limit(&mut self, task: Task) -> Result<(), EngineError> {
-        task.check(self.model).map_err(EngineError::Limit)?;
+        task.check(&self.model).map_err(EngineError::Limit)?;
         self.quantities = self.quantities.with(task.quantities());
         self.limits.tasks.push(task);
         Ok(())
@@ -111,7 +112,7 @@ impl<'a> Settings<'a> {
 
     /// Replaces the loads.
     pub(super) fn set_loads(&mut self, loads: &[Load]) -> Result<(), EngineError> {
-        loads.iter().try_for_each(|load| load.check(self.model)).map_err(JointTorquesError::from)?;
+        loads.iter().try_for_each(|load| load.check(&self.model)).map_err(JointTorquesError::from)?;
         self.loads = loads.to_vec();
         Ok(())
     }
@@ -146,7 +147,7 @@ impl<'a> Settings<'a> {
     pub(super) fn effort_problem<'b>(&'b self, contact: &'b ContactForces, rates: Rates) -> Option<EffortProblem<'b>> {
         let (level, places) = (self.effort_level?, self.placements.as_ref()?);
         Some(EffortProblem {
-            model: self.model,
+            model: &self.model,
             places,
             limits: &self.limits,
             above: &self.levels[..level],

@@ -45,7 +45,7 @@ impl SlopeAlongMotion {
             moved: settings.model.default_posture(),
             step: vec![0.0; n],
             row: vec![0.0; n],
-            torques: JointTorques::new(settings.model),
+            torques: JointTorques::new(&settings.model),
             contact: contact.clone(),
         }
     }
@@ -73,7 +73,7 @@ impl SlopeAlongMotion {
         self.write_constraints(settings, iterate, above);
         self.row.fill(0.0);
         self.row[rate] = 1.0;
-        iterate.torques.fold_axes(settings.model, &mut self.row);
+        iterate.torques.fold_axes(&settings.model, &mut self.row);
         self.problem.levels[1].clear();
         self.problem.levels[1].push(&self.row, 1.0, 1.0);
         self.solver.solve_next(&self.problem)?;
@@ -96,7 +96,7 @@ impl SlopeAlongMotion {
         let levels = settings.placements.iter().chain([&settings.limits]).chain(&settings.levels[..above]);
         for task in levels.flat_map(|level| &level.tasks) {
             if !matches!(task, Task::Effort(_)) {
-                task.evaluate(settings.model, &iterate.torques, level);
+                task.evaluate(&settings.model, &iterate.torques, level);
             }
         }
         for (lower, upper) in level.lower.iter_mut().zip(&mut level.upper) {
@@ -117,7 +117,7 @@ impl SlopeAlongMotion {
         rate: usize,
         length: f64,
     ) -> Result<Option<f64>, EngineError> {
-        let (model, start) = (settings.model, iterate.torques.posture());
+        let (model, start) = (&settings.model, iterate.torques.posture());
         for (step, along) in self.step.iter_mut().zip(self.solver.solution()) {
             *step = length * along;
         }

@@ -7,7 +7,7 @@ use crate::view::answer::Answer;
 
 /// Tries all changes of a job that does not hold, or holds without reserve, on `threads` threads, while `go_on` says yes, and completes the answer. The
 /// findings do not depend on the number of threads.
-pub(super) fn try_changes(
+pub(crate) fn try_changes(
     answer: &mut Answer,
     scenario: &Scenario,
     summary: &Summary,

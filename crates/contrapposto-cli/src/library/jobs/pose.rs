@@ -1,0 +1,65 @@
+//! Solves one posture from tasks in order of priority.
+
+use contrapposto::posture_solver::SolvedPosture;
+use contrapposto_formats::{PoseScenario, PoseText};
+
+use super::source::ScenarioSource;
+use crate::commands::pose::{read, solve, verdict};
+use crate::fail::Fail;
+use crate::library::failure::{Failure, Note, with_notes};
+use crate::library::frames::Frames;
+use crate::output::json_text;
+use crate::view::held::held;
+use crate::view::report::pose::report_of_pose;
+
+/// A solved posture.
+pub struct Posed {
+    scenario: PoseScenario,
+    pose: SolvedPosture,
+    json: String,
+    frames: Frames,
+}
+
+impl Posed {
+    /// Carries out `pose` of the program.
+    ///
+    /// # Errors
+    /// [`Failure`] as the program prints it.
+    pub fn new(source: &ScenarioSource) -> Result<(Self, Vec<Note>), Failure> {
+        with_notes(|| {
+            let file = source.open()?;
+            let name = file.name.clone();
+            let scenario = read(file)?;
+            let pose = solve(&name, &scenario)?;
+            let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
+            let verdict = verdict(&scenario, &pose, &held);
+            let json = json_text("pose.json", &PoseText::new(&scenario, &pose, &verdict, vec![]))?;
+            let frames = Frames::of(&scenario.model, &[held.frame]);
+            Ok(Self { scenario, pose, json, frames })
+        })
+    }
+
+    /// The text of `pose.json`.
+    pub fn json(&self) -> &str {
+        &self.json
+    }
+
+    /// The posture with its torques.
+    pub fn frames(&self) -> &Frames {
+        &self.frames
+    }
+
+    /// The page `report.html`.
+    ///
+    /// # Errors
+    /// [`Failure`] where the page cannot be drawn.
+    pub fn report(&self) -> Result<String, Failure> {
+        let page = || -> Result<String, Fail> {
+            let Self { scenario, pose, .. } = self;
+            let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
+            let verdict = verdict(scenario, pose, &held);
+            report_of_pose(scenario, pose, &PoseText::new(scenario, pose, &verdict, vec![]), held)
+        };
+        page().map_err(Failure::from)
+    }
+}

@@ -1,0 +1,77 @@
+//! Finds the different postures of least effort on supports.
+
+use contrapposto::equilibria::{Equilibria, SearchError};
+use contrapposto::verdict::Verdict;
+use contrapposto_formats::RelaxScenario;
+
+use super::source::ScenarioSource;
+use crate::commands::relax::{find, read, verdict};
+use crate::fail::Fail;
+use crate::library::failure::{Failure, Note, with_notes};
+use crate::library::frames::Frames;
+use crate::output::json_text;
+use crate::view::answer::text_without_posture;
+use crate::view::frame::frame_of_posture;
+use crate::view::report::equilibria::report_of_equilibria;
+use crate::view::text::relax::RelaxText;
+
+/// The postures of least effort; none of a body that cannot stand.
+pub struct Relaxed {
+    scenario: RelaxScenario,
+    found: Option<(Equilibria, Verdict)>,
+    json: String,
+    frames: Frames,
+}
+
+impl Relaxed {
+    /// Carries out `relax` of the program.
+    ///
+    /// # Errors
+    /// [`Failure`] as the program prints it.
+    pub fn new(source: &ScenarioSource) -> Result<(Self, Vec<Note>), Failure> {
+        with_notes(|| {
+            let file = source.open()?;
+            let name = file.name.clone();
+            let scenario = read(file)?;
+            match find(&scenario) {
+                Ok(found) => Self::of(scenario, found),
+                Err(SearchError::CannotStand(missing)) => {
+                    let json = text_without_posture("relax.json", &scenario.title, &scenario.model, missing)?;
+                    let frames = Frames::of(&scenario.model, &[]);
+                    Ok(Self { scenario, found: None, json, frames })
+                }
+                Err(SearchError::Relax(error)) => Err(Fail::Refused(format!("{name}: {error}"))),
+                Err(error) => Err(Fail::Job(format!("{name}: {error}"))),
+            }
+        })
+    }
+
+    fn of(scenario: RelaxScenario, found: Equilibria) -> Result<Self, Fail> {
+        let verdict = verdict(&scenario, &found)?;
+        let json = json_text("relax.json", &RelaxText::new(&scenario, &found, &verdict, vec![]))?;
+        let frames = found.postures.iter().map(|posture| frame_of_posture(&scenario.model, posture));
+        let frames = Frames::of(&scenario.model, &frames.collect::<Result<Vec<_>, _>>()?);
+        Ok(Self { scenario, found: Some((found, verdict)), json, frames })
+    }
+
+    /// The text of `relax.json`.
+    pub fn json(&self) -> &str {
+        &self.json
+    }
+
+    /// The postures with their torques, the one of least effort first.
+    pub fn frames(&self) -> &Frames {
+        &self.frames
+    }
+
+    /// The page `report.html`.
+    ///
+    /// # Errors
+    /// [`Failure`] where the page cannot be drawn, or the body cannot stand.
+    pub fn report(&self) -> Result<String, Failure> {
+        match &self.found {
+            Some((found, verdict)) => Ok(report_of_equilibria(&self.scenario, found, verdict)?),
+            None => Err(Failure::failed("the body cannot stand: there is no posture to show")),
+        }
+    }
+}
