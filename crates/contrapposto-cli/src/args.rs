@@ -2,6 +2,7 @@
 
 mod joint;
 mod model;
+mod muscles;
 mod scenario;
 
 use std::path::PathBuf;
@@ -13,6 +14,7 @@ pub(crate) use model::{
     AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,
     RuleChoice, TorquesArgs,
 };
+pub(crate) use muscles::MuscleArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs};
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.

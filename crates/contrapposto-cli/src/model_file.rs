@@ -5,12 +5,13 @@ mod include;
 
 use std::path::Path;
 
+use contrapposto::joint_torques::JointMuscles;
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::tissue::SourcedModel;
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size};
 
-use crate::args::{ModelArgs, PassiveFrom, RootChoice};
+use crate::args::{ModelArgs, MuscleArgs, PassiveFrom, RootChoice};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::output::print_note;
@@ -20,12 +21,22 @@ pub(crate) use include::confined;
 /// Opens MODEL, with --overlay and --passive. `filled`: unknown passive laws of a file are filled in from the built-in library
 /// where neither --passive nor --overlay is given.
 pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
-    open_with(args, filled, SourcedModel::read)
+    open_with(args, filled, None, SourcedModel::read)
+}
+
+/// Opens MODEL, what is unknown filled in, and gives its muscles what is asked of them.
+pub(crate) fn open_with_muscles(
+    args: &ModelArgs,
+    muscles: &MuscleArgs,
+) -> Result<(SourcedModel, Option<JointMuscles>), Fail> {
+    let mut opened = open_with(args, true, Some(muscles), SourcedModel::read)?;
+    let muscles = opened.joint_muscles();
+    Ok((opened, muscles))
 }
 
 /// Opens MODEL for a command in which mass has no part, or which says that it is missing: a body whose mass comes from a mesh has none.
 pub(crate) fn open_without_mesh_mass(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
-    open_with(args, filled, SourcedModel::read_without_mesh_mass)
+    open_with(args, filled, None, SourcedModel::read_without_mesh_mass)
 }
 
 /// A function that reads a model file.
@@ -36,7 +47,12 @@ type Read = fn(
     &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<SourcedModel, ModelFileError>;
 
-fn open_with(args: &ModelArgs, filled: bool, read_file: Read) -> Result<SourcedModel, Fail> {
+fn open_with(
+    args: &ModelArgs,
+    filled: bool,
+    muscles: Option<&MuscleArgs>,
+    read_file: Read,
+) -> Result<SourcedModel, Fail> {
     let root = args.root.map(RootChoice::body);
     let mut opened = match args.model.to_str().and_then(adult_size) {
         Some(_) if root.is_some() => {
@@ -54,6 +70,9 @@ fn open_with(args: &ModelArgs, filled: bool, read_file: Read) -> Result<SourcedM
     opened.warnings().iter().for_each(|warning| print_note("warning", warning));
     if let Some(path) = &args.overlay {
         opened = opened.lay_over(&path.display().to_string(), &read(path, MOST_BYTES)?)?;
+    }
+    if let Some(muscles) = muscles {
+        muscles.apply(&mut opened)?;
     }
     let fill = match args.passive {
         Some(from) => from == PassiveFrom::Library,

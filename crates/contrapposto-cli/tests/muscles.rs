@@ -127,3 +127,140 @@ fn a_muscle_of_an_mjcf_file_has_mujocos_forces_even_where_the_mass_of_a_mesh_is_
     // Torques need the mass.
     assert!(refused(&["torques", &file, "default"]).contains("comes from a mesh"));
 }
+
+/// Two forearms with mass on the adult's elbows, three muscles at the right one, and frames at 5 and 20 degrees.
+fn elbows(folder: &std::path::Path) -> (String, String) {
+    let back = muscle("Thelen2003Muscle", "back", "").replace("0.04", "-0.1");
+    let forces = muscle("Thelen2003Muscle", "t", "") + &muscle("Millard2012EquilibriumMuscle", "m", "") + &back;
+    let left = "<Body name=\"c\"><mass>1</mass><mass_center>0 -0.2 0</mass_center></Body></objects></BodySet>";
+    let joint = "<PinJoint name=\"k\"><socket_parent_frame>/ground</socket_parent_frame>
+        <socket_child_frame>/bodyset/c</socket_child_frame>
+        <coordinates><Coordinate name=\"elbow_flex_l\"/></coordinates></PinJoint></objects></JointSet>";
+    let text = model(&forces)
+        .replace("<mass>1</mass>", "<mass>1</mass><mass_center>0 -0.2 0</mass_center>")
+        .replace("</objects></BodySet>", left)
+        .replace("</objects></JointSet>", joint)
+        .replace("\"q\"", "\"elbow_flex_r\"");
+    let motion = "time,elbow_flex_r_deg,elbow_flex_l_deg\n0,5,40\n10,20,40\n";
+    (write(folder, "elbows.osim", &text), write(folder, "hold.csv", motion))
+}
+
+fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
+}
+
+/// Sum over muscles of moment arm times one of their forces, from `contrapposto muscles`.
+fn torque_of(frame: &serde_json::Value, force: impl Fn(&str, f64) -> f64) -> f64 {
+    let arms = frame["moment_arms_m"].as_object().unwrap();
+    let of = |(name, arms): (&String, &serde_json::Value)| {
+        let arm = number(&arms["elbow_flex_r"]);
+        arm * force(name, arm)
+    };
+    arms.iter().map(of).sum()
+}
+
+#[test]
+fn passive_torque_and_strength_of_a_crossed_joint_are_the_muscles_and_others_keep_the_library() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, motion) = elbows(folder.path());
+    let lines = run(&["muscles", &file, &motion, "--json"]).stdout;
+    let own: Vec<serde_json::Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let built_in = json(&["torques", &file, &motion, "--json", "--muscles", "off"]);
+    let source = serde_json::json!({ "status": "derived", "source": "muscles of the model" });
+    for uses in ["both", "strength", "passive"] {
+        let frames = json(&["torques", &file, &motion, "--json", "--muscles", uses]);
+        for (frame, own) in own.iter().enumerate() {
+            let [all, library] = [&frames, &built_in].map(|frames| &frames[frame]["coordinates"]);
+            assert_eq!(all["elbow_flex_l"], library["elbow_flex_l"], "no muscle crosses it");
+            let (found, library) = (&all["elbow_flex_r"], &library["elbow_flex_r"]);
+            let passive = torque_of(own, |name, _| number(&own["passive_forces_n"][name]));
+            if uses == "strength" {
+                assert_eq!(
+                    (&found["passive"], &found["passive_source"]),
+                    (&library["passive"], &serde_json::Value::Null)
+                );
+            } else {
+                assert!((number(&found["passive"]) - passive).abs() < 1e-9, "{uses}: {found}");
+                assert!((number(&found["passive"]) - number(&library["passive"])).abs() > 0.1, "{found} {library}");
+                assert_eq!(found["passive_source"], source);
+                let balance = number(&found["external"]) + number(&found["passive"]) + number(&found["active"]);
+                assert!(balance.abs() < 1e-12, "{found}");
+            }
+            if uses == "passive" {
+                assert_eq!(found["strength"], library["strength"]);
+                continue;
+            }
+            let sums = &own["strength_nm"]["elbow_flex_r"];
+            for (side, (sense, sign)) in [("positive", 1.0), ("negative", -1.0)].into_iter().enumerate() {
+                let force = |name: &str, arm: f64| {
+                    let key = if arm * sign > 0.0 { "max_forces_n" } else { "tendon_forces_n" };
+                    number(&own[key][name])
+                };
+                let greatest = torque_of(own, force);
+                assert!((number(&sums[sense]["sum"]) - greatest).abs() < 1e-9);
+                let beyond = sign * (greatest - passive);
+                let strength = &found["strength"][side];
+                assert!(beyond > 1.0 && (number(&strength["strength_nm"]) - beyond).abs() < 1e-9, "{uses}: {found}");
+                assert_eq!((&strength["status"], &strength["source"]), (&source["status"], &source["source"]));
+            }
+        }
+    }
+    assert_eq!(
+        json(&["torques", &file, &motion, "--json"]),
+        json(&["torques", &file, &motion, "--json", "--muscles", "both"])
+    );
+    let told = run(&["torques", &file, &motion, "--verbose"]).stderr;
+    assert!(told.contains("cross are theirs in each posture (derived; strength is a plain sum)"), "{told}");
+    assert!(told.contains("built-in data; `elbow_flex_l` keep what they have without muscles"), "{told}");
+    assert!(!told.contains("not used"), "{told}");
+    assert!(
+        refused(&["torques", "adult", "default", "--muscles", "both"]).contains("--muscles: no muscle could be read")
+    );
+}
+
+#[test]
+fn assess_judges_every_frame_by_the_strength_of_the_muscles_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, motion) = elbows(folder.path());
+    let arguments = |command: &'static str| {
+        let all = [command, &file, &motion, "--json", "--load", "b 4kg"];
+        json(&all)
+    };
+    let (frames, found) = (arguments("torques"), arguments("assess"));
+    let groups = found["groups"].as_array().unwrap();
+    let right = |group: &&serde_json::Value| {
+        group["coordinate"] == "elbow_flex_r" && number(&group["peak_load"]["value"]) > 0.0
+    };
+    let group = groups.iter().find(right).unwrap();
+    let of_frame = &frames[usize::from(number(&group["peak_load"]["at_s"]) > 5.0)]["coordinates"]["elbow_flex_r"];
+    let (active, strength) = (number(&group["active_at_peak_nm"]), number(&group["strength_at_peak"]["strength_nm"]));
+    assert_eq!(group["strength_at_peak"]["source"], "muscles of the model");
+    assert!((number(&group["peak_load"]["value"]) - active.abs() / strength).abs() < 1e-12, "{group}");
+    assert!(
+        (strength - number(&of_frame["strength"][usize::from(active < 0.0)]["strength_nm"])).abs() < 1e-12,
+        "{group}"
+    );
+    assert!((number(&group["passive_at_peak_nm"]) - number(&of_frame["passive"])).abs() < 1e-12, "{group}");
+    assert_eq!(group["proposals"].as_array().unwrap().len(), 0, "no falling curve of muscles is known");
+    let page = folder.path().join("out");
+    assert_eq!(run(&["assess", &file, &motion, "--load", "b 4kg", "--out", page.to_str().unwrap()]).code, 0);
+    let text = std::fs::read_to_string(page.join("report.html")).unwrap();
+    assert!(text.contains("derived (muscles of the model)"), "the page names the source");
+}
+
+#[test]
+fn a_passive_law_and_a_strength_of_an_overlay_are_whole_joints_to_which_no_muscle_is_added() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, motion) = elbows(folder.path());
+    let law = "[coordinates.elbow_flex_r]\nstrength = { positive_nm = 50.0, negative_nm = 40.0 }\n\
+               passive.table_deg_nm = [[-10, 5], [0, 1], [150, -5]]\nrange_deg = [-10, 150]\n";
+    let overlay = write(folder.path(), "overlay.toml", law);
+    let with =
+        |uses: &'static str| json(&["torques", &file, &motion, "--json", "--overlay", &overlay, "--muscles", uses]);
+    assert_eq!(with("both"), with("off"));
+    let told = run(&["torques", &file, &motion, "--overlay", &overlay, "--verbose"]).stderr;
+    assert!(
+        told.contains("muscles cross `elbow_flex_r`, whose joints have a passive law or strength of their own"),
+        "{told}"
+    );
+}

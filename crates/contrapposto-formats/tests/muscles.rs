@@ -9,13 +9,16 @@ mod shared;
 
 use std::io::Read;
 
+use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Side;
 use contrapposto::muscle::{
     CoupledStrength, FiberState, PathGeometry, PathRule, Recruitment, StaticOptimisation, Tension, coupled_strength,
-    passive_tensions, strength,
+    passive_fiber_torque, passive_tensions, strength,
 };
 use contrapposto::statics::{ExternalTorque, PathTension};
 use contrapposto_formats::osim;
+use contrapposto_formats::tissue::{MuscleUse, Person, SourcedModel};
 use muscle_reference::{Reference, model_bytes};
 use shared::shared;
 
@@ -293,4 +296,69 @@ fn static_optimisation_of_gait2392_is_opensims() {
         StaticOptimisation::default().solve(muscles, &geometry, &asked).unwrap();
     }
     println!("{:.2} ms a frame from the start", start.elapsed().as_secs_f64() * 50.0);
+}
+
+/// Passive torque of hip adduction that OpenSim gives at an angle (deg), N m, all other angles zero.
+const ADDUCTION: [(f64, f64); 8] =
+    [(-40.0, 4.4), (-30.0, 1.9), (-20.0, 0.7), (-10.0, 0.1), (0.0, -0.2), (10.0, -1.2), (20.0, -3.8), (30.0, -7.7)];
+
+#[test]
+#[ignore = "needs ../shared: a published OpenSim model and OpenSim's numbers of its muscles"]
+fn muscles_in_use_give_gait2392_the_passive_torque_of_opensim_and_strength_beyond_it() {
+    let bytes = std::fs::read(shared("models/opensim/gait2392_thelen2003muscle.osim")).unwrap();
+    let no_includes = &mut |_: &str| Err("none".to_owned());
+    let mut opened = SourcedModel::read("gait2392.osim", &bytes, None, no_includes).unwrap();
+    assert_eq!(opened.default_muscle_use(), MuscleUse::Both);
+    assert!(opened.use_muscles(MuscleUse::Both));
+    let mut opened = opened.fill(&Person::default()).unwrap();
+    let muscles = opened.joint_muscles().unwrap();
+    let mut body =
+        JointTorques::with_passive_ranges(&opened.model, &opened.passive_ranges()).with_muscles(Some(muscles));
+    let hip = opened.model.coordinate("hip_adduction_r").unwrap();
+    let rate = opened.model.coordinates()[hip].rate.unwrap();
+    for (angle, expected) in ADDUCTION {
+        let mut posture = opened.model.default_posture();
+        posture.values_mut()[hip] = f64::to_radians(angle);
+        body.update(&opened.model, &posture, &[], Quantities::TORQUES).unwrap();
+        let torque = body.passive_torque().torques()[rate];
+        assert!((torque - expected).abs() < 0.1, "{angle} deg: {torque} N m for {expected}");
+    }
+    let reference = Reference::read("gait2392_thelen", &bytes, &shared("vectors/muscles/gait2392_thelen.json.gz"));
+    let own = &reference.muscles;
+    let mut geometry = PathGeometry::new(&opened.model, &own.paths);
+    let mut tension = PathTension::new(&opened.model, &own.paths);
+    let mut tensions = vec![Tension::default(); own.paths.paths.len()];
+    let n = opened.model.rates().len();
+    let (mut sums, mut fibers) = (vec![[0.0; 2]; n], vec![0.0; n]);
+    let crossed = geometry.crossed(&opened.model);
+    for posture in reference.postures() {
+        body.update(&opened.model, &posture, &[], Quantities::TORQUES).unwrap();
+        body.muscles().unwrap().write_strength(&mut opened.model);
+        let model = &opened.model;
+        geometry.update(model, body.kinematics(), &own.paths, PathRule::Geodesic);
+        let states = |activation: f64| -> Vec<FiberState> {
+            let lengths = geometry.lengths();
+            own.muscles.iter().map(|muscle| muscle.at_rest(lengths[muscle.spec().path], activation)).collect()
+        };
+        let (rest, full) = (states(0.01), states(1.0));
+        passive_tensions(own, &geometry, &rest, &mut tensions);
+        tension.update(model, body.kinematics(), &own.paths, &geometry, &tensions).unwrap();
+        strength(own, &geometry, &rest, &full, &mut sums);
+        passive_fiber_torque(own, &geometry, &rest, &mut fibers);
+        for &rate in &crossed {
+            let name = &model.rates()[rate].name;
+            let (found, expected) = (body.passive_torque().torques()[rate], tension.torques()[rate]);
+            assert!((found - expected).abs() < 1e-9, "{name}: {found} N m for {expected}");
+            let coordinate = model.rates()[rate].coordinate.unwrap();
+            if model.three_axis_joint_of(coordinate).is_some() {
+                continue;
+            }
+            let groups = model.coordinates()[coordinate].groups.as_ref().unwrap();
+            let beyond = [sums[rate][0] - fibers[rate], fibers[rate] - sums[rate][1]];
+            for (side, beyond) in Side::BOTH.into_iter().zip(beyond) {
+                let found = groups[side.index()].strength.torque(0.0);
+                assert!((found - beyond).abs() < 1e-9 && found > 1.0, "{name}: {found} N m for {beyond}");
+            }
+        }
+    }
 }

@@ -2,12 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
+use contrapposto::joint_torques::{JointMuscles, JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::math::{Function, Spline};
 use contrapposto::model::{Adult, Model, Placement, adult};
 use contrapposto::muscle::{
-    FiberLaw, FiberState, Location, MovingPoint, Muscle, MuscleSpec, Musculature, Path, PathGeometry, PathPoint,
-    PathRule, PathWrap, Paths, Quadrant, Tension, Thelen2003, WrapMethod, WrapObject, WrapShape, passive_tensions,
+    FiberLaw, FiberState, Ligament, LigamentLaw, Location, MovingPoint, Muscle, MuscleSpec, Musculature, Path,
+    PathGeometry, PathPoint, PathRule, PathWrap, Paths, Quadrant, Tension, Thelen2003, WrapMethod, WrapObject,
+    WrapShape, passive_tensions,
 };
 use contrapposto::posture::Posture;
 use contrapposto::statics::PathTension;
@@ -262,4 +264,58 @@ fn passive_tensions_of_two_muscles_on_one_path_add_up() {
     passive_tensions(&muscles, &geometry, &[state(1.0), state(2.0), state(4.0)], &mut tensions);
     let expected = [0.0, 3.0, 4.0, 0.0, 0.0, 0.0].map(|force| Tension { force, stiffness: 10.0 * force });
     assert_eq!(tensions, expected);
+}
+
+#[test]
+fn passive_torque_of_springs_in_use_is_minus_the_derivative_of_their_energy_about_coordinates_and_axes() {
+    let mut rng = random();
+    let model = adult(&Adult::default()).unwrap();
+    let paths = arm(&model);
+    let law = LigamentLaw::Spring { slack_length: 0.1, stiffness: 1000.0 };
+    let ligaments = (0..6).map(|path| Ligament { name: format!("spring {path}"), path, law: law.clone() }).collect();
+    let muscles = Musculature { paths: paths.clone(), ligaments, ..Musculature::default() };
+    let rates: Vec<usize> = (0..model.rates().len()).collect();
+    let muscles = JointMuscles::new(&model, muscles, &rates, &[]);
+    let mut sprung = JointTorques::new(&model).with_muscles(Some(muscles));
+    let mut bare = JointTorques::new(&model);
+    let (mut kinematics, mut geometry) = (Kinematics::new(&model), PathGeometry::new(&model, &paths));
+    let mut energy = |posture: &Posture| -> f64 {
+        kinematics.update(&model, posture).unwrap();
+        geometry.update(&model, &kinematics, &paths, PathRule::Geodesic);
+        geometry.lengths().iter().map(|length| 500.0 * (length - 0.1f64).max(0.0).powi(2)).sum()
+    };
+    let (mut greatest, mut joints) = (0f64, 0);
+    for _ in 0..20 {
+        let posture = inside(&mut rng, &model);
+        sprung.update(&model, &posture, &[], Quantities::TORQUES).unwrap();
+        bare.update(&model, &posture, &[], Quantities::TORQUES).unwrap();
+        let of = |with: &[f64], without: &[f64]| -> Vec<f64> {
+            with.iter().zip(without).map(|(with, without)| with - without).collect()
+        };
+        let torques = of(sprung.passive_torque().torques(), bare.passive_torque().torques());
+        let about_axes = of(sprung.passive_torque().about_axes(), bare.passive_torque().about_axes());
+        let active = of(sprung.active_torque(), bare.active_torque());
+        for (rate, torque) in torques.iter().enumerate() {
+            let mut at = |step: f64| {
+                let mut moved = posture.clone();
+                moved.values_mut()[model.rates()[rate].coordinate.unwrap()] += step;
+                energy(&moved)
+            };
+            let h = 1e-4;
+            let (near, far) = ((at(h) - at(-h)) / (2.0 * h), (at(2.0 * h) - at(-2.0 * h)) / (4.0 * h));
+            let slope = near + (near - far) / 3.0;
+            assert!((torque + slope).abs() < 1e-6, "{}: {torque} for {}", model.rates()[rate].name, -slope);
+            assert!((active[rate] + about_axes[rate]).abs() < 1e-9, "Eq. 1");
+            greatest = greatest.max(torque.abs());
+        }
+        for (joint, orientation) in model.three_axis_joints().iter().zip(sprung.passive_torque().orientations()) {
+            let rates = joint.coordinates.map(|i| model.coordinates()[i].rate.unwrap());
+            let moment = V::from(rates.map(|rate| about_axes[rate]));
+            let folded = orientation.hinges.tr_mul(&moment);
+            assert!((folded - V::from(rates.map(|rate| torques[rate]))).norm() < 1e-9, "{}", joint.name);
+            joints += usize::from(moment.norm() > 1.0);
+        }
+    }
+    println!("greatest torque {greatest} N m; {joints} moments of three-axis joints above 1 N m");
+    assert!(greatest > 10.0 && joints > 20);
 }

@@ -8,6 +8,7 @@ use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::person;
 use contrapposto_formats::tissue::{FatigueChoice, FatigueSex, Person};
 
+use super::muscles::MuscleArgs;
 use crate::fail::Fail;
 
 /// MODEL, and the options that complete it.
@@ -145,6 +146,8 @@ pub(crate) struct TorquesArgs {
     /// Postures: .mot, .sto or .csv, one row a frame; or `default`.
     pub(crate) postures: PathBuf,
     #[command(flatten)]
+    pub(crate) muscles: MuscleArgs,
+    #[command(flatten)]
     pub(crate) under: LoadArgs,
     /// Also d external_i / d q_j.
     #[arg(long)]
@@ -169,6 +172,8 @@ pub(crate) struct AssessArgs {
     pub(crate) fatigue: FatigueArgs,
     /// Recorded motion: .mot, .sto or .csv, one row a frame, with times.
     pub(crate) motion: PathBuf,
+    #[command(flatten)]
+    pub(crate) muscles: MuscleArgs,
     #[command(flatten)]
     pub(crate) under: LoadArgs,
     /// Segments that carry the body in every frame; their forces are computed for the least effort of the muscles.

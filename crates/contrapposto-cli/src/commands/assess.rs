@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 
 use crate::args::AssessArgs;
 use crate::fail::Fail;
-use crate::model_file::open;
+use crate::model_file::open_with_muscles;
 use crate::motion_file::{fast_motion, loads_of, note_values_out_of_range, read_motion};
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::view::answer::{answered, first_lines};
@@ -56,8 +56,10 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     if args.model.model == Path::new("-") && args.motion == Path::new("-") {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
-    let mut opened = open(&args.model, true)?.with_fatigue(&args.fatigue.choice()?);
-    let Given { motion, held, ground, settings, warnings: doubts, folder } = given(args, &mut opened)?;
+    let (opened, muscles) = open_with_muscles(&args.model, &args.muscles)?;
+    let mut opened = opened.with_fatigue(&args.fatigue.choice()?);
+    let Given { motion, held, ground, mut settings, warnings: doubts, folder } = given(args, &mut opened)?;
+    settings.muscles = muscles;
     let model = &opened.model;
 
     let mut tables = Tables::new(model, motion.len());
@@ -212,7 +214,7 @@ fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String
         angle && group.peak_load.value >= LIGAMENT_LOAD && group.at_peak.works_against_ligaments()
     };
     let told = |group: &&GroupAssessment| {
-        let PeakTorques { angle, external, passive } = group.at_peak;
+        let PeakTorques { angle, external, passive, .. } = group.at_peak;
         let floor = StrengthAtText::new(opened, group).is_some_and(|strength| strength.is_floor());
         let [passive, external, active] = [passive, external, group.peak_torque].map(tenths);
         format!(
@@ -264,8 +266,8 @@ impl<'a> Tables<'a> {
     }
 
     fn record(&mut self, instant: &Instant) {
-        let Instant { index, time, torques, fatigue, load, .. } = *instant;
-        let frame = Frame { center_of_mass: None, ..Frame::new(torques, self.model, &self.order, (index, time)) };
+        let Instant { index, time, model, torques, fatigue, load, .. } = *instant;
+        let frame = Frame { center_of_mass: None, ..Frame::new(torques, model, &self.order, (index, time)) };
         self.torques.push_str(&row(&self.order, &frame, '\t'));
         self.times.push(time);
         let working = self.working.iter();

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contrapposto::assessment::acceleration;
-use contrapposto::joint_torques::{JointTorques, JointTorquesError, Quantities};
+use contrapposto::joint_torques::{JointMuscles, JointTorques, JointTorquesError, Quantities};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::GroundReaction;
@@ -11,7 +11,7 @@ use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::TorquesArgs;
 use crate::fail::Fail;
-use crate::model_file::open;
+use crate::model_file::open_with_muscles;
 use crate::motion_file::{fast_motion, loads_of, note_values_out_of_range, read_motion};
 use crate::output::{Folder, Pending, folder_and_name, print_note};
 use crate::view::residual::Residual;
@@ -21,6 +21,7 @@ use crate::view::torque_rows::{Frame, Order};
 /// Model, frames and loads of the command.
 struct Job {
     opened: SourcedModel,
+    muscles: Option<JointMuscles>,
     frames: Vec<(f64, Posture)>,
     loads: Vec<Load>,
     ground: Option<GroundReaction>,
@@ -32,7 +33,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
     }
     let target = args.out.as_deref().map(Target::new).transpose()?;
-    let mut opened = open(&args.model, true)?;
+    let (mut opened, muscles) = open_with_muscles(&args.model, &args.muscles)?;
     let mut notes = std::mem::take(&mut opened.notes);
     let model = &opened.model;
     let frames = match args.postures == Path::new("default") {
@@ -45,7 +46,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let (loads, ground) = loads_of(&args.under, model, &mut notes)?;
     let warnings = note_values_out_of_range(&opened, &frames, &mut notes);
     warnings.iter().for_each(|warning| print_note("warning", warning));
-    let job = Job { opened, frames, loads, ground, gradient: args.gradient };
+    let job = Job { opened, muscles, frames, loads, ground, gradient: args.gradient };
     job.check()?;
     notes.iter().for_each(|note| print_note("note", note));
 
@@ -65,9 +66,11 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let mut sink = |text: &str| out.append(text);
     match (&args.out, job.frames.as_slice()) {
         _ if args.json => json(&job, &order, &mut residual, &mut sink)?,
-        (_, [_]) => job.run(&order, &mut residual, |frame| sink(&text::readable(&job.opened.model, &order, frame)))?,
+        (_, [_]) => {
+            job.run(&order, &mut residual, |_, frame| sink(&text::readable(&job.opened.model, &order, frame)))?
+        }
         (Some(path), frames) => {
-            job.run(&order, &mut residual, |_| Ok(()))?;
+            job.run(&order, &mut residual, |_, _| Ok(()))?;
             sink(&format!("{} frames in {}\n", frames.len(), path.display()))?;
         }
         (None, _) => table(&job, &order, ',', &mut residual, &mut sink)?,
@@ -87,8 +90,8 @@ fn json(
 ) -> Result<(), Fail> {
     sink("[")?;
     let mut before = "\n";
-    job.run(order, residual, |frame| {
-        let text = serde_json::to_string(&text::json(&job.opened, order, frame));
+    job.run(order, residual, |opened, frame| {
+        let text = serde_json::to_string(&text::json(opened, order, frame));
         sink(std::mem::replace(&mut before, ",\n"))?;
         sink(&text.map_err(|error| Fail::job("JSON", error))?)
     })?;
@@ -103,12 +106,13 @@ fn table(
     sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
 ) -> Result<(), Fail> {
     sink(&text::header(&job.opened.model, order, job.frames.len(), separator, job.gradient))?;
-    job.run(order, residual, |frame| sink(&text::row(order, frame, separator)))
+    job.run(order, residual, |_, frame| sink(&text::row(order, frame, separator)))
 }
 
 impl Job {
     fn body(&self) -> JointTorques {
         JointTorques::with_passive_ranges(&self.opened.model, &self.opened.passive_ranges())
+            .with_muscles(self.muscles.clone())
     }
 
     /// Checks all frames before the first one is printed, and warns of a fast motion.
@@ -128,14 +132,15 @@ impl Job {
         ground.check(self.frames.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))
     }
 
-    /// Computes frame after frame.
+    /// Computes frame after frame; `visit` gets the model with the strength of the posture, too.
     fn run(
         &self,
         order: &Order,
         residual: &mut Residual,
-        mut visit: impl FnMut(&Frame<'_>) -> Result<(), Fail>,
+        mut visit: impl FnMut(&SourcedModel, &Frame<'_>) -> Result<(), Fail>,
     ) -> Result<(), Fail> {
         let model = &self.opened.model;
+        let mut posed = self.opened.clone();
         let mut body = self.body();
         let quantities = Quantities { gradient: self.gradient, ..Quantities::TORQUES };
         let mut loads = vec![];
@@ -147,12 +152,15 @@ impl Job {
                 ground.loads(*time, model, body.kinematics(), &mut loads);
             }
             body.apply(model, &loads, quantities).map_err(failed)?;
-            let mut frame = Frame::new(&body, model, order, (index, *time));
+            if let Some(muscles) = body.muscles() {
+                muscles.write_strength(&mut posed.model);
+            }
+            let mut frame = Frame::new(&body, &posed.model, order, (index, *time));
             if self.gradient {
                 frame = frame.with_gradient(body.gradient(), order);
             }
             residual.record(&frame);
-            visit(&frame)?;
+            visit(&posed, &frame)?;
         }
         Ok(())
     }

@@ -22,6 +22,8 @@ pub(crate) struct Moment {
     pub(crate) external: [f64; 3],
     pub(crate) passive: [f64; 3],
     pub(crate) active: [f64; 3],
+    /// Angles about the axes, rad; 0 for a ball, which has none.
+    pub(crate) angles: [f64; 3],
     /// Greatest |active torque| over strength; `None` where no strength is known.
     pub(crate) load: Option<f64>,
 }
@@ -65,6 +67,11 @@ impl MomentJoint {
         [0, 1, 2].map(|k| (model.rates()[self.rates[k]].name.as_str(), self.directions[k].into()))
     }
 
+    /// The coordinates that its axes stand for; none of a ball.
+    pub(crate) fn coordinates(&self, model: &Model) -> [Option<usize>; 3] {
+        self.rates.map(|rate| model.rates()[rate].coordinate)
+    }
+
     /// Its torques in the posture of `body`.
     pub(crate) fn moment(&self, model: &Model, body: &JointTorques) -> Moment {
         // Adding 0 turns -0, the active torque of no torques, into 0.
@@ -74,6 +81,7 @@ impl MomentJoint {
             external: of(body.external_about_axes()),
             passive: of(body.passive_torque().about_axes()),
             active: of(body.active_torque()),
+            angles: self.coordinates(model).map(|c| c.map_or(0.0, |c| body.angles()[c])),
             load,
         }
     }

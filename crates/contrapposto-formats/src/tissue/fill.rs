@@ -42,15 +42,16 @@ pub(super) fn fill(
             continue;
         }
         let Some((own, found)) = known(twin, &coordinate.name) else {
-            if coordinate.passive.is_none() {
+            if coordinate.passive.is_none() && origins.passive != Origin::Muscles {
                 unknown.push(format!("`{}`", coordinate.name));
             }
             continue;
         };
         let filling = Filling { signs: &signs, index, own, found, coordinate };
-        changed = match coordinate.passive {
-            Some(_) => filling.strength(changed, origins, notes),
-            None => filling.tissue(changed, origins, notes),
+        changed = if coordinate.passive.is_some() || origins.passive == Origin::Muscles {
+            filling.strength(changed, origins, notes)
+        } else {
+            filling.tissue(changed, origins, notes)
         };
     }
     if !unknown.is_empty() {
@@ -74,17 +75,22 @@ struct Filling<'a> {
 }
 
 impl Filling<'_> {
-    /// Muscle groups only: the file's own tissue stays, and no file says how strong its muscles are.
+    /// Muscle groups only: the file's own tissue stays.
     fn strength(&self, model: Model, origins: &mut Origins, notes: &mut Vec<String>) -> Model {
-        if self.coordinate.groups.is_some() {
+        let of_muscles = origins.strength == Origin::Muscles;
+        if self.coordinate.groups.is_some() && !of_muscles {
             return model;
         }
         let (Some(groups), Ok(sign)) = (self.found.groups.clone(), self.signs.sign(self.index, self.own)) else {
             return model;
         };
-        let name = &self.coordinate.name;
-        notes.push(format!("`{name}`: strength from the built-in data, passive torque from the file"));
-        (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
+        if !of_muscles {
+            let name = &self.coordinate.name;
+            let passive = if origins.passive == Origin::Muscles { "its muscles" } else { "the file" };
+            notes.push(format!("`{name}`: strength from the built-in data, passive torque from {passive}"));
+            origins.strength = Origin::Library;
+        }
+        origins.fatigue = Origin::Library;
         (origins.twin, origins.turned) = (Some(self.found.name.clone()), sign < 0.0);
         model.with_groups(self.index, turned(groups, sign))
     }
@@ -108,13 +114,17 @@ impl Filling<'_> {
                 return model;
             }
         };
-        notes.push(said(coordinate, found, signs.size, sign));
+        let of_muscles = origins.strength == Origin::Muscles;
+        notes.push(said(coordinate, found, signs.size, (sign, of_muscles)));
         origins.passive = Origin::Library;
         (origins.twin, origins.turned) = (Some(found.name.clone()), sign < 0.0);
         origins.meant = Some(mirrored(found.range, sign));
         let model = model.with_passive_law(index, Some(law));
-        let Some(groups) = found.groups.clone().filter(|_| coordinate.groups.is_none()) else { return model };
-        (origins.strength, origins.fatigue) = (Origin::Library, Origin::Library);
+        let Some(groups) = found.groups.clone().filter(|_| coordinate.groups.is_none() || of_muscles) else {
+            return model;
+        };
+        origins.strength = if of_muscles { Origin::Muscles } else { Origin::Library };
+        origins.fatigue = Origin::Library;
         model.with_groups(index, turned(groups, sign))
     }
 }
@@ -245,7 +255,8 @@ fn turned(groups: [MuscleGroup; 2], sign: f64) -> [MuscleGroup; 2] {
     [negative, positive]
 }
 
-fn said(coordinate: &Coordinate, found: &Coordinate, size: &Adult, sign: f64) -> String {
+/// The note about a filled coordinate; with `of_muscles` its strength is not filled.
+fn said(coordinate: &Coordinate, found: &Coordinate, size: &Adult, (sign, of_muscles): (f64, bool)) -> String {
     let sources = data::library().sources(&found.name);
     let row = sources.and_then(|sources| sources.curve_of(size.sex)).and_then(|name| data::library().curve(name));
     let curve = row.map_or(String::new(), |row| format!(", curve `{}` ({})", row.name, row.reference.status));
@@ -260,5 +271,6 @@ fn said(coordinate: &Coordinate, found: &Coordinate, size: &Adult, sign: f64) ->
     } else {
         String::new()
     };
-    format!("`{}`: passive torque and strength from the built-in data{curve}{way}{beyond}", coordinate.name)
+    let what = if of_muscles { "passive torque" } else { "passive torque and strength" };
+    format!("`{}`: {what} from the built-in data{curve}{way}{beyond}", coordinate.name)
 }

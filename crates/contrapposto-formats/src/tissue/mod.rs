@@ -5,11 +5,13 @@
 
 mod fatigue;
 mod fill;
+mod muscles;
 mod origin;
 mod person;
 mod plausible;
 
 pub use fatigue::{FatigueChoice, FatigueParametersText, FatigueSex, fatigue_notes};
+pub use muscles::MuscleUse;
 pub use origin::{Origin, Origins};
 pub use person::Person;
 

@@ -10,6 +10,8 @@ pub enum Origin {
     Overlay,
     /// The built-in data.
     Library,
+    /// The muscles of the model, in each posture.
+    Muscles,
 }
 
 /// Where the numbers of one coordinate come from.

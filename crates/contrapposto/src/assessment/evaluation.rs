@@ -13,7 +13,8 @@ use crate::statics::Load;
 
 /// Torques and contact forces of one instant.
 pub(super) struct Evaluation<'a> {
-    pub(super) model: &'a Model,
+    /// With the strength of the last update, where muscles give it.
+    pub(super) model: Model,
     ranges: &'a [Option<(f64, f64)>],
     pub(super) torques: JointTorques,
     pub(super) contact: Option<ContactForces>,
@@ -22,13 +23,14 @@ pub(super) struct Evaluation<'a> {
 }
 
 impl<'a> Evaluation<'a> {
-    pub(super) fn new(model: &'a Model, settings: &'a AssessSettings) -> Result<Self, SupportError> {
+    pub(super) fn new(model: &Model, settings: &'a AssessSettings) -> Result<Self, SupportError> {
         let supports = &settings.supports;
         let contact = (!supports.is_empty()).then(|| ContactForces::new(model, supports.clone())).transpose()?;
         Ok(Self {
-            model,
+            model: model.clone(),
             ranges: &settings.passive_ranges,
-            torques: JointTorques::with_passive_ranges(model, &settings.passive_ranges),
+            torques: JointTorques::with_passive_ranges(model, &settings.passive_ranges)
+                .with_muscles(settings.muscles.clone()),
             contact,
             root: root_rates(model),
             loads: vec![],
@@ -46,6 +48,9 @@ impl<'a> Evaluation<'a> {
         let Self { model, torques, .. } = self;
         let refused = |error: JointTorquesError| AssessError::Torques { index, error };
         torques.place(model, posture).map_err(|error| refused(error.into()))?;
+        if let Some(muscles) = torques.muscles() {
+            muscles.write_strength(model);
+        }
         self.loads.clear();
         loads(time, torques.kinematics(), &mut self.loads);
         match &mut self.contact {
@@ -76,7 +81,7 @@ impl<'a> Evaluation<'a> {
 
     /// What the supports lack in the posture of the last update.
     pub(super) fn missing(&self) -> Option<Missing> {
-        self.contact.as_ref()?.missing(self.model, self.torques.kinematics())
+        self.contact.as_ref()?.missing(&self.model, self.torques.kinematics())
     }
 
     /// Adds what both strategies propose to a group in the posture of the last update.
@@ -84,14 +89,16 @@ impl<'a> Evaluation<'a> {
         let i = group.coordinate;
         let coordinate = &self.model.coordinates()[i];
         let Some(rate) = coordinate.rate else { return };
-        if Side::of(self.active(rate)) != group.side {
+        // Muscles of several joints need not give a falling curve, which the tables need.
+        let of_muscles = self.torques.muscles().is_some_and(|muscles| muscles.gives_passive(rate));
+        if of_muscles || Side::of(self.active(rate)) != group.side {
             return;
         }
         let range = proposed_range(coordinate.range, self.ranges.get(i).copied().flatten());
         let (passive, kinematics) = (self.torques.passive_torque(), self.torques.kinematics());
-        let Some(curve) = passive.curve_about_axis(self.model, kinematics, i, range) else { return };
+        let Some(curve) = passive.curve_about_axis(&self.model, kinematics, i, range) else { return };
         let value = passive.values()[i];
-        let slope = self.torques.own_slope_about_axis(self.model, rate);
+        let slope = self.torques.own_slope_about_axis(&self.model, rate);
         for strategy in [Strategy::Active, Strategy::Passive] {
             let problem = Problem {
                 curve: &curve,

@@ -106,7 +106,8 @@ impl Groups {
             if load > summary.peak_load.value {
                 summary.peak_torque = active;
                 let (external, passive) = evaluation.torques.external_and_passive(rate);
-                summary.at_peak = PeakTorques { angle, external, passive };
+                let strength = groups[side.index()].strength.torque(angle);
+                summary.at_peak = PeakTorques { angle, external, passive, strength };
             }
             summary.peak_load.take(load, index, time);
             summary.loads.push(time, load);

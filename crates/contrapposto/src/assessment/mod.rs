@@ -63,6 +63,7 @@ pub fn assess(
         record(&Instant {
             index,
             time: *time,
+            model: &evaluation.model,
             torques: &evaluation.torques,
             fatigue: &groups.fatigue,
             load: &groups.load,

@@ -4,7 +4,7 @@ use crate::contact::{ContactForces, Missing};
 use crate::fatigue::LoadHistory;
 use crate::hybrid::{Decision, Strategy};
 use crate::joint_torques::{Hazard, JointTorques};
-use crate::model::Side;
+use crate::model::{Model, Side};
 
 /// One instant of the motion.
 #[derive(Debug)]
@@ -13,6 +13,8 @@ pub struct Instant<'a> {
     pub index: usize,
     /// Time, s.
     pub time: f64,
+    /// The model, with the strength of this instant where muscles give it.
+    pub model: &'a Model,
     /// Posture and torques, contact forces included.
     pub torques: &'a JointTorques,
     /// Fatigue of the positive and negative group of every coordinate, 0..=1.
@@ -78,6 +80,8 @@ pub struct PeakTorques {
     pub external: f64,
     /// Passive torque, N m.
     pub passive: f64,
+    /// Strength of the group, N m.
+    pub strength: f64,
 }
 
 /// Passive torque over external torque from which on a muscle that opposes it counts as working against the ligaments (assumed).
@@ -145,7 +149,8 @@ mod tests {
 
     #[test]
     fn a_muscle_against_a_passive_torque_of_twice_the_load_works_against_ligaments() {
-        let against = |external, passive| PeakTorques { angle: 0.0, external, passive }.works_against_ligaments();
+        let against =
+            |external, passive| PeakTorques { external, passive, ..PeakTorques::default() }.works_against_ligaments();
         assert!(against(-8.0, -22.9), "both push one way, mostly the ligament");
         assert!(against(2.0, -10.0), "the load pushes the other way, and less");
         assert!(!against(-8.0, -10.0), "mostly the load");

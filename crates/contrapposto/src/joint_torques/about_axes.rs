@@ -2,11 +2,14 @@
 //!
 //! Rotations of such a joint about its axes need no coordinates: the ball is turned from the orientation that its coordinates give.
 
-use super::JointTorquesError;
+use super::{JointTorques, JointTorquesError};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::Posture;
 use crate::statics::{ExternalTorque, Gradient, Load};
+
+/// Square of the rotation about an axis by steps of length 1 of the coordinates, from which on they turn the joint about it.
+const LEAST_TURN: f64 = 1e-6;
 
 /// External torque about axes, and its gradient by rotations about them. Filled by [`AboutAxes::update`].
 #[derive(Clone, Debug)]
@@ -88,5 +91,38 @@ impl AboutAxes {
     /// Its gradient by rotations about axes, N m/rad.
     pub(crate) fn gradient(&self) -> &Gradient {
         &self.gradient
+    }
+}
+
+impl JointTorques {
+    /// Writes the least step of coordinates that turns a joint by `turn` (rad) about the axis of a coordinate into `step`, one entry
+    /// a coordinate: `A^T e_k turn / |A^T e_k|^2` for a three-axis joint. The step is zero where no coordinate turns it so.
+    pub(crate) fn write_turn(&self, model: &Model, coordinate: usize, turn: f64, step: &mut [f64]) {
+        step.fill(0.0);
+        let Some((joint, place)) = model.three_axis_joint_of(coordinate) else {
+            step[coordinate] = turn;
+            return;
+        };
+        let row = self.passive.orientations()[joint].hinges.row(place).into_owned();
+        let squared = row.norm_squared();
+        if squared > LEAST_TURN {
+            for (i, by) in model.three_axis_joints()[joint].coordinates.into_iter().zip(row.iter()) {
+                step[i] = turn * by / squared;
+            }
+        }
+    }
+
+    /// Changes derivatives by rotations about the axes of three-axis joints into derivatives by their coordinates, row by row.
+    pub(crate) fn fold_axes(&self, model: &Model, rows: &mut [f64]) {
+        for (joint, orientation) in model.three_axis_joints().iter().zip(self.passive.orientations()) {
+            let rates = joint.coordinates.map(|i| model.coordinates()[i].rate.unwrap_or_default());
+            for row in rows.chunks_exact_mut(model.rates().len()) {
+                let by_axes = nalgebra::Vector3::from(rates.map(|rate| row[rate]));
+                let by_coordinates = orientation.hinges.tr_mul(&by_axes);
+                for (k, rate) in rates.into_iter().enumerate() {
+                    row[rate] = by_coordinates[k];
+                }
+            }
+        }
     }
 }

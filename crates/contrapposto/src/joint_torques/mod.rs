@@ -20,19 +20,18 @@
 mod about_axes;
 mod group_load;
 mod hazard;
+mod muscles;
 
 pub use about_axes::AboutAxes;
 pub use group_load::{GroupLoad, relative_load};
 pub use hazard::{Hazard, carried};
+pub use muscles::{JointMuscles, RESTING_ACTIVATION};
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, PassiveTorqueError};
-
-/// Square of the rotation about an axis by steps of length 1 of the coordinates, from which on they turn the joint about it.
-const LEAST_TURN: f64 = 1e-6;
 
 /// Active torque (Eq. 1), N m: what muscles give for external and passive torque to be in equilibrium.
 #[inline]
@@ -111,6 +110,7 @@ pub struct JointTorques {
     passive: PassiveTorque,
     /// External torque about axes, for a body with three-axis joints.
     axes: Option<AboutAxes>,
+    muscles: Option<Box<JointMuscles>>,
     /// By rate, about axes, N m.
     active: Vec<f64>,
     /// The loads given, then the contact forces.
@@ -139,10 +139,22 @@ impl JointTorques {
             gradient: Gradient::new(model),
             passive,
             axes: (!model.three_axis_joints().is_empty()).then(|| AboutAxes::new(model)),
+            muscles: None,
             active: vec![0.0; model.rates().len()],
             loads: vec![],
             computed: Quantities::default(),
         }
+    }
+
+    /// The same with muscles, whose passive torque is added to that of the model's laws.
+    #[must_use]
+    pub fn with_muscles(self, muscles: Option<JointMuscles>) -> Self {
+        Self { muscles: muscles.map(Box::new), ..self }
+    }
+
+    /// The muscles in the posture of the last update.
+    pub fn muscles(&self) -> Option<&JointMuscles> {
+        self.muscles.as_deref()
     }
 
     /// Computes `quantities` in `posture`: [`JointTorques::place`], then [`JointTorques::apply`].
@@ -185,6 +197,9 @@ impl JointTorques {
         self.kinematics.update(model, posture)?;
         self.posture.values_mut().copy_from_slice(posture.values());
         self.computed = Quantities::default();
+        if let Some(muscles) = &mut self.muscles {
+            muscles.update(model, posture, &self.kinematics)?;
+        }
         Ok(())
     }
 
@@ -198,6 +213,10 @@ impl JointTorques {
         self.computed = Quantities::default();
         if quantities.passive_torque {
             self.passive.update(model, &self.kinematics)?;
+            if let Some(muscles) = &self.muscles {
+                let [of_coordinates, about_axes] = muscles.passive_torques();
+                self.passive.add(of_coordinates, about_axes);
+            }
         }
         self.finish(model, quantities)
     }
@@ -358,37 +377,6 @@ impl JointTorques {
     pub(crate) fn own_slope_about_axis(&self, model: &Model, rate: usize) -> f64 {
         let external = self.axes.as_ref().map_or_else(|| self.external_torque(), AboutAxes::external);
         external.own_slope(self.kinematics_by_axes(), model.by_axes(), rate)
-    }
-
-    /// Writes the least step of coordinates that turns a joint by `turn` (rad) about the axis of a coordinate into `step`, one entry
-    /// a coordinate: `A^T e_k turn / |A^T e_k|^2` for a three-axis joint. The step is zero where no coordinate turns it so.
-    pub(crate) fn write_turn(&self, model: &Model, coordinate: usize, turn: f64, step: &mut [f64]) {
-        step.fill(0.0);
-        let Some((joint, place)) = model.three_axis_joint_of(coordinate) else {
-            step[coordinate] = turn;
-            return;
-        };
-        let row = self.passive.orientations()[joint].hinges.row(place).into_owned();
-        let squared = row.norm_squared();
-        if squared > LEAST_TURN {
-            for (i, by) in model.three_axis_joints()[joint].coordinates.into_iter().zip(row.iter()) {
-                step[i] = turn * by / squared;
-            }
-        }
-    }
-
-    /// Changes derivatives by rotations about the axes of three-axis joints into derivatives by their coordinates, row by row.
-    pub(crate) fn fold_axes(&self, model: &Model, rows: &mut [f64]) {
-        for (joint, orientation) in model.three_axis_joints().iter().zip(self.passive.orientations()) {
-            let rates = joint.coordinates.map(|i| model.coordinates()[i].rate.unwrap_or_default());
-            for row in rows.chunks_exact_mut(model.rates().len()) {
-                let by_axes = nalgebra::Vector3::from(rates.map(|rate| row[rate]));
-                let by_coordinates = orientation.hinges.tr_mul(&by_axes);
-                for (k, rate) in rates.into_iter().enumerate() {
-                    row[rate] = by_coordinates[k];
-                }
-            }
-        }
     }
 }
 

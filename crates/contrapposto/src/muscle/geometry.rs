@@ -29,8 +29,8 @@ pub struct PathGeometry {
     /// By path over several surfaces: all mobilities that move any of its points; empty for other paths. The forces of OpenSim's rule are
     /// not in balance there ([`super::routing::Node::seen`]), so that it has moment arms about joints that the path does not cross.
     carrying: Vec<Vec<usize>>,
-    /// Coordinates that change the length of some path by themselves.
-    driving: Vec<usize>,
+    /// By path: the coordinates that change its length by themselves.
+    driving: Vec<Vec<usize>>,
     /// Force and moment about ground's origin on each mobility, N for each newton of tension and m.
     wrenches: Vec<(Vector3<f64>, Vector3<f64>)>,
     routing: Routing,
@@ -67,7 +67,7 @@ impl PathGeometry {
             carrying: (0..paths.paths.len())
                 .map(|path| if paths.paths[path].wraps.len() > 1 { moving(model, paths, path, true) } else { vec![] })
                 .collect(),
-            driving: paths.paths.iter().flat_map(driving).collect(),
+            driving: paths.paths.iter().map(|path| driving(path).collect()).collect(),
             wrenches: vec![(Vector3::zeros(), Vector3::zeros()); model.mobilities.len()],
             routing: Routing::new(paths),
             lines: paths.paths.iter().map(Line::new).collect(),
@@ -89,6 +89,11 @@ impl PathGeometry {
     /// The rates about which paths can turn a body: all that move some part of a path against another, or change its length by
     /// themselves, but for slides, locked coordinates and those that follow others, which count where they lead.
     pub fn crossed(&self, model: &Model) -> Vec<usize> {
+        self.crossed_by(model, 0..self.lengths.len())
+    }
+
+    /// As [`PathGeometry::crossed`], for some of the paths, by index.
+    pub fn crossed_by(&self, model: &Model, paths: impl Iterator<Item = usize> + Clone) -> Vec<usize> {
         let mut lead: Vec<Option<usize>> = (0..model.rates.len()).map(Some).collect();
         for coupling in &model.couplings {
             let [dependent, independent] =
@@ -98,8 +103,10 @@ impl PathGeometry {
             }
         }
         let mut crossed = vec![false; model.rates.len()];
-        let moved = self.moving.iter().flatten().flat_map(|&mobility| model.rates_of(mobility));
-        let driven = self.driving.iter().filter_map(|&coordinate| model.coordinates[coordinate].rate);
+        let moving = paths.clone().flat_map(|path| &self.moving[path]);
+        let moved = moving.flat_map(|&mobility| model.rates_of(mobility));
+        let driving = paths.flat_map(|path| &self.driving[path]);
+        let driven = driving.filter_map(|&coordinate| model.coordinates[coordinate].rate);
         for rate in moved.chain(driven) {
             lead[rate].into_iter().for_each(|rate| crossed[rate] = true);
         }
@@ -108,6 +115,11 @@ impl PathGeometry {
             of.rotational && of.coordinate.is_none_or(|coordinate| !model.coordinates[coordinate].locked)
         };
         (0..crossed.len()).filter(|&rate| crossed[rate]).filter(free).collect()
+    }
+
+    /// Whether a coordinate changes the length of some path by itself: it moves a point in its segment, or is part of a tendon.
+    pub fn drives(&self, coordinate: usize) -> bool {
+        self.driving.iter().flatten().any(|driving| *driving == coordinate)
     }
 
     /// The line of a path.

@@ -34,7 +34,7 @@ pub(crate) use routing::{Node, NodeKind};
 pub use rule::{PathRule, WrapMethod};
 pub use static_optimisation::{Recruitment, StaticOptimisation};
 pub use tendon::{Around, RoundShape, SidePoint, Tendon, TendonGeom, TendonPart};
-pub use torque::{Tension, passive_tensions, passive_torque, strength};
+pub use torque::{Tension, passive_fiber_torque, passive_tensions, passive_torque, strength};
 pub(crate) use wrap::Spread;
 pub use wrap::{Quadrant, WrapObject, WrapShape};
 

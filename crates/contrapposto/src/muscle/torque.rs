@@ -39,12 +39,11 @@ pub fn passive_tensions(
     }
 }
 
-/// Torque of the fibres' passive forces and of ligaments by rate, N m (N for slides), overwritten; one state a muscle. That of bushings
-/// is [`super::bushing_torque`]. Does not allocate.
+/// Torque of the fibres' passive forces by rate, N m (N for slides), overwritten; one state a muscle. Does not allocate.
 ///
 /// # Panics
 /// Unless there is a state for every muscle and room for every rate.
-pub fn passive_torque(muscles: &Musculature, geometry: &PathGeometry, states: &[FiberState], torque: &mut [f64]) {
+pub fn passive_fiber_torque(muscles: &Musculature, geometry: &PathGeometry, states: &[FiberState], torque: &mut [f64]) {
     assert_eq!(states.len(), muscles.muscles.len(), "one state a muscle");
     torque.fill(0.0);
     for (muscle, state) in muscles.muscles.iter().zip(states) {
@@ -52,6 +51,15 @@ pub fn passive_torque(muscles: &Musculature, geometry: &PathGeometry, states: &[
         assert_eq!(arms.len(), torque.len(), "one torque a rate");
         torque.iter_mut().zip(arms).for_each(|(torque, arm)| *torque += arm * state.passive_force);
     }
+}
+
+/// Torque of the fibres' passive forces and of ligaments by rate, N m (N for slides), overwritten; one state a muscle. That of bushings
+/// is [`super::bushing_torque`]. Does not allocate.
+///
+/// # Panics
+/// As [`passive_fiber_torque`].
+pub fn passive_torque(muscles: &Musculature, geometry: &PathGeometry, states: &[FiberState], torque: &mut [f64]) {
+    passive_fiber_torque(muscles, geometry, states, torque);
     for ligament in &muscles.ligaments {
         let (tension, _) = ligament.law.tension_and_slope(geometry.lengths()[ligament.path]);
         let arms = geometry.moment_arms(ligament.path);

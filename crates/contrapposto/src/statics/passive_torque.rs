@@ -104,6 +104,19 @@ impl PassiveTorque {
         Ok(())
     }
 
+    /// Adds torques by rate, N m, of coordinates and about axes, with dependent coordinates folded into their independent ones.
+    pub(crate) fn add(&mut self, of_coordinates: &[f64], about_axes: &[f64]) {
+        let pairs = [
+            (&mut self.raw, of_coordinates),
+            (&mut self.torques, of_coordinates),
+            (&mut self.raw_about_axes, about_axes),
+            (&mut self.about_axes, about_axes),
+        ];
+        for (torques, added) in pairs {
+            torques.iter_mut().zip(added).for_each(|(torque, added)| *torque += added);
+        }
+    }
+
     /// Computes angles and orientations.
     fn place(&mut self, model: &Model, kinematics: &Kinematics) {
         self.angles.copy_from_slice(kinematics.values());

@@ -55,7 +55,7 @@ impl<'a> AssessedFrames<'a> {
         } else if !chosen {
             return;
         }
-        let mut frame = Frame::of_instant(self.model, instant);
+        let mut frame = Frame::of_instant(instant.model, instant);
         frame.fatigue = Some(instant.fatigue.to_vec());
         let mut loads = vec![];
         measured(&mut loads);

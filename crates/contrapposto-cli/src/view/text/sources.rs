@@ -8,6 +8,9 @@ use contrapposto::model::{CoordinateKind, MuscleGroup, Sex, Side};
 use contrapposto_formats::tissue::{Origin, SourcedModel};
 use serde::Serialize;
 
+/// Source of a number that the muscles of the model give.
+const OF_MUSCLES: &str = "muscles of the model";
+
 /// Status and source of a number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Source {
@@ -22,6 +25,11 @@ impl Source {
     fn reference(reference: &Reference) -> Self {
         let Reference { status, source, note } = reference;
         Self { status: status.to_string(), source: source.clone(), note: note.clone() }
+    }
+
+    /// Of a number that the muscles of the model give.
+    pub(crate) fn of_muscles() -> Self {
+        Self { source: OF_MUSCLES.to_owned(), ..Self::of_status("derived") }
     }
 
     fn of_status(status: &str) -> Self {
@@ -55,6 +63,7 @@ impl Known {
             Origin::File => Some(Source::of_status("from the file")),
             Origin::Overlay => Some(Source::of_status("from the overlay")),
             Origin::Library => reference.map(Source::reference),
+            Origin::Muscles => Some(Source::of_muscles()),
         };
         let mut known = Self { range: pick(origins.range, sources.map(|s| s.range)), ..Self::default() };
         if coordinate.passive.is_some() {
@@ -86,6 +95,7 @@ fn of_fatigue(group: &MuscleGroup, origin: Origin) -> Option<Source> {
     match origin {
         Origin::File => Some(Source::of_status("from the file")),
         Origin::Overlay => Some(Source::of_status("from the overlay")),
+        Origin::Muscles => Some(Source::of_muscles()),
         Origin::Library => {
             data::library().fatigue_reference(&group.name, &group.fatigue).as_ref().map(Source::reference)
         }
@@ -100,6 +110,9 @@ pub(crate) struct StrengthAtText {
     strength_nm: f64,
     /// `measured`, `derived`, `extrapolated`, ...; `from the file`, `from the overlay`.
     status: String,
+    /// Where muscles of the model give it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    source: Option<&'static str>,
     /// It is the least share of the peak, below which the curve over the angle would fall.
     floor: bool,
 }
@@ -107,7 +120,13 @@ pub(crate) struct StrengthAtText {
 impl StrengthAtText {
     /// At the greatest load of a group; `None` where the strength is not known.
     pub(crate) fn new(opened: &SourcedModel, found: &GroupAssessment) -> Option<Self> {
-        Self::at(opened, found.coordinate, found.side, found.at_peak.angle)
+        let text = Self::at(opened, found.coordinate, found.side, found.at_peak.angle)?;
+        if text.source.is_none() {
+            return Some(text);
+        }
+        // The strength of muscles is that of the posture at the peak; a group without a load has none.
+        let strength_nm = found.at_peak.strength;
+        (strength_nm > 0.0).then_some(Self { strength_nm, ..text })
     }
 
     /// Of a group at an angle (rad, m); `None` where the strength is not known.
@@ -124,10 +143,12 @@ impl StrengthAtText {
                 let strengths = sources.and_then(|sources| sources.strength);
                 strengths.map(|of| of[of_twin].status_at(&strength, angle).to_string())
             }
+            Origin::Muscles => Some("derived".to_owned()),
         };
         let angle_deg = (coordinate.kind == CoordinateKind::Rotation).then(|| angle.to_degrees());
         let (strength_nm, floor) = (strength.torque(angle), strength.is_floor(angle));
-        Some(Self { angle_deg, strength_nm, status: status.unwrap_or_default(), floor })
+        let source = (origins.strength == Origin::Muscles).then_some(OF_MUSCLES);
+        Some(Self { angle_deg, strength_nm, status: status.unwrap_or_default(), source, floor })
     }
 
     /// Whether it is the floor.
@@ -138,7 +159,8 @@ impl StrengthAtText {
     /// `29 N m, derived, floor`.
     pub(crate) fn words(&self) -> String {
         let floor = if self.floor { ", floor" } else { "" };
-        format!("{:.0} N m, {}{floor}", self.strength_nm, self.status)
+        let source = self.source.map_or_else(String::new, |source| format!(" ({source})"));
+        format!("{:.0} N m, {}{source}{floor}", self.strength_nm, self.status)
     }
 }
 

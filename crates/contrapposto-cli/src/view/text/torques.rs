@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto_formats::motion::csv_cell;
-use contrapposto_formats::tissue::SourcedModel;
+use contrapposto_formats::tissue::{Origin, SourcedModel};
 use serde::Serialize;
 
 use super::joint::AxisText;
-use super::sources::StrengthAtText;
+use super::sources::{Source, StrengthAtText};
 use super::{Named, plain_table};
 use crate::view::moment::{Moment, MomentJoint};
 use crate::view::torque_rows::{Frame, Order, Row, Torques};
@@ -40,6 +40,9 @@ struct TorquesText {
     external: f64,
     passive: f64,
     active: f64,
+    /// Where the muscles of the model give the passive torque.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    passive_source: Option<Source>,
     /// Of the positive and the negative group at this angle. Left out where it is not known, and of three-axis joints, whose muscles are
     /// judged by their moment.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,6 +56,12 @@ struct MomentText<'a> {
     external_nm: [f64; 3],
     passive_nm: [f64; 3],
     active_nm: [f64; 3],
+    /// Where the muscles of the model give the passive torque.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    passive_source: Option<Source>,
+    /// Of the positive and the negative group about each axis, where all are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strength: Option<Vec<[StrengthAtText; 2]>>,
     load: Option<f64>,
 }
 
@@ -70,7 +79,14 @@ pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Fr
             let angle = row.coordinate.map(|c| frame.values[c]);
             (
                 row.name.as_str(),
-                TorquesText { angle, external, passive, active, strength: row.coordinate.and_then(strength) },
+                TorquesText {
+                    angle,
+                    external,
+                    passive,
+                    active,
+                    passive_source: row.coordinate.and_then(|coordinate| passive_source(opened, coordinate)),
+                    strength: row.coordinate.and_then(strength),
+                },
             )
         };
         Named(rows.iter().zip(torques).map(text).collect())
@@ -84,17 +100,35 @@ pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Fr
         coordinates: named(&order.rows, &frame.rows),
         uncoupled: named(&order.coupled, &frame.coupled),
         effort: frame.effort,
-        joints: Named(order.joints.iter().zip(&frame.moments).map(|joint| moment(model, joint)).collect()),
+        joints: Named(order.joints.iter().zip(&frame.moments).map(|joint| moment(opened, joint)).collect()),
         values: (!order.values.is_empty()).then(|| Named(order.values.iter().map(value).collect())),
         center_of_mass: frame.center_of_mass.map(Into::into),
         gradient: frame.gradient.as_deref(),
     }
 }
 
-fn moment<'a>(model: &'a Model, (joint, moment): (&'a MomentJoint, &Moment)) -> (&'a str, MomentText<'a>) {
-    let Moment { external, passive, active, load } = *moment;
-    let axes = AxisText::all(model, joint);
-    (&joint.name, MomentText { axes, external_nm: external, passive_nm: passive, active_nm: active, load })
+fn moment<'a>(opened: &'a SourcedModel, (joint, moment): (&'a MomentJoint, &Moment)) -> (&'a str, MomentText<'a>) {
+    let Moment { external, passive, active, load, .. } = *moment;
+    let coordinates = joint.coordinates(&opened.model);
+    let strength = |(coordinate, angle): (Option<usize>, f64)| {
+        let [positive, negative] = Side::BOTH.map(|side| StrengthAtText::at(opened, coordinate?, side, angle));
+        Some([positive?, negative?])
+    };
+    let text = MomentText {
+        axes: AxisText::all(&opened.model, joint),
+        external_nm: external,
+        passive_nm: passive,
+        active_nm: active,
+        passive_source: coordinates[0].and_then(|coordinate| passive_source(opened, coordinate)),
+        strength: coordinates.into_iter().zip(moment.angles).map(strength).collect(),
+        load,
+    };
+    (&joint.name, text)
+}
+
+/// The source of a passive torque that muscles of the model give.
+fn passive_source(opened: &SourcedModel, coordinate: usize) -> Option<Source> {
+    (opened.origins[coordinate].passive == Origin::Muscles).then(Source::of_muscles)
 }
 
 /// Heads of the table, with OpenSim's own header where tabs separate.
