@@ -5,6 +5,7 @@ use std::path::Path;
 use contrapposto::assessment::assess as assessed;
 use contrapposto::assessment::{AssessSettings, Assessment, GroupAssessment, Instant, PeakTorques};
 use contrapposto::contact::Support;
+use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -56,10 +57,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     if args.model.model == Path::new("-") && args.motion == Path::new("-") {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
-    let (opened, muscles) = open_with_muscles(&args.model, &args.muscles)?;
-    let mut opened = opened.with_fatigue(&args.fatigue.choice()?);
-    let Given { motion, held, ground, mut settings, warnings: doubts, folder } = given(args, &mut opened)?;
-    settings.muscles = muscles;
+    let (mut opened, muscles) = open(args)?;
+    let Given { motion, held, ground, settings, warnings: doubts, folder } = given(args, &mut opened, muscles)?;
     let model = &opened.model;
 
     let mut tables = Tables::new(model, motion.len());
@@ -115,8 +114,14 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     answered(&verdict)
 }
 
+/// The model with its fatigue, and its muscles.
+fn open(args: &AssessArgs) -> Result<(SourcedModel, Option<JointMuscles>), Fail> {
+    let (opened, muscles) = open_with_muscles(&args.model, &args.muscles)?;
+    Ok((opened.with_fatigue(&args.fatigue.choice()?), muscles))
+}
+
 /// The motion, the loads and the settings of an assessment, checked; notes about them go to standard error.
-fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
+fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMuscles>) -> Result<Given, Fail> {
     let mut notes = std::mem::take(&mut opened.notes);
     notes.extend(fatigue_notes(&opened.model));
     let model = &opened.model;
@@ -133,6 +138,7 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel) -> Result<Given, Fail> {
     let settings = AssessSettings {
         supports: supports(args, model)?,
         passive_ranges: opened.passive_ranges(),
+        muscles,
         ..AssessSettings::default()
     };
     let warnings = note_values_out_of_range(opened, &motion, &mut notes);
