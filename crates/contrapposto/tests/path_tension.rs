@@ -12,7 +12,7 @@ use contrapposto::muscle::{
     WrapShape, passive_tensions,
 };
 use contrapposto::posture::Posture;
-use contrapposto::statics::PathTension;
+use contrapposto::statics::{PathTension, PathTensionError};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -196,6 +196,18 @@ fn the_torque_of_springs_along_paths_is_their_tension_times_their_moment_arms() 
     for (torque, arm) in bench.torque.torques().iter().zip(bench.geometry.moment_arms(0)) {
         assert!((torque - force * arm).abs() < 1e-12);
     }
+}
+
+#[test]
+fn a_tendon_of_mujoco_is_refused_by_its_index() {
+    let mut bench = Bench::new();
+    let posture = inside(&mut random(), &bench.model);
+    bench.update(&posture, 0);
+    bench.paths.paths[2].tendon = Some(contrapposto::muscle::Tendon::default());
+    let tensions = [Tension { force: 1.0, stiffness: 0.0 }; 6];
+    let found = bench.torque.update(&bench.model, &bench.kinematics, &bench.paths, &bench.geometry, &tensions);
+    assert_eq!(found, Err(PathTensionError::Tendon(2)));
+    assert!(found.unwrap_err().to_string().contains("path 2 is a tendon of MuJoCo"));
 }
 
 #[test]

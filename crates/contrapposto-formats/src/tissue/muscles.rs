@@ -166,7 +166,7 @@ impl SourcedModel {
         self.notes.push(format!(
             "{what} of the joints that the model's {} muscles cross are theirs in each posture (derived; strength is a plain sum), in place of \
              the built-in data{rest}. Muscles have no joint capsule and fascia, so that passive torque may be less than a joint's. \
-             --muscles off, in a scenario muscles = \"off\", leaves them out",
+             --muscles off leaves them out",
             self.muscles.muscles.len(),
         ));
         if !kept.is_empty() {

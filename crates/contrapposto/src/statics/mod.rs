@@ -16,4 +16,4 @@ pub use external::ExternalTorque;
 pub use fold::Gradient;
 pub use load::{FixedIn, Load, LoadError, LoadKind, LoadQuantity};
 pub use passive_torque::{PassiveTorque, PassiveTorqueError};
-pub use path_tension::PathTension;
+pub use path_tension::{PathTension, PathTensionError};

@@ -16,6 +16,21 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::muscle::{PathGeometry, PathRule, Paths, Tension};
 
+/// Why tensions have no torque here.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PathTensionError {
+    /// A tension is no number to calculate with.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// The path of this index is a tendon of MuJoCo.
+    #[error(
+        "path {0} is a tendon of MuJoCo, for which no gradient of its torque is known; paths of OpenSim files have one, and the torque alone \
+         is the tension times the moment arms"
+    )]
+    Tendon(usize),
+}
+
 /// Torque of tensions along paths by rate, and its gradient. Filled by [`PathTension::update`].
 #[derive(Clone, Debug)]
 pub struct PathTension {
@@ -54,11 +69,11 @@ impl PathTension {
     /// Computes torque and gradient of one tension a path, in the posture of `kinematics` and `geometry`. Does not allocate.
     ///
     /// # Errors
-    /// [`LoadError`] for a tension that is not finite or above [`crate::model::LARGEST`].
+    /// [`PathTensionError`] for a tension that is not finite or above [`crate::model::LARGEST`], and for a tendon of MuJoCo; torque and
+    /// gradient are then unknown.
     ///
     /// # Panics
-    /// Unless there is one tension a path, and `geometry` was filled by [`PathRule::Geodesic`]: no other rule has a gradient, and
-    /// tendons of MuJoCo have none here.
+    /// Unless there is one tension a path, and `geometry` was filled by [`PathRule::Geodesic`]: no other rule has a gradient.
     pub fn update(
         &mut self,
         model: &Model,
@@ -66,10 +81,12 @@ impl PathTension {
         paths: &Paths,
         geometry: &PathGeometry,
         tensions: &[Tension],
-    ) -> Result<(), LoadError> {
+    ) -> Result<(), PathTensionError> {
         assert_eq!(tensions.len(), paths.paths.len(), "one tension a path");
         assert_eq!(geometry.rule(), PathRule::Geodesic, "the rule of the paths");
-        assert!(paths.paths.iter().all(|path| path.tendon.is_none()), "tendons of MuJoCo have no gradient");
+        if let Some(tendon) = paths.paths.iter().position(|path| path.tendon.is_some()) {
+            return Err(PathTensionError::Tendon(tendon));
+        }
         let n = self.torques.len();
         self.torques.fill(0.0);
         self.gradient.fill(0.0);
