@@ -34,6 +34,7 @@ extern crate self as contrapposto;
 
 pub mod assessment;
 pub mod batch;
+pub mod capacity;
 pub mod constraint;
 pub mod contact;
 pub mod dynamics;

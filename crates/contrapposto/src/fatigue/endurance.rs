@@ -102,6 +102,24 @@ impl EnduranceCurve {
     }
 }
 
+/// Bisections to the load that is held for a time: to the last bits.
+const LOAD_HALVINGS: usize = 60;
+
+impl EnduranceCurve {
+    /// The load (0..=1) whose endurance time is `seconds`, by bisection; 1 where full load lasts as long.
+    pub(crate) fn load_held_for(&self, seconds: f64) -> f64 {
+        if self.time(1.0) >= seconds {
+            return 1.0;
+        }
+        let (mut held, mut failed) = (0.0, 1.0);
+        for _ in 0..LOAD_HALVINGS {
+            let middle = f64::midpoint(held, failed);
+            if self.time(middle) >= seconds { held = middle } else { failed = middle }
+        }
+        held
+    }
+}
+
 impl Endurance {
     /// Fatigue after `seconds` under relative load `load`.
     pub(crate) fn advance(&self, share: f64, load: f64, seconds: f64) -> f64 {

@@ -83,6 +83,15 @@ impl FatigueLaw {
         }
     }
 
+    /// Greatest relative load (0..=1) that a rested group can hold for `seconds`: the inverse of [`FatigueLaw::endurance_time`].
+    pub fn load_held_for(&self, seconds: f64) -> f64 {
+        match self {
+            Self::ThreeCompartment(law) => law.load_held_for(seconds),
+            Self::Endurance(law) => law.curve.load_held_for(seconds),
+            Self::Tireless => 1.0,
+        }
+    }
+
     /// Time a group with fatigue `level` (0..=1) can still hold a constant relative load, s; infinite if for ever.
     pub fn time_left(&self, level: f64, load: f64) -> f64 {
         match self {

@@ -107,6 +107,15 @@ impl ThreeCompartment {
         self.time_left(0.0, load)
     }
 
+    /// The load of which that time is `seconds`: `TL = R / (R + F (1 - exp(-R T)))`.
+    pub(crate) fn load_held_for(&self, seconds: f64) -> f64 {
+        let recovered = -(-self.recovery_rate * seconds.max(0.0)).exp_m1();
+        if recovered == 0.0 {
+            return 1.0 / (1.0 + self.fatigue_rate * seconds.max(0.0));
+        }
+        self.recovery_rate / (self.recovery_rate + self.fatigue_rate * recovered)
+    }
+
     /// The same for a group with fatigue `level`, which `MF' = F TL - R MF` carries from `level (1 - TL)` to `1 - TL`.
     pub(crate) fn time_left(&self, level: f64, load: f64) -> f64 {
         if load >= 1.0 || level >= 1.0 {

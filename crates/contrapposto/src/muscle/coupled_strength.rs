@@ -12,7 +12,7 @@
 use super::Musculature;
 use super::fiber::FiberState;
 use super::geometry::PathGeometry;
-use super::linear_program::LinearProgram;
+use crate::math::LinearProgram;
 
 /// The greatest torques about one rate with all others held.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

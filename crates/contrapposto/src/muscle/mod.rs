@@ -10,7 +10,6 @@ mod coupled_strength;
 mod fiber;
 mod geometry;
 mod ligament;
-mod linear_program;
 mod path;
 mod routing;
 mod rule;

@@ -115,17 +115,6 @@ pub(super) const EQUILIBRIUM_STEPS: usize = 200;
 /// Stretch of the tendon beyond its slack length from which the search starts.
 pub(super) const FIRST_STRETCH: f64 = 0.01;
 
-// Linear programs (`linear_program.rs`).
-
-/// Reduced cost, as a share of the largest cost, below which no unknown can raise the value.
-pub(super) const REDUCED_COST: f64 = 1e-11;
-/// Smallest entry of the tableau that counts.
-pub(super) const LEAST_PIVOT: f64 = 1e-9;
-/// Steps of one phase after which the first unknown that raises the value is taken, not the best.
-pub(super) const STEPS_TO_BLAND: usize = 2000;
-/// Most steps of one phase.
-pub(super) const SIMPLEX_STEPS: usize = 20_000;
-
 // Static optimisation (`static_optimisation.rs`).
 
 /// Singular value of the equations over their largest entry below which their multipliers are not determined.

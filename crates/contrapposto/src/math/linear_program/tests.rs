@@ -130,3 +130,55 @@ fn a_program_without_equations_takes_every_bound_that_pays() {
     let found = LinearProgram::new(vec![], vec![], &[1.0, 2.0, 3.0]).maximise(&[1.0, -1.0, 2.0]);
     assert_eq!((found.value, found.gap, found.unknowns), (7.0, 0.0, vec![1.0, 0.0, 3.0]));
 }
+
+#[test]
+fn a_replaced_column_gives_the_optimum_of_a_program_built_with_it() {
+    let mut rng = random();
+    let (mut warm, mut cold, mut slopes) = (0, 0, 0);
+    for number in 0..100 {
+        let (rows, unknowns) = (rng.random_range(2..9usize), rng.random_range(8..30usize));
+        // The last unknown alone has a cost; with it at zero the program is feasible.
+        let (mut matrix, right) = feasible(&mut rng, rows, unknowns);
+        let mut column: Vec<f64> = (0..rows).map(|_| rng.random_range(-1.0..1.0)).collect();
+        let mut upper = vec![1.0; unknowns];
+        matrix = matrix.chunks(unknowns).flat_map(|row| row.iter().copied().chain([0.0])).collect();
+        upper.push(1e3);
+        let cost: Vec<f64> = (0..=unknowns).map(|j| if j == unknowns { 1.0 } else { 0.0 }).collect();
+        let base = LinearProgram::new(matrix.clone(), right.clone(), &upper);
+        assert!(base.residual() < 1e-9, "{number}");
+        let mut program = base.clone();
+        for turn in 0..30 {
+            column.iter_mut().for_each(|entry| *entry += rng.random_range(-0.2..0.2));
+            for (row, entry) in column.iter().enumerate() {
+                matrix[row * (unknowns + 1) + unknowns] = *entry;
+            }
+            let found = program.maximise_with_column(&cost, unknowns, &column).inspect(|_| warm += 1);
+            let found = found.unwrap_or_else(|| {
+                cold += 1;
+                program = base.clone();
+                program.maximise_with_column(&cost, unknowns, &column).unwrap()
+            });
+            let anew = LinearProgram::new(matrix.clone(), right.clone(), &upper).maximise(&cost);
+            assert!(
+                (found.value - anew.value).abs() < 1e-9 * (1.0 + anew.value),
+                "{number} {turn}: {} {}",
+                found.value,
+                anew.value
+            );
+            assert!(found.gap.abs() < 1e-9 * (1.0 + found.value), "{number} {turn}: {}", found.gap);
+            // The value is concave in the right side, with the multipliers as slope.
+            let (row, by) = (rng.random_range(0..rows), rng.random_range(-1e-2..1e-2));
+            let mut moved = right.clone();
+            moved[row] += by;
+            let mut other = LinearProgram::new(matrix.clone(), moved, &upper);
+            if other.residual() < 1e-12 {
+                slopes += 1;
+                let bound = found.value + by * found.multipliers[row];
+                let value = other.maximise(&cost).value;
+                assert!(value <= bound + 1e-9 * (1.0 + bound.abs()), "{number} {turn}: {value} above {bound}");
+            }
+        }
+    }
+    println!("{warm} from the basis before, {cold} anew");
+    assert!(cold < warm / 4 && slopes > 1000, "{cold} of {warm}; {slopes} slopes");
+}

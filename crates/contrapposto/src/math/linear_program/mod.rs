@@ -7,7 +7,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::tolerances::{LEAST_PIVOT, REDUCED_COST, SIMPLEX_STEPS, STEPS_TO_BLAND};
+use tolerances::{LEAST_PIVOT, REDUCED_COST, SIMPLEX_STEPS, STEPS_TO_BLAND};
+
+mod replaced_column;
+mod tolerances;
 
 /// The place of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +22,7 @@ enum Place {
 
 /// The equations and bounds of a program, and its present basis.
 #[derive(Clone, Debug)]
-pub(super) struct LinearProgram {
+pub(crate) struct LinearProgram {
     rows: usize,
     unknowns: usize,
     /// `A`, row after row, and `b`; `b` less the residual that cannot be avoided once the program is feasible.
@@ -42,18 +45,20 @@ pub(super) struct LinearProgram {
 
 /// A greatest value.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Optimum {
+pub(crate) struct Optimum {
     /// `c x`.
-    pub(super) value: f64,
+    pub(crate) value: f64,
     /// Value of the dual program less that.
-    pub(super) gap: f64,
+    pub(crate) gap: f64,
     /// The unknowns.
-    pub(super) unknowns: Vec<f64>,
+    pub(crate) unknowns: Vec<f64>,
+    /// Multipliers of the equations: how much the value grows with each right side.
+    pub(crate) multipliers: Vec<f64>,
 }
 
 impl LinearProgram {
     /// The program of a matrix, row after row, with the basis of a feasible point (phase 1).
-    pub(super) fn new(matrix: Vec<f64>, right: Vec<f64>, upper: &[f64]) -> Self {
+    pub(crate) fn new(matrix: Vec<f64>, right: Vec<f64>, upper: &[f64]) -> Self {
         let (rows, unknowns) = (right.len(), upper.len());
         let signs: Vec<f64> = right.iter().map(|b| if *b < 0.0 { -1.0 } else { 1.0 }).collect();
         let width = unknowns + rows;
@@ -86,7 +91,7 @@ impl LinearProgram {
     }
 
     /// Least sum of the sizes of residuals of the equations; 0 where they can be met.
-    pub(super) fn residual(&self) -> f64 {
+    pub(crate) fn residual(&self) -> f64 {
         self.residual
     }
 
@@ -103,7 +108,7 @@ impl LinearProgram {
     }
 
     /// The greatest value of `cost x`, from the present basis.
-    pub(super) fn maximise(&mut self, cost: &[f64]) -> Optimum {
+    pub(crate) fn maximise(&mut self, cost: &[f64]) -> Optimum {
         let all: Vec<f64> = cost.iter().copied().chain(std::iter::repeat_n(0.0, self.rows)).collect();
         self.climb(&all);
         self.optimum(&all)
@@ -111,6 +116,16 @@ impl LinearProgram {
 
     /// Steps of the simplex method until no unknown can raise the value.
     fn climb(&mut self, cost: &[f64]) {
+        self.reduce(cost);
+        let greatest = cost.iter().fold(0.0f64, |greatest, c| greatest.max(c.abs()));
+        for step in 0..SIMPLEX_STEPS {
+            let Some(entering) = self.entering(REDUCED_COST * greatest, step > STEPS_TO_BLAND) else { return };
+            self.enter(entering);
+        }
+    }
+
+    /// The reduced costs of the present basis.
+    fn reduce(&mut self, cost: &[f64]) {
         let width = self.unknowns + self.rows;
         self.reduced.copy_from_slice(cost);
         for (row, &basic) in self.basis.iter().enumerate() {
@@ -118,11 +133,6 @@ impl LinearProgram {
             if cost[basic] != 0.0 {
                 self.reduced.iter_mut().zip(line).for_each(|(d, t)| *d -= cost[basic] * t);
             }
-        }
-        let greatest = cost.iter().fold(0.0f64, |greatest, c| greatest.max(c.abs()));
-        for step in 0..SIMPLEX_STEPS {
-            let Some(entering) = self.entering(REDUCED_COST * greatest, step > STEPS_TO_BLAND) else { return };
-            self.enter(entering);
         }
     }
 
@@ -210,7 +220,7 @@ impl LinearProgram {
             unknowns[j] = value.max(0.0).min(self.upper[j]);
         }
         let value = cost.iter().zip(&unknowns).map(|(c, x)| c * x).sum();
-        let dual = multipliers.map_or(f64::INFINITY, |y| {
+        let dual = multipliers.as_ref().map_or(f64::INFINITY, |y| {
             let of_rows: f64 = y.iter().zip(&self.right).map(|(y, b)| y * b).sum();
             let of_bounds = (0..self.unknowns).map(|j| {
                 let priced: f64 = (0..self.rows).map(|row| y[row] * column(j, row)).sum();
@@ -218,7 +228,8 @@ impl LinearProgram {
             });
             of_rows + of_bounds.sum::<f64>()
         });
-        Optimum { value, gap: dual - value, unknowns }
+        let multipliers = multipliers.map_or_else(|| vec![0.0; self.rows], |y| y.as_slice().to_vec());
+        Optimum { value, gap: dual - value, unknowns, multipliers }
     }
 }
 
@@ -231,5 +242,4 @@ fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
 }
 
 #[cfg(test)]
-#[path = "linear_program_tests.rs"]
 mod tests;
