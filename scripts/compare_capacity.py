@@ -45,7 +45,7 @@ def main():
         assert excess < 1e-6, f"arm {problem['number']}: a vertex exceeds a torque by {excess} N m"
         arms.append({"posture": problem["posture"], "vertices_n": polytope.vertices.T.tolist()})
     times.sort()
-    for line in bench("time", "60"):
+    for line in bench("time", "20"):
         print(f"contrapposto, {line['what']}: {line['least_ms']:.3f} ms at least, {line['median_ms']:.3f} ms median")
     print(f"pycapacity {version('pycapacity')}, right arm, fixed: {times[0]:.3f} ms at least, {times[len(times) // 2]:.3f} ms median "
           f"({len(arms)} arms)")

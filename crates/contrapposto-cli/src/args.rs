@@ -1,5 +1,6 @@
 //! The command line: one command, its arguments.
 
+mod capacity;
 mod joint;
 mod model;
 mod muscles;
@@ -9,6 +10,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+pub(crate) use capacity::CapacityArgs;
 pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
 pub(crate) use model::{
     AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,
@@ -49,6 +51,8 @@ pub(crate) enum Verb {
     Relax(RelaxArgs),
     /// Carry out two to five scenarios and show their postures side by side: a picture, and the differences.
     Compare(CompareArgs),
+    /// The greatest force at a hand in every direction: by joint strength, balance, friction and, held for a time, fatigue.
+    Capacity(CapacityArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.
     Figures(FiguresArgs),
     /// Decide single joints: one JSON problem a line in, one JSON decision a line out.

@@ -1,6 +1,7 @@
 //! One module a command: its arguments in, one call of the library, its outputs.
 
 pub(crate) mod assess;
+pub(crate) mod capacity;
 pub(crate) mod compare;
 pub(crate) mod convert;
 pub(crate) mod figures;

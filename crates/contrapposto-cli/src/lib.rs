@@ -22,7 +22,8 @@ use clap::Parser;
 
 use args::{Args, Verb};
 use commands::{
-    assess, compare, convert, figures, inspect, minimize, muscles, new, passive, pose, relax, simulate, torques,
+    assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, pose, relax, simulate,
+    torques,
 };
 use output::Notes;
 
@@ -50,6 +51,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Pose(args) => pose::pose(&args),
         Verb::Relax(args) => relax::relax(&args),
         Verb::Compare(args) => compare::compare(&args),
+        Verb::Capacity(args) => capacity::capacity(&args),
         Verb::Figures(args) => figures::figures(&args),
         Verb::Minimize(args) => minimize::minimize(&args),
         Verb::Passive(args) => passive::passive(&args),

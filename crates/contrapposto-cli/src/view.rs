@@ -5,6 +5,7 @@ pub(crate) mod answer;
 pub(crate) mod axes;
 pub(crate) mod body;
 pub(crate) mod body_map;
+pub(crate) mod capacity;
 pub(crate) mod charts;
 pub(crate) mod decision;
 pub(crate) mod excerpt;

@@ -15,6 +15,7 @@ pub mod write;
 pub mod xml;
 
 mod adult_text;
+mod capacity;
 mod decisions_csv;
 mod escaped;
 mod input_error;
@@ -32,6 +33,7 @@ mod trajectory_csv;
 mod verdict;
 
 pub use adult_text::{AdultTextError, adult_size, person};
+pub use capacity::{AtText, CapacityText, ForceText, LimitText};
 pub use decisions_csv::{decisions_csv, relief_sentence};
 pub use escaped::{escaped, escaped_lines};
 pub use input_error::{InputError, nearest};

@@ -28,6 +28,10 @@ pub(crate) const VIEWS: [View; 3] = [
     View { label: "three-quarter view", yaw: 0.55, pitch: 0.2 },
 ];
 
+/// From above, forward at the top.
+pub(crate) const ABOVE: View =
+    View { label: "from above", yaw: std::f64::consts::PI, pitch: std::f64::consts::FRAC_PI_2 };
+
 impl View {
     /// Coordinates of a point in the view.
     pub(crate) fn project(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {

@@ -6,6 +6,7 @@
 //! | Passive curve | [`passive_curve()`] | passive torque and its slope over the range of a coordinate |
 //! | Bodies | [`body_figure()`] | one posture from three sides, or several side by side: load colours, contact forces, loads, centre of mass, targets, surfaces and things, the start as a ghost |
 //! | Body with names | [`body_map()`] | joints with their coordinates, frames of segments, patches |
+//! | Greatest forces | [`force_figure()`] | the greatest forces at a point of a body in three sections, coloured by their limits |
 //! | Time line | [`time_line()`] | angle, torques and fatigue of one coordinate against time |
 //!
 //! Every function takes any input without panicking: numbers that are not finite (or beyond 1e9 in size) leave a gap
@@ -30,6 +31,7 @@ mod captions;
 mod depth;
 mod figure;
 mod font;
+mod force_figure;
 mod geometry;
 mod outline;
 mod passive_chart;
@@ -47,6 +49,7 @@ pub use body::{BodyFigure, BodyForce, BodyPart, BodyPosture, BodyThing};
 pub use body_figure::body_figure;
 pub use body_map::{BodyMap, MapFrame, MapJoint, body_map};
 pub use figure::{Figure, PlotError};
+pub use force_figure::{ForceFigure, Spoke, force_figure};
 pub use passive_chart::{PassiveChart, passive_curve};
 pub use tags::{PostureSketch, SketchRole};
 pub use time_line::{TimeLine, time_line};

@@ -52,6 +52,18 @@ pub(crate) const GHOST: Ink = Ink(0xec, 0xee, 0xf1);
 pub(crate) const GHOST_EDGE: Ink = Ink(0xb4, 0xbb, 0xc6);
 pub(crate) const GROUND: Ink = Ink(0xf5, 0xf6, 0xf8);
 
+/// Limits of a force, as on the report's page (Okabe & Ito's colours, recalled); the last stands for all others.
+pub(crate) const LIMITS: [Ink; 8] = [
+    Ink(0xe6, 0x9f, 0x00),
+    Ink(0x56, 0xb4, 0xe9),
+    Ink(0x00, 0x9e, 0x73),
+    Ink(0xd5, 0x5e, 0x00),
+    Ink(0x00, 0x72, 0xb2),
+    Ink(0xcc, 0x79, 0xa7),
+    Ink(0x7a, 0x5c, 0x2e),
+    Ink(0x88, 0x88, 0x88),
+];
+
 /// The colour of a load, a share of strength; below 0 it counts as 0.
 pub(crate) fn load_ink(load: f64) -> Ink {
     let band = LOAD_BANDS.iter().rposition(|(from, ..)| *from <= load + SHARE_TOLERANCE).unwrap_or(0);

@@ -45,6 +45,7 @@ class Body {
         { mesh: painter.listMesh(gl.LINES, edges), alpha: 0.85 },
       ];
     });
+    this.limits = report.solid ? limitPoints(report.solid).map((points) => painter.listMesh(gl.TRIANGLES, points)) : [];
     const box = boxPoints();
     [this.boxFaces, this.boxEdges] = [painter.listMesh(gl.TRIANGLES, box.faces), painter.listMesh(gl.LINES, box.edges)];
     this.grid = report.ground === null ? null : painter.listMesh(gl.LINES, gridPoints(this.camera.middle, report.ground));
@@ -69,6 +70,7 @@ class Body {
     gl.depthMask(false);
     for (const { mesh, alpha } of this.slabs) painter.list(mesh, styleColor("--surface"), alpha);
     this.drawThings(frame);
+    this.limits.forEach((mesh, limit) => painter.list(mesh, styleColor(`--limit-${limit}`), 0.5));
     gl.depthMask(true);
     this.drawGhost(frame);
     // Marks behind the body shine through it.
@@ -139,6 +141,7 @@ class Body {
         dot([x, ground + 0.002, z], 0.025, 0.004, color);
       }
     }
+    if (report.solid) dot(report.solid.at, 0.012, 0.012, styleColor("--center"));
     for (const { at: place, from } of report.targets) {
       dot(at(place), 0.022, 0.022, styleColor("--target"));
       if (from) this.drawMiss(at(from), at(place), alpha);

@@ -50,6 +50,7 @@ function sceneBounds() {
     for (const place of places) for (const ball of segment.balls) includeBall(place, ball);
   }
   for (const corner of report.surfaces.flatMap(({ corners }) => corners)) corner.forEach((c, k) => include(k, c, c));
+  for (const corner of report.solid ? report.solid.corners : []) corner.forEach((c, k) => include(k, c, c));
   const [lowest, highest] = [low.map((v) => v - FARTHEST_THING), high.map((v) => v + FARTHEST_THING)];
   const within = (k, v) => Math.min(highest[k], Math.max(lowest[k], v));
   for (const { at } of report.targets) {

@@ -83,6 +83,18 @@ function boxPoints() {
   return { faces, edges };
 }
 
+// The triangles of a solid of forces, a list for every limit: a face has the limit of most of its corners.
+function limitPoints({ corners, faces, limits, names }) {
+  const lists = names.map(() => []);
+  for (const face of faces) {
+    const [a, b, c] = face.map((i) => corners[i]), [la, lb, lc] = face.map((i) => limits[i]);
+    const normal = unit(cross(b.map((v, k) => v - a[k]), c.map((v, k) => v - a[k])));
+    const list = lists[lb === lc ? lb : la];
+    if (list) for (const corner of [a, b, c]) list.push(...corner, ...normal);
+  }
+  return lists;
+}
+
 // Lines of a square grid on the ground, about a point.
 function gridPoints(middle, height) {
   const [x, z] = [middle[0], middle[2]].map((v) => Math.round(v / GRID_SPACING) * GRID_SPACING);

@@ -98,11 +98,12 @@ function showMore(id, count) {
 function hideUnknown() {
   const known = {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
-    "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
+    "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-solid": report.solid, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
     postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
     scene: report.segments.length, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
+  if (report.solid) fillLimits(report.solid);
   find("things").textContent = [...new Set(report.things.map((thing) => thing.label))].join(", ");
   find("surfaces").textContent = [...new Set(report.surfaces.map((surface) => surface.label))].join(", ");
   const loads = report.loads.map((load) => load.label);
@@ -132,6 +133,17 @@ function fillTable() {
   };
   addRow(find("table").tHead, "th", report.table.columns);
   for (const cells of report.table.rows) addRow(find("table").tBodies[0], "td", cells);
+}
+
+// The limits of a force with their colours.
+function fillLimits({ names, scale }) {
+  find("limits").replaceChildren(...names.flatMap((name, i) => {
+    const swatch = document.createElement("i");
+    swatch.className = "swatch";
+    swatch.style.background = `var(--limit-${i})`;
+    return [swatch, name];
+  }));
+  find("solid-scale").textContent = scale && `; ${scale}`;
 }
 
 // The bands of a measure side by side, with the bounds between them.

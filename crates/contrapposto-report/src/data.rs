@@ -3,7 +3,9 @@
 use serde_json::{Value, json};
 
 use crate::column::{column, columns};
-use crate::{Balance, Entry, Group, Joint, Moments, Push, Report, Segment, Support, Surface, Target, Thing};
+use crate::{
+    Balance, Entry, ForceSolid, Group, Joint, Moments, Push, Report, Segment, Support, Surface, Target, Thing,
+};
 
 /// Steps to which numbers are rounded: the smallest visible differences.
 const SECONDS: f64 = 1e-3;
@@ -45,6 +47,7 @@ pub(crate) fn data(report: &Report) -> String {
         "things": report.things.iter().map(|t| thing(t, n)).collect::<Value>(),
         "loads": report.loads.iter().map(|l| push(l, n)).collect::<Value>(),
         "targets": report.targets.iter().map(|t| target(t, n)).collect::<Value>(),
+        "solid": report.solid.as_ref().map(solid),
         "center": known(&report.center_of_mass, || columns(&report.center_of_mass, n, [METRES; 3])),
         "list": {
             "heading": report.list.heading,
@@ -146,6 +149,26 @@ fn push(push: &Push, n: usize) -> Value {
     })
 }
 
+/// Colours of limits; the last stands for all others.
+const LIMIT_COLORS: usize = 8;
+
+fn solid(solid: &ForceSolid) -> Value {
+    let known = |face: &&[usize; 3]| face.iter().all(|corner| *corner < solid.corners.len());
+    let color = |limit: &usize| (*limit).min(LIMIT_COLORS - 1);
+    let mut names: Vec<&str> = solid.names.iter().take(LIMIT_COLORS).map(String::as_str).collect();
+    if let (true, Some(last)) = (solid.names.len() > LIMIT_COLORS, names.last_mut()) {
+        *last = "others";
+    }
+    json!({
+        "at": short(&solid.at, METRES),
+        "corners": points(&solid.corners),
+        "faces": solid.faces.iter().filter(known).collect::<Vec<_>>(),
+        "limits": solid.limits.iter().map(color).collect::<Vec<_>>(),
+        "names": names,
+        "scale": solid.scale,
+    })
+}
+
 fn places(places: &[[f64; 7]], n: usize) -> Value {
     let [m, t] = [METRES, TURN];
     columns(places, n, [m, m, m, t, t, t, t])
@@ -175,6 +198,24 @@ fn short(values: &[f64], step: f64) -> Value {
 mod tests {
     use super::*;
     use crate::List;
+
+    #[test]
+    fn faces_of_unknown_corners_are_left_out_and_more_than_eight_limits_share_a_colour() {
+        let solid = ForceSolid {
+            corners: vec![[0.0, f64::NAN, 1.0]; 3],
+            faces: vec![[0, 1, 2], [0, 1, 3]],
+            limits: vec![0, 7, 11],
+            names: (0..12).map(|k| format!("limit {k}")).collect(),
+            ..ForceSolid::default()
+        };
+        let report = Report { solid: Some(solid), ..Report::default() };
+        let back: Value = serde_json::from_str(&data(&report)).unwrap();
+        let solid = &back["solid"];
+        assert_eq!(solid["faces"], json!([[0, 1, 2]]));
+        assert_eq!(solid["corners"][0], json!([0.0, 0.0, 1.0]));
+        assert_eq!(solid["limits"], json!([0, 7, 7]));
+        assert_eq!((solid["names"].as_array().unwrap().len(), &solid["names"][7]), (8, &json!("others")));
+    }
 
     #[test]
     fn names_with_markup_come_back_unchanged_and_contain_none_in_the_json() {

@@ -53,6 +53,8 @@ pub struct Report {
     pub loads: Vec<Push>,
     /// Targets of tasks.
     pub targets: Vec<Target>,
+    /// The greatest forces at a point in every direction.
+    pub solid: Option<ForceSolid>,
     /// Centre of mass in every frame; may be empty.
     pub center_of_mass: Vec<[f64; 3]>,
     /// Texts about single frames.
@@ -223,6 +225,23 @@ pub struct Push {
     pub at: Vec<[f64; 3]>,
     /// Force on the body in every frame, N; zero where the load is not in force.
     pub force: Vec<[f64; 3]>,
+}
+
+/// The solid of all forces that the body can exert at a point, drawn from the point at so many metres a newton.
+#[derive(Clone, Debug, Default)]
+pub struct ForceSolid {
+    /// The point, m.
+    pub at: [f64; 3],
+    /// Corners of the solid, m.
+    pub corners: Vec<[f64; 3]>,
+    /// Triangles between corners, by index, seen counterclockwise from outside; those with an index out of range are left out.
+    pub faces: Vec<[usize; 3]>,
+    /// Index of the limit of every corner in `names`.
+    pub limits: Vec<usize>,
+    /// Names of the limits, each a colour of its own; those from the eighth on share the last one.
+    pub names: Vec<String>,
+    /// The scale in words.
+    pub scale: String,
 }
 
 /// Texts about single frames; the default is empty.

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
-    Balance, Entry, Figure, Group, Joint, List, Moments, Push, Report, Segment, Support, Surface, Table, Target, Thing,
-    balls_of, write,
+    Balance, Entry, Figure, ForceSolid, Group, Joint, List, Moments, Push, Report, Segment, Support, Surface, Table,
+    Target, Thing, balls_of, write,
 };
 use serde_json::json;
 use support::chromium::Chromium;
@@ -77,6 +77,7 @@ fn report() -> Report {
         targets: vec![],
         things: vec![],
         loads: vec![],
+        solid: None,
         list: List {
             heading: HOSTILE.to_owned(),
             entries: vec![entry(0, 0, HOSTILE), entry(30, 1, "the second joint is relieved")],
@@ -355,6 +356,34 @@ fn pages(pdf: &str) -> usize {
     let bytes = BASE64_STANDARD.decode(pdf).unwrap();
     let text = String::from_utf8_lossy(&bytes);
     text.matches("/Type /Page\n").count() + text.matches("/Type /Page /").count()
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn a_solid_of_forces_is_drawn_in_the_colours_of_its_limits_and_has_a_key() {
+    let mut report = report();
+    let mut solid = ForceSolid {
+        at: [0.1, 0.3, 0.0],
+        corners: vec![[0.1, 0.3, 0.0], [0.3, 0.3, 0.1], [0.1, 0.5, 0.1], [0.3, 0.5, -0.2]],
+        faces: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2], [0, 1, 9]],
+        limits: vec![0; 4],
+        names: vec![HOSTILE.to_owned(), "balance".to_owned()],
+        scale: HOSTILE.to_owned(),
+    };
+    let mut page = open_page("solid-none.html", &report);
+    let without = page.evaluate(PICTURE);
+    assert_eq!(page.evaluate("document.getElementById('key-solid').hidden"), true);
+    report.solid = Some(solid.clone());
+    page.open(&file("solid-one.html", &write(&report)));
+    let one_limit = page.evaluate(PICTURE);
+    assert_ne!(one_limit, without);
+    let names = page.evaluate("document.getElementById('limits').textContent");
+    assert_eq!(names, format!("{HOSTILE}balance"));
+    solid.limits = vec![1; 4];
+    report.solid = Some(solid);
+    page.open(&file("solid-other.html", &write(&report)));
+    assert_ne!(page.evaluate(PICTURE), one_limit);
+    assert_eq!(page.complaints(), Vec::<String>::new());
 }
 
 #[test]

@@ -504,6 +504,13 @@ fn directions_are_642_unit_vectors_that_are_mirror_images_of_themselves_and_incl
         let mirrored = |point: &V| point - 2.0 * axis.dot(point) * axis;
         assert!(points.iter().all(|point| points.iter().any(|other| (other - mirrored(point)).norm() < 1e-12)));
     }
+    // The normal of the nearest plane is within this angle of a direction, whose force is at most 1 / cos of the least force.
+    let gap = |[a, b, c]: &[usize; 3]| {
+        let middle = (points[*b] - points[*a]).cross(&(points[*c] - points[*a])).normalize();
+        middle.dot(&points[*a]).acos()
+    };
+    let widest = faces.iter().map(gap).fold(0.0, f64::max);
+    assert!(widest < 5.6f64.to_radians() && 1.0 / widest.cos() < 1.005, "{}", widest.to_degrees());
     // Volume of the body of the faces: outward everywhere, and that of a ball but for the corners cut off.
     let volume: f64 = faces.iter().map(|[a, b, c]| points[*a].dot(&points[*b].cross(&points[*c])) / 6.0).sum();
     assert!(faces.iter().all(|[a, b, c]| points[*a].dot(&points[*b].cross(&points[*c])) > 0.0));

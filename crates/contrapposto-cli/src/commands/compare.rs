@@ -50,7 +50,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
 }
 
 /// A scenario with a duration is simulated, and its last posture taken; one without is posed.
-fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
+pub(super) fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
     let ScenarioFile { name: file, bytes, model } = ScenarioFile::read(path)?;
     if !scenario_runs(&file, &bytes)? {
         return posed(&file, &bytes, model, letter);

@@ -1,6 +1,7 @@
 //! `report.html`, one module a command.
 
 pub(crate) mod assessment;
+pub(crate) mod capacity;
 pub(crate) mod comparison;
 pub(crate) mod equilibria;
 mod figure;

@@ -1,6 +1,7 @@
 //! Terminal tables and JSON files, one module a command.
 
 pub(crate) mod assess;
+pub(crate) mod capacity;
 pub(crate) mod compare;
 mod group;
 pub(crate) mod inspect;
