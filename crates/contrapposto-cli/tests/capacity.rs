@@ -97,7 +97,7 @@ fn a_force_that_is_held_is_smaller_and_the_left_hand_has_the_same_as_the_right_o
     let (now, held, long) = (
         weakest(&["--at", "hand_r"]),
         weakest(&["--at", "hand_r", "--hold", "2min"]),
-        weakest(&["--at", "hand_r", "--hold", "1h"]),
+        weakest(&["--at", "hand_r", "--hold", "5min"]),
     );
     assert!(now.0 >= held.0 && held.0 >= long.0 && now.1 > held.1 && held.1 > long.1, "{now:?} {held:?} {long:?}");
     let left = weakest(&["--at", "hand_l"]);

@@ -10,7 +10,7 @@ use crate::body_view::{ABOVE, Bounds, VIEWS, View};
 use crate::canvas::Canvas;
 use crate::captions::heading;
 use crate::figure::Figure;
-use crate::geometry::Point;
+use crate::geometry::{Point, Rect, clip};
 use crate::shape::Align;
 use crate::style::{LABEL_SIZE, LEADER, LIMITS, MARGIN, PAPER, Pen, QUIET_TEXT, SMALL_SIZE, START, TEXT, WIDTH};
 use crate::text::{fit, text_width};
@@ -92,7 +92,8 @@ pub fn force_figure(figure: &ForceFigure) -> Figure {
             length_per_newton: 0.0,
         };
         paper.draw(&mut canvas, &figure.body, bounds);
-        section(&mut canvas, &paper, figure, &figure.sections[k], (radius, largest));
+        let window = Rect { left, top: top + 24.0, width, height: PANEL_HEIGHT };
+        section(&mut canvas, &paper, figure, &figure.sections[k], &Scale { radius, largest, window });
     }
     let bottom = legend(&mut canvas, figure, top + PANEL_HEIGHT + 24.0 + LEGEND_LINE, largest);
     canvas.finish(bottom + MARGIN)
@@ -123,18 +124,31 @@ fn ring(largest: f64) -> f64 {
     fits.unwrap_or(1.0) * power
 }
 
-fn section(canvas: &mut Canvas, paper: &Paper<'_>, figure: &ForceFigure, spokes: &[Spoke], scale: (f64, f64)) {
-    let (radius, largest) = scale;
+/// Length of forces on the paper.
+struct Scale {
+    /// m/N.
+    radius: f64,
+    /// N.
+    largest: f64,
+    /// The panel.
+    window: Rect,
+}
+
+fn section(canvas: &mut Canvas, paper: &Paper<'_>, figure: &ForceFigure, spokes: &[Spoke], scale: &Scale) {
+    let Scale { radius, largest, window } = *scale;
     let along = |direction: [f64; 3], length: f64| paper.point([0, 1, 2].map(|k| figure.at[k] + length * direction[k]));
     let Some(center) = along([0.0; 3], 0.0) else { return };
     let step = ring(largest);
-    for k in 1..=(largest / step) as usize {
+    let own = spokes.iter().map(|spoke| shown(spoke.force, largest)).fold(0.0, f64::max);
+    for k in 1..=(own / step).ceil() as usize {
         let size = paper.scale * radius * step * k as f64;
         let circle = (0..=CIRCLE_PARTS).map(|part| {
             let (sin, cos) = (std::f64::consts::TAU * part as f64 / CIRCLE_PARTS as f64).sin_cos();
             (center.0 + size * cos, center.1 + size * sin)
         });
-        canvas.line(&circle.collect::<Vec<Point>>(), Pen::dashed(LEADER, 0.8, 2.0, 3.0));
+        for part in clip(&circle.collect::<Vec<Point>>(), window) {
+            canvas.line(&part, Pen::dashed(LEADER, 0.8, 2.0, 3.0));
+        }
     }
     let tips: Vec<(Point, &Spoke)> = spokes
         .iter()
@@ -144,8 +158,14 @@ fn section(canvas: &mut Canvas, paper: &Paper<'_>, figure: &ForceFigure, spokes:
         .collect();
     let next = |i: usize| &tips[(i + 1) % tips.len()].0;
     let ink = |spoke: &Spoke| LIMITS[spoke.limit.min(LIMITS.len() - 1)];
+    // Neighbours of one limit are one piece.
+    let mut piece = vec![];
     for (i, (tip, spoke)) in tips.iter().enumerate() {
-        canvas.glass(&[center, *tip, *next(i)], ink(spoke), SECTION_GLASS);
+        piece.push(*tip);
+        if tips.get(i + 1).is_none_or(|(_, other)| ink(other) != ink(spoke)) {
+            canvas.glass(&[&[center], &piece[..], &[*next(i)]].concat(), ink(spoke), SECTION_GLASS);
+            piece.clear();
+        }
     }
     for (i, (tip, spoke)) in tips.iter().enumerate() {
         canvas.line(&[*tip, *next(i)], Pen::solid(ink(spoke), 2.0));

@@ -101,7 +101,8 @@ pub(crate) fn limited_by(force: &ForceText) -> String {
     force.limits.first().map_or_else(|| "nothing limits".to_owned(), |limit| format!("{} limits", limit.name()))
 }
 
-/// `Right hand: at least 84 N in every direction (weakest up and back; right shoulder flexion limits), at most 310 N (down; balance limits).`
+/// `Right hand: at least 84 N in every direction, the weakest up and back (right shoulder flexion limits); at most 310 N, down (balance
+/// limits). For two of three people the least is 60 N to 108 N, the greatest 310 N.`
 pub(crate) fn finding(
     segment: &str,
     hold: Option<f64>,
@@ -110,25 +111,25 @@ pub(crate) fn finding(
     strongest: &ForceText,
 ) -> String {
     let held = hold.map_or(String::new(), |seconds| format!(", held for {}", how_long(seconds)));
-    let said = |force: &ForceText, [weaker, stronger]: [f64; 2]| {
-        let finite = |force: f64| force.is_finite().then_some(force);
-        format!(
-            "{} ({} to {} for two of three people)",
-            newtons(force.force_n),
-            newtons(finite(weaker)),
-            newtons(finite(stronger))
-        )
-    };
     format!(
-        "{}{held}: at least {} in every direction, the weakest {} ({}); at most {}, {} ({}).",
+        "{}{held}: at least {} in every direction, the weakest {} ({}); at most {}, {} ({}). For two of three people the least is {}, the \
+         greatest {}.",
         sentence(&plain(segment)),
-        said(weakest, forces.least),
+        newtons(weakest.force_n),
         weakest.toward,
         limited_by(weakest),
-        said(strongest, forces.greatest),
+        newtons(strongest.force_n),
         strongest.toward,
-        limited_by(strongest)
+        limited_by(strongest),
+        range(forces.least),
+        range(forces.greatest)
     )
+}
+
+/// `60 N to 108 N`; one number where both are said alike.
+pub(crate) fn range(ends: [f64; 2]) -> String {
+    let [least, greatest] = ends.map(|force| newtons(force.is_finite().then_some(force)));
+    if least == greatest { least } else { format!("{least} to {greatest}") }
 }
 
 /// What is assumed, a sentence each.

@@ -18,7 +18,7 @@ use crate::view::scene::hazard::{hazards, tell};
 use crate::view::stage::Stage;
 use crate::view::text::capacity::row;
 use crate::view::text::compare::ComparedPosture;
-use crate::view::words::{percent, plain};
+use crate::view::words::{percent, plain, sentence};
 
 /// Length of the largest force on the page, m.
 const LARGEST_FORCE_LENGTH: f64 = 0.5;
@@ -83,8 +83,9 @@ pub(crate) fn report_of_capacity(
     let stage = Stage::still(&job.supports, &job.things, &job.loads);
     let scene = Scene::of(&job.title, model, &job.posture, &frames, stage);
     let [frame] = &frames;
-    let strongest_limit = text.weakest.as_ref().and_then(|force| force.limits.first()?.coordinate.as_ref());
-    let main = strongest_limit.and_then(|name| model.coordinate(name)).unwrap_or(0);
+    let limiting = |force: &Option<ForceText>| model.coordinate(force.as_ref()?.limits.first()?.coordinate.as_ref()?);
+    let worst = || (0..frame.load.len()).max_by(|&a, &b| frame.load[a].total_cmp(&frame.load[b]));
+    let main = limiting(&text.weakest).or_else(|| limiting(&text.strongest)).or_else(worst).unwrap_or(0);
     let mut report = scene.report(Moments::Postures(vec!["the posture".to_owned()]), main)?;
     report.headline.clone_from(&text.sentence);
     report.reasons.clone_from(&text.assumptions);
@@ -109,14 +110,7 @@ pub(crate) fn report_of_capacity(
             });
         report.table = Table {
             heading: format!("Greatest force of the {name} in the main directions"),
-            columns: [
-                "The body pushes",
-                "Force",
-                "Two of three people",
-                "Limits (percent more force for one percent more of it)",
-            ]
-            .map(str::to_owned)
-            .to_vec(),
+            columns: ["The body pushes", "Force", "Two of three people", "Limited by"].map(str::to_owned).to_vec(),
             rows: extremes.chain(text.main.iter().map(named)).collect(),
         };
     }
@@ -144,6 +138,13 @@ fn solid(model: &Model, text: &CapacityText, forces: &Forces) -> ForceSolid {
     }
 }
 
+/// `Right hand: weakest 20 N forward (balance limits), strongest 168 N down (right shoulder extension limits)`.
+fn subtitle(text: &CapacityText) -> String {
+    let (Some(weakest), Some(strongest)) = (&text.weakest, &text.strongest) else { return text.sentence.clone() };
+    let said = |force: &ForceText| format!("{} {} ({})", newtons(force.force_n), force.toward, limited_by(force));
+    format!("{}: weakest {}, strongest {}", sentence(&plain(&text.at.segment)), said(weakest), said(strongest))
+}
+
 /// The picture: sections of the solid, seen from the right, from the front and from above.
 pub(crate) fn picture_of_capacity(
     job: &ComparedPosture,
@@ -159,8 +160,7 @@ pub(crate) fn picture_of_capacity(
     let body = BodyPosture { forces: vec![], center_of_mass: None, ..body };
     let turn = turn(model);
     let mut limits = Limits::of(text);
-    let mut figure =
-        ForceFigure { title: job.title.clone(), subtitle: text.sentence.clone(), body, ..ForceFigure::default() };
+    let mut figure = ForceFigure { title: job.title.clone(), subtitle: subtitle(text), body, ..ForceFigure::default() };
     let Some(forces) = forces else { return Ok(figure) };
     figure.at = turn.point(forces.place);
     let [right, ahead, up] = directions(model);

@@ -4,16 +4,16 @@ use contrapposto_formats::{CapacityText, ForceText};
 
 use super::plain_table;
 use crate::output::ResultSet;
-use crate::view::capacity::newtons;
-use crate::view::words::percent;
+use crate::view::capacity::{newtons, range};
 
-/// Most limits of a direction that are listed.
+/// Most limits of a direction that are listed, each with at least this share of the first one's share.
 const MOST_LIMITS: usize = 2;
+const LEAST_OF_FIRST: f64 = 0.25;
 
 /// The first line, a table of directions, and what is assumed.
 pub(crate) fn report(text: &CapacityText, folder: Option<&ResultSet>) -> String {
     let mut table = plain_table();
-    table.set_header(["direction", "force", "two of three people", "limits (share)"]);
+    table.set_header(["direction", "force", "two of three people", "limited by"]);
     let extremes = [("weakest", &text.weakest), ("strongest", &text.strongest)];
     for (name, force) in extremes {
         if let Some(force) = force {
@@ -32,16 +32,13 @@ pub(crate) fn report(text: &CapacityText, folder: Option<&ResultSet>) -> String 
 
 /// Cells of a direction.
 pub(crate) fn row(name: &str, force: &ForceText) -> [String; 4] {
-    let people = format!("{} to {}", newtons(force.weaker_n), newtons(force.stronger_n));
-    [name.to_owned(), newtons(force.force_n), people, limits(force)]
+    let ends = [force.weaker_n, force.stronger_n].map(|force| force.unwrap_or(f64::INFINITY));
+    [name.to_owned(), newtons(force.force_n), range(ends), limits(force)]
 }
 
-/// `right shoulder flexion 80 %, balance 12 %`.
+/// `right shoulder flexion`, `balance, friction`.
 fn limits(force: &ForceText) -> String {
-    let listed = force.limits.iter().take(MOST_LIMITS).map(|limit| match limit.share {
-        share if share > 0.0 => format!("{} {}", limit.name(), percent(share)),
-        _ => limit.name().to_owned(),
-    });
-    let listed: Vec<String> = listed.collect();
-    if listed.is_empty() { "nothing".to_owned() } else { listed.join(", ") }
+    let Some(first) = force.limits.first() else { return "nothing".to_owned() };
+    let large = force.limits.iter().take(MOST_LIMITS).filter(|limit| limit.share >= LEAST_OF_FIRST * first.share);
+    large.map(|limit| limit.name().to_owned()).collect::<Vec<_>>().join(", ")
 }
