@@ -82,8 +82,8 @@ fn verdict(job: &ComparedPosture, held: &Held) -> Verdict {
     let posture = HeldPosture {
         groups: held.groups.clone(),
         missing: held.missing,
-        missed: vec![],
         hazards: held.hazards.clone(),
+        ..HeldPosture::default()
     };
     Verdict::of_posture(&job.model, &posture)
 }
