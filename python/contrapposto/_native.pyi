@@ -10,6 +10,20 @@ import numpy.typing as npt
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Load: TypeAlias = str | tuple[str, str, _Array, tuple[float, float, float] | None, bool]
 
+__all__ = [
+    "Engine",
+    "_panic_for_tests",
+    "endurance_time",
+    "fatigue",
+    "group_names",
+    "minimize",
+    "strength",
+    "Job",
+    "Model",
+    "run_program",
+    "__version__",
+]
+
 __version__: str
 
 @final

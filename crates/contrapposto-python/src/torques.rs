@@ -10,7 +10,7 @@ use crate::errors::refused_row;
 use crate::loads::Loading;
 
 /// Postures of one thread between two looks for Ctrl-C.
-const BLOCK: usize = 8192;
+const BLOCK: usize = 2048;
 
 /// Postures, and all that acts on the body in them.
 pub(crate) struct Given {

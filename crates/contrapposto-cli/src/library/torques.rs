@@ -56,15 +56,19 @@ impl RestTorques {
         out: [&mut [f64]; 3],
     ) -> Result<(), JointTorquesError> {
         self.posture.values_mut().copy_from_slice(values);
-        self.body.update(model, &self.posture, loads, Quantities::TORQUES)?;
-        let (external, passive) = (self.body.external_torque().torques(), self.body.passive_torque().torques());
         let [of_external, of_passive, of_active] = out;
+        self.body.place(model, &self.posture)?;
+        // One after the other: together they would come with torques about the axes of three-axis joints, which take as long again.
+        self.body.apply(model, &[], Quantities { passive_torque: true, ..Quantities::default() })?;
+        let passive = self.body.passive_torque().torques();
+        self.rates.iter().zip(&mut *of_passive).for_each(|(&rate, torque)| *torque = passive[rate]);
+        self.body.apply(model, loads, Quantities { external_torque: true, ..Quantities::default() })?;
+        let external = self.body.external_torque().torques();
         for (row, &rate) in self.rates.iter().enumerate() {
             // Adding 0 where there is no device would turn -0 into 0, which the program prints.
             let torque = device.get(row).map_or(external[rate], |device| external[rate] + device);
-            let torques = Torques::new(torque, passive[rate]);
+            let torques = Torques::new(torque, of_passive[row]);
             of_external[row] = torques.external;
-            of_passive[row] = torques.passive;
             of_active[row] = torques.active;
         }
         Ok(())
