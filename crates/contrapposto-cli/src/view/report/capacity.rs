@@ -18,7 +18,7 @@ use crate::view::scene::hazard::{hazards, tell};
 use crate::view::stage::Stage;
 use crate::view::text::capacity::row;
 use crate::view::text::compare::ComparedPosture;
-use crate::view::words::{percent, plain, sentence};
+use crate::view::words::{how_long, percent, plain, sentence};
 
 /// Length of the largest force on the page, m.
 const LARGEST_FORCE_LENGTH: f64 = 0.5;
@@ -138,11 +138,12 @@ fn solid(model: &Model, text: &CapacityText, forces: &Forces) -> ForceSolid {
     }
 }
 
-/// `Right hand: weakest 20 N forward (balance limits), strongest 168 N down (right shoulder extension limits)`.
+/// `Right hand, held for 2.0 min: weakest 27 N (up), strongest 109 N (back and down)`.
 fn subtitle(text: &CapacityText) -> String {
     let (Some(weakest), Some(strongest)) = (&text.weakest, &text.strongest) else { return text.sentence.clone() };
-    let said = |force: &ForceText| format!("{} {} ({})", newtons(force.force_n), force.toward, limited_by(force));
-    format!("{}: weakest {}, strongest {}", sentence(&plain(&text.at.segment)), said(weakest), said(strongest))
+    let held = text.hold_s.map_or(String::new(), |seconds| format!(", held for {}", how_long(seconds)));
+    let said = |force: &ForceText| format!("{} ({})", newtons(force.force_n), force.toward);
+    format!("{}{held}: weakest {}, strongest {}", sentence(&plain(&text.at.segment)), said(weakest), said(strongest))
 }
 
 /// The picture: sections of the solid, seen from the right, from the front and from above.
