@@ -23,6 +23,27 @@ type Targets<'py> = Vec<(String, PyReadonlyArray2<'py, f64>)>;
 /// Postures, and the errors of the levels beside them.
 type Solved<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
 
+/// A task, and the rows, columns and numbers of its target.
+type Rows<'a> = (&'a str, (usize, usize, Vec<f64>));
+
+impl Engine {
+    /// Moves the targets of row `row`, then the posture; gives the errors of the levels.
+    fn advance_one(
+        &self,
+        row: usize,
+        targets: &[Rows<'_>],
+        posture: &mut [f64],
+        solve: bool,
+    ) -> Result<Vec<f64>, Failure> {
+        let mut controller = self.controller.lock().unwrap_or_else(PoisonError::into_inner);
+        for (task, (count, columns, numbers)) in targets {
+            let at = if *count == 1 { 0 } else { row };
+            controller.set_target(task, &numbers[at * columns..(at + 1) * columns])?;
+        }
+        if solve { controller.solve(posture) } else { controller.step(posture) }
+    }
+}
+
 #[pymethods]
 impl Engine {
     /// The tasks of a scenario: a text, or the path of a file.
@@ -69,19 +90,12 @@ impl Engine {
     ) -> PyResult<Solved<'py>> {
         guarded(py, || {
             let (rows, width, mut values) = rows_of(&postures);
-            let targets: Vec<_> = targets.iter().map(|(task, rows)| (task.as_str(), rows_of(rows))).collect();
+            let targets: Vec<Rows<'_>> = targets.iter().map(|(task, rows)| (task.as_str(), rows_of(rows))).collect();
             let mut errors = vec![];
             for row in 0..rows {
                 let posture = &mut values[row * width..(row + 1) * width];
-                let found = py.detach(|| {
-                    let mut controller = self.controller.lock().unwrap_or_else(PoisonError::into_inner);
-                    for (task, (count, columns, numbers)) in &targets {
-                        let at = if *count == 1 { 0 } else { row };
-                        controller.set_target(task, &numbers[at * columns..(at + 1) * columns])?;
-                    }
-                    if solve { controller.solve(posture) } else { controller.step(posture) }
-                });
-                errors.extend(found.map_err(|why: Failure| failure(py, &why))?);
+                let found = py.detach(|| self.advance_one(row, &targets, posture, solve));
+                errors.extend(found.map_err(|why| failure(py, &why))?);
                 py.check_signals()?;
             }
             let levels = errors.len().checked_div(rows).unwrap_or(0);
