@@ -1,6 +1,7 @@
 //! The command line: one command, its arguments.
 
 mod capacity;
+mod dynamics;
 mod joint;
 mod model;
 mod muscles;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 pub(crate) use capacity::CapacityArgs;
+pub(crate) use dynamics::DynamicsArgs;
 pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
 pub(crate) use model::{
     AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,

@@ -11,6 +11,7 @@ mod interruption;
 pub mod library;
 mod model_file;
 mod motion_file;
+mod moving;
 mod output;
 mod progress;
 mod scenario_file;

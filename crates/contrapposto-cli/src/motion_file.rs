@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use contrapposto::assessment::{FAST_SHARE, Peak};
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError};
-use contrapposto_formats::motion::{self, Table, Units, postures, read_table};
+use contrapposto_formats::motion::{self, Units, postures, read_table};
 use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::{FrameArgs, LoadArgs};
 use crate::fail::Fail;
 use crate::input::read;
+use crate::moving::Recorded;
 use crate::output::print_note;
 
 /// Held weights and forces, and ground reactions if there are any.
@@ -85,8 +85,20 @@ fn told(error: GroundReactionError) -> Fail {
     }
 }
 
-/// The postures of a table, with their times. `accepted`: the sentence that names the accepted files.
+/// The postures of a table between the times that are asked for, with their times. `accepted`: the sentence that names the accepted files.
 pub(crate) fn read_motion(
+    path: &Path,
+    accepted: &str,
+    args: &FrameArgs,
+    model: &Model,
+    notes: &mut Vec<String>,
+) -> Result<Vec<(f64, Posture)>, Fail> {
+    let all = read_whole_motion(path, accepted, args, model, notes)?;
+    cut(&path.display().to_string(), all, args)
+}
+
+/// All postures of a table, with their times. `accepted`: the sentence that names the accepted files.
+pub(crate) fn read_whole_motion(
     path: &Path,
     accepted: &str,
     args: &FrameArgs,
@@ -102,9 +114,8 @@ pub(crate) fn read_motion(
         let why = "is a marker file; run OpenSim's inverse kinematics first, and give the motion that it writes (.mot)";
         return Err(Fail::Refused(format!("{name}: {why}")));
     }
-    let mut table = read_table(&name, &bytes)?;
+    let table = read_table(&name, &bytes)?;
     table.warnings.iter().for_each(|warning| print_note("warning", warning));
-    keep(&mut table, args.from, args.to).map_err(|why| Fail::Refused(format!("{name}: {why}")))?;
     let units = match (args.degrees, args.radians) {
         (true, _) => Units::Degrees,
         (_, true) => Units::Radians,
@@ -125,21 +136,45 @@ pub(crate) fn read_motion(
     Ok(read.postures)
 }
 
-/// Keeps the rows from a time to another one, s.
-fn keep(table: &mut Table, from: Option<f64>, to: Option<f64>) -> Result<(), String> {
-    let (first, last) = (table.times.first().copied(), table.times.last().copied());
-    let (from, to) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
-    let kept: Vec<bool> = table.times.iter().map(|time| (from..=to).contains(time)).collect();
-    let mut flags = kept.iter();
-    table.rows.retain(|_| flags.next().copied().unwrap_or(true));
-    let mut flags = kept.iter();
-    table.times.retain(|_| flags.next().copied().unwrap_or(true));
-    match (first.zip(last), table.rows.is_empty()) {
-        (Some((first, last)), true) => {
-            Err(format!("no frame lies between --from {from} s and --to {to} s; it goes from {first} s to {last} s"))
-        }
-        _ => Ok(()),
+/// The frames of the file `name` from a time to another one, s.
+pub(crate) fn cut(name: &str, frames: Vec<(f64, Posture)>, args: &FrameArgs) -> Result<Vec<(f64, Posture)>, Fail> {
+    let ends = frames.first().map(|frame| frame.0).zip(frames.last().map(|frame| frame.0));
+    let (from, to) = (args.from.unwrap_or(f64::NEG_INFINITY), args.to.unwrap_or(f64::INFINITY));
+    let kept: Vec<(f64, Posture)> = frames.into_iter().filter(|(time, _)| (from..=to).contains(time)).collect();
+    match ends {
+        Some((first, last)) if kept.is_empty() => Err(Fail::Refused(format!(
+            "{name}: no frame lies between --from {from} s and --to {to} s; it goes from {first} s to {last} s"
+        ))),
+        _ => Ok(kept),
     }
+}
+
+/// Leaves out the frames at which the table of ground reactions has no forces, with a warning that names the time that both have.
+pub(crate) fn keep_overlap(recorded: &mut Recorded, ground: Option<&GroundReaction>) -> Result<(), Fail> {
+    let Some(ground) = ground else { return Ok(()) };
+    let before = recorded.frames.len();
+    let ends = recorded.frames.first().map(|frame| frame.0).zip(recorded.frames.last().map(|frame| frame.0));
+    let Some(((first, last), (start, end))) = ends.zip(ground.span()) else { return Ok(()) };
+    recorded.keep(|time| ground.covers(time));
+    if recorded.frames.is_empty() {
+        let why = format!(
+            "forces go from {start} s to {end} s, the motion from {first} s to {last} s: they have no time in common"
+        );
+        return Err(Fail::Refused(format!("{}: {why}", ground.name())));
+    }
+    let left_out = before - recorded.frames.len();
+    if left_out > 0 {
+        let kept = recorded.frames.len();
+        let (from, to) = (recorded.frames[0].0, recorded.frames[kept - 1].0);
+        print_note(
+            "warning",
+            &format!(
+                "forces go from {start} s to {end} s, the motion from {first} s to {last} s: {left_out} of {before} frames are left out, \
+                 {kept} from {from} s to {to} s are computed"
+            ),
+        );
+    }
+    Ok(())
 }
 
 fn first_of(names: &[String]) -> String {
@@ -215,17 +250,4 @@ fn out_of_range(coordinate: &Coordinate, values: &[f64], outside: f64) -> String
         shown(least),
         shown(greatest)
     )
-}
-
-/// The warning about a motion in which the centre of mass accelerates: greatest acceleration (m/s^2), and the share of fast frames.
-pub(crate) fn fast_motion((acceleration, share): (Peak, f64)) -> Option<String> {
-    (share > FAST_SHARE).then(|| {
-        format!(
-            "the centre of mass accelerates by more than 1 m/s2 in {:.0} percent of the frames (at most {:.1}, at {} s): \
-             torques of postures at rest do not describe such a motion",
-            100.0 * share,
-            acceleration.value,
-            acceleration.time
-        )
-    })
 }

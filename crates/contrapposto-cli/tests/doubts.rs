@@ -6,6 +6,7 @@ mod support;
 
 use std::path::Path;
 
+use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind};
 use serde_json::Value;
 use support::{json, refused, run, write};
 
@@ -103,7 +104,7 @@ fn torques_of_a_fast_motion_are_warned_of_and_say_that_they_are_at_rest() {
         })
         .collect();
     let shaken = write(folder.path(), "shaken.csv", &format!("time,pelvis_tx_m\n{rows}"));
-    let run = run(&["torques", "adult", &shaken, "--json"]);
+    let run = run(&["torques", "adult", &shaken, "--json", "--static"]);
     assert!(run.stderr.contains("warning: the centre of mass accelerates by more than 1 m/s2"), "{}", run.stderr);
     let frames: Value = serde_json::from_str(&run.stdout).unwrap();
     assert_eq!((&frames[7]["time_s"], &frames[7]["quasi_static"]), (&serde_json::json!(0.07), &Value::Bool(true)));
@@ -191,7 +192,7 @@ fn external_loads_name_the_table_and_the_segments_of_ground_reactions() {
     assert_eq!(named.code, 0, "{}", named.stderr);
     assert!(named.stdout == plain.stdout && named.stdout.len() > 1000);
     for (more, said) in [
-        ("<force_expressed_in_body>calcn_r</force_expressed_in_body>", "only forces and points in `ground` are read"),
+        ("<force_expressed_in_body>tail</force_expressed_in_body>", "tail"),
         ("<torque_identifier>moment_</torque_identifier>", "there is no column `moment_x`"),
     ] {
         let refused = torques(&external(folder.path(), more), &[]);
@@ -202,7 +203,7 @@ fn external_loads_name_the_table_and_the_segments_of_ground_reactions() {
 }
 
 #[test]
-fn frames_outside_of_the_ground_reactions_are_left_out_by_from_and_to() {
+fn frames_outside_of_the_ground_reactions_are_left_out_with_the_common_time() {
     let folder = tempfile::tempdir().unwrap();
     let forces =
         write(folder.path(), "forces.csv", &format!("time,{FORCES}\n1,0,700,0,0.1,0,0.1\n2,0,700,0,0.1,0,0.1\n"));
@@ -210,17 +211,175 @@ fn frames_outside_of_the_ground_reactions_are_left_out_by_from_and_to() {
     let call = |more: &[&str]| {
         run(&[&["torques", "adult", &motion, "--grf", &forces, "--grf-on", "calcn_r", "--json"], more].concat())
     };
+    let times = |text: &str| -> Vec<f64> {
+        let frames: Value = serde_json::from_str(text).unwrap();
+        frames.as_array().unwrap().iter().map(|frame| frame["time_s"].as_f64().unwrap()).collect()
+    };
     let whole = call(&[]);
-    assert!(
-        whole.code == 2 && whole.stderr.contains("--from 1 --to 2 leaves the other frames out"),
-        "{}",
-        whole.stderr
-    );
-    let frames: Value = serde_json::from_str(&call(&["--from", "1", "--to", "2"]).stdout).unwrap();
-    let times: Vec<f64> = frames.as_array().unwrap().iter().map(|frame| frame["time_s"].as_f64().unwrap()).collect();
-    assert_eq!(times, [1.0, 1.5, 2.0]);
+    assert_eq!((whole.code, times(&whole.stdout)), (0, vec![1.0, 1.5, 2.0]), "{}", whole.stderr);
+    let said = "forces go from 1 s to 2 s, the motion from 0 s to 3 s: 2 of 5 frames are left out, 3 from 1 s to 2 s";
+    assert!(whole.stderr.contains(said), "{}", whole.stderr);
+    let cut = call(&["--from", "1", "--to", "1.5"]);
+    assert!(times(&cut.stdout) == [1.0, 1.5] && !cut.stderr.contains("left out"), "{}", cut.stderr);
+    let apart = call(&["--from", "2.5"]);
+    assert!(apart.code == 2 && apart.stderr.contains("they have no time in common"), "{}", apart.stderr);
     let none = call(&["--from", "4"]);
     assert!(none.code == 2 && none.stderr.contains("it goes from 0 s to 3 s"), "{}", none.stderr);
+}
+
+/// Times and angles of a forearm that swings, and what a hand-made second derivation says of it: external torque with inertia is that at
+/// rest plus inertia, and the inertia of a still motion is 0.
+#[test]
+fn dynamics_adds_inertia_to_the_external_torque_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |size: f64| -> String {
+        (0..60)
+            .map(|i| {
+                let time = 0.02 * f64::from(i);
+                format!("{time},{}\n", 40.0 + size * (5.0 * time).sin())
+            })
+            .collect()
+    };
+    let head = "time,elbow_flex_r_deg\n";
+    let swung = write(folder.path(), "swung.csv", &format!("{head}{}", rows(30.0)));
+    let held = write(folder.path(), "held.csv", &format!("{head}{}", rows(0.0)));
+    let call = |motion: &str, more: &[&str]| {
+        let answer = run(&[&["torques", "adult", motion, "--load", "hand_r 2kg", "--json"], more].concat());
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
+        (serde_json::from_str::<Value>(&answer.stdout).unwrap(), answer.stderr)
+    };
+    let elbow = |frames: &Value, i: usize, what: &str| frames[i]["coordinates"]["elbow_flex_r"][what].as_f64();
+    let (moving, said) = call(&swung, &["--dynamics", "--cutoff-hz", "none"]);
+    assert!(said.contains("inertia counts") && said.contains("no filter"), "{said}");
+    let (rest, _) = call(&swung, &["--static"]);
+    for i in [20, 30, 40] {
+        let inertia = elbow(&moving, i, "inertia_nm").unwrap();
+        let sum = elbow(&rest, i, "external").unwrap() + inertia;
+        assert!((elbow(&moving, i, "external").unwrap() - sum).abs() < 1e-9 && elbow(&rest, i, "inertia_nm").is_none());
+        // -I alpha: forearm and hand about the elbow have about 0.07 kg m2, 2 kg in the hand at 0.3 m to 0.4 m 0.18 to 0.32.
+        let alpha = -(30f64.to_radians()) * 25.0 * (0.1 * i as f64).sin();
+        let moment = -inertia / alpha;
+        assert!((0.2..0.5).contains(&moment), "{moment} kg m2 at frame {i}");
+    }
+    assert_eq!(moving[0]["quasi_static"], Value::Bool(false));
+    let (still, said) = call(&held, &["--dynamics"]);
+    assert!(said.contains("low-pass at 6 Hz"), "{said}");
+    assert!(still.as_array().unwrap().iter().all(|frame| frame["coordinates"]["elbow_flex_r"]["inertia_nm"] == 0.0));
+    let (filtered, _) = call(&swung, &["--dynamics", "--filter", "filtfilt"]);
+    let (a, b) = (elbow(&filtered, 30, "inertia_nm").unwrap(), elbow(&moving, 30, "inertia_nm").unwrap());
+    assert!((a - b).abs() < 0.05 * b.abs() && a != b, "{a} and {b}");
+    let table = run(&["torques", "adult", &swung, "--dynamics"]).stdout;
+    assert!(table.lines().next().unwrap().contains("elbow_flex_r.active_nm,elbow_flex_r.inertia_nm"), "{table}");
+}
+
+#[test]
+fn dynamics_without_a_motion_or_with_a_cutoff_beyond_the_frames_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(refused(&["torques", "adult", "default", "--dynamics"]).contains("needs a motion"));
+    let few = write(folder.path(), "few.csv", "time,elbow_flex_r_deg\n0,5\n1,6\n");
+    assert!(refused(&["torques", "adult", &few, "--dynamics"]).contains("2 frames; accelerations need at least 6"));
+    let rows: String = (0..20).map(|i| format!("{},{}\n", 0.1 * f64::from(i), i)).collect();
+    let slow = write(folder.path(), "slow.csv", &format!("time,elbow_flex_r_deg\n{rows}"));
+    let said = refused(&["assess", "adult", &slow, "--dynamics"]);
+    assert!(said.contains("a cut-off of 6 Hz: it must be above 0 and below half of the 10"), "{said}");
+    for (cutoff, why) in [("0", "a number of Hz above 0, or `none`"), ("x", "a number of Hz above 0, or `none`")] {
+        assert!(refused(&["assess", "adult", &slow, "--dynamics", "--cutoff-hz", cutoff]).contains(why));
+    }
+}
+
+#[test]
+fn assess_of_a_fast_motion_counts_inertia_in_its_first_sentence_unless_static_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..100)
+        .map(|i| {
+            let time = 0.02 * f64::from(i);
+            format!("{time},{},{}\n", 0.05 * (8.0 * time).sin(), 20.0 + 10.0 * (8.0 * time).cos())
+        })
+        .collect();
+    let bounced = write(folder.path(), "bounced.csv", &format!("time,pelvis_ty_m,hip_flexion_r_deg\n{rows}"));
+    let of = |more: &[&str]| run(&[&["assess", "adult", &bounced, "--load", "hand_r 1kg"], more].concat());
+    let first = |text: &str| text.lines().next().unwrap().to_owned();
+    let moving = of(&[]);
+    assert!(first(&moving.stdout).contains("Inertia of the motion counts."), "{}", moving.stdout);
+    assert!(
+        !moving.stdout.contains("judged at rest") && !moving.stderr.contains("do not describe"),
+        "{}",
+        moving.stderr
+    );
+    assert!(moving.stderr.contains("inertia counts, because the centre of mass accelerates"), "{}", moving.stderr);
+    let still = of(&["--static"]);
+    assert!(first(&still.stdout).contains("Each posture is judged at rest"), "{}", still.stdout);
+    assert!(still.stderr.contains("--dynamics counts inertia"), "{}", still.stderr);
+    let report: Value = serde_json::from_str(&of(&["--json"]).stdout).unwrap();
+    assert_eq!(report["dynamics"], true);
+    let hip = report["groups"].as_array().unwrap().iter().find(|group| group["coordinate"] == "hip_flexion_r").unwrap();
+    assert!(hip["inertia_at_peak_nm"].as_f64().unwrap().abs() > 1.0, "{hip}");
+    let out = folder.path().join("out");
+    let code = of(&["--out", out.to_str().unwrap()]).code;
+    assert!(code <= 1);
+    let table = std::fs::read_to_string(out.join("torques.sto")).unwrap();
+    assert!(table.contains("inertia counts") && table.contains("hip_flexion_r.inertia_nm"));
+}
+
+/// A force measured in the axes of the foot, at a point of the foot, is the force measured in ground where the foot is level; a force
+/// without a point acts at the origin of its segment, a couple alone has no force.
+#[test]
+fn external_loads_in_the_frame_of_a_body_are_turned_into_ground() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = write(folder.path(), "motion.csv", "time,hip_flexion_r_deg\n0,30\n1,30\n");
+    let names = FORCES.to_owned() + ",ground_torque_x,ground_torque_y,ground_torque_z";
+    write(
+        folder.path(),
+        "forces.csv",
+        &format!("time,{names}\n0,10,70,5,0.1,0.02,0.1,1,2,3\n1,10,70,5,0.1,0.02,0.1,1,2,3\n"),
+    );
+    let torques = |xml: &str| {
+        let answer = run(&["torques", "adult", &motion, "--grf", xml, "--json"]);
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
+        let frames: Value = serde_json::from_str(&answer.stdout).unwrap();
+        ["hip_flexion_r", "hip_adduction_r", "knee_angle_r", "ankle_angle_r"]
+            .map(|name| frames[0]["coordinates"][name]["external"].as_f64().unwrap())
+    };
+    let model = contrapposto::model::adult(&contrapposto::model::Adult::default()).unwrap();
+    let (foot, hip) = (model.segment("calcn_r").unwrap(), model.coordinate("hip_flexion_r").unwrap());
+    let mut posture = model.default_posture();
+    posture.values_mut()[hip] = 30f64.to_radians();
+    let mut kinematics = contrapposto::kinematics::Kinematics::new(&model);
+    kinematics.update(&model, &posture).unwrap();
+    let expected = |loads: &[Load]| {
+        let mut external = ExternalTorque::new(&model);
+        external.update(&model, &kinematics, loads).unwrap();
+        ["hip_flexion_r", "hip_adduction_r", "knee_angle_r", "ankle_angle_r"]
+            .map(|name| external.torques()[model.coordinates()[model.coordinate(name).unwrap()].rate.unwrap()])
+    };
+    let (force, point) = (nalgebra::Vector3::new(10.0, 70.0, 5.0), nalgebra::Vector3::new(0.1, 0.02, 0.1));
+    let in_foot = kinematics.placement(&model, foot);
+    let load = |point, kind| Load { segment: foot, point, kind };
+    let pelvis = kinematics.placement(&model, model.segment("pelvis").unwrap());
+    let from_pelvis = (in_foot.inverse() * pelvis * nalgebra::Point3::from(point)).coords;
+    let own = "<point_expressed_in_body>/bodyset/calcn_r</point_expressed_in_body>";
+    for (more, load) in [
+        (
+            format!("<force_expressed_in_body>calcn_r</force_expressed_in_body>{own}"),
+            load(point, LoadKind::Force(force, FixedIn::Segment)),
+        ),
+        (
+            format!("<force_expressed_in_body>pelvis</force_expressed_in_body>{own}"),
+            load(point, LoadKind::Force(pelvis.rotation * force, FixedIn::World)),
+        ),
+        (
+            "<point_expressed_in_body>pelvis</point_expressed_in_body>".to_owned(),
+            load(from_pelvis, LoadKind::Force(force, FixedIn::World)),
+        ),
+    ] {
+        let (found, expected) = (torques(&external(folder.path(), &more)), expected(&[load]));
+        found.iter().zip(&expected).for_each(|(a, b)| assert!((a - b).abs() < 1e-9, "{more}: {a} and {b}"));
+    }
+    let couple = "<ExternalLoads><datafile>forces.csv</datafile><objects><ExternalForce name=\"c\"><applied_to_body>calcn_r</applied_to_body>\
+                  <torque_identifier>ground_torque_</torque_identifier></ExternalForce></objects></ExternalLoads>";
+    let alone = torques(&write(folder.path(), "couple.xml", couple));
+    let expected = expected(&[load(point, LoadKind::Couple(nalgebra::Vector3::new(1.0, 2.0, 3.0), FixedIn::World))]);
+    alone.iter().zip(&expected).for_each(|(a, b)| assert!((a - b).abs() < 1e-9, "{a} and {b}"));
 }
 
 #[test]
@@ -230,5 +389,9 @@ fn a_table_with_a_wrong_number_of_rows_is_read_with_a_warning() {
     let motion = write(folder.path(), "motion.mot", text);
     let answer = run(&["torques", "adult", &motion, "--quiet"]);
     assert_eq!(answer.code, 0, "{}", answer.stderr);
-    assert!(answer.stderr.contains("the header says 901 rows, but there are 2, which are read"), "{}", answer.stderr);
+    assert!(
+        answer.stderr.contains("the header says 901 rows (line 2), but there are 2, which are read"),
+        "{}",
+        answer.stderr
+    );
 }

@@ -142,7 +142,6 @@ fn complaints_have_a_place_and_say_what_would_be_right() {
         assert_eq!(at, place, "{found}");
     };
     let rows = "time\ta\tb\n0\t1\t2\n1\t3\t4\n";
-    check(&sto("nRows=2\nnColumns=4", rows), Some((4, 1)), "4 columns, but there are 3", "3");
     check(&sto("nRows=2\ndatarows 1", rows), Some((4, 1)), "further up, 2", "");
     check(&sto("nRows=many", rows), Some((3, 1)), "not a whole number", "nRows=");
     check(&sto("inDegrees=perhaps", rows), Some((3, 1)), "neither yes nor no", "inDegrees=yes");
@@ -370,8 +369,12 @@ fn names_of_strangers_are_written_harmlessly() {
 
 /// OpenSim reads such files, and some of its own examples are.
 #[test]
-fn a_wrong_number_of_rows_in_the_header_is_a_warning() {
-    for (header, said) in [("nRows=3\nnColumns=2", "says 3 rows, but there are 2"), ("datarows 1", "says 1 rows")] {
+fn a_wrong_number_of_rows_or_columns_in_the_header_is_a_warning_with_its_line() {
+    for (header, said) in [
+        ("nRows=3\nnColumns=2", "says 3 rows (line 2), but there are 2"),
+        ("datarows 1", "says 1 rows (line 2)"),
+        ("nRows=2\nnColumns=4", "says 4 columns (line 3), but there are 2"),
+    ] {
         let text = format!("motion\n{header}\nendheader\ntime\telbow_flex_r\n0\t1\n1\t2\n");
         let table = read_table("m.sto", text.as_bytes()).unwrap();
         assert_eq!(table.rows, [[1.0], [2.0]]);

@@ -8,6 +8,7 @@ use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::person;
 use contrapposto_formats::tissue::{FatigueChoice, FatigueSex, Person};
 
+use super::dynamics::DynamicsArgs;
 use super::muscles::MuscleArgs;
 use crate::fail::Fail;
 
@@ -134,10 +135,10 @@ pub(crate) struct InspectArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto torques adult default --load \"hand_r 3kg\"\n  \
-    contrapposto torques subject.osim gait.mot --grf forces.mot --out torques.csv\n  \
+    contrapposto torques subject.osim gait.mot --grf loads.xml --dynamics --out torques.csv\n  \
     contrapposto torques robot.urdf pose.csv --root free --gradient --json\n\n\
-    Each posture is treated as held at rest: there is no inertia in these torques. In a fast motion, such as walking, they differ from \
-    those of inverse dynamics; a warning says so.\n\n\
+    Inertia counts with --dynamics and, where the motion is fast, without it; a note says so. External torque has it as a part, which \
+    inertia_nm shows alone. Otherwise each posture is held at rest.\n\n\
     Torques act in the direction of their coordinate, as OpenSim's generalised forces; external + passive + active = 0. Loads and \
     effort of three-axis joints are those of their moment: --json gives it about their axes.")]
 pub(crate) struct TorquesArgs {
@@ -149,8 +150,10 @@ pub(crate) struct TorquesArgs {
     pub(crate) muscles: MuscleArgs,
     #[command(flatten)]
     pub(crate) under: LoadArgs,
-    /// Also d external_i / d q_j.
-    #[arg(long)]
+    #[command(flatten)]
+    pub(crate) dynamics: DynamicsArgs,
+    /// Also d external_i / d q_j, of postures at rest.
+    #[arg(long, conflicts_with = "dynamics")]
     pub(crate) gradient: bool,
     /// Write the table to a file: .csv, .sto or .mot, or .json.
     #[arg(long, value_name = "FILE")]
@@ -163,7 +166,8 @@ pub(crate) struct TorquesArgs {
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto assess subject.osim lifting.mot --grf forces.mot --out out\n  \
     contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
-    Each posture is treated as held at rest; loads are interpolated linearly between postures. Writes assess.json, \
+    Inertia counts where the motion is fast, or with --dynamics; otherwise each posture is held at rest. Loads are interpolated linearly \
+    between postures. Writes assess.json, \
     report.html, torques.sto and fatigue.sto into DIR.")]
 pub(crate) struct AssessArgs {
     #[command(flatten)]
@@ -176,6 +180,8 @@ pub(crate) struct AssessArgs {
     pub(crate) muscles: MuscleArgs,
     #[command(flatten)]
     pub(crate) under: LoadArgs,
+    #[command(flatten)]
+    pub(crate) dynamics: DynamicsArgs,
     /// Segments that carry the body in every frame; their forces are computed for the least effort of the muscles.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", conflicts_with = "grf")]
     pub(crate) support: Vec<String>,

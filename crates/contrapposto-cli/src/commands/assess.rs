@@ -18,7 +18,8 @@ use nalgebra::Vector3;
 use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
-use crate::motion_file::{fast_motion, loads_of, note_values_out_of_range, read_motion};
+use crate::motion_file::{keep_overlap, loads_of, note_values_out_of_range, read_whole_motion};
+use crate::moving::{Recorded, fast_motion};
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::view::answer::{answered, first_lines};
 use crate::view::figures::figures_of_assessment;
@@ -26,7 +27,7 @@ use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
 use crate::view::stage::Stage;
 use crate::view::text::assess::{AssessText, report};
 use crate::view::text::sources::StrengthAtText;
-use crate::view::text::torques::{header, row};
+use crate::view::text::torques::{Columns, header, row};
 use crate::view::torque_rows::{Frame, Order};
 
 const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
@@ -47,6 +48,8 @@ struct Given {
     held: Vec<Load>,
     ground: Option<GroundReaction>,
     settings: AssessSettings,
+    /// The sentence that says that inertia counts.
+    said: Option<String>,
     /// Reasons to doubt the motion.
     warnings: Vec<String>,
     /// Where the results go.
@@ -58,10 +61,10 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
     let (mut opened, muscles) = open(args)?;
-    let Given { motion, held, ground, settings, warnings: doubts, folder } = given(args, &mut opened, muscles)?;
+    let Given { motion, held, ground, settings, said, warnings: doubts, folder } = given(args, &mut opened, muscles)?;
     let model = &opened.model;
 
-    let mut tables = Tables::new(model, motion.len());
+    let mut tables = Tables::new(model, motion.len(), said.as_deref());
     let mut assessed_frames = args.out.as_ref().map(|_| AssessedFrames::new(&opened, motion.len()));
     let found = assessed(
         model,
@@ -92,13 +95,14 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let figures = assessed_frames.as_ref().filter(|_| args.figures).map(|assessed_frames| {
         let stage = Stage::still(&settings.supports, &[], &held);
         let worst = found.groups.iter().map(|group| group.coordinate);
-        figures_of_assessment(&title, model, &stage, assessed_frames.frames(), worst)
+        figures_of_assessment((&title, found.dynamics), model, &stage, assessed_frames.frames(), worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
     let span = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
     let verdict = Verdict::of_motion(model, &found, span);
     let page = assessed_frames.map(|assessed_frames| {
-        report_of_assessment(&title, &assessed_frames, &found, &verdict, &settings.supports, &held, &warnings)
+        let manner = said.as_deref();
+        report_of_assessment(&title, &assessed_frames, (&found, manner), &verdict, &settings.supports, &held, &warnings)
     });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
@@ -126,26 +130,28 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
     notes.extend(fatigue_notes(&opened.model));
     let model = &opened.model;
     let accepted = "MOTION is a .mot, .sto or .csv file";
-    let motion = read_motion(&args.motion, accepted, &args.under.frames, model, &mut notes)?;
+    let span = &args.under.frames;
+    let all = read_whole_motion(&args.motion, accepted, span, model, &mut notes)?;
+    let mut recorded = Recorded::new(&args.motion.display().to_string(), all, (&args.dynamics, span), model)?;
     let (held, ground) = loads_of(&args.under, model, &mut notes)?;
-    if let Some(ground) = &ground {
-        ground.check(motion.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))?;
-    }
+    keep_overlap(&mut recorded, ground.as_ref())?;
+    let Recorded { frames: motion, rates, said } = recorded;
     if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
         let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
         return Err(Fail::Refused(why.to_owned()));
     }
     let settings = AssessSettings {
         supports: supports(args, model)?,
+        rates,
         passive_ranges: opened.passive_ranges(),
         muscles,
         ..AssessSettings::default()
     };
     let warnings = note_values_out_of_range(opened, &motion, &mut notes);
     warnings.iter().for_each(|warning| print_note("warning", warning));
-    notes.iter().for_each(|note| print_note("note", note));
+    said.iter().chain(&notes).for_each(|note| print_note("note", note));
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &ASSESS_FILES)).transpose()?;
-    Ok(Given { motion, held, ground, settings, warnings, folder })
+    Ok(Given { motion, held, ground, settings, said, warnings, folder })
 }
 
 /// The supports, on horizontal ground.
@@ -208,7 +214,9 @@ fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames
             format!("nothing holds the body up: the root carries {missing}; give --grf FILE.mot or --support SEG,SEG")
         });
     }
-    warnings.extend(fast_motion((found.acceleration, found.fast_share)));
+    if !found.dynamics {
+        warnings.extend(fast_motion((found.acceleration, found.fast_share)));
+    }
     warnings.extend(against_ligaments(opened, found));
     warnings
 }
@@ -263,17 +271,20 @@ struct Tables<'a> {
 }
 
 impl<'a> Tables<'a> {
-    fn new(model: &'a Model, frames: usize) -> Self {
+    fn new(model: &'a Model, frames: usize, inertia: Option<&str>) -> Self {
         let order = Order::new(model);
-        let torques = header(model, &order, frames, '\t', false);
+        let torques = header(model, &order, frames, '\t', Columns { gradient: false, inertia });
         let coordinates = model.coordinates().iter().enumerate();
         let working = coordinates.filter(|(i, c)| c.groups.is_some() && !model.is_dependent(*i)).map(|(i, _)| i);
         Self { model, order, torques, working: working.collect(), times: vec![], fatigue: vec![] }
     }
 
     fn record(&mut self, instant: &Instant) {
-        let Instant { index, time, model, torques, fatigue, load, .. } = *instant;
-        let frame = Frame { center_of_mass: None, ..Frame::new(torques, model, &self.order, (index, time)) };
+        let Instant { index, time, model, torques, fatigue, load, inertia, .. } = *instant;
+        let mut frame = Frame { center_of_mass: None, ..Frame::new(torques, model, &self.order, (index, time)) };
+        if let Some(inertia) = inertia {
+            frame = frame.with_inertia(inertia, model, &self.order);
+        }
         self.torques.push_str(&row(&self.order, &frame, '\t'));
         self.times.push(time);
         let working = self.working.iter();

@@ -1,10 +1,11 @@
-//! `contrapposto torques`: external, passive and active torque of every coordinate of a body at rest.
+//! `contrapposto torques`: external, passive and active torque of every coordinate, at rest or in motion.
 
 use std::path::Path;
 
 use contrapposto::assessment::acceleration;
+use contrapposto::dynamics::Inertia;
 use contrapposto::joint_torques::{JointMuscles, JointTorques, JointTorquesError, Quantities};
-use contrapposto::posture::Posture;
+use contrapposto::model::Model;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::GroundReaction;
 use contrapposto_formats::tissue::SourcedModel;
@@ -12,17 +13,18 @@ use contrapposto_formats::tissue::SourcedModel;
 use crate::args::TorquesArgs;
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
-use crate::motion_file::{fast_motion, loads_of, note_values_out_of_range, read_motion};
+use crate::motion_file::{cut, keep_overlap, loads_of, note_values_out_of_range, read_whole_motion};
+use crate::moving::{Recorded, fast_motion};
 use crate::output::{Folder, Pending, folder_and_name, print_note};
 use crate::view::residual::Residual;
-use crate::view::text::torques as text;
+use crate::view::text::torques::{self as text, Columns};
 use crate::view::torque_rows::{Frame, Order};
 
 /// Model, frames and loads of the command.
 struct Job {
     opened: SourcedModel,
     muscles: Option<JointMuscles>,
-    frames: Vec<(f64, Posture)>,
+    recorded: Recorded,
     loads: Vec<Load>,
     ground: Option<GroundReaction>,
     gradient: bool,
@@ -36,18 +38,14 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let (mut opened, muscles) = open_with_muscles(&args.model, &args.muscles)?;
     let mut notes = std::mem::take(&mut opened.notes);
     let model = &opened.model;
-    let frames = match args.postures == Path::new("default") {
-        true => vec![(0.0, model.default_posture())],
-        false => {
-            let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
-            read_motion(&args.postures, accepted, &args.under.frames, model, &mut notes)?
-        }
-    };
+    let mut recorded = recorded(args, model, &mut notes)?;
     let (loads, ground) = loads_of(&args.under, model, &mut notes)?;
-    let warnings = note_values_out_of_range(&opened, &frames, &mut notes);
+    keep_overlap(&mut recorded, ground.as_ref())?;
+    let warnings = note_values_out_of_range(&opened, &recorded.frames, &mut notes);
     warnings.iter().for_each(|warning| print_note("warning", warning));
-    let job = Job { opened, muscles, frames, loads, ground, gradient: args.gradient };
+    let job = Job { opened, muscles, recorded, loads, ground, gradient: args.gradient };
     job.check()?;
+    job.recorded.said.iter().for_each(|said| print_note("note", said));
     notes.iter().for_each(|note| print_note("note", note));
 
     let order = Order::new(&job.opened.model);
@@ -64,7 +62,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     }
     let mut out = Printed::default();
     let mut sink = |text: &str| out.append(text);
-    match (&args.out, job.frames.as_slice()) {
+    match (&args.out, job.recorded.frames.as_slice()) {
         _ if args.json => json(&job, &order, &mut residual, &mut sink)?,
         (_, [_]) => {
             job.run(&order, &mut residual, |_, frame| sink(&text::readable(&job.opened.model, &order, frame)))?
@@ -80,6 +78,24 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         print_note(kind, &text);
     }
     Ok(())
+}
+
+/// The motion, and whether its inertia counts.
+fn recorded(args: &TorquesArgs, model: &Model, notes: &mut Vec<String>) -> Result<Recorded, Fail> {
+    if args.postures == Path::new("default") {
+        return match args.dynamics.dynamics {
+            true => Err(Fail::Refused("--dynamics needs a motion; `default` is one posture".to_owned())),
+            false => Ok(Recorded::at_rest(vec![(0.0, model.default_posture())])),
+        };
+    }
+    let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
+    let span = &args.under.frames;
+    let all = read_whole_motion(&args.postures, accepted, span, model, notes)?;
+    let name = args.postures.display().to_string();
+    if args.gradient {
+        return Ok(Recorded::at_rest(cut(&name, all, span)?));
+    }
+    Recorded::new(&name, all, (&args.dynamics, span), model)
 }
 
 fn json(
@@ -105,7 +121,8 @@ fn table(
     residual: &mut Residual,
     sink: &mut dyn FnMut(&str) -> Result<(), Fail>,
 ) -> Result<(), Fail> {
-    sink(&text::header(&job.opened.model, order, job.frames.len(), separator, job.gradient))?;
+    let columns = Columns { gradient: job.gradient, inertia: job.recorded.said.as_deref() };
+    sink(&text::header(&job.opened.model, order, job.recorded.frames.len(), separator, columns))?;
     job.run(order, residual, |_, frame| sink(&text::row(order, frame, separator)))
 }
 
@@ -120,16 +137,17 @@ impl Job {
         let mut body = self.body();
         let mut centers = vec![];
         let quantities = Quantities { passive_torque: true, ..Quantities::default() };
-        for (frame, (_, posture)) in self.frames.iter().enumerate() {
+        for (frame, (_, posture)) in self.recorded.frames.iter().enumerate() {
             body.update(&self.opened.model, posture, &[], quantities)
                 .map_err(|why| Fail::Refused(format!("frame {frame}: {why}")))?;
             centers.extend(body.kinematics().center_of_mass(&self.opened.model));
         }
-        if let Some(warning) = fast_motion(acceleration(&self.frames, &centers)) {
+        if self.recorded.rates.is_empty()
+            && let Some(warning) = fast_motion(acceleration(&self.recorded.frames, &centers))
+        {
             print_note("warning", &warning);
         }
-        let Some(ground) = &self.ground else { return Ok(()) };
-        ground.check(self.frames.iter().map(|(time, _)| *time)).map_err(|error| Fail::Refused(error.to_string()))
+        Ok(())
     }
 
     /// Computes frame after frame; `visit` gets the model with the strength of the posture, too.
@@ -144,18 +162,29 @@ impl Job {
         let mut body = self.body();
         let quantities = Quantities { gradient: self.gradient, ..Quantities::TORQUES };
         let mut loads = vec![];
-        for (index, (time, posture)) in self.frames.iter().enumerate() {
+        let mut inertia = Inertia::new(model);
+        for (index, (time, posture)) in self.recorded.frames.iter().enumerate() {
             let failed = |why: JointTorquesError| Fail::Refused(format!("frame {index}: {why}"));
             body.place(model, posture).map_err(|error| failed(error.into()))?;
             loads.clone_from(&self.loads);
             if let Some(ground) = &self.ground {
                 ground.loads(*time, model, body.kinematics(), &mut loads);
             }
+            let rates = self.recorded.rates.get(index);
+            if let Some(rates) = rates {
+                let given = (rates.speeds.as_slice(), rates.accelerations.as_slice());
+                let update = inertia.update(model, body.kinematics(), given, &loads);
+                update.map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
+                loads.extend_from_slice(inertia.loads());
+            }
             body.apply(model, &loads, quantities).map_err(failed)?;
             if let Some(muscles) = body.muscles() {
                 muscles.write_strength(&mut posed.model);
             }
             let mut frame = Frame::new(&body, &posed.model, order, (index, *time));
+            if rates.is_some() {
+                frame = frame.with_inertia(&inertia, model, order);
+            }
             if self.gradient {
                 frame = frame.with_gradient(body.gradient(), order);
             }

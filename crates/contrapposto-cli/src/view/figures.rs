@@ -57,9 +57,9 @@ pub(crate) fn figures_of_run(
     files(&figures)
 }
 
-/// The same of a motion that was assessed; `worst`: coordinates of its groups, the first to fail first.
+/// The same of a motion that was assessed; `moving`: inertia counts. `worst`: coordinates of its groups, the first to fail first.
 pub(crate) fn figures_of_assessment(
-    title: &str,
+    (title, moving): (&str, bool),
     model: &Model,
     stage: &Stage<'_>,
     frames: &[Frame],
@@ -75,7 +75,7 @@ pub(crate) fn figures_of_assessment(
     for (number, i) in shown.into_iter().enumerate() {
         let over = |value: &dyn Fn(&Frame) -> f64| frames.iter().map(value).collect::<Vec<f64>>();
         let line = TimeLine {
-            subtitle: "every posture held at rest".to_owned(),
+            subtitle: (if moving { "inertia counts" } else { "every posture held at rest" }).to_owned(),
             time_s: over(&|frame| frame.time),
             angle_deg: over(&|frame| frame.angles[i].to_degrees()),
             external_nm: over(&|frame| frame.external[i]),

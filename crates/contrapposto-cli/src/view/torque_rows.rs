@@ -1,5 +1,6 @@
 //! External, passive and active torque of one frame, and the order and names of their rows.
 
+use contrapposto::dynamics::Inertia;
 use contrapposto::joint_torques::{JointTorques, active_torque, effort};
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::statics::Gradient;
@@ -13,12 +14,14 @@ pub(crate) struct Torques {
     pub(crate) external: f64,
     pub(crate) passive: f64,
     pub(crate) active: f64,
+    /// The part of the external torque that inertia gives; none of a posture at rest.
+    pub(crate) inertia: Option<f64>,
 }
 
 impl Torques {
     pub(crate) fn new(external: f64, passive: f64) -> Self {
         // Adding 0 turns -0, the active torque of no torques, into 0.
-        Self { external, passive, active: active_torque(external, passive) + 0.0 }
+        Self { external, passive, active: active_torque(external, passive) + 0.0, inertia: None }
     }
 }
 
@@ -121,6 +124,20 @@ impl<'a> Frame<'a> {
             center_of_mass: body.kinematics().center_of_mass(model),
             gradient: None,
         }
+    }
+
+    /// With the part of the external torque that inertia gives.
+    pub(crate) fn with_inertia(mut self, inertia: &Inertia, model: &Model, order: &Order) -> Self {
+        let parts = [
+            (&mut self.rows, &order.rows, inertia.torques()),
+            (&mut self.coupled, &order.coupled, inertia.uncoupled_torques(model)),
+        ];
+        for (torques, rows, inertia) in parts {
+            for (torques, row) in torques.iter_mut().zip(rows) {
+                torques.inertia = Some(inertia[row.rate]);
+            }
+        }
+        self
     }
 
     /// With the gradient of external torque.

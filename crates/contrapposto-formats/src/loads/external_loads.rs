@@ -11,17 +11,21 @@ pub struct ExternalLoads {
     pub forces: Vec<ExternalForce>,
 }
 
-/// One force of a table.
+/// One force of a table, or one couple, or both. Names of three columns are those without their last letter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExternalForce {
     /// The segment that it acts on.
     pub segment: String,
-    /// Column names of the force without their last letter.
-    pub force: String,
-    /// Column names of the point without their last letter.
-    pub point: String,
-    /// Column names of the couple without their last letter; empty for none.
-    pub torque: String,
+    /// Columns of the force; `None` of a couple alone.
+    pub force: Option<String>,
+    /// Columns of the point; `None` for the segment's origin.
+    pub point: Option<String>,
+    /// Columns of the couple.
+    pub torque: Option<String>,
+    /// The segment in whose axes force and couple are measured; `None` for ground.
+    pub force_in: Option<String>,
+    /// The segment in whose frame the point is measured; `None` for ground.
+    pub point_in: Option<String>,
 }
 
 /// Why a file is no ExternalLoads file that can be used.
@@ -43,16 +47,6 @@ pub enum ExternalLoadsError {
         force: String,
         /// The element.
         element: &'static str,
-    },
-    /// Force or point are not in ground axes.
-    #[error("`{force}`: <{element}> is `{found}`; only forces and points in `ground` are read")]
-    Frame {
-        /// Name of the force.
-        force: String,
-        /// The element.
-        element: &'static str,
-        /// What it says.
-        found: String,
     },
 }
 
@@ -77,20 +71,23 @@ pub fn external_loads(bytes: &[u8]) -> Result<ExternalLoads, ExternalLoadsError>
 }
 
 fn force(node: Node<'_>) -> Result<ExternalForce, ExternalLoadsError> {
-    let name = node.attribute("name").unwrap_or("ExternalForce").to_owned();
-    let needed = |element: &'static str| {
-        text(node, element).ok_or_else(|| ExternalLoadsError::Missing { force: name.clone(), element })
+    let missing = |element: &'static str| {
+        let force = node.attribute("name").unwrap_or("ExternalForce").to_owned();
+        ExternalLoadsError::Missing { force, element }
     };
-    for element in ["force_expressed_in_body", "point_expressed_in_body"] {
-        if let Some(found) = text(node, element).filter(|found| !found.trim_start_matches('/').eq("ground")) {
-            return Err(ExternalLoadsError::Frame { force: name, element, found });
-        }
+    // A body by its path or its name.
+    let body = |element| {
+        let path = text(node, element)?;
+        Some(path.rsplit('/').next().unwrap_or_default().to_owned())
+    };
+    let segment = body("applied_to_body").ok_or_else(|| missing("applied_to_body"))?;
+    let [force, point, torque] = ["force_identifier", "point_identifier", "torque_identifier"].map(|e| text(node, e));
+    if force.is_none() && torque.is_none() {
+        return Err(missing("force_identifier"));
     }
-    let segment = needed("applied_to_body")?;
-    let segment = segment.rsplit('/').next().unwrap_or_default().to_owned();
-    let (force, point) = (needed("force_identifier")?, needed("point_identifier")?);
-    let torque = text(node, "torque_identifier").unwrap_or_default();
-    Ok(ExternalForce { segment, force, point, torque })
+    let [force_in, point_in] =
+        ["force_expressed_in_body", "point_expressed_in_body"].map(|e| body(e).filter(|name| name != "ground"));
+    Ok(ExternalForce { segment, force, point, torque, force_in, point_in })
 }
 
 /// The text of a child element, if there is any; OpenSim writes `Unassigned` for none.

@@ -106,12 +106,19 @@ pub struct GroundReaction {
     guessed: Vec<(String, &'static str)>,
 }
 
+/// Columns x, y and z.
+type Three = [usize; 3];
+
 #[derive(Clone, Debug)]
 struct Plate {
     segment: usize,
-    /// Columns (x, y, z) of force, point and couple.
-    columns: [[usize; 3]; 3],
-    coupled: bool,
+    force: Option<Three>,
+    /// None: the segment's origin.
+    point: Option<Three>,
+    couple: Option<Three>,
+    /// The segment in whose axes force and couple are measured, and the one in whose frame the point is; ground where there is none.
+    force_in: Option<usize>,
+    point_in: Option<usize>,
 }
 
 impl GroundReaction {
@@ -170,7 +177,15 @@ impl GroundReaction {
                     segment
                 }
             };
-            plates.push(Plate { segment, columns: columns.columns, coupled: columns.coupled });
+            let [force, point, couple] = columns.columns;
+            plates.push(Plate {
+                segment,
+                force: Some(force),
+                point: Some(point),
+                couple: columns.coupled.then_some(couple),
+                force_in: None,
+                point_in: None,
+            });
         }
         Ok(Self { name: table_name(), table, plates, guessed })
     }
@@ -189,21 +204,18 @@ impl GroundReaction {
         if table.times.is_empty() {
             return Err(GroundReactionError::Empty { table: name.to_owned() });
         }
-        let column = |label: String| {
-            let found = table.columns.iter().position(|other| other.eq_ignore_ascii_case(&label));
-            found.ok_or_else(|| GroundReactionError::Named { table: name.to_owned(), missing: label })
-        };
-        let three = |stem: &str| -> Result<[usize; 3], GroundReactionError> {
-            let label = |axis| format!("{stem}{axis}");
-            Ok([column(label("x"))?, column(label("y"))?, column(label("z"))?])
-        };
+        let three = |stem: &String| named_columns(name, &table, stem);
+        let segment =
+            |name: &String| model.segment(name).ok_or_else(|| GroundReactionError::Segment(no_segment(model, name)));
         let plate = |force: &ExternalForce| -> Result<Plate, GroundReactionError> {
-            let unknown = || GroundReactionError::Segment(no_segment(model, &force.segment));
-            let segment = model.segment(&force.segment).ok_or_else(unknown)?;
-            let (acting, point) = (three(&force.force)?, three(&force.point)?);
-            let coupled = !force.torque.is_empty();
-            let couple = if coupled { three(&force.torque)? } else { point };
-            Ok(Plate { segment, columns: [acting, point, couple], coupled })
+            Ok(Plate {
+                segment: segment(&force.segment)?,
+                force: force.force.as_ref().map(three).transpose()?,
+                point: force.point.as_ref().map(three).transpose()?,
+                couple: force.torque.as_ref().map(three).transpose()?,
+                force_in: force.force_in.as_ref().map(segment).transpose()?,
+                point_in: force.point_in.as_ref().map(segment).transpose()?,
+            })
         };
         let plates = loads.forces.iter().map(plate).collect::<Result<_, _>>()?;
         Ok(Self { name: name.to_owned(), table, plates, guessed: vec![] })
@@ -219,6 +231,22 @@ impl GroundReaction {
         &self.guessed
     }
 
+    /// Name of the table.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// First and last time of the table, s.
+    pub fn span(&self) -> Option<(f64, f64)> {
+        let times = &self.table.times;
+        Some((*times.first()?, *times.last()?))
+    }
+
+    /// Whether the table has forces at a time, s.
+    pub fn covers(&self, time: f64) -> bool {
+        self.span().is_some_and(|(first, last)| (first - SLACK..=last + SLACK).contains(&time))
+    }
+
     /// Checks that the table has forces at all `times` (s).
     ///
     /// # Errors
@@ -229,14 +257,14 @@ impl GroundReaction {
         let (Some(&first), Some(&last)) = (all.first(), all.last()) else {
             return Err(GroundReactionError::Empty { table: table() });
         };
-        match times.into_iter().enumerate().find(|(_, time)| *time < first - SLACK || *time > last + SLACK) {
+        match times.into_iter().enumerate().find(|(_, time)| !self.covers(*time)) {
             Some((frame, time)) => Err(GroundReactionError::Outside { table: table(), frame, time, first, last }),
             None => Ok(()),
         }
     }
 
-    /// Adds the loads at `time` (s), interpolated, in the posture that `kinematics` holds: world-fixed forces (N) and couples (N m) at
-    /// the points of the segments that coincide with the measured points.
+    /// Adds the loads at `time` (s), interpolated, in the posture that `kinematics` holds: forces (N) and couples (N m) at the
+    /// points of the segments that coincide with the measured points.
     pub fn loads(&self, time: f64, model: &Model, kinematics: &Kinematics, loads: &mut Vec<Load>) {
         let Table { times, rows, .. } = &self.table;
         let after = times.partition_point(|t| *t <= time).min(times.len() - 1);
@@ -244,15 +272,45 @@ impl GroundReaction {
         let span = times[after] - times[before];
         let share = if span > 0.0 { ((time - times[before]) / span).clamp(0.0, 1.0) } else { 0.0 };
         let value = |column: usize| rows[before][column] + share * (rows[after][column] - rows[before][column]);
+        let three = |columns: Three| Vector3::from(columns.map(value));
         for plate in &self.plates {
-            let [force, point, couple] = plate.columns.map(|columns| Vector3::from(columns.map(value)));
             let segment = plate.segment;
-            let at = kinematics.placement(model, segment).inverse() * Point3::from(point);
-            loads.push(Load { segment, point: at.coords, kind: LoadKind::Force(force, FixedIn::World) });
-            if plate.coupled {
-                loads.push(Load { segment, point: at.coords, kind: LoadKind::Couple(couple, FixedIn::World) });
+            let point = plate.point.map(three).map_or_else(Vector3::zeros, |point| match plate.point_in {
+                Some(own) if own == segment => point,
+                other => {
+                    let in_ground = other.map_or(point, |other| kinematics.station(model, other, point));
+                    (kinematics.placement(model, segment).inverse() * Point3::from(in_ground)).coords
+                }
+            });
+            // Measured in the axes of the segment itself they turn with it.
+            let turned = |v: Vector3<f64>| match plate.force_in {
+                Some(own) if own == segment => (v, FixedIn::Segment),
+                Some(other) => (kinematics.direction(model, other, v), FixedIn::World),
+                None => (v, FixedIn::World),
+            };
+            if let Some((force, fixed_in)) = plate.force.map(three).map(turned) {
+                loads.push(Load { segment, point, kind: LoadKind::Force(force, fixed_in) });
+            }
+            if let Some((couple, fixed_in)) = plate.couple.map(three).map(turned) {
+                loads.push(Load { segment, point, kind: LoadKind::Couple(couple, fixed_in) });
             }
         }
+    }
+}
+
+/// The three columns that an identifier stands for: with x, y and z behind it, or else the only three that begin with it, in their order.
+fn named_columns(name: &str, table: &Table, stem: &str) -> Result<Three, GroundReactionError> {
+    let column = |axis: &str| {
+        let label = format!("{stem}{axis}");
+        let found = table.columns.iter().position(|other| other.eq_ignore_ascii_case(&label));
+        found.ok_or(GroundReactionError::Named { table: name.to_owned(), missing: label })
+    };
+    let begins = |(_, label): &(usize, &String)| label.starts_with(stem);
+    let found: Vec<usize> = table.columns.iter().enumerate().filter(begins).map(|(i, _)| i).collect();
+    match (column("x"), column("y"), column("z"), found.as_slice()) {
+        (Ok(x), Ok(y), Ok(z), _) => Ok([x, y, z]),
+        (_, _, _, &[x, y, z]) => Ok([x, y, z]),
+        (Err(error), ..) | (_, Err(error), ..) | (_, _, Err(error), _) => Err(error),
     }
 }
 

@@ -34,6 +34,11 @@ impl<'a> Layout<'a> {
         Self { name, text, header: start..start, body: start, storage: false }
     }
 
+    /// The file's name for messages.
+    pub(super) fn name(&self) -> &'a str {
+        self.name
+    }
+
     /// Lines of the header that are not empty, without blanks around them.
     pub(super) fn header(&self) -> impl Iterator<Item = &'a str> + use<'a> {
         lines(&self.text[self.header.clone()])

@@ -16,8 +16,8 @@ use crate::xml::shorten;
 /// CSV: labels, then rows. Without a first column `time` the rows are numbered 0, 1, 2 and so on. Columns `NAME.case` and
 /// `NAME.goal_deg` or `.goal_m` of our own runs are left out: their cells may be empty.
 ///
-/// Every number must be finite, every row complete, every label unique, and times must not fall; `nColumns`, where it
-/// stands, must be true. A wrong `nRows` is a warning of the table: OpenSim reads such files. Empty lines and blanks at line ends do not matter. At most [`MOST_TABLE_BYTES`],
+/// Every number must be finite, every row complete, every label unique, and times must not fall. A wrong `nRows` or
+/// `nColumns` is a warning of the table: OpenSim reads such files. Empty lines and blanks at line ends do not matter. At most [`MOST_TABLE_BYTES`],
 /// [`MOST_COLUMNS`], [`MOST_NUMBERS`] and [`MOST_NAME_BYTES`].
 ///
 /// # Errors
@@ -47,10 +47,6 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
     };
     let columns = columns(&layout, line)?;
     let width = columns.len();
-    if let Some((promised, place)) = header.columns.filter(|(promised, _)| *promised != width) {
-        let message = format!("the header says {promised} columns, but there are {width}, time counted");
-        return Err(layout.error(Some(place), message, "here", format!("there should be {width}, or other labels")));
-    }
     let (mut times, mut rows) = (vec![], vec![]);
     for line in lines {
         if (rows.len() + 1).saturating_mul(width) > MOST_NUMBERS {
@@ -66,13 +62,7 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
         times.push(time.0);
         rows.push(row);
     }
-    let found = rows.len();
-    let mut warnings = vec![];
-    if let Some((promised, _)) = header.rows.filter(|(promised, _)| *promised != found) {
-        warnings.push(format!(
-            "{name}: the header says {promised} rows, but there are {found}, which are read; was the file cut off?"
-        ));
-    }
+    let warnings = broken_promises(&layout, [(header.rows, rows.len(), "rows"), (header.columns, width, "columns")]);
     if rows.is_empty() {
         let message = "the table has column names but no rows".to_owned();
         return Err(layout.error(Some(line), message, "nothing follows", "rows of numbers must follow".to_owned()));
@@ -80,6 +70,19 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
     let names = columns.iter().filter(|(role, _)| *role == Role::Value).map(|(_, label)| (*label).to_owned());
     let (name, in_degrees) = (header.name.to_owned(), header.in_degrees);
     Ok(Table { name, in_degrees, columns: names.collect(), warnings, times, rows })
+}
+
+/// A warning for every number of the header that is not the one of the table: what it says and where, what there is, and its name.
+fn broken_promises(layout: &Layout<'_>, promises: [(Option<(usize, &str)>, usize, &str); 2]) -> Vec<String> {
+    let broken = promises.into_iter().filter_map(|(promised, found, what)| {
+        let (promised, place) = promised.filter(|(promised, _)| *promised != found)?;
+        let line = layout.line_number(place).map_or_else(String::new, |line| format!(" (line {line})"));
+        let name = layout.name();
+        Some(format!(
+            "{name}: the header says {promised} {what}{line}, but there are {found}, which are read; was the file cut off?"
+        ))
+    });
+    broken.collect()
 }
 
 /// The role of a column.

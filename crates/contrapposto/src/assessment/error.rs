@@ -1,6 +1,7 @@
 //! Names the reasons for which a motion is not assessed.
 
 use crate::contact::SupportError;
+use crate::dynamics::InertiaError;
 use crate::joint_torques::JointTorquesError;
 
 /// Why a motion was not assessed.
@@ -17,6 +18,22 @@ pub enum AssessError {
         index: usize,
         /// Why.
         error: JointTorquesError,
+    },
+    /// Speeds or accelerations do not fit the model.
+    #[error("instant {index}: {error}")]
+    Inertia {
+        /// Its number, counted from 0.
+        index: usize,
+        /// Why.
+        error: InertiaError,
+    },
+    /// There are not as many rates as postures.
+    #[error("speeds and accelerations of {given} instants are given; the motion has {needed}")]
+    Rates {
+        /// Number given.
+        given: usize,
+        /// Number of postures.
+        needed: usize,
     },
     /// Times fall, or are no numbers.
     #[error("instant {index} is at {time} s; times must be finite and not fall")]

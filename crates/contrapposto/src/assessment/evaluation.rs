@@ -4,6 +4,7 @@ use super::error::AssessError;
 use super::result::{GroupAssessment, PeakKind, Proposal};
 use super::settings::AssessSettings;
 use crate::contact::{Balance, ContactForces, Missing, SupportError, root_rates};
+use crate::dynamics::{Inertia, Rates};
 use crate::hybrid::{Problem, Strategy, explain, minimise};
 use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
 use crate::kinematics::Kinematics;
@@ -18,6 +19,9 @@ pub(super) struct Evaluation<'a> {
     ranges: &'a [Option<(f64, f64)>],
     pub(super) torques: JointTorques,
     pub(super) contact: Option<ContactForces>,
+    rates: &'a [Rates],
+    /// None of postures at rest.
+    pub(super) inertia: Option<Inertia>,
     root: Vec<usize>,
     loads: Vec<Load>,
 }
@@ -32,6 +36,8 @@ impl<'a> Evaluation<'a> {
             torques: JointTorques::with_passive_ranges(model, &settings.passive_ranges)
                 .with_muscles(settings.muscles.clone()),
             contact,
+            rates: &settings.rates,
+            inertia: (!settings.rates.is_empty()).then(|| Inertia::new(model)),
             root: root_rates(model),
             loads: vec![],
         })
@@ -53,11 +59,29 @@ impl<'a> Evaluation<'a> {
         }
         self.loads.clear();
         loads(time, torques.kinematics(), &mut self.loads);
+        if let Some(inertia) = &mut self.inertia {
+            let Rates { speeds, accelerations } = &self.rates[index];
+            let update = inertia.update(model, torques.kinematics(), (speeds, accelerations), &self.loads);
+            update.map_err(|error| AssessError::Inertia { index, error })?;
+            self.loads.extend_from_slice(inertia.loads());
+        }
         match &mut self.contact {
             Some(contact) => torques.apply_with_contact(model, &self.loads, contact, Quantities::TORQUES),
             None => torques.apply(model, &self.loads, Quantities::TORQUES),
         }
-        .map_err(refused)
+        .map_err(refused)?;
+        match &mut self.inertia {
+            Some(inertia) => {
+                let update = inertia.update_about_axes(model, torques.kinematics_by_axes());
+                update.map_err(|error| AssessError::Inertia { index, error })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Torque of inertia of a rate about its axis, N m.
+    pub(super) fn inertia_about_axis(&self, rate: usize) -> f64 {
+        self.inertia.as_ref().map_or(0.0, |inertia| inertia.about_axes()[rate])
     }
 
     /// Active torque of a rate, N m.

@@ -107,7 +107,8 @@ impl Groups {
                 summary.peak_torque = active;
                 let (external, passive) = evaluation.torques.external_and_passive(rate);
                 let strength = groups[side.index()].strength.torque(angle);
-                summary.at_peak = PeakTorques { angle, external, passive, strength };
+                let inertia = evaluation.inertia_about_axis(rate);
+                summary.at_peak = PeakTorques { angle, external, passive, inertia, strength };
             }
             summary.peak_load.take(load, index, time);
             summary.loads.push(time, load);

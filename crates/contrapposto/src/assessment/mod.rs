@@ -1,6 +1,7 @@
 //! Assesses a recorded motion: which muscle group fails first, and where relief would lie.
 //!
-//! Nothing moves here: postures come from outside, at rest one after the other. At each of them the muscles give
+//! Postures come from outside: each at rest, or with speeds and accelerations, whose inertia is a part of `tau_e`. At each of them the
+//! muscles give
 //! `tau_a = -(tau_p + tau_e)` (Rodriguez & Boulic 2007, Eq. 1), contact forces of supports included; between two of them the relative
 //! load of every group changes in a straight line, and the group tires under it by its own law. At the peaks of load and of fatigue
 //! the hybrid minimisation says where relief would lie if that joint alone moved.
@@ -46,9 +47,12 @@ pub fn assess(
     {
         return Err(AssessError::TooLong(last - first));
     }
+    if !settings.rates.is_empty() && settings.rates.len() != motion.len() {
+        return Err(AssessError::Rates { given: settings.rates.len(), needed: motion.len() });
+    }
     let mut evaluation = Evaluation::new(model, settings)?;
     let mut groups = Groups::new(model);
-    let mut found = Assessment::default();
+    let mut found = Assessment { dynamics: !settings.rates.is_empty(), ..Assessment::default() };
     let mut centers: Vec<Vector3<f64>> = vec![];
     let mut before: Option<f64> = None;
     for (index, (time, posture)) in motion.iter().enumerate() {
@@ -67,6 +71,7 @@ pub fn assess(
             torques: &evaluation.torques,
             fatigue: &groups.fatigue,
             load: &groups.load,
+            inertia: evaluation.inertia.as_ref(),
             contact: evaluation.contact.as_ref(),
         });
         before = Some(*time);

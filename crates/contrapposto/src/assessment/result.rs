@@ -1,6 +1,7 @@
 //! Holds what an assessment finds: groups, peaks and proposals.
 
 use crate::contact::{ContactForces, Missing};
+use crate::dynamics::Inertia;
 use crate::fatigue::LoadHistory;
 use crate::hybrid::{Decision, Strategy};
 use crate::joint_torques::{Hazard, JointTorques};
@@ -21,6 +22,8 @@ pub struct Instant<'a> {
     pub fatigue: &'a [[f64; 2]],
     /// Active torque over strength of the same.
     pub load: &'a [[f64; 2]],
+    /// Inertia, whose loads are among those of `torques`; none of a posture at rest.
+    pub inertia: Option<&'a Inertia>,
     /// Contact forces; none without supports.
     pub contact: Option<&'a ContactForces>,
 }
@@ -82,6 +85,8 @@ pub struct PeakTorques {
     pub passive: f64,
     /// Strength of the group, N m.
     pub strength: f64,
+    /// The part of the external torque that inertia gives, N m; 0 of a posture at rest.
+    pub inertia: f64,
 }
 
 /// Passive torque over external torque from which on a muscle that opposes it counts as working against the ligaments (assumed).
@@ -137,6 +142,8 @@ pub struct Assessment {
     pub unheld: usize,
     /// What the supports lack in the first of them, and its time, s.
     pub missing: Option<(Missing, f64)>,
+    /// Inertia counts in all torques.
+    pub dynamics: bool,
     /// Greatest acceleration of the centre of mass, m/s^2.
     pub acceleration: Peak,
     /// Share of the instants in which it was above 1 m/s^2, so that a posture at rest says little.

@@ -1,6 +1,7 @@
 //! Holds the settings of an assessment.
 
 use crate::contact::Support;
+use crate::dynamics::Rates;
 use crate::joint_torques::JointMuscles;
 
 /// Supports, ranges of passive torque, and the settings of the proposals.
@@ -8,6 +9,8 @@ use crate::joint_torques::JointMuscles;
 pub struct AssessSettings {
     /// The supports at every instant. Without supports the root is held as if by hand.
     pub supports: Vec<Support>,
+    /// Speeds and accelerations of every instant, whose inertia counts; empty for postures at rest.
+    pub rates: Vec<Rates>,
     /// By coordinate: the range (rad) outside of which its passive torque stays what it is at the nearer end; empty for none.
     pub passive_ranges: Vec<Option<(f64, f64)>>,
     /// Muscles that give joints passive torque and strength in every posture, beside the laws of the model.
@@ -22,6 +25,7 @@ impl Default for AssessSettings {
     fn default() -> Self {
         Self {
             supports: vec![],
+            rates: vec![],
             passive_ranges: vec![],
             muscles: None,
             minimum_decrease_ratio: 0.9,

@@ -38,6 +38,8 @@ pub struct Inertia {
     acceleration: Acceleration,
     loads: Vec<Load>,
     torque: ExternalTorque,
+    /// About the axes of three-axis joints, for a body with such joints.
+    about_axes: Option<ExternalTorque>,
 }
 
 impl Inertia {
@@ -57,6 +59,7 @@ impl Inertia {
             acceleration: Acceleration::new(model),
             loads: vec![],
             torque: ExternalTorque::new(model),
+            about_axes: (!model.three_axis_joints().is_empty()).then(|| ExternalTorque::new(model.by_axes())),
         }
     }
 
@@ -88,6 +91,24 @@ impl Inertia {
             }
         }
         Ok(self.torque.update_weightless(model, kinematics, &self.loads)?)
+    }
+
+    /// Computes the torques about axes that the loads of the last update give; `kinematics` are the frames of [`Model::by_axes`] in the
+    /// same posture. Does not allocate.
+    ///
+    /// # Errors
+    /// As [`Inertia::update`].
+    pub fn update_about_axes(&mut self, model: &Model, kinematics: &Kinematics) -> Result<(), InertiaError> {
+        match &mut self.about_axes {
+            Some(torque) => Ok(torque.update_weightless(model.by_axes(), kinematics, &self.loads)?),
+            None => Ok(()),
+        }
+    }
+
+    /// As [`Inertia::torques`], with the torques of three-axis joints about the axes that stand for their coordinates, from the last
+    /// [`Inertia::update_about_axes`].
+    pub fn about_axes(&self) -> &[f64] {
+        self.about_axes.as_ref().map_or(self.torque.torques(), ExternalTorque::torques)
     }
 
     /// Forces and couples of inertia, to be added to the other loads of the same posture.

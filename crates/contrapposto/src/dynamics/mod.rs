@@ -14,6 +14,10 @@
 
 mod acceleration;
 mod inertia;
+mod motion;
+mod sampling;
 
 pub use acceleration::{Acceleration, SpeedError};
 pub use inertia::{Inertia, InertiaError};
+pub use motion::{MotionError, Moving, Rates, differentiate};
+pub use sampling::{PUBLISHED_CUTOFF, Smoothing};

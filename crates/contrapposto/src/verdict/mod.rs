@@ -172,6 +172,8 @@ pub(crate) struct Findings {
     pub(crate) hazards: Vec<Hazard>,
     /// Share of the instants of a motion whose acceleration a posture at rest leaves out, where the motion is fast.
     pub(crate) fast: Option<f64>,
+    /// Inertia of the motion counts.
+    pub(crate) dynamics: bool,
     /// The run was left before its end, at that time, s.
     pub(crate) interrupted: Option<f64>,
 }

@@ -24,12 +24,13 @@ impl Verdict {
             asked: Some(seconds),
             hardest: hardest.filter(|group| group.peak_load.value > 0.0).map(|g| (load_of(g), Some(g.peak_load.time))),
             missing: found.missing.map(|(missing, time)| (missing, Some(time))),
-            fast: Some(found.fast_share).filter(|share| *share > FAST_SHARE),
+            fast: Some(found.fast_share).filter(|share| *share > FAST_SHARE && !found.dynamics),
+            dynamics: found.dynamics,
             fails,
             hazards: found.hazards.clone(),
             ..Findings::default()
         };
-        // Loads of fast postures at rest say nothing of how long the motion can go on.
+        // The posture at the end of a fast motion is not held on.
         if findings.kind() == VerdictKind::Holds && found.fast_share <= FAST_SHARE {
             let groups: Vec<_> = found.groups.iter().filter_map(|group| at_end(model, group)).collect();
             findings.take_end(&groups, (start, start + seconds));

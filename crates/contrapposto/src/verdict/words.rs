@@ -27,6 +27,7 @@ impl Findings {
             Some(share) => {
                 format!("{sentence} Each posture is judged at rest; the motion is fast in {share} of its frames.")
             }
+            None if self.dynamics => format!("{sentence} Inertia of the motion counts."),
             None => sentence,
         };
         let fails = match kind {

@@ -100,11 +100,11 @@ impl<'a> AssessedFrames<'a> {
     }
 }
 
-/// The page of an assessment. `held`: the loads at all times.
+/// The page of an assessment, with the sentence that says that inertia counts, if it does. `held`: the loads at all times.
 pub(crate) fn report_of_assessment(
     title: &str,
     assessed_frames: &AssessedFrames<'_>,
-    found: &Assessment,
+    (found, inertia): (&Assessment, Option<&str>),
     verdict: &Verdict,
     supports: &[Support],
     held: &[Load],
@@ -135,9 +135,8 @@ pub(crate) fn report_of_assessment(
     let span = last.time - first.time;
     report.headline.clone_from(&verdict.sentence);
     report.reasons = warnings.iter().map(|warning| sentence(warning) + ".").collect();
-    report
-        .reasons
-        .push("Each posture is treated as held at rest; loads are interpolated linearly between postures.".to_owned());
+    let manner = inertia.map_or_else(|| "Each posture is treated as held at rest".to_owned(), sentence);
+    report.reasons.push(format!("{manner}; loads are interpolated linearly between postures."));
     report.figures = figures(model, found, &working, format!("{} postures", assessed_frames.instants), span);
     report.list = List {
         heading: "Muscle groups that fail, and relief by one joint".to_owned(),

@@ -36,6 +36,8 @@ pub(crate) struct AssessText {
     residual_moment_nm: PeakText,
     /// Frames in which the supports cannot hold the body.
     unheld_frames: usize,
+    /// Inertia counts in all torques.
+    dynamics: bool,
     acceleration_m_s2: PeakText,
     /// Share of the frames in which the centre of mass accelerates by more than 1 m/s2.
     fast_share: f64,
@@ -60,6 +62,9 @@ struct AssessedGroupText {
     external_at_peak_nm: f64,
     passive_at_peak_nm: f64,
     active_at_peak_nm: f64,
+    /// The part of the external torque that inertia gives; left out of postures at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inertia_at_peak_nm: Option<f64>,
     peak_fatigue: PeakText,
     fatigue_at_end: f64,
     /// `null`: it holds.
@@ -106,10 +111,11 @@ impl AssessText {
             frames: times.len(),
             start_s: times.first().copied().unwrap_or_default(),
             end_s: times.last().copied().unwrap_or_default(),
-            groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group)).collect(),
+            groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group, found.dynamics)).collect(),
             residual_force_n: found.residual_force.into(),
             residual_moment_nm: found.residual_moment.into(),
             unheld_frames: found.unheld,
+            dynamics: found.dynamics,
             acceleration_m_s2: found.acceleration.into(),
             fast_share: found.fast_share,
             warnings,
@@ -119,7 +125,7 @@ impl AssessText {
 }
 
 impl AssessedGroupText {
-    fn new(opened: &SourcedModel, found: &GroupAssessment) -> Self {
+    fn new(opened: &SourcedModel, found: &GroupAssessment, dynamics: bool) -> Self {
         let model = &opened.model;
         Self {
             name: GroupName::new(model, found.coordinate, found.side),
@@ -128,6 +134,7 @@ impl AssessedGroupText {
             external_at_peak_nm: found.at_peak.external,
             passive_at_peak_nm: found.at_peak.passive,
             active_at_peak_nm: found.peak_torque,
+            inertia_at_peak_nm: dynamics.then_some(found.at_peak.inertia),
             peak_fatigue: found.peak_fatigue.into(),
             fatigue_at_end: found.fatigue,
             exhausted_at_s: found.exhausted_at,

@@ -18,7 +18,7 @@ use crate::view::torque_rows::{Frame, Order, Row, Torques};
 pub(crate) struct FrameText<'a> {
     frame: usize,
     time_s: f64,
-    /// Always: torques of the posture at rest, without inertia.
+    /// The posture is held at rest: there is no inertia in its torques.
     quasi_static: bool,
     coordinate_order: Vec<&'a str>,
     coordinates: Named<'a, TorquesText>,
@@ -43,6 +43,9 @@ struct TorquesText {
     /// Where the muscles of the model give the passive torque.
     #[serde(skip_serializing_if = "Option::is_none")]
     passive_source: Option<Source>,
+    /// The part of the external torque that inertia gives; left out of a posture at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inertia_nm: Option<f64>,
     /// Of the positive and the negative group at this angle. Left out where it is not known, and of three-axis joints, whose muscles are
     /// judged by their moment.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -75,7 +78,7 @@ pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Fr
     };
     let named = |rows: &'a [Row], torques: &[Torques]| {
         let text = |(row, torques): (&'a Row, &Torques)| {
-            let Torques { external, passive, active } = *torques;
+            let Torques { external, passive, active, inertia: inertia_nm } = *torques;
             let angle = row.coordinate.map(|c| frame.values[c]);
             (
                 row.name.as_str(),
@@ -85,6 +88,7 @@ pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Fr
                     passive,
                     active,
                     passive_source: row.coordinate.and_then(|coordinate| passive_source(opened, coordinate)),
+                    inertia_nm,
                     strength: row.coordinate.and_then(strength),
                 },
             )
@@ -95,7 +99,7 @@ pub(crate) fn json<'a>(opened: &'a SourcedModel, order: &'a Order, frame: &'a Fr
     FrameText {
         frame: frame.index,
         time_s: frame.time,
-        quasi_static: true,
+        quasi_static: frame.rows.iter().all(|torques| torques.inertia.is_none()),
         coordinate_order: order.rows.iter().map(|row| row.name.as_str()).collect(),
         coordinates: named(&order.rows, &frame.rows),
         uncoupled: named(&order.coupled, &frame.coupled),
@@ -131,8 +135,16 @@ fn passive_source(opened: &SourcedModel, coordinate: usize) -> Option<Source> {
     (opened.origins[coordinate].passive == Origin::Muscles).then(Source::of_muscles)
 }
 
+/// The columns that a table has besides the three torques.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Columns<'a> {
+    pub(crate) gradient: bool,
+    /// The sentence that says that inertia counts.
+    pub(crate) inertia: Option<&'a str>,
+}
+
 /// Heads of the table, with OpenSim's own header where tabs separate.
-pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: char, gradient: bool) -> String {
+pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: char, columns: Columns<'_>) -> String {
     let mut labels = vec!["time".to_owned()];
     for &c in &order.values {
         let coordinate = &model.coordinates()[c];
@@ -145,9 +157,10 @@ pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: cha
         if row.coordinate.is_some() {
             labels.push(format!("{name}.{}", if row.turns { "angle_deg" } else { "position_m" }));
         }
-        labels.extend(["external", "passive", "active"].map(|torque| format!("{name}.{torque}_{unit}")));
+        let torques = ["external", "passive", "active"].into_iter().chain(columns.inertia.map(|_| "inertia"));
+        labels.extend(torques.map(|torque| format!("{name}.{torque}_{unit}")));
     }
-    if gradient {
+    if columns.gradient {
         for row in &order.rows {
             labels.extend(
                 order.rows.iter().map(|column| format!("{}.external_by.{}", plain(&row.name), plain(&column.name))),
@@ -156,10 +169,8 @@ pub(crate) fn header(model: &Model, order: &Order, frames: usize, separator: cha
     }
     let mut text = String::new();
     if separator == '\t' {
-        let columns = labels.len();
-        text = format!(
-            "torques\nPostures at rest: torques without inertia\nversion=1\nnRows={frames}\nnColumns={columns}\ninDegrees=yes\nendheader\n"
-        );
+        let (width, said) = (labels.len(), columns.inertia.unwrap_or("Postures at rest: torques without inertia"));
+        text = format!("torques\n{said}\nversion=1\nnRows={frames}\nnColumns={width}\ninDegrees=yes\nendheader\n");
     }
     let mut between = "";
     let separator = separator.to_string();
@@ -183,7 +194,7 @@ pub(crate) fn row(order: &Order, frame: &Frame<'_>, separator: char) -> String {
         if let Some(c) = row.coordinate {
             put(if row.turns { frame.values[c].to_degrees() } else { frame.values[c] });
         }
-        [torques.external, torques.passive, torques.active].into_iter().for_each(&mut put);
+        [torques.external, torques.passive, torques.active].into_iter().chain(torques.inertia).for_each(&mut put);
     }
     frame.gradient.iter().flatten().flatten().for_each(|entry| put(*entry));
     text.push('\n');
@@ -193,11 +204,13 @@ pub(crate) fn row(order: &Order, frame: &Frame<'_>, separator: char) -> String {
 /// A table for readers, degrees and newton-metres.
 pub(crate) fn readable(model: &Model, order: &Order, frame: &Frame<'_>) -> String {
     let mut table = plain_table();
+    let moving = frame.rows.iter().any(|torques| torques.inertia.is_some());
     table.set_header(["coordinate", "at", "external", "passive", "active", "unit"]);
     for (row, torques) in order.rows.iter().zip(&frame.rows) {
         table.add_row(cells(row, torques, frame));
     }
-    let mut text = format!("at rest, without inertia:\n{table}\n");
+    let state = if moving { "in motion, inertia among the external torque" } else { "at rest, without inertia" };
+    let mut text = format!("{state}:\n{table}\n");
     if !order.coupled.is_empty() {
         let mut table = plain_table();
         table.set_header(["uncoupled", "at", "external", "passive", "active", "unit"]);
