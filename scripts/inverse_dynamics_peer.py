@@ -7,8 +7,8 @@
 
 FOLDER is the folder `Pipelines` of opensim-core's `opensim-models` repository, which is not a part of this project. Each pipeline is
 copied into a temporary folder. OpenSim runs without the forces of the model; our torques are external ones with their signs turned. Frames
-before the first one of the motion, which OpenSim extrapolates, are left out. The time a frame is that of the solvers: OpenSim's
-InverseDynamicsSolver in one call for all frames, ours the difference of two runs of the program over many repeats of the motion.
+before the first one of the motion, which OpenSim extrapolates, are left out. Times are those of the solvers alone, for gait2392 in
+../shared: OpenSim's without the placing of values, ours (the bench `dynamics/gait2392`) with it.
 """
 
 import csv
@@ -24,7 +24,7 @@ import xml.etree.ElementTree
 import numpy
 import opensim
 
-FREQUENT = 40  # repeats of the motion of which the time is taken
+REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
 PIPELINES = {  # folder, model, setup of inverse dynamics
     "Gait2392_Simbody": ("OutputReference/subject01_simbody.osim", "subject01_Setup_InverseDynamics.xml"),
     "Gait10dof18musc": ("OutputReference/subject01.osim", "ID/walk_Setup_ID.xml"),
@@ -98,60 +98,50 @@ def compare(pipelines, name, program):
             worst = max(worst, difference / peak)
             print(f"  {coordinate:20} peak {peak:9.3f}  difference {difference:8.5f} ({100 * difference / peak:.4f} %)  at rest {at_rest:8.3f}")
         print(f"  greatest difference {100 * worst:.4f} % of a peak")
-        speed(model, model_path, motion, program, temporary)
 
 
-def speed(model, model_path, motion, program, temporary):
-    """Time a frame of the solvers alone: values in, torques out, without measured forces."""
-    table = sto(motion)
-    times = table.pop("time")
-    columns = [name for name in table]
+def opensims_time(path):
+    """Seconds a frame of OpenSim's solver: random values placed, velocities realised, torques for given accelerations."""
+    model = opensim.Model(str(path))
+    model.updForceSet().clearAndDestroy()
     state = model.initSystem()
-    coordinates = model.getCoordinateSet()
-    solver = opensim.InverseDynamicsSolver(model)
+    coordinates = [model.getCoordinateSet().get(i) for i in range(model.getCoordinateSet().getSize())]
+    solver, random = opensim.InverseDynamicsSolver(model), numpy.random.RandomState(1)
     udot = opensim.Vector(state.getNU(), 0.1)
-    poses = [[float(table[name][k]) * 0.01 for name in columns if coordinates.contains(name)] for k in range(len(times))]
-    names = [name for name in columns if coordinates.contains(name)]
-    begin = time.perf_counter()
-    for pose in poses:
-        for name, value in zip(names, pose):
-            coordinates.get(name).setValue(state, value, False)
-    placing = time.perf_counter() - begin
-    begin = time.perf_counter()
-    for pose in poses:
-        for name, value in zip(names, pose):
-            coordinates.get(name).setValue(state, value, False)
-        model.realizeVelocity(state)
-        solver.solve(state, udot)
-    theirs = (time.perf_counter() - begin - placing) / len(poses)
-    head = "long\nversion=1\nnRows={}\nnColumns={}\ninDegrees=yes\nendheader\n"
-
-    def seconds(repeats):
-        count = repeats * len(times)
-        step = times[1] - times[0]
-        there_and_back = [numpy.concatenate([table[n], table[n][::-1]]) for n in columns]
-        index = numpy.arange(count) % (2 * len(times))
-        rows = ["\t".join(["time", *columns])]
-        rows += ["\t".join(f"{v:.10g}" for v in [k * step, *(c[index[k]] for c in there_and_back)]) for k in range(count)]
-        path = pathlib.Path(temporary) / "long.mot"
-        path.write_text(head.format(count, len(columns) + 1) + "\n".join(rows) + "\n")
-        best = 1e9
-        for _ in range(3):
+    best = 1e9
+    for _ in range(5):
+        poses = random.uniform(-0.5, 0.5, (200, len(coordinates))).tolist()
+        spent = 0.0
+        for pose in poses:
+            for coordinate, value in zip(coordinates, pose):
+                coordinate.setValue(state, value, False)
             begin = time.perf_counter()
-            arguments = [program, "torques", model_path, path, "--passive", "file", "--dynamics", "--out", f"{temporary}/long.csv"]
-            subprocess.run(list(map(str, arguments)), capture_output=True, check=True)
-            best = min(best, time.perf_counter() - begin)
-        return best
+            model.realizeVelocity(state)
+            solver.solve(state, udot)
+            spent += time.perf_counter() - begin
+        best = min(best, spent / len(poses))
+    return best
 
-    frames = (FREQUENT - 1) * len(times)
-    mine = (seconds(FREQUENT) - seconds(1)) / frames
-    print(f"  a frame: OpenSim's solver {1e6 * theirs:.1f} us, contrapposto from file to file {1e6 * mine:.1f} us, {theirs / mine:.0f} times")
+
+def our_time():
+    """Seconds a frame of the bench: kinematics, inertia, torques."""
+    command = ["cargo", "bench", "-p", "contrapposto-formats", "--bench", "statics", "--", "dynamics/gait2392"]
+    text = subprocess.run(command, capture_output=True, text=True, check=True, cwd=REPOSITORY).stdout
+    value, unit = text.split("time:")[1].split("[")[1].split()[2:4]
+    return float(value) * {"ns": 1e-9, "\u00b5s": 1e-6, "us": 1e-6, "ms": 1e-3}[unit]
+
+
+def speed():
+    theirs = opensims_time(REPOSITORY.parent / "shared/models/opensim/gait2392_thelen2003muscle.osim")
+    mine = our_time()
+    print(f"gait2392, a frame: OpenSim {1e6 * theirs:.1f} us, contrapposto {1e6 * mine:.2f} us, {theirs / mine:.0f} times faster")
 
 
 def main():
-    program = sys.argv[2] if len(sys.argv) > 2 else str(pathlib.Path(__file__).resolve().parent.parent / "target/release/contrapposto")
+    program = sys.argv[2] if len(sys.argv) > 2 else str(REPOSITORY / "target/release/contrapposto")
     for name in PIPELINES:
         compare(pathlib.Path(sys.argv[1]), name, program)
+    speed()
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ use contrapposto_formats::tissue::SourcedModel;
 use crate::args::{FrameArgs, LoadArgs};
 use crate::fail::Fail;
 use crate::input::read;
-use crate::moving::Recorded;
 use crate::output::print_note;
 
 /// Held weights and forces, and ground reactions if there are any.
@@ -147,34 +146,6 @@ pub(crate) fn cut(name: &str, frames: Vec<(f64, Posture)>, args: &FrameArgs) -> 
         ))),
         _ => Ok(kept),
     }
-}
-
-/// Leaves out the frames at which the table of ground reactions has no forces, with a warning that names the time that both have.
-pub(crate) fn keep_overlap(recorded: &mut Recorded, ground: Option<&GroundReaction>) -> Result<(), Fail> {
-    let Some(ground) = ground else { return Ok(()) };
-    let before = recorded.frames.len();
-    let ends = recorded.frames.first().map(|frame| frame.0).zip(recorded.frames.last().map(|frame| frame.0));
-    let Some(((first, last), (start, end))) = ends.zip(ground.span()) else { return Ok(()) };
-    recorded.keep(|time| ground.covers(time));
-    if recorded.frames.is_empty() {
-        let why = format!(
-            "forces go from {start} s to {end} s, the motion from {first} s to {last} s: they have no time in common"
-        );
-        return Err(Fail::Refused(format!("{}: {why}", ground.name())));
-    }
-    let left_out = before - recorded.frames.len();
-    if left_out > 0 {
-        let kept = recorded.frames.len();
-        let (from, to) = (recorded.frames[0].0, recorded.frames[kept - 1].0);
-        print_note(
-            "warning",
-            &format!(
-                "forces go from {start} s to {end} s, the motion from {first} s to {last} s: {left_out} of {before} frames are left out, \
-                 {kept} from {from} s to {to} s are computed"
-            ),
-        );
-    }
-    Ok(())
 }
 
 fn first_of(names: &[String]) -> String {

@@ -5,10 +5,12 @@ use contrapposto::dynamics::{Moving, Rates, Smoothing, differentiate};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
+use contrapposto_formats::loads::GroundReaction;
 
 use crate::args::{DynamicsArgs, FrameArgs};
 use crate::fail::Fail;
 use crate::motion_file::cut;
+use crate::output::print_note;
 
 /// A motion, at rest in every posture or moving.
 pub(crate) struct Recorded {
@@ -67,6 +69,34 @@ impl Recorded {
         kept.keep(covered);
         (self.frames, self.rates) = (kept.motion, kept.rates);
     }
+}
+
+/// Leaves out the frames at which the table of ground reactions has no forces, with a warning that names the time that both have.
+pub(crate) fn keep_overlap(recorded: &mut Recorded, ground: Option<&GroundReaction>) -> Result<(), Fail> {
+    let Some(ground) = ground else { return Ok(()) };
+    let before = recorded.frames.len();
+    let ends = recorded.frames.first().map(|frame| frame.0).zip(recorded.frames.last().map(|frame| frame.0));
+    let Some(((first, last), (start, end))) = ends.zip(ground.span()) else { return Ok(()) };
+    recorded.keep(|time| ground.covers(time));
+    if recorded.frames.is_empty() {
+        let why = format!(
+            "forces go from {start} s to {end} s, the motion from {first} s to {last} s: they have no time in common"
+        );
+        return Err(Fail::Refused(format!("{}: {why}", ground.name())));
+    }
+    let left_out = before - recorded.frames.len();
+    if left_out > 0 {
+        let kept = recorded.frames.len();
+        let (from, to) = (recorded.frames[0].0, recorded.frames[kept - 1].0);
+        print_note(
+            "warning",
+            &format!(
+                "forces go from {start} s to {end} s, the motion from {first} s to {last} s: {left_out} of {before} frames are left out, \
+                 {kept} from {from} s to {to} s are computed"
+            ),
+        );
+    }
+    Ok(())
 }
 
 /// The words for the filter.

@@ -1,4 +1,4 @@
-//! Times kinematics, centre of mass, gravity torque and the full gradient: on the published humans beside the
+//! Times kinematics, centre of mass, gravity torque, the full gradient and torques with inertia: on the published humans beside the
 //! project (the models of the peers' benchmark; left out where they are not there), and on chains of 10 to 1,000 hinges. Batches of
 //! postures are timed in one thread and in two.
 //!
@@ -10,12 +10,13 @@ use std::hint::black_box;
 use std::path::PathBuf;
 
 use contrapposto::batch::{Statics, Table, Wanted};
+use contrapposto::dynamics::Inertia;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec};
 use contrapposto::posture::Posture;
 use contrapposto::statics::{ExternalTorque, FixedIn, Gradient, Load, LoadKind};
 use contrapposto_formats::model_ir::RootAttachment;
-use contrapposto_formats::urdf;
+use contrapposto_formats::{osim, urdf};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Unit, Vector3};
 use rand::RngExt;
@@ -33,6 +34,35 @@ fn postures(model: &Model) -> Vec<Posture> {
         _ => random.random_range(-1.0..=1.0),
     };
     (0..POSTURES).map(|_| Posture::new(model.coordinates().iter().map(&mut draw).collect())).collect()
+}
+
+/// Inverse dynamics: from values, speeds and accelerations to torques.
+fn bench_inertia(c: &mut Criterion, name: &str, model: &Model) {
+    let postures = postures(model);
+    let (mut kinematics, mut external) = (Kinematics::new(model), ExternalTorque::new(model));
+    let mut inertia = Inertia::new(model);
+    let rates = (vec![0.3; model.rates().len()], vec![0.1; model.rates().len()]);
+    let mut next = postures.iter().cycle();
+    c.bench_function(&format!("dynamics/{name}"), |b| {
+        b.iter(|| {
+            kinematics.update(model, next.next().expect("cycle")).expect("a posture of the model");
+            inertia.update(model, &kinematics, (&rates.0, &rates.1), &[]).expect("rates of the model");
+            external.update(model, &kinematics, inertia.loads()).expect("its own loads");
+            black_box(external.torques())[0]
+        });
+    });
+}
+
+/// The walking body of OpenSim's tutorials, whose peer is timed by scripts/inverse_dynamics_peer.py.
+fn walker(c: &mut Criterion) {
+    let file = "../../../shared/models/opensim/gait2392_thelen2003muscle.osim";
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(file);
+    let Ok(bytes) = std::fs::read(path) else {
+        println!("gait2392: left out, its file is not on this machine");
+        return;
+    };
+    let model = osim::read(&bytes, file).expect("a model file").model().expect("a model").model;
+    bench_inertia(c, "gait2392", &model);
 }
 
 fn bench_model(c: &mut Criterion, name: &str, model: &Model, loads: &[Load]) {
@@ -118,6 +148,7 @@ fn humans(c: &mut Criterion) {
                 force(hand("LeftHand"), Vector3::new(-5.0, 15.0, -25.0)),
             ];
             bench_model(c, &format!("human{dof} {word}"), &model, &loads);
+            bench_inertia(c, &format!("human{dof} {word}"), &model);
         }
     }
 }
@@ -165,5 +196,5 @@ fn growth(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, humans, growth);
+criterion_group!(benches, humans, walker, growth);
 criterion_main!(benches);

@@ -4,13 +4,13 @@
 
 mod trees;
 
-use contrapposto::dynamics::{Inertia, InertiaError, SpeedError};
+use contrapposto::dynamics::{Inertia, InertiaError, MotionError, Smoothing, SpeedError, differentiate};
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, CoordinateSpec, JointKind, Model, ModelBuilder, Placement, SegmentSpec, adult};
 use contrapposto::posture::Posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use rand::RngExt;
 
 type V = Vector3<f64>;
@@ -220,6 +220,106 @@ fn external_torque_with_the_loads_of_inertia_is_that_at_rest_plus_inertia() {
         assert!((rest + inertia - both).abs() < 1e-10 * (1.0 + both.abs()), "rate {rate}");
     }
     assert!(trees::largest(inertia.torques().iter().copied()) > 10.0);
+}
+
+/// A body on a free joint.
+fn free_body() -> Model {
+    let mut builder = ModelBuilder::new("free", V::zeros());
+    builder
+        .segment(SegmentSpec {
+            name: "body".to_owned(),
+            parent: None,
+            mass: 2.0,
+            center_of_mass: V::zeros(),
+            inertia: Matrix3::from_diagonal(&V::new(0.1, 0.2, 0.25)),
+            joint: "root".to_owned(),
+            kind: JointKind::Free,
+            in_parent: Placement::identity(),
+            in_segment: Placement::identity(),
+            coordinates: ["x", "y", "z"].map(|name| CoordinateSpec::new(name, (-9.0, 9.0))).to_vec(),
+        })
+        .unwrap();
+    builder.build()
+}
+
+/// A body that turns about two axes and moves, and its quaternion of either sign: speeds are central differences of the postures, and so
+/// are accelerations of the speeds.
+#[test]
+fn rates_of_a_turning_free_body_are_central_differences_of_its_postures() {
+    let model = free_body();
+    let at = |t: f64| {
+        let turn = UnitQuaternion::from_axis_angle(&V::z_axis(), 1.3 * t + 0.4 * (3.0 * t).sin())
+            * UnitQuaternion::from_axis_angle(&V::x_axis(), 0.8 * (2.0 * t).cos());
+        let mut posture = model.default_posture();
+        for (i, coordinate) in model.coordinates().iter().enumerate() {
+            posture.values_mut()[i] = match coordinate.name.as_str() {
+                "x" => t.sin(),
+                "y" => 0.5 * t * t,
+                "z" => 0.3,
+                name if name.ends_with("qw") => turn.w,
+                name if name.ends_with("qx") => turn.i,
+                name if name.ends_with("qy") => turn.j,
+                _ => turn.k,
+            };
+        }
+        posture
+    };
+    let mut motion: Vec<(f64, Posture)> = (0..201).map(|i| 0.02 * f64::from(i)).map(|t| (t, at(t))).collect();
+    // The other sign is the same rotation.
+    let first = (0..model.coordinates().len()).find(|&i| model.coordinates()[i].name.ends_with("qw")).unwrap();
+    for (_, posture) in motion.iter_mut().skip(70).step_by(3) {
+        posture.values_mut()[first..first + 4].iter_mut().for_each(|v| *v = -*v);
+    }
+    let moving = differentiate(&model, &motion, Smoothing::None).unwrap();
+    let speed = |t: f64| {
+        let (h, n) = (1e-4, model.rates().len());
+        let (mut on, mut back) = (vec![0.0; n], vec![0.0; n]);
+        at(t).difference(&model, &at(t + h), &mut on);
+        at(t).difference(&model, &at(t - h), &mut back);
+        on.iter().zip(&back).map(|(on, back)| (on - back) / (2.0 * h)).collect::<Vec<f64>>()
+    };
+    let mut largest: f64 = 0.0;
+    for i in (20..181).step_by(7) {
+        let (time, rates) = (moving.motion[i].0, &moving.rates[i]);
+        let (before, after) = (speed(time - 1e-3), speed(time + 1e-3));
+        for (k, expected) in speed(time).into_iter().enumerate() {
+            assert!((rates.speeds[k] - expected).abs() < 1e-6, "{k} at {time} s: {} and {expected}", rates.speeds[k]);
+            let expected = (after[k] - before[k]) / 2e-3;
+            let found = rates.accelerations[k];
+            assert!((found - expected).abs() < 1e-4, "{k} at {time} s: {found} and {expected}");
+            largest = largest.max(found.abs());
+        }
+    }
+    assert!(largest > 2.0);
+    let flips: Vec<(f64, Posture)> = (0..20)
+        .map(|i| {
+            let mut posture = model.default_posture();
+            let turn = UnitQuaternion::from_axis_angle(&V::z_axis(), 3.0 * f64::from(i));
+            posture.values_mut()[first..first + 4].copy_from_slice(&[turn.w, turn.i, turn.j, turn.k]);
+            (0.01 * f64::from(i), posture)
+        })
+        .collect();
+    let refused = differentiate(&model, &flips, Smoothing::OpenSim(3.0)).unwrap_err();
+    assert!(matches!(refused, MotionError::Turn { .. }), "{refused}");
+}
+
+#[test]
+fn motions_that_have_no_accelerations_are_refused_with_their_numbers() {
+    let model = free_body();
+    let motion = |times: &[f64]| times.iter().map(|&time| (time, model.default_posture())).collect::<Vec<_>>();
+    let refused = |times: &[f64], smoothing| differentiate(&model, &motion(times), smoothing).unwrap_err().to_string();
+    let even: Vec<f64> = (0..20).map(|i| 0.1 * f64::from(i)).collect();
+    assert!(refused(&even[..5], Smoothing::None).contains("5 frames; accelerations need at least 6"));
+    assert!(
+        refused(&even, Smoothing::OpenSim(5.0))
+            .contains("a cut-off of 5 Hz: it must be above 0 and below half of the 10")
+    );
+    let mut twice = even.clone();
+    twice[7] = twice[6];
+    assert!(refused(&twice, Smoothing::None).contains("frame 7 is at 0.6"), "{}", refused(&twice, Smoothing::None));
+    twice[7] = twice[6] + 1e-4;
+    assert!(refused(&twice, Smoothing::OpenSim(2.0)).contains("two frames are"));
+    assert!(differentiate(&model, &motion(&even), Smoothing::Filtfilt(2.0)).is_ok());
 }
 
 #[test]

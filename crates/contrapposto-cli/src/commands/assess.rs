@@ -18,8 +18,8 @@ use nalgebra::Vector3;
 use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
-use crate::motion_file::{keep_overlap, loads_of, note_values_out_of_range, read_whole_motion};
-use crate::moving::{Recorded, fast_motion};
+use crate::motion_file::{loads_of, note_values_out_of_range, read_whole_motion};
+use crate::moving::{Recorded, fast_motion, keep_overlap};
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::view::answer::{answered, first_lines};
 use crate::view::figures::figures_of_assessment;
@@ -71,9 +71,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         &motion,
         |time, kinematics, loads| {
             loads.extend_from_slice(&held);
-            if let Some(ground) = &ground {
-                ground.loads(time, model, kinematics, loads);
-            }
+            ground.iter().for_each(|ground| ground.loads(time, model, kinematics, loads));
         },
         &settings,
         |instant| {

@@ -62,7 +62,9 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
         times.push(time.0);
         rows.push(row);
     }
-    let warnings = broken_promises(&layout, [(header.rows, rows.len(), "rows"), (header.columns, width, "columns")]);
+    let warnings = [(header.rows, rows.len(), "rows"), (header.columns, width, "columns")];
+    let warnings =
+        warnings.into_iter().filter_map(|(promised, found, what)| broken(&layout, promised?, found, what)).collect();
     if rows.is_empty() {
         let message = "the table has column names but no rows".to_owned();
         return Err(layout.error(Some(line), message, "nothing follows", "rows of numbers must follow".to_owned()));
@@ -72,17 +74,14 @@ pub fn read_table(name: &str, bytes: &[u8]) -> Result<Table, InputError> {
     Ok(Table { name, in_degrees, columns: names.collect(), warnings, times, rows })
 }
 
-/// A warning for every number of the header that is not the one of the table: what it says and where, what there is, and its name.
-fn broken_promises(layout: &Layout<'_>, promises: [(Option<(usize, &str)>, usize, &str); 2]) -> Vec<String> {
-    let broken = promises.into_iter().filter_map(|(promised, found, what)| {
-        let (promised, place) = promised.filter(|(promised, _)| *promised != found)?;
-        let line = layout.line_number(place).map_or_else(String::new, |line| format!(" (line {line})"));
-        let name = layout.name();
-        Some(format!(
-            "{name}: the header says {promised} {what}{line}, but there are {found}, which are read; was the file cut off?"
-        ))
-    });
-    broken.collect()
+/// A warning about a number of rows or columns (`what`) that the header promises at a place, if the table has another one.
+fn broken(layout: &Layout<'_>, (promised, place): (usize, &str), found: usize, what: &str) -> Option<String> {
+    let line = layout.line_number(place).map_or_else(String::new, |line| format!(" (line {line})"));
+    let name = layout.name();
+    let text = format!(
+        "{name}: the header says {promised} {what}{line}, but there are {found}, which are read; was the file cut off?"
+    );
+    (promised != found).then_some(text)
 }
 
 /// The role of a column.

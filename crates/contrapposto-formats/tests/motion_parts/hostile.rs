@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use contrapposto::kinematics::Kinematics;
 use contrapposto::model::CoordinateKind::Translation;
+use contrapposto_formats::loads::{GroundReaction, external_loads};
 use contrapposto_formats::motion::{Units, postures, read_table, write_sto};
 
 use super::common::hammer;
@@ -64,6 +66,60 @@ fn mutated_bytes_give_a_table_or_a_complaint() {
         true
     });
     assert!(good > 1000 && fitting > 1000, "{good} tables, {fitting} motions");
+}
+
+/// Any bytes for an ExternalLoads file give finite loads or a complaint.
+#[test]
+fn mutated_external_loads_give_finite_loads_or_a_complaint() {
+    let man = man();
+    let kinematics = Kinematics::new(&man);
+    let labels =
+        ["force_v", "force_p", "torque_"].map(|stem| ["x", "y", "z"].map(|axis| format!("ground_{stem}{axis}")));
+    let table = format!("time,{}\n0,1,2,3,4,5,6,7,8,9\n1,9,8,7,6,5,4,3,2,1\n", labels.concat().join(","));
+    let element = |name: &str, text: &str| format!("<{name}>{text}</{name}>");
+    let force = [
+        element("applied_to_body", "calcn_r"),
+        element("force_expressed_in_body", "/bodyset/tibia_r"),
+        element("point_expressed_in_body", "ground"),
+        element("force_identifier", "ground_force_v"),
+        element("point_identifier", "ground_force_p"),
+        element("torque_identifier", "ground_torque_"),
+    ];
+    let base = format!(
+        "<OpenSimDocument Version=\"40000\"><ExternalLoads name=\"x\"><objects><ExternalForce name=\"right\">{}</ExternalForce>\
+         </objects><datafile>forces.csv</datafile></ExternalLoads></OpenSimDocument>",
+        force.concat()
+    );
+    let parts = [
+        "calcn_l",
+        "ground",
+        "/ground",
+        "Unassigned",
+        "ground_",
+        "ground_force_",
+        "<appliesForce>false</appliesForce>",
+        "<isDisabled>true</isDisabled>",
+        "</ExternalForce>",
+        "<ExternalForce>",
+        "<objects>",
+        "<",
+        ">",
+        "&",
+        "é",
+    ];
+    let mut finite = 0;
+    hammer("external loads", 3, 5_000, &[base.as_bytes()], &parts, |bytes| {
+        let Ok(found) = external_loads(bytes) else { return false };
+        let Ok(ground) = GroundReaction::of_external_loads("t.csv", table.as_bytes(), &found, &man) else {
+            return false;
+        };
+        let mut loads = vec![];
+        [-1.0, 0.25, 2.0].iter().for_each(|&time| ground.loads(time, &man, &kinematics, &mut loads));
+        assert!(loads.iter().all(|load| load.check(&man).is_ok()));
+        finite += loads.len();
+        true
+    });
+    assert!(finite > 100, "{finite}");
 }
 
 #[test]

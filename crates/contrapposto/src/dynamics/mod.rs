@@ -13,11 +13,13 @@
 //! of Featherstone 2008, "Rigid Body Dynamics Algorithms", section 5.3). `docs/dynamics.md` derives all of it.
 
 mod acceleration;
+mod error;
 mod inertia;
 mod motion;
 mod sampling;
 
 pub use acceleration::{Acceleration, SpeedError};
+pub use error::MotionError;
 pub use inertia::{Inertia, InertiaError};
-pub use motion::{MotionError, Moving, Rates, differentiate};
+pub use motion::{Moving, Rates, differentiate};
 pub use sampling::{PUBLISHED_CUTOFF, Smoothing};

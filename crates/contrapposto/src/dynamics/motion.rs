@@ -10,72 +10,13 @@
 
 use nalgebra::{Quaternion, Vector3};
 
+use super::error::MotionError;
 use super::sampling::{Sampling, Smoothing};
-use crate::math::SplineError;
 use crate::model::{CoordinateKind, Model};
-use crate::posture::{Part, Posture, PostureError, parts};
+use crate::posture::{Part, Posture, parts};
 
 /// Least length of a smoothed quaternion: below it the rotation turns too far between samples to be known.
-const LEAST_LENGTH: f64 = 0.5;
-
-/// Why speeds and accelerations of a motion are not known.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MotionError {
-    /// Too few postures.
-    #[error("{found} frames; accelerations need at least {needed}")]
-    TooFew {
-        /// How many there are.
-        found: usize,
-        /// How many there must be.
-        needed: usize,
-    },
-    /// Times do not rise.
-    #[error("frame {index} is at {time} s, not after the one before; accelerations need times that rise")]
-    Order {
-        /// Number of the frame, counted from 0.
-        index: usize,
-        /// Its time, s.
-        time: f64,
-    },
-    /// Two frames are much nearer than the others.
-    #[error("two frames are {shortest} s apart, and {average} s on average; a filter needs frames about as far apart")]
-    Uneven {
-        /// Shortest step, s.
-        shortest: f64,
-        /// Average step, s.
-        average: f64,
-    },
-    /// The cut-off is no frequency that the samples have.
-    #[error("a cut-off of {cutoff} Hz: it must be above 0 and below half of the {sampling:.6} frames a second")]
-    Cutoff {
-        /// The cut-off, Hz.
-        cutoff: f64,
-        /// Frames a second.
-        sampling: f64,
-    },
-    /// A rotation turns too far between two frames.
-    #[error(
-        "the rotation that begins with `{coordinate}` turns too far between frames near {time} s to be differentiated"
-    )]
-    Turn {
-        /// First component of its quaternion.
-        coordinate: String,
-        /// Time, s.
-        time: f64,
-    },
-    /// A posture does not fit the model.
-    #[error("frame {index}: {error}")]
-    Posture {
-        /// Number of the frame, counted from 0.
-        index: usize,
-        /// Why.
-        error: PostureError,
-    },
-    /// No spline.
-    #[error(transparent)]
-    Spline(#[from] SplineError),
-}
+const LEAST_QUATERNION: f64 = 0.5;
 
 /// Speeds (rad/s, m/s) and accelerations (rad/s^2, m/s^2) of a posture, one a rate. Entries of dependent coordinates are 0 and do not
 /// count.
@@ -140,21 +81,21 @@ impl Moving {
             let values: Vec<f64> = quaternions.iter().map(|quaternion| quaternion[k]).collect();
             sampling.derivatives(&values)
         });
-        for i in 0..self.motion.len() {
+        for (i, ((time, posture), rates)) in self.motion.iter_mut().zip(&mut self.rates).enumerate() {
             let [p, dp, ddp] = [0, 1, 2]
                 .map(|d| Quaternion::new(columns[0][i][d], columns[1][i][d], columns[2][i][d], columns[3][i][d]));
             let square = p.norm_squared();
-            if square < LEAST_LENGTH * LEAST_LENGTH {
+            if square < LEAST_QUATERNION * LEAST_QUATERNION {
                 let coordinate = model.coordinates()[first].name.clone();
-                return Err(MotionError::Turn { coordinate, time: self.motion[i].0 });
+                return Err(MotionError::Turn { coordinate, time: *time });
             }
             let rotating = |by: &Quaternion<f64>| -> Vector3<f64> { 2.0 / square * (p.conjugate() * by).imag() };
             let omega = rotating(&dp);
             let alpha = rotating(&ddp) - 2.0 * p.dot(&dp) / square * omega;
             let unit = p / square.sqrt();
-            self.motion[i].1.values_mut()[first..first + 4].copy_from_slice(&[unit.w, unit.i, unit.j, unit.k]);
-            self.rates[i].speeds[rate..rate + 3].copy_from_slice(omega.as_slice());
-            self.rates[i].accelerations[rate..rate + 3].copy_from_slice(alpha.as_slice());
+            posture.values_mut()[first..first + 4].copy_from_slice(&[unit.w, unit.i, unit.j, unit.k]);
+            rates.speeds[rate..rate + 3].copy_from_slice(omega.as_slice());
+            rates.accelerations[rate..rate + 3].copy_from_slice(alpha.as_slice());
         }
         Ok(())
     }

@@ -5,7 +5,7 @@
 //! shortest step; a Butterworth filter of order 3 runs forward and backward; and a natural quintic spline through the filtered samples gives
 //! value, speed and acceleration. Without a cut-off the spline passes through the samples themselves.
 
-use super::motion::MotionError;
+use super::error::MotionError;
 use crate::math::{LEAST_POINTS, Lowpass, QuinticBasis, reflected};
 
 /// Cut-off that OpenSim's published inverse dynamics of walking name (gait2392, gait10dof18musc), Hz.
