@@ -7,7 +7,7 @@ use contrapposto::model::CoordinateKind::Translation;
 use contrapposto_formats::loads::{GroundReaction, external_loads};
 use contrapposto_formats::motion::{Units, postures, read_table, write_sto};
 
-use super::common::hammer;
+use super::common::{hammer, hammer_mutants, mutate, next};
 use super::{CSV, STATES, STORAGE, free, man, read, sto};
 
 #[test]
@@ -108,7 +108,12 @@ fn mutated_external_loads_give_finite_loads_or_a_complaint() {
         "é",
     ];
     let mut finite = 0;
-    hammer("external loads", 3, 5_000, &[base.as_bytes()], &parts, |bytes| {
+    let words = ["calcn_r", "/bodyset/tibia_r", "ground_force_v", "ground_force_p", "ground_torque_", "name=\"right\""];
+    let mutant = |i: usize, state: &mut u64| match i % 2 {
+        0 => mutate(base.as_bytes(), &parts, state),
+        _ => base.replacen(words[next(state) % words.len()], parts[next(state) % parts.len()], 1).into_bytes(),
+    };
+    hammer_mutants("external loads", 3, 5_000, mutant, |bytes| {
         let Ok(found) = external_loads(bytes) else { return false };
         let Ok(ground) = GroundReaction::of_external_loads("t.csv", table.as_bytes(), &found, &man) else {
             return false;

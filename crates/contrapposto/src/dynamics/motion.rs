@@ -15,8 +15,8 @@ use super::sampling::{Sampling, Smoothing};
 use crate::model::{CoordinateKind, Model};
 use crate::posture::{Part, Posture, parts};
 
-/// Least length of a smoothed quaternion: below it the rotation turns too far between samples to be known.
-const LEAST_QUATERNION: f64 = 0.5;
+/// Least length of a smoothed quaternion: that of the mean of two quaternions that half a turn separates.
+const LEAST_QUATERNION: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Speeds (rad/s, m/s) and accelerations (rad/s^2, m/s^2) of a posture, one a rate. Entries of dependent coordinates are 0 and do not
 /// count.
