@@ -1,0 +1,193 @@
+//! Attacks the readers with bytes: each function takes any bytes, and panics where a promise is broken.
+//!
+//! The promises: no input ends in a panic; what is read gives finite numbers or an error; a model that a writer takes is read again
+//! with the same torques.
+
+use contrapposto::joint_torques::{JointTorques, Quantities};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Model, adult};
+use contrapposto::muscle::{PathGeometry, PathRule};
+use contrapposto::posture_solver::Engine;
+use contrapposto::simulation::{Run, Scenario, Snapshot, Tables};
+use contrapposto_formats::motion::read_table;
+use contrapposto_formats::write;
+use contrapposto_formats::{minimize_line, overlay, read_model, read_pose, read_relax, read_scenario};
+
+/// Samples of a run that are computed.
+const SAMPLES: usize = 4;
+/// Steps of a posture solver that are taken.
+const STEPS: usize = 6;
+/// Largest difference of external torques of a model that was written and read again, as a share of the greatest, or N m.
+const ALIKE: f64 = 1e-9;
+
+/// A model file: torques of its default posture, its muscles there, and each writer's file read again.
+pub fn model(bytes: &[u8]) {
+    let Some((read, torques)) = torques_of(bytes) else { return };
+    let model = &read;
+    for written in [write::osim(model), write::urdf(model), write::mjcf(model)].into_iter().flatten() {
+        let Some((again, anew)) = torques_of(written.text.as_bytes()) else {
+            panic!("a written file is refused or has no finite torques:\n{}", written.text);
+        };
+        for (coordinate, torque) in model.coordinates().iter().zip(&torques) {
+            let Some(other) = again.coordinate(&coordinate.name) else { continue };
+            let close = (torque - anew[other]).abs() <= ALIKE * torque.abs().max(1.0);
+            assert!(close || written.lost.len() > 1, "{}: {torque} and {}", coordinate.name, anew[other]);
+        }
+    }
+}
+
+/// Reads a model, and computes its external torques and paths in its default posture.
+fn torques_of(bytes: &[u8]) -> Option<(Model, Vec<f64>)> {
+    let (imported, _) = read_model("model.xml", bytes, None, &mut |_| Err("no file".to_owned())).ok()?;
+    let posture = imported.model.default_posture();
+    let mut body = JointTorques::new(&imported.model);
+    body.update(&imported.model, &posture, &[], Quantities::TORQUES).ok()?;
+    let torques = body.external_torque().torques().to_vec();
+    finite("external torque", &torques);
+    let mut kinematics = Kinematics::new(&imported.model);
+    kinematics.update(&imported.model, &posture).ok()?;
+    let paths = &imported.muscles.paths;
+    let mut geometry = PathGeometry::new(&imported.model, paths);
+    for rule in [PathRule::Geodesic, PathRule::OpenSim] {
+        geometry.update(&imported.model, &kinematics, paths, rule);
+        finite("length of a path", geometry.lengths());
+        for muscle in &imported.muscles.muscles {
+            let state = muscle.at_rest(geometry.lengths()[muscle.spec().path], 0.01);
+            finite("force of a muscle", &[state.tendon_force]);
+        }
+    }
+    Some((imported.model, torques))
+}
+
+/// A table of motion.
+pub fn motion(bytes: &[u8]) {
+    let Ok(table) = read_table("motion.mot", bytes) else { return };
+    finite("time", &table.times);
+    for row in &table.rows {
+        assert_eq!(row.len(), table.columns.len());
+        finite("row", row);
+    }
+}
+
+/// A scenario: the first samples of its run, where that has no supports and no tasks. The search for the start of a whole body takes
+/// seconds; random worlds (`tests/worlds.rs`) are its attack.
+pub fn scenario(bytes: &[u8]) {
+    let Ok(scenario) = read_scenario("scenario.toml", bytes, None) else { return };
+    finite("start", scenario.start.values());
+    if scenario.has_supports_or_tasks() {
+        return;
+    }
+    let Ok(run) = Run::new(&scenario) else { return };
+    samples(run);
+}
+
+/// Takes the first samples of a run.
+fn samples(mut run: Run<'_>) {
+    for _ in 0..SAMPLES {
+        let Ok(Some(sample)) = run.next_sample() else { return };
+        finite("posture", sample.posture);
+        finite("external torque", sample.external);
+        finite("passive torque", sample.passive);
+        finite("load", sample.load);
+        assert!(sample.fatigue.iter().flatten().all(|fatigue| (0.0..=1.0).contains(fatigue)));
+        for ((external, passive), active) in sample.external.iter().zip(sample.passive).zip(sample.active) {
+            assert_eq!(*active, -(passive + external), "Eq. 1");
+        }
+    }
+}
+
+/// The scenario of a pose: the first steps of its solver.
+pub fn pose(bytes: &[u8]) {
+    let Ok(mut scenario) = read_pose("pose.toml", bytes, None) else { return };
+    scenario.options.max_steps = scenario.options.max_steps.min(STEPS);
+    let (levels, _) = scenario.levels();
+    let Ok(mut engine) = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options) else { return };
+    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
+    let Ok(pose) = engine.solve(&scenario.start) else { return };
+    finite("posture", pose.posture.values());
+    for level in &pose.levels {
+        finite("error of a level", &[level.length]);
+    }
+}
+
+/// The scenario of `relax`, read only: a search takes seconds.
+pub fn relax(bytes: &[u8]) {
+    if let Ok(scenario) = read_relax("relax.toml", bytes, None) {
+        finite("start", scenario.start.values());
+    }
+}
+
+/// An overlay on the adult's right arm: passive torques over each range stay finite.
+pub fn overlay_on_an_arm(bytes: &[u8]) {
+    let Ok(arm) = adult(&Adult::right_arm()) else { return };
+    let Ok(laid) = overlay("overlay.toml", bytes, arm) else { return };
+    let mut posture = laid.model.default_posture();
+    for (i, coordinate) in laid.model.coordinates().iter().enumerate() {
+        let Some(curve) = &coordinate.passive else { continue };
+        let (least, greatest) = coordinate.range;
+        for part in 0..=8 {
+            posture.values_mut()[i] = least + (greatest - least) * f64::from(part) / 8.0;
+            finite("passive torque", &[curve.torque(i, posture.values())]);
+        }
+    }
+}
+
+/// A formula of a passive torque.
+pub fn expression(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let _ = contrapposto_formats::osim::expression::parse(text);
+}
+
+/// A line of a problem of hybrid minimisation.
+pub fn minimize(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(line) = minimize_line(text, Tables::Total) {
+        let written = serde_json::to_string(&line).expect("a decision is JSON");
+        assert!(!written.contains("null") || !written.contains("NaN"), "{written}");
+    }
+}
+
+/// A snapshot of a run of one joint.
+pub fn snapshot(bytes: &[u8]) {
+    let Ok(snapshot) = serde_json::from_slice::<Snapshot>(bytes) else { return };
+    let scenario: Scenario = read_scenario("scenario.toml", ONE_JOINT.as_bytes(), None).expect("it is in order");
+    if let Ok(run) = Run::resume(&scenario, snapshot) {
+        samples(run);
+    }
+}
+
+/// The scenario whose snapshots are attacked.
+pub const ONE_JOINT: &str = r#"
+format = 1
+[model]
+adult = { sex = "male", stature_m = 1.741, mass_kg = 73, part = "right_arm" }
+[posture]
+arm_flex_r_deg = 90
+elbow_flex_r_deg = 20
+[coordinates]
+free = ["elbow_flex_r"]
+[strategy]
+kind = "active"
+[run]
+duration_s = 100
+step_s = 0.1
+"#;
+
+fn finite(name: &str, values: &[f64]) {
+    assert!(values.iter().all(|value| value.is_finite()), "{name} is not finite: {values:?}");
+}
+
+/// A snapshot of that scenario as JSON: `corpus/snapshot/start.json`.
+pub fn seed_of_snapshot() -> String {
+    let scenario = read_scenario("scenario.toml", ONE_JOINT.as_bytes(), None).expect("it is in order");
+    let run = Run::new(&scenario).expect("it runs");
+    serde_json::to_string(run.snapshot()).expect("a snapshot is JSON")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_seed_of_snapshots_is_that_of_today() {
+        assert_eq!(super::seed_of_snapshot(), include_str!("../corpus/snapshot/start.json").trim());
+    }
+}
