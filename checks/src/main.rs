@@ -81,4 +81,30 @@ mod tests {
         assert!(found == expected, "checks/ignored-tests.txt should be:\n{}", found.join("\n"));
         assert!(LIST.lines().all(|line| parts(line).is_some()), "a reason reads `needs THING: why`");
     }
+
+    /// Names in back quotes that look like those of tests: words joined by underscores, three words or more.
+    fn tests_named_in(line: &str) -> Vec<&str> {
+        let quoted = line.split('`').skip(1).step_by(2);
+        let plain = |name: &&str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        quoted.filter(plain).filter(|name| name.contains('_')).collect()
+    }
+
+    #[test]
+    fn the_page_of_promises_names_tests_that_exist() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let page = std::fs::read_to_string(root.join("docs/reliability.md")).unwrap();
+        let texts: Vec<String> =
+            sources(&root.join("crates")).iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
+        let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| ") && line.matches('|').count() == 5).collect();
+        let promises = &rows[..rows.iter().position(|row| row.starts_with("| Target")).unwrap()];
+        assert!(promises.len() > 15, "{} rows", promises.len());
+        for row in &promises[1..] {
+            let names = tests_named_in(row.split('|').nth(2).unwrap());
+            assert!(!names.is_empty(), "no test holds: {row}");
+            for name in names {
+                let function = format!("fn {name}(");
+                assert!(texts.iter().any(|text| text.contains(&function)), "docs/reliability.md names `{name}`, which is no test");
+            }
+        }
+    }
 }

@@ -1,0 +1,96 @@
+//! Random worlds: bodies on feet or a seat with tasks, loads, obstacles, events and strategies at random, run for some seconds. Every
+//! sample keeps what the program promises, a second run gives the same bits, and so does one that is resumed from a snapshot.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+#[path = "../common/samples.rs"]
+mod samples;
+mod world;
+
+use std::time::Instant;
+
+use contrapposto::contact::Slip;
+use contrapposto::simulation::{Run, Scenario, ScenarioError, Snapshot, StopReason};
+use contrapposto::verdict::Verdict;
+use contrapposto_formats::read_scenario;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg as Random;
+use samples::{Worst, digest};
+
+/// Worlds of the suite; `CONTRAPPOSTO_WORLDS` asks for others.
+const WORLDS: u64 = 10;
+/// A slower step than this, s, is a finding; said, not judged, since it depends on the machine.
+const SLOW: f64 = 1.0;
+
+/// A run to its end: the bits of each sample.
+struct Course {
+    digests: Vec<u64>,
+    worst: Worst,
+    /// The last snapshot: after 900 samples, else that of the start.
+    snapshot: Snapshot,
+    slowest: f64,
+}
+
+fn course(scenario: &Scenario) -> Result<(Course, StopReason), ScenarioError> {
+    let begin = Instant::now();
+    let mut run = Run::new(scenario)?;
+    println!("  start found in {:.2} s", begin.elapsed().as_secs_f64());
+    let (mut digests, mut worst, mut slowest) = (vec![], Worst::default(), 0.0_f64);
+    loop {
+        let begin = Instant::now();
+        let Some(sample) = run.next_sample()? else { break };
+        worst.take(scenario, &sample);
+        digests.push(digest(&sample));
+        slowest = slowest.max(begin.elapsed().as_secs_f64());
+    }
+    let summary = run.summary();
+    let verdict = Verdict::of_run(scenario, &summary);
+    println!("  {}", verdict.sentence);
+    assert!(!verdict.sentence.contains("NaN") && !verdict.sentence.contains("inf "), "{}", verdict.sentence);
+    let (slip, _) = summary.slip.unwrap();
+    assert_eq!(slip.length(), worst.slip, "the greatest slip of the summary is that of the samples");
+    assert!(summary.sliding_since.is_some() || summary.standing.is_some_and(|end| !end.slip.exceeds(Slip::GREATEST)));
+    Ok((Course { digests, worst, snapshot: run.snapshot().clone(), slowest }, summary.reason))
+}
+
+#[test]
+fn random_worlds_keep_the_promises_of_every_sample_and_repeat_to_the_bit() {
+    let environment = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u64>().unwrap());
+    let (count, first) =
+        (environment("CONTRAPPOSTO_WORLDS").unwrap_or(WORLDS), environment("CONTRAPPOSTO_SEED").unwrap_or(1));
+    let (mut held, mut refused, mut slid, mut slow) = (0, 0, 0, 0);
+    for seed in first..first + count {
+        let text = world::random(&mut Random::seed_from_u64(seed));
+        println!("seed {seed}");
+        let scenario = read_scenario("world.toml", text.as_bytes(), None)
+            .unwrap_or_else(|error| panic!("seed {seed}: {:?}\n{text}", miette::Report::new(error)));
+        match course(&scenario) {
+            // A world in which nothing holds the body is refused by name.
+            Err(ScenarioError::CannotStand(_) | ScenarioError::Falls(_)) => refused += 1,
+            Err(other) => panic!("seed {seed}: {other}\n{text}"),
+            Ok((course, reason)) => {
+                held += 1;
+                slid += u64::from(reason == StopReason::Slid);
+                slow += u64::from(course.slowest > SLOW);
+                course.worst.is_held(&format!("seed {seed}, slowest step {:.2} s", course.slowest));
+                repeats(&scenario, &course, seed);
+            }
+        }
+    }
+    println!(
+        "{count} worlds: {held} ran ({slid} of them slid, {slow} had a step over {SLOW} s), {refused} cannot stand"
+    );
+    assert!(held >= count / 2, "the generator makes worlds in which bodies stand");
+}
+
+/// A second run, and one from the snapshot, show the same bits.
+fn repeats(scenario: &Scenario, course: &Course, seed: u64) {
+    for mut run in [Run::new(scenario).unwrap(), Run::resume(scenario, course.snapshot.clone()).unwrap()] {
+        let first = run.snapshot().samples as usize;
+        for (i, expected) in course.digests.iter().enumerate().skip(first) {
+            let sample = run.next_sample().unwrap().unwrap_or_else(|| panic!("seed {seed}: it ends before sample {i}"));
+            assert_eq!(digest(&sample), *expected, "seed {seed}: sample {i} is another one");
+        }
+        assert!(run.next_sample().unwrap().is_none(), "seed {seed}");
+    }
+}
