@@ -95,7 +95,8 @@ mod tests {
         let page = std::fs::read_to_string(root.join("docs/reliability.md")).unwrap();
         let texts: Vec<String> =
             sources(&root.join("crates")).iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
-        let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| ") && line.matches('|').count() == 5).collect();
+        let rows: Vec<&str> =
+            page.lines().filter(|line| line.starts_with("| ") && line.matches('|').count() == 5).collect();
         let promises = &rows[..rows.iter().position(|row| row.starts_with("| Target")).unwrap()];
         assert!(promises.len() > 15, "{} rows", promises.len());
         for row in &promises[1..] {
@@ -103,7 +104,10 @@ mod tests {
             assert!(!names.is_empty(), "no test holds: {row}");
             for name in names {
                 let function = format!("fn {name}(");
-                assert!(texts.iter().any(|text| text.contains(&function)), "docs/reliability.md names `{name}`, which is no test");
+                assert!(
+                    texts.iter().any(|text| text.contains(&function)),
+                    "docs/reliability.md names `{name}`, which is no test"
+                );
             }
         }
     }
