@@ -1,0 +1,40 @@
+//! The answers that README.md shows are those of the program.
+
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::path::Path;
+
+use support::contrapposto;
+
+/// The README with each line break read as a space, and a space that must not break as a plain one.
+fn readme() -> String {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")).unwrap();
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The first lines of `simulate` of a new scenario, changed as the README says.
+fn answer(template: &str, change: (&str, &str)) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let job = folder.path().join("job.toml");
+    assert_eq!(contrapposto(["new", template, "--out", job.to_str().unwrap()]).run().code, 0);
+    let text = std::fs::read_to_string(&job).unwrap();
+    assert!(text.contains(change.0), "{text}");
+    std::fs::write(&job, text.replace(change.0, change.1)).unwrap();
+    let run = contrapposto(["simulate", job.to_str().unwrap(), "--no-report"]).run();
+    run.stdout.lines().map(|line| line.replace('\u{a0}', " ")).collect()
+}
+
+#[test]
+fn answers_of_the_readme_are_those_of_the_program() {
+    let readme = readme();
+    let overhead = answer("overhead", ("mass_kg = 2", "mass_kg = 2"));
+    for line in &overhead[..2] {
+        assert!(readme.contains(&format!("`{line}`")), "README.md does not say: {line}");
+    }
+    let heavy = answer("lift", ("mass_kg = 10", "mass_kg = 45"));
+    let shown = readme.split("`Cannot stand: ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
+    assert!(heavy[0].starts_with(&format!("Cannot stand: {shown}")), "{} and {shown}", heavy[0]);
+    assert!(shown.contains(" m beyond the supports"), "{shown}");
+}
