@@ -141,9 +141,10 @@ pub fn expression(bytes: &[u8]) {
 /// A line of a problem of hybrid minimisation.
 pub fn minimize(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
+    // A torque that is not finite would be written as `null`.
     if let Ok(line) = minimize_line(text, Tables::Total) {
-        let written = serde_json::to_string(&line).expect("a decision is JSON");
-        assert!(!written.contains("null") || !written.contains("NaN"), "{written}");
+        let written = serde_json::to_value(&line).expect("a decision is JSON");
+        assert!(written["active_nm"].is_f64(), "{written}");
     }
 }
 

@@ -21,22 +21,24 @@ pub(crate) use include::confined;
 /// Opens MODEL, with --overlay and --passive. `filled`: unknown passive laws of a file are filled in from the built-in library
 /// where neither --passive nor --overlay is given.
 pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
-    open_with(args, filled, None, SourcedModel::read)
+    Ok(open_with(args, filled, None, SourcedModel::read)?.0)
 }
 
-/// Opens MODEL, what is unknown filled in, and gives its muscles what is asked of them.
+/// Opens MODEL, what is unknown filled in, and gives its muscles what is asked of them; with warnings about these muscles.
 pub(crate) fn open_with_muscles(
     args: &ModelArgs,
     muscles: &MuscleArgs,
-) -> Result<(SourcedModel, Option<JointMuscles>), Fail> {
-    let mut opened = open_with(args, true, Some(muscles), SourcedModel::read)?;
+) -> Result<(SourcedModel, Option<JointMuscles>, Vec<String>), Fail> {
+    let (mut opened, library) = open_with(args, true, Some(muscles), SourcedModel::read)?;
     let muscles = opened.joint_muscles();
-    Ok((opened, muscles))
+    let doubts = library.filter(|_| muscles.is_some()).map_or(vec![], |library| opened.muscle_doubts(&library));
+    doubts.iter().for_each(|doubt| print_note("warning", doubt));
+    Ok((opened, muscles, doubts))
 }
 
 /// Opens MODEL for a command in which mass has no part, or which says that it is missing: a body whose mass comes from a mesh has none.
 pub(crate) fn open_without_mesh_mass(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail> {
-    open_with(args, filled, None, SourcedModel::read_without_mesh_mass)
+    Ok(open_with(args, filled, None, SourcedModel::read_without_mesh_mass)?.0)
 }
 
 /// A function that reads a model file.
@@ -47,12 +49,13 @@ type Read = fn(
     &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<SourcedModel, ModelFileError>;
 
+/// The model, and where muscles are in question the same model without them.
 fn open_with(
     args: &ModelArgs,
     filled: bool,
     muscles: Option<&MuscleArgs>,
     read_file: Read,
-) -> Result<SourcedModel, Fail> {
+) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
     let root = args.root.map(RootChoice::body);
     let mut opened = match args.model.to_str().and_then(adult_size) {
         Some(_) if root.is_some() => {
@@ -71,6 +74,7 @@ fn open_with(
     if let Some(path) = &args.overlay {
         opened = opened.lay_over(&path.display().to_string(), &read(path, MOST_BYTES)?)?;
     }
+    let library = muscles.map(|_| opened.clone());
     if let Some(muscles) = muscles {
         muscles.apply(&mut opened)?;
     }
@@ -83,7 +87,11 @@ fn open_with(
         opened.notes.push(text.to_owned());
     }
     let person = args.person.unwrap_or_default();
-    if fill { opened.fill(&person).map_err(|error| Fail::Refused(format!("--person: {error}"))) } else { Ok(opened) }
+    let filled = |opened: SourcedModel| {
+        let refused = |error| Fail::Refused(format!("--person: {error}"));
+        if fill { opened.fill(&person).map_err(refused) } else { Ok(opened) }
+    };
+    Ok((filled(opened)?, library.map(filled).transpose()?))
 }
 
 fn refused(error: impl std::fmt::Display) -> Fail {

@@ -11,7 +11,7 @@ use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::{FrameArgs, LoadArgs};
 use crate::fail::Fail;
-use crate::input::read;
+use crate::input::{confined, read};
 use crate::output::print_note;
 
 /// Held weights and forces, and ground reactions if there are any.
@@ -64,7 +64,13 @@ fn external(path: &Path, bytes: &[u8], on: &[String], model: &Model) -> Result<G
         return Err(refuse("names the segments of its forces itself; leave out --grf-on".to_owned()));
     }
     let loads = loads::external_loads(bytes).map_err(|error| refuse(error.to_string()))?;
-    let table = path.parent().unwrap_or(Path::new("")).join(&loads.table);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let table = confined(folder, &loads.table).map_err(|_| {
+        refuse(format!(
+            "<datafile> {:?} is not in the file's folder or below; --allow-path DIR allows the files of DIR, too",
+            loads.table
+        ))
+    })?;
     let bytes = read(&table, motion::MOST_TABLE_BYTES as u64)?;
     GroundReaction::of_external_loads(&table.display().to_string(), &bytes, &loads, model).map_err(
         |error| match error {

@@ -181,6 +181,23 @@ fn external(folder: &Path, more: &str) -> String {
 }
 
 #[test]
+fn external_loads_that_name_a_table_outside_their_folder_are_refused_without_its_text_unless_it_is_allowed() {
+    let outside = tempfile::tempdir().unwrap();
+    let table = format!("time,{FORCES}\n0,0,700,0,0.1,0,0.1\n1,0,700,0,0.1,0,0.1\n");
+    let table = write(outside.path(), "forces.csv", &table);
+    let folder = tempfile::tempdir().unwrap();
+    let motion = write(folder.path(), "motion.csv", "time,hip_flexion_r_deg\n0,5\n1,6\n");
+    let text = std::fs::read_to_string(external(folder.path(), "")).unwrap();
+    let loads = write(folder.path(), "away.xml", &text.replace("forces.csv", &table));
+    let torques = |more: &[&str]| run(&[&["torques", "adult", &motion, "--grf", &loads], more].concat());
+    let refused = torques(&[]);
+    assert!(refused.code == 2 && refused.stderr.contains("is not in the file's folder or below"), "{}", refused.stderr);
+    assert!(!refused.stderr.contains("ground_force_vx"), "{}", refused.stderr);
+    let allowed = torques(&["--allow-path", outside.path().to_str().unwrap()]);
+    assert_eq!(allowed.code, 0, "{}", allowed.stderr);
+}
+
+#[test]
 fn external_loads_name_the_table_and_the_segments_of_ground_reactions() {
     let folder = tempfile::tempdir().unwrap();
     let forces =

@@ -264,3 +264,32 @@ fn a_passive_law_and_a_strength_of_an_overlay_are_whole_joints_to_which_no_muscl
         "{told}"
     );
 }
+
+#[test]
+fn muscles_far_weaker_than_people_and_muscles_that_could_not_be_read_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, motion) = elbows(folder.path());
+    let text = std::fs::read_to_string(&file).unwrap();
+    let told = |file: &str, more: &[&str]| run(&[&["torques", file, &motion], more].concat()).stderr;
+    assert!(!told(&file, &[]).contains("far weaker"), "{}", told(&file, &[]));
+    let force = |newtons: u32| format!("<max_isometric_force>{newtons}</max_isometric_force>");
+    let weak = write(folder.path(), "weak.osim", &text.replace(&force(500), &force(50)));
+    let said = "the model's muscles are far weaker than people in the default posture: right elbow ";
+    assert!(told(&weak, &["--quiet"]).contains(&format!("warning: {said}")), "{}", told(&weak, &["--quiet"]));
+    assert!(!told(&weak, &["--muscles", "off"]).contains("far weaker"));
+    let warnings = json(&["assess", &weak, &motion, "--json"])["warnings"].clone();
+    assert!(
+        warnings.as_array().unwrap().iter().any(|warning| warning.as_str().unwrap().starts_with(said)),
+        "{warnings}"
+    );
+    let unread = text.replace("<Thelen2003Muscle name=\"back\">", "<RigidTendonMuscle name=\"back\">");
+    assert_ne!(unread, text);
+    let end = unread.rfind("</Thelen2003Muscle>").unwrap();
+    let unread = format!("{}</RigidTendonMuscle>{}", &unread[..end], &unread[end + "</Thelen2003Muscle>".len()..]);
+    let unread = write(folder.path(), "unread.osim", &unread);
+    assert!(
+        told(&unread, &["--quiet"]).contains("warning: 1 of 3 muscles could not be read"),
+        "{}",
+        told(&unread, &[])
+    );
+}

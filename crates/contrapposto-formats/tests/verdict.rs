@@ -325,6 +325,11 @@ fn slip_is_noticed_from_a_millimetre_or_a_tenth_of_a_degree_and_ends_a_job_from_
         (slip(5.1, 0.0), true, true),
         (slip(0.0, 1.1), true, true),
     ] {
+        assert_eq!(
+            (slip.share_of(Slip::NOTICED) > 1.0, slip.share_of(Slip::GREATEST) > 1.0),
+            (noticed, ends),
+            "{slip:?}"
+        );
         let verdict = Verdict::of_posture(model, &HeldPosture { slip, ..HeldPosture::default() });
         assert_eq!(verdict.slip.is_some(), noticed, "{slip:?}");
         assert_eq!(verdict.kind == VerdictKind::CannotStand, ends, "{slip:?}: {}", verdict.sentence);

@@ -60,7 +60,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     if args.model.model == Path::new("-") && args.motion == Path::new("-") {
         return Err(Fail::Refused("standard input is one file: MODEL or MOTION, not both".to_owned()));
     }
-    let (mut opened, muscles) = open(args)?;
+    let (mut opened, muscles, of_muscles) = open(args)?;
     let Given { motion, held, ground, settings, said, warnings: doubts, folder } = given(args, &mut opened, muscles)?;
     let model = &opened.model;
 
@@ -87,7 +87,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
     let new = warnings(args, &opened, &found, motion.len());
     new.iter().for_each(|warning| print_note("warning", warning));
-    let warnings = [doubts, new].concat();
+    let warnings = [of_muscles, doubts, new].concat();
 
     let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let figures = assessed_frames.as_ref().filter(|_| args.figures).map(|assessed_frames| {
@@ -116,10 +116,10 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     answered(&verdict)
 }
 
-/// The model with its fatigue, and its muscles.
-fn open(args: &AssessArgs) -> Result<(SourcedModel, Option<JointMuscles>), Fail> {
-    let (opened, muscles) = open_with_muscles(&args.model, &args.muscles)?;
-    Ok((opened.with_fatigue(&args.fatigue.choice()?), muscles))
+/// The model with its fatigue, and its muscles with warnings about them.
+fn open(args: &AssessArgs) -> Result<(SourcedModel, Option<JointMuscles>, Vec<String>), Fail> {
+    let (opened, muscles, doubts) = open_with_muscles(&args.model, &args.muscles)?;
+    Ok((opened.with_fatigue(&args.fatigue.choice()?), muscles, doubts))
 }
 
 /// The motion, the loads and the settings of an assessment, checked; notes about them go to standard error.

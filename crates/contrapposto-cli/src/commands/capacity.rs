@@ -76,7 +76,7 @@ fn station(model: &Model, args: &CapacityArgs) -> Result<Station, Fail> {
 
 /// The answer to the posture without a force. That of the run or pose stands where it is not done.
 fn verdict(job: &ComparedPosture, held: &Held) -> Verdict {
-    if job.verdict.kind == VerdictKind::NotReached {
+    if matches!(job.verdict.kind, VerdictKind::NotReached | VerdictKind::CannotStand) {
         return job.verdict.clone();
     }
     let posture = HeldPosture {

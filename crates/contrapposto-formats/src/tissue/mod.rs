@@ -5,6 +5,7 @@
 
 mod fatigue;
 mod fill;
+mod muscle_doubts;
 mod muscles;
 mod origin;
 mod person;

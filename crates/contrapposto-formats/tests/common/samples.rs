@@ -1,6 +1,6 @@
 //! The promises of every sample of a body on supports.
 
-use contrapposto::contact::Support;
+use contrapposto::contact::{Slip, Support};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
@@ -19,7 +19,7 @@ pub(crate) struct Worst {
     pub(crate) force: f64,
     /// Moment left on the root, as a share of weight times stature.
     pub(crate) moment: f64,
-    /// Distance of the supports from their places, m and rad together.
+    /// Greatest share of the slip that a result warns of, distance or angle.
     pub(crate) slip: f64,
     /// Pull of a support, or friction beyond its limit, as a share of weight.
     pub(crate) beyond: f64,
@@ -38,7 +38,7 @@ impl Worst {
             let left = sample.external[model.coordinate(name).unwrap()].abs() / weight;
             if i < 3 { self.force = self.force.max(left) } else { self.moment = self.moment.max(left / STATURE) }
         }
-        self.slip = self.slip.max(standing.slip.length());
+        self.slip = self.slip.max(standing.slip.share_of(Slip::NOTICED));
         for (i, coordinate) in model.coordinates().iter().enumerate() {
             assert_eq!(sample.external[i] + sample.passive[i] + sample.active[i], 0.0);
             assert!((coordinate.range.0..=coordinate.range.1).contains(&sample.posture[i]), "{}", coordinate.name);

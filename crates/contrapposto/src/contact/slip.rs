@@ -22,6 +22,11 @@ impl Slip {
         self.distance.hypot(self.angle)
     }
 
+    /// The greater of the shares that distance and angle have of `bound`: above 1 where it exceeds it.
+    pub fn share_of(self, bound: Self) -> f64 {
+        (self.distance / bound.distance).max(self.angle / bound.angle)
+    }
+
     /// Both together.
     #[must_use]
     pub fn with(self, other: Self) -> Self {

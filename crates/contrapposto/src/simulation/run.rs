@@ -230,9 +230,9 @@ fn take_hardest(hardest: &mut Option<(GroupLoad, f64)>, sample: &Sample) {
 
 /// Takes in the slip of a sample.
 fn take_slip(greatest: &mut Option<(Slip, f64)>, standing: &Standing, time: f64) {
-    let slip = standing.slip;
-    if !standing.contacts.is_empty() && greatest.is_none_or(|(greatest, _)| slip.length() > greatest.length()) {
-        *greatest = Some((slip, time));
+    let share = |slip: Slip| slip.share_of(Slip::NOTICED);
+    if !standing.contacts.is_empty() && greatest.is_none_or(|(greatest, _)| share(standing.slip) > share(greatest)) {
+        *greatest = Some((standing.slip, time));
     }
 }
 
