@@ -18,7 +18,7 @@ use rand_pcg::Pcg64Mcg as Random;
 use samples::{Worst, digest};
 
 /// Worlds of the suite; `CONTRAPPOSTO_WORLDS` asks for others.
-const WORLDS: u64 = 10;
+const WORLDS: u64 = 6;
 /// A slower step than this, s, is a finding; said, not judged, since it depends on the machine.
 const SLOW: f64 = 1.0;
 
