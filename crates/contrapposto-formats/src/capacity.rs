@@ -36,7 +36,7 @@ pub struct CapacityText {
     pub directions: Vec<ForceText>,
     /// Triangles between these directions, by index, seen counterclockwise from outside.
     pub faces: Vec<[usize; 3]>,
-    /// What is assumed, a sentence each.
+    /// The assumptions of the computation, a sentence each.
     pub assumptions: Vec<String>,
     /// Files beside this one.
     pub files: Vec<String>,
@@ -66,7 +66,7 @@ pub struct ForceText {
     pub weaker_n: Option<f64>,
     /// The force of people one above.
     pub stronger_n: Option<f64>,
-    /// What limits the force, the one with the largest share first.
+    /// The limits of the force, the one with the largest share first.
     pub limits: Vec<LimitText>,
     /// Every force `f` that can be exerted has `normal . f <= force_n`.
     pub normal: [f64; 3],

@@ -8,13 +8,13 @@ use crate::fail::Fail;
 /// The use of the muscles of a model file.
 #[derive(Debug, clap::Args)]
 pub(crate) struct MuscleArgs {
-    /// What the muscles of MODEL give, in each posture, to the joints that they cross, in place of the built-in data; without it `both`
-    /// for an OpenSim file with muscles, else `off`.
+    /// The muscles of MODEL give strength, passive torque, both or nothing to the joints that they cross, in each posture and in place
+    /// of the built-in data; without it `both` for an OpenSim file with muscles, else `off`.
     #[arg(long, value_enum, value_name = "USE")]
     pub(crate) muscles: Option<MuscleChoice>,
 }
 
-/// What muscles give.
+/// The quantities that muscles give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MuscleChoice {
     /// Nothing.

@@ -132,7 +132,7 @@ pub(crate) fn range(ends: [f64; 2]) -> String {
     if least == greatest { least } else { format!("{least} to {greatest}") }
 }
 
-/// What is assumed, a sentence each.
+/// The assumptions of the computation, a sentence each.
 pub(crate) fn assumptions(hold: Option<f64>, held_by_hand: bool, weaker_can_hold: bool) -> Vec<String> {
     let mut all = vec![
         "The force is the one that the body exerts, besides the loads of the scenario; posture and places of the supports do not change."

@@ -57,8 +57,8 @@ pub fn arm(number: u64) -> Body {
     Body { station: palm(&model), model, posture, supports: vec![] }
 }
 
-/// What a program for robots needs of an arm: the torque of every joint per newton that the hand exerts along each ground axis (a row a
-/// joint), least and greatest active torque, and active torque without a force.
+/// The input of a program for robots about an arm: the torque of every joint per newton that the hand exerts along each ground
+/// axis (a row a joint), least and greatest active torque, and active torque without a force.
 pub fn exerted(body: &Body) -> (Vec<[f64; 3]>, Vec<f64>, Vec<f64>, Vec<f64>) {
     let mut torques = JointTorques::new(&body.model);
     let mut active = |force: Vector3<f64>| {
