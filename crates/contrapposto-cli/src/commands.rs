@@ -14,3 +14,4 @@ pub(crate) mod pose;
 pub(crate) mod relax;
 pub(crate) mod simulate;
 pub(crate) mod torques;
+pub(crate) mod trials;

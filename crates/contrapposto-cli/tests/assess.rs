@@ -35,7 +35,7 @@ fn parameters_by_muscle_group_reach_the_adult_and_imported_models() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/models/adult-female.osim");
     let file = file.to_str().unwrap();
     let held = |model: &str, more: &[&str]| {
-        json(&[&["assess", model, &hold, "--load", "hand_r 8kg", "--json"], more].concat())
+        json(&[&["assess", model, &hold, "--fixed-root", "--load", "hand_r 8kg", "--json"], more].concat())
     };
     let time = |f: f64, r: f64, load: f64| -(1.0 - r * (1.0 - load) / (f * load)).ln() / r;
     let by_group = ["--fatigue", "muscle_group"];
@@ -67,7 +67,7 @@ fn a_constant_posture_fails_at_the_endurance_time() {
     const END: f64 = 1000.0;
     let folder = tempfile::tempdir().unwrap();
     let hold = write(folder.path(), "hold.csv", &format!("time,elbow_flex_r_deg\n0,90\n{END},90\n"));
-    let report = json(&["assess", "adult", &hold, "--load", "hand_r 3kg", "--json"]);
+    let report = json(&["assess", "adult", &hold, "--fixed-root", "--load", "hand_r 3kg", "--json"]);
     let model = adult(&Adult::default()).unwrap();
     let mut failed = 0;
     for found in report["groups"].as_array().unwrap() {
@@ -102,7 +102,7 @@ fn a_constant_posture_fails_at_the_endurance_time() {
 fn relief_is_proposed_at_the_peaks() {
     let folder = tempfile::tempdir().unwrap();
     let lower = write(folder.path(), "lower.csv", "time,elbow_flex_r_deg\n0,90\n60,90\n120,20\n");
-    let report = json(&["assess", "adult", &lower, "--load", "hand_r 3kg", "--json"]);
+    let report = json(&["assess", "adult", &lower, "--fixed-root", "--load", "hand_r 3kg", "--json"]);
     let elbow = group(&report, "elbow_flex_r", "positive");
     assert_eq!(elbow["peak_load"]["at_s"], 0.0);
     let proposals = elbow["proposals"].as_array().unwrap();
@@ -115,7 +115,7 @@ fn relief_is_proposed_at_the_peaks() {
         assert!(proposal["sentence"].as_str().unwrap().starts_with("case "), "{proposal}");
     }
     assert!((proposals[0]["angle_deg"].as_f64().unwrap() - 90.0).abs() < 1e-9);
-    let answer = run(&["assess", "adult", &lower, "--load", "hand_r 3kg"]);
+    let answer = run(&["assess", "adult", &lower, "--fixed-root", "--load", "hand_r 3kg"]);
     assert!(
         answer.stdout.contains("muscle group") && answer.stdout.contains("relief, if that joint alone moved:"),
         "{}",
@@ -224,7 +224,8 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     let out = folder.path().join("out");
     let target = out.to_str().unwrap();
     let answer = run(&["assess", "adult", &motion, "--load", "hand_r 3kg", "--json", "--out", target]);
-    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    // Nothing carries it.
+    assert_eq!(answer.code, 1, "{}", answer.stderr);
     assert!(answer.stderr.contains("warning: nothing holds the body up"), "{}", answer.stderr);
     let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
     assert_eq!(answer.stdout, read("assess.json"));
@@ -253,12 +254,43 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     let [load, tired] = [&shown["load"], &shown["groups"][0]["fatigue"]].map(|values| column(values, 2));
     assert!((load[0] - elbow["peak_load"]["value"].as_f64().unwrap()).abs() < 6e-4, "{load:?}");
     assert!((tired[1] - elbow["fatigue_at_end"].as_f64().unwrap()).abs() < 6e-4, "{tired:?}");
-    assert!(page["levels"].is_null() && page["reasons"][0].as_str().unwrap().starts_with("Nothing holds the body up"));
+    let reason = |i: usize| page["reasons"][i].as_str().unwrap();
+    assert!(page["levels"].is_null() && reason(1).starts_with("Nothing holds the body up"), "{}", reason(1));
+    assert!(reason(0).starts_with("To say who carries it, give --support SEG,SEG or --grf FILE.mot;"), "{}", reason(0));
     // What would relieve the elbow is told, with the angle of assess.json.
     let goal = elbow["proposals"][0]["goal_deg"].as_f64().unwrap();
     let told = page["list"]["entries"].as_array().unwrap().iter().map(|entry| entry["text"].as_str().unwrap());
     let told: Vec<&str> = told.filter(|text| text.starts_with("Right elbow flexion: greatest load")).collect();
     assert!(told.len() == 1 && told[0].contains(&format!("to {goal:.1}°")), "{told:?} {goal}");
+}
+
+/// A whole adult that nothing carries falls, whatever its muscles can hold; with its root held only they are judged.
+#[test]
+fn a_body_that_nothing_carries_cannot_stand_unless_its_root_is_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n5,90\n");
+    let answer = |more: &[&str]| run(&[&["assess", "adult", &motion, "--json"], more].concat());
+    let verdict = |more: &[&str]| serde_json::from_str::<Value>(&answer(more).stdout).unwrap()["verdict"].clone();
+    let weight = adult(&Adult::default()).unwrap().mass() * 9.80665;
+    let falls = verdict(&[]);
+    assert_eq!((answer(&[]).code, &falls["kind"]), (1, &serde_json::json!("cannot_stand")));
+    let missing: f64 = falls["sentence"]
+        .as_str()
+        .unwrap()
+        .split(" N and ")
+        .next()
+        .unwrap()
+        .rsplit(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((missing - weight).abs() < 0.01 * weight, "{falls}: {weight} N");
+    for more in [&["--fixed-root"][..], &["--support", "calcn_r,calcn_l"]] {
+        let stands = verdict(more);
+        assert_eq!((answer(more).code, &stands["kind"]), (0, &serde_json::json!("holds")), "{stands}");
+    }
+    assert!(!answer(&["--fixed-root"]).stderr.contains("nothing holds"));
 }
 
 #[test]
@@ -329,7 +361,7 @@ fn the_page_of_a_failure_between_two_postures_names_its_moment_and_opens_with_th
     let folder = tempfile::tempdir().unwrap();
     let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n600,90\n");
     let out = folder.path().join("out");
-    let load = ["--load", "hand_r 8kg", "--json", "--out", out.to_str().unwrap()];
+    let load = ["--fixed-root", "--load", "hand_r 8kg", "--json", "--out", out.to_str().unwrap()];
     let found = json(&[&["assess", "adult", &motion][..], &load].concat());
     let first = &found["groups"][0];
     let fails = first["exhausted_at_s"].as_f64().unwrap();
@@ -353,7 +385,7 @@ fn the_page_of_a_motion_that_starts_late_opens_at_its_failure() {
     let rows: String = (0..13).map(|i| format!("{},90\n", 1000 + 50 * i)).collect();
     let motion = write(folder.path(), "late.csv", &format!("time,elbow_flex_r_deg\n{rows}"));
     let out = folder.path().join("out");
-    let load = ["--load", "hand_r 8kg", "--json", "--out", out.to_str().unwrap()];
+    let load = ["--fixed-root", "--load", "hand_r 8kg", "--json", "--out", out.to_str().unwrap()];
     let found = json(&[&["assess", "adult", &motion][..], &load].concat());
     let fails = found["groups"][0]["exhausted_at_s"].as_f64().unwrap();
     assert!(fails > 1050.0 && fails < 1550.0, "{fails}");

@@ -24,7 +24,7 @@ fn group<'a>(report: &'a Value, coordinate: &str, side: &str) -> &'a Value {
 fn assess_of_a_robot_uses_its_effort_limits_and_no_motor_tires() {
     let folder = tempfile::tempdir().unwrap();
     let held = write(folder.path(), "held.csv", "time,left_hip,left_ankle\n0,0,1\n36000,0,1\n");
-    let report = json(&["assess", &biped(), &held, "--json", "--radians"]);
+    let report = json(&["assess", &biped(), &held, "--fixed-root", "--json", "--radians"]);
     let ankle = group(&report, "left_ankle", "positive");
     let other = group(&report, "left_ankle", "negative");
     let load = |group: &Value| group["peak_load"]["value"].as_f64().unwrap();

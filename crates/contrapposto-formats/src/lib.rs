@@ -49,4 +49,4 @@ pub use scenario::{
 pub use summary::{CoordinateText, GroupText, SlipText, SummaryText, iterations};
 pub use thing::Thing;
 pub use trajectory_csv::{TableRow, csv_header, csv_row};
-pub use verdict::{MissedText, SuggestionText, VerdictText};
+pub use verdict::{AdviceText, MissedText, SuggestionText, VerdictText};

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture_solver::{LevelError, Reason, RowError, SolvedPosture};
+use contrapposto::suggestions::Advice;
 use contrapposto::verdict::Verdict;
 use serde::Serialize;
 
-use crate::VerdictText;
 use crate::scenario::PoseScenario;
+use crate::{AdviceText, VerdictText};
 
 /// The whole file.
 #[derive(Clone, Debug, Serialize)]
@@ -19,6 +20,9 @@ pub struct PoseText {
     pub model: String,
     /// The answer.
     pub verdict: VerdictText,
+    /// Changes of the job that were tried.
+    #[serde(flatten)]
+    pub advice: AdviceText,
     /// `reached`: every level is; `closest`: nothing moves any more, and every level is as near as the levels above allow;
     /// `steps`: the largest number of steps was made.
     pub reason: &'static str,
@@ -54,8 +58,13 @@ pub struct PoseLevelText {
 }
 
 impl PoseText {
-    /// From a solved pose and the verdict on it. `files`: names of the files written beside it.
-    pub fn new(scenario: &PoseScenario, pose: &SolvedPosture, verdict: &Verdict, files: Vec<String>) -> Self {
+    /// From a solved pose, the verdict on it and the changes that were tried. `files`: names of the files written beside it.
+    pub fn new(
+        scenario: &PoseScenario,
+        pose: &SolvedPosture,
+        (verdict, advice): (&Verdict, &Advice),
+        files: Vec<String>,
+    ) -> Self {
         let model = &scenario.model;
         let mut levels = vec![];
         for (k, (goal, reached)) in scenario.goals.iter().zip(&pose.levels).enumerate() {
@@ -82,6 +91,7 @@ impl PoseText {
             title: scenario.title.clone(),
             model: model.name().to_owned(),
             verdict: VerdictText::new(model, verdict),
+            advice: advice.into(),
             reason: match pose.reason {
                 Reason::Reached => "reached",
                 Reason::Converged => "closest",

@@ -6,12 +6,12 @@ use contrapposto::contact::{Slip, Support};
 use contrapposto::hybrid::Case;
 use contrapposto::model::{Coordinate, CoordinateKind, Side};
 use contrapposto::simulation::{Contact, CoordinateSummary, FootStep, Scenario, Standing, StopReason, Summary};
-use contrapposto::suggestions::Suggestion;
+use contrapposto::suggestions::Advice;
 use contrapposto::verdict::Verdict;
 use serde::Serialize;
 
 use crate::tissue::FatigueParametersText;
-use crate::{SuggestionText, VerdictText};
+use crate::{AdviceText, VerdictText};
 
 /// The whole file.
 #[derive(Clone, Debug, Serialize)]
@@ -22,9 +22,9 @@ pub struct SummaryText {
     pub model: String,
     /// The answer.
     pub verdict: VerdictText,
-    /// Changes of the job that were tried and help, the one that helps most first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub suggestions: Vec<SuggestionText>,
+    /// Changes of the job that were tried.
+    #[serde(flatten)]
+    pub advice: AdviceText,
     /// `duration`, `settled`, `interrupted`, `fell` or `slid`.
     pub stopped: &'static str,
     /// The event that threw the body off balance, if one did.
@@ -203,14 +203,8 @@ pub struct GroupText {
 }
 
 impl SummaryText {
-    /// From a finished run, the verdict on it and the changes that help. `files`: names of the files written beside it.
-    pub fn new(
-        scenario: &Scenario,
-        summary: &Summary,
-        verdict: &Verdict,
-        suggestions: &[Suggestion],
-        files: Vec<String>,
-    ) -> Self {
+    /// From a finished run, the verdict on it and the changes that were tried. `files`: names of the files written beside it.
+    pub fn new(scenario: &Scenario, summary: &Summary, verdict: &Verdict, advice: &Advice, files: Vec<String>) -> Self {
         let model = &scenario.model;
         let names = model.coordinates().iter().map(|c| c.name.clone());
         let coordinates = model.coordinates().iter().zip(&summary.coordinates).zip(&scenario.free);
@@ -226,7 +220,7 @@ impl SummaryText {
             title: scenario.title.clone(),
             model: model.name().to_owned(),
             verdict: VerdictText::new(model, verdict),
-            suggestions: suggestions.iter().map(SuggestionText::from).collect(),
+            advice: advice.into(),
             failed_first: failed.min_by(|a, b| a.at_s.total_cmp(&b.at_s)),
             stopped: summary.reason.word(),
             fell: summary.fall.map(|fall| FallText {

@@ -2,7 +2,7 @@
 
 use contrapposto::joint_torques::Hazard;
 use contrapposto::model::Model;
-use contrapposto::suggestions::Suggestion;
+use contrapposto::suggestions::{Advice, Suggestion};
 use contrapposto::tasks::Unit;
 use contrapposto::verdict::{Missed, Verdict};
 use serde::Serialize;
@@ -31,6 +31,9 @@ pub struct VerdictText {
     pub fails_weaker: Option<String>,
     /// Coordinates that ligaments carry at an angle where that is a hazard.
     pub hazards: Vec<HazardText>,
+    /// Hazards of a run that were over at its end, each at the moment when ligaments carried most.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hazards_passed: Vec<PassedHazardText>,
     /// The same in one sentence.
     pub sentence: String,
     /// Targets that are missed, the most important first.
@@ -59,6 +62,18 @@ impl HazardText {
             sentence: format!("ligaments hold {}; {}", hazard.in_words(model), hazard.row.finding),
         }
     }
+}
+
+/// A hazard of a run that was over at its end.
+#[derive(Clone, Debug, Serialize)]
+pub struct PassedHazardText {
+    /// The hazard at the moment when ligaments carried most.
+    #[serde(flatten)]
+    pub hazard: HazardText,
+    /// That moment, s.
+    pub at_s: f64,
+    /// How long there was a hazard in all, s.
+    pub seconds: f64,
 }
 
 /// A muscle group with its load.
@@ -109,6 +124,26 @@ impl From<&Suggestion> for SuggestionText {
     }
 }
 
+/// The changes of a job that were tried.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct AdviceText {
+    /// Those that help, the one that helps most first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub suggestions: Vec<SuggestionText>,
+    /// Those that were not tried because the budget of solver steps was used up, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_tried: Vec<String>,
+}
+
+impl From<&Advice> for AdviceText {
+    fn from(advice: &Advice) -> Self {
+        Self {
+            suggestions: advice.helping.iter().map(SuggestionText::from).collect(),
+            not_tried: advice.not_tried.clone(),
+        }
+    }
+}
+
 /// A target that is missed.
 #[derive(Clone, Debug, Serialize)]
 pub struct MissedText {
@@ -118,6 +153,12 @@ pub struct MissedText {
     pub distance: f64,
     /// `m`, `rad`, or `m and rad` taken together.
     pub unit: &'static str,
+    /// Of a single point: where it gets, ground, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest_m: Option<[f64; 3]>,
+    /// From there to the target, ground, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_target_m: Option<[f64; 3]>,
 }
 
 impl VerdictText {
@@ -135,6 +176,15 @@ impl VerdictText {
             tired: verdict.tired.map(|tired| TiredText { who: tired.who.name(model), fatigue: tired.fatigue }),
             fails_weaker: verdict.fails_weaker.map(|who| who.name(model)),
             hazards: verdict.hazards.iter().map(|hazard| HazardText::new(model, hazard)).collect(),
+            hazards_passed: verdict
+                .passed
+                .iter()
+                .map(|passed| PassedHazardText {
+                    hazard: HazardText::new(model, &passed.hazard),
+                    at_s: passed.time,
+                    seconds: passed.seconds,
+                })
+                .collect(),
             sentence: verdict.sentence.clone(),
             missed: verdict.missed.iter().map(MissedText::from).collect(),
         }
@@ -144,6 +194,12 @@ impl VerdictText {
 impl From<&Missed> for MissedText {
     fn from(missed: &Missed) -> Self {
         let unit = missed.unit.map_or("m and rad", Unit::symbol);
-        Self { task: missed.task.clone(), distance: missed.distance, unit }
+        Self {
+            task: missed.task.clone(),
+            distance: missed.distance,
+            unit,
+            nearest_m: missed.nearest.map(|nearest| nearest.at.into()),
+            to_target_m: missed.nearest.map(|nearest| nearest.to_target.into()),
+        }
     }
 }

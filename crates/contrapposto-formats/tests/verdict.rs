@@ -216,6 +216,13 @@ fn a_target_195_metres_up_is_not_reached_by_its_distance_from_the_hand() {
     let away = (kinematics.station(&scenario.model, hand, Vector3::new(0.0, -0.07, 0.0)) - target).norm();
     assert!((verdict.missed[0].distance - away).abs() < 0.02 * away, "{} and {away}", verdict.missed[0].distance);
     assert!(verdict.sentence.starts_with("Not reached: point right hand is missed by 19"), "{}", verdict.sentence);
+    // Where the hand gets, and what is left from there.
+    let at = kinematics.station(&scenario.model, hand, Vector3::new(0.0, -0.07, 0.0));
+    let nearest = verdict.missed[0].nearest.unwrap();
+    assert!((nearest.at - at).norm() < 1e-9 && (nearest.to_target - (target - at)).norm() < 1e-9, "{nearest:?}");
+    let words = format!("It gets to {:.2}, {:.2}, {:.2} m", at.x, at.y, at.z).replace('-', "\u{2212}");
+    let end = format!("from there the target lies {:.2} m higher.", target.y - at.y);
+    assert!(verdict.sentence.contains(&words) && verdict.sentence.ends_with(&end), "{}", verdict.sentence);
 }
 
 #[test]
@@ -387,4 +394,54 @@ fn a_lumbar_spine_that_hangs_on_its_ligaments_holds_but_is_named_with_the_torque
 fn a_lumbar_spine_bent_within_three_quarters_of_its_range_is_in_no_hazard() {
     let (_, verdict, _) = run(&bent(-40.0));
     assert!(verdict.hazards.is_empty() && !verdict.sentence.contains("ligaments"), "{}", verdict.sentence);
+}
+
+/// A man bent as above, whose chest a force pulls up from some time on, by more than what is above the lumbar spine weighs.
+#[test]
+fn a_hazard_that_an_event_ends_is_told_with_its_seconds_and_not_as_one_of_the_end() {
+    let text = |event: f64| {
+        format!(
+            "format = 1\n[posture]\npelvis_ty_m = 0.95\nlumbar_extension_deg = -60\n[coordinates]\nfree = []\n\
+             [strategy]\nkind = \"active\"\n[[event]]\nat_s = {event}\n[[event.load]]\nsegment = \"torso\"\n\
+             force_n = [0, 900, 0]\nfixed_in = \"world\"\n[run]\nduration_s = 20\nstep_s = 0.1\n"
+        )
+    };
+    let judged = |event: f64| run(&read_scenario("pulled.toml", text(event).as_bytes(), None).unwrap()).1;
+    let verdict = judged(12.0);
+    assert!(verdict.hazards.is_empty() && !verdict.has_reserve(), "{}", verdict.sentence);
+    let [passed] = verdict.passed.as_slice() else { panic!("{:?}", verdict.passed) };
+    assert!((passed.seconds - 12.0).abs() < 0.15 && passed.time < 12.0, "{passed:?}");
+    let (_, held, _) = run(&bent(-60.0));
+    // Torque and share are those of the same posture without the event.
+    assert_eq!((held.hazards.len(), held.hazards[0].external), (1, passed.hazard.external));
+    assert!(
+        verdict.sentence.contains("ligaments held for 12\u{a0}s lumbar extension at \u{2212}60.0°"),
+        "{}",
+        verdict.sentence
+    );
+    // One that lasts less than 5 s is a motion.
+    assert!(judged(3.0).passed.is_empty());
+}
+
+/// The hand of a standing man asked to two heights, the first of them above relief.
+fn two_heights(second_above_relief: bool) -> Scenario {
+    let task = |height: f64, above: bool| {
+        format!(
+            "[[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [0.4, {height}, 0.2]\nabove_relief = {above}\n"
+        )
+    };
+    standing(&(task(1.2, true) + &task(0.8, second_above_relief)))
+}
+
+#[test]
+fn of_two_heights_of_one_hand_that_are_both_demanded_the_second_is_not_reached_by_their_distance() {
+    let (_, verdict, _) = run(&two_heights(true));
+    assert_eq!(verdict.kind, VerdictKind::NotReached, "{}", verdict.sentence);
+    assert!((verdict.missed[0].distance - 0.4).abs() < 1e-3 && verdict.missed[0].contradicts, "{:?}", verdict.missed);
+    let words =
+        "Not reached: point right hand is missed by 40.0 cm; a more important target of the same part is elsewhere.";
+    assert_eq!(verdict.sentence, words);
+    let (_, verdict, _) = run(&two_heights(false));
+    assert!(verdict.kind.is_done(), "{}", verdict.sentence);
+    assert!(!verdict.missed[0].decides && (verdict.missed[0].distance - 0.4).abs() < 1e-3, "{:?}", verdict.missed);
 }

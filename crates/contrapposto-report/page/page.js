@@ -109,6 +109,7 @@ function hideUnknown() {
   const loads = report.loads.map((load) => load.label);
   find("loads").textContent = loads.length && loads.length <= MOST_LOADS ? `: ${loads.join(", ")}` : "";
   document.documentElement.toggleAttribute("data-still", !MOVES);
+  document.documentElement.toggleAttribute("data-bodiless", !report.segments.length);
   if (!TIRES) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
   const postureKeys = SEVERAL ? "Arrow keys go from posture to posture. " : "";
   if (TOUCHED) find("handling").textContent = "One finger turns, two magnify, a tap on a limb chooses its joint.";

@@ -9,7 +9,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, Side, adult};
 use contrapposto::posture::Posture;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
-use contrapposto::verdict::Verdict;
+use contrapposto::verdict::{Verdict, VerdictKind};
 use nalgebra::Vector3;
 
 fn body() -> Model {
@@ -211,4 +211,34 @@ fn a_motion_that_swings_the_trunk_twice_a_second_is_said_to_be_judged_at_rest() 
     let words = format!("judged at rest; the motion is fast in {:.0}\u{a0}% of its frames.", 100.0 * found.fast_share);
     assert!(verdict.sentence.ends_with(&words), "{}", verdict.sentence);
     assert!(!verdict.sentence.contains("Held on like this"), "{}", verdict.sentence);
+}
+
+/// Two minutes of the default posture under a force that pulls the pelvis up with a share of the body's weight.
+fn pulled_up(model: &Model, share: f64, root_held: bool) -> Verdict {
+    let weight = model.mass() * model.gravity().norm();
+    let force = LoadKind::Force(-share * model.gravity().normalize() * weight, FixedIn::World);
+    let pelvis = model.segment("pelvis").unwrap();
+    let load = Load { segment: pelvis, point: model.segments()[pelvis].center_of_mass, kind: force };
+    let motion = [(3.0, model.default_posture()), (123.0, model.default_posture())];
+    let loads = |_: f64, _: &Kinematics, loads: &mut Vec<Load>| loads.extend((share > 0.0).then_some(load));
+    let settings = AssessSettings { root_held, ..AssessSettings::default() };
+    let found = assess(model, &motion, loads, &settings, |_| {}).unwrap();
+    Verdict::of_motion(model, &found, 120.0)
+}
+
+#[test]
+fn a_body_that_nothing_carries_lacks_its_weight_and_one_that_forces_nearly_carry_is_judged_by_its_muscles() {
+    let model = body();
+    let weight = model.mass() * model.gravity().norm();
+    let falls = pulled_up(&model, 0.0, false);
+    assert_eq!(falls.kind, VerdictKind::CannotStand, "{}", falls.sentence);
+    assert!(falls.sentence.contains(&format!("{weight:.3} N and ")), "{weight} N: {}", falls.sentence);
+    assert!(falls.sentence.contains("its root is free to fall"), "{}", falls.sentence);
+    let lacks = pulled_up(&model, 0.4, false);
+    assert_eq!(lacks.kind, VerdictKind::CannotStand, "{}", lacks.sentence);
+    assert!(lacks.sentence.contains(&format!("{:.3} N and ", 0.6 * weight)), "{}", lacks.sentence);
+    for (share, root_held) in [(0.6, false), (0.9, false), (1.0, false), (0.0, true), (0.4, true)] {
+        let nearly = pulled_up(&model, share, root_held);
+        assert!(nearly.kind.is_done(), "{share}: {}", nearly.sentence);
+    }
 }

@@ -185,6 +185,9 @@ pub(crate) struct AssessArgs {
     /// Segments that carry the body in every frame; their forces are computed for the least effort of the muscles.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", conflicts_with = "grf")]
     pub(crate) support: Vec<String>,
+    /// Nothing carries the body, and its root is held as if by hand: only the muscles are judged.
+    #[arg(long, conflicts_with_all = ["grf", "support"])]
+    pub(crate) fixed_root: bool,
     /// Where a supporting segment touches, corners in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
     #[arg(long, value_name = "PATCH", requires = "support")]
     pub(crate) patch: Vec<String>,
@@ -201,6 +204,8 @@ pub(crate) struct AssessArgs {
     /// Print assess.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) suggest: super::SuggestArgs,
 }
 
 /// Loads on a body in given postures, and the unit of the postures.

@@ -33,9 +33,19 @@ pub(crate) struct SimulateArgs {
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Do not try changes of a job that cannot be done to its end. Each change is a run of its own, until a muscle group fails.
+    #[command(flatten)]
+    pub(crate) suggest: SuggestArgs,
+}
+
+/// Changes of the job that are tried.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub(crate) struct SuggestArgs {
+    /// Do not try changes of a job that does not hold with reserve. Each is a job of its own.
     #[arg(long)]
     pub(crate) no_suggest: bool,
+    /// Begin no further trial of a change after so many solver steps; without it twice those of the job itself, 20,000 at least.
+    #[arg(long, value_name = "N", conflicts_with = "no_suggest")]
+    pub(crate) suggest_steps: Option<usize>,
 }
 
 #[derive(Debug, Parser)]
@@ -105,6 +115,8 @@ pub(crate) struct PoseArgs {
     /// Print pose.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) suggest: SuggestArgs,
 }
 
 #[derive(Debug, Parser)]
@@ -131,6 +143,8 @@ pub(crate) struct RelaxArgs {
     /// Print relax.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) suggest: SuggestArgs,
 }
 
 #[derive(Debug, Parser)]

@@ -3,25 +3,26 @@
 use std::path::Path;
 
 use contrapposto::assessment::assess as assessed;
-use contrapposto::assessment::{AssessSettings, Assessment, GroupAssessment, Instant, PeakTorques};
+use contrapposto::assessment::{AssessSettings, Assessment, FAST_SHARE, GroupAssessment, Instant, PeakTorques};
 use contrapposto::contact::Support;
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
+use contrapposto::suggestions::{Advice, Change, Job, Trial, Worked, changes, with_breaks};
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use nalgebra::Vector3;
 
-use crate::args::AssessArgs;
+use crate::args::{AssessArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
 use crate::motion_file::{loads_of, note_values_out_of_range, read_whole_motion};
 use crate::moving::{Recorded, fast_motion, keep_overlap};
 use crate::output::{ResultSet, json_text, print, print_note};
-use crate::view::answer::{answered, first_lines};
+use crate::view::answer::{Answer, answered};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
 use crate::view::stage::Stage;
@@ -31,6 +32,8 @@ use crate::view::text::torques::{Columns, header, row};
 use crate::view::torque_rows::{Frame, Order};
 
 const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
+/// The arguments that say what carries a body.
+const WHAT_CARRIES: &str = "give --support SEG,SEG or --grf FILE.mot; --fixed-root judges the muscles alone";
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
 /// Least residual, as a share of the body's weight, that gives a warning.
@@ -98,13 +101,20 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let figures = figures.transpose()?.unwrap_or_default();
     let span = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
     let verdict = Verdict::of_motion(model, &found, span);
+    let advice = advice(
+        &Motion { model, motion: &motion, held: &held, settings: &settings, ground: ground.is_some() },
+        &found,
+        &verdict,
+        args.suggest,
+    );
+    let answer = Answer { verdict, advice };
     let page = assessed_frames.map(|assessed_frames| {
         let manner = said.as_deref();
-        report_of_assessment(&title, &assessed_frames, (&found, manner), &verdict, &settings.supports, &held, &warnings)
+        report_of_assessment(&title, &assessed_frames, (&found, manner), &answer, &settings.supports, &held, &warnings)
     });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = AssessText::new(&opened, &args.motion, &tables.times, &found, &verdict, warnings, files);
+    let text = AssessText::new(&opened, &args.motion, &tables.times, &found, &answer, warnings, files);
     let json = json_text("assess.json", &text)?;
     if let (Some(folder), Some(page)) = (folder, page.transpose()?) {
         let fatigue = tables.fatigue()?;
@@ -112,8 +122,48 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
         folder.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
-    print(&if args.json { json } else { first_lines(&verdict) + &report(&text) })?;
-    answered(&verdict)
+    print(&if args.json { json } else { answer.first_lines() + &report(&text) })?;
+    answered(&answer.verdict)
+}
+
+/// What an assessment is about.
+struct Motion<'a> {
+    model: &'a Model,
+    motion: &'a [(f64, Posture)],
+    held: &'a [Load],
+    settings: &'a AssessSettings,
+    /// The ground's forces are measured.
+    ground: bool,
+}
+
+/// The changes that were tried: less load, and breaks. Measured forces of the ground belong to the load that was carried, so that
+/// another one is not tried with them; of a fast motion nothing is.
+fn advice(given: &Motion<'_>, found: &Assessment, verdict: &Verdict, suggest: SuggestArgs) -> Advice {
+    let Motion { model, motion, held, settings, ground } = *given;
+    let ends = motion.first().zip(motion.last()).map(|(first, last)| (first.0, last.0));
+    let frames = motion.len();
+    let (Some((begin, end)), Some(budget)) = (ends, suggest.budget(frames)) else { return Advice::default() };
+    if found.uncarried.is_some() {
+        let sentence = Some(format!("To say who carries it, {WHAT_CARRIES}."));
+        return Advice { sentence, ..Advice::default() };
+    }
+    if found.fast_share > FAST_SHARE {
+        return Advice::default();
+    }
+    let start = &motion[0].1;
+    let (supports, has_loads) = (&settings.supports, !held.is_empty() && !ground);
+    let job = Job { model, start, supports, levels: vec![], has_loads, asked: Some(end - begin), strategy: None };
+    let all = || changes(&job).into_iter().filter(|change| *change != Change::OtherFoot).collect();
+    let groups = Worked::in_motion(model, found);
+    let breaks = || with_breaks(&groups, end - begin, (begin, end), verdict);
+    let trial = |change: &Change| {
+        let mut loads = held.to_vec();
+        change.apply_to_loads(&mut loads);
+        let found = assessed(model, motion, |_, _, all| all.extend_from_slice(&loads), settings, |_| {});
+        let verdict = found.ok().map(|found| Verdict::of_motion(model, &found, end - begin));
+        Trial { verdict, steps: frames }
+    };
+    Advice::new(verdict, &job, all, || verdict.kind.is_done().then(breaks).flatten(), budget, trial)
 }
 
 /// The model with its fatigue, and its muscles with warnings about them.
@@ -141,6 +191,7 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
     let settings = AssessSettings {
         supports: supports(args, model)?,
         rates,
+        root_held: args.fixed_root,
         passive_ranges: opened.passive_ranges(),
         muscles,
         ..AssessSettings::default()
@@ -196,7 +247,7 @@ fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames
     let mut warnings = vec![];
     let (force, moment) = (found.residual_force, found.residual_moment);
     let least = RESIDUAL * (opened.model.mass() * opened.model.gravity().norm()).max(1.0);
-    if force.value > least || moment.value > least {
+    if !args.fixed_root && (force.value > least || moment.value > least) {
         let missing = format!(
             "{:.2} N at {} s and {:.2} N m at {} s at most",
             force.value, force.time, moment.value, moment.time
@@ -209,7 +260,7 @@ fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames
         } else if args.under.grf.is_some() {
             format!("ground reaction and motion do not agree: the root carries {missing}")
         } else {
-            format!("nothing holds the body up: the root carries {missing}; give --grf FILE.mot or --support SEG,SEG")
+            format!("nothing holds the body up: the root carries {missing}; {WHAT_CARRIES}")
         });
     }
     if !found.dynamics {

@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use contrapposto::posture_solver::Engine;
 use contrapposto::simulation::Run;
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::{RunScenario, read_pose, read_run, scenario_runs};
 use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
 
-use super::pose::verdict;
+use super::pose::{Posed, solve, verdict};
 use crate::args::CompareArgs;
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print};
@@ -18,7 +17,6 @@ use crate::view::answer::answered;
 use crate::view::body;
 use crate::view::figures::both;
 use crate::view::frame::Frame;
-use crate::view::held::held;
 use crate::view::report::comparison::report_of_comparison;
 use crate::view::stage::Stage;
 use crate::view::text::compare::{CompareText, ComparedPosture, report};
@@ -88,12 +86,7 @@ fn posed(
     letter: char,
 ) -> Result<ComparedPosture, Fail> {
     let scenario = read_pose(file, bytes, model)?;
-    let refused = |error: contrapposto::posture_solver::EngineError| Fail::Refused(format!("{file}: {error}"));
-    let mut engine =
-        Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, scenario.options).map_err(refused)?;
-    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
-    let pose = engine.solve(&scenario.start).map_err(|error| Fail::job(file, error))?;
-    let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
+    let Posed { pose, held, .. } = solve(file, &scenario)?;
     let verdict = verdict(&scenario, &pose, &held);
     let frame = held.known();
     Ok(ComparedPosture {

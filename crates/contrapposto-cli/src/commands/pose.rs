@@ -1,18 +1,20 @@
 //! `contrapposto pose`: one posture from tasks in order of priority.
 
-use contrapposto::contact::Slip;
-use contrapposto::posture_solver::{Engine, EngineError, Reason, SolvedPosture};
+use contrapposto::contact::{Balance, Slip};
+use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedPosture};
+use contrapposto::suggestions::{Advice, Change, Job, Trial, changes};
+use contrapposto::tasks::{PriorityLevel, Task};
 use contrapposto::verdict::{HeldPosture, Missed, Verdict};
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
 use contrapposto_plot::body_figure;
 
-use crate::args::PoseArgs;
+use crate::args::{PoseArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::scenario_file::ScenarioFile;
-use crate::view::answer::answered;
+use crate::view::answer::{Answer, answered};
 use crate::view::held::{Held, held};
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
@@ -20,24 +22,30 @@ use crate::view::text::pose::{report, subtitle};
 
 const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
 
+/// Largest change of a joint in a step toward a posture in balance, rad, and most of these steps.
+const BALANCE_STEP: f64 = 0.1;
+const BALANCE_STEPS: usize = 300;
+/// The note about a posture that had to be brought into balance.
+const KEPT_BALANCE: &str = "the posture nearest to the tasks falls, and no task asks for balance: balance over the supports came before the \
+     tasks, as in `relax` and `simulate`";
+
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let file = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
     let name = file.name.clone();
     let scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POSE_FILES)).transpose()?;
-    let pose = solve(&name, &scenario)?;
+    let Posed { pose, held, .. } = solve(&name, &scenario)?;
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let files = if args.out.is_some() { names.collect() } else { vec![] };
-    let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
-    let verdict = verdict(&scenario, &pose, &held);
-    let text = PoseText::new(&scenario, &pose, &verdict, files);
+    let answer = answer(&scenario, &pose, &held, args.suggest);
+    let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), files);
     let json = json_text("pose.json", &text)?;
     if let Some(folder) = &folder {
-        write(&scenario, &pose, (&text, &json), &figures, held, folder)?;
+        write(&scenario, &pose, (&text, &json, &answer), &figures, held, folder)?;
     }
-    print(&if args.json { json } else { report(&scenario, &pose, &text, &verdict, folder.as_ref()) })?;
-    exit(&pose, &verdict)
+    print(&if args.json { json } else { report(&scenario, &pose, &text, &answer, folder.as_ref()) })?;
+    exit(&pose, &answer.verdict)
 }
 
 /// The scenario of a file; notes about it go to standard error.
@@ -53,23 +61,11 @@ pub(crate) fn read(file: ScenarioFile) -> Result<PoseScenario, Fail> {
     Ok(scenario)
 }
 
-/// The posture of a scenario named `name`, with the errors of its goals.
-pub(crate) fn solve(name: &str, scenario: &PoseScenario) -> Result<SolvedPosture, Fail> {
-    let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
-    let (levels, limits) = scenario.levels();
-    let mut engine = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options).map_err(refused)?;
-    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
-    let mut pose = engine.solve(&scenario.start).map_err(|error| Fail::job("pose", error))?;
-    // The limits are not among the goals that are reported.
-    limits.map(|place| pose.levels.remove(place));
-    Ok(pose)
-}
-
 /// Writes all files.
 fn write(
     scenario: &PoseScenario,
     pose: &SolvedPosture,
-    (text, json): (&PoseText, &str),
+    (text, json, answer): (&PoseText, &str, &Answer),
     figures: &[(String, Vec<u8>)],
     held: Held,
     folder: &ResultSet,
@@ -81,10 +77,98 @@ fn write(
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let page = report_of_pose(scenario, pose, text, held)?;
+    let page = report_of_pose(scenario, pose, (text, answer), held)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
     folder.write(&POSE_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())
+}
+
+/// The posture that was solved for.
+pub(crate) struct Posed {
+    pub(crate) pose: SolvedPosture,
+    pub(crate) held: Held,
+    /// Balance was put above the tasks, because the posture nearest to them falls.
+    pub(crate) kept_balance: bool,
+}
+
+/// Solves for the posture of a scenario named `name`, with the errors of its goals. Where the supports do not hold the one nearest to the tasks, and no task asks for balance, balance comes first.
+pub(crate) fn solve(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> {
+    let posed = posed(name, scenario)?;
+    if posed.kept_balance {
+        print_note("note", KEPT_BALANCE);
+    }
+    Ok(posed)
+}
+
+/// As [`solve`], without a word.
+fn posed(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> {
+    let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
+    let failed = |error| Fail::job("pose", error);
+    let (levels, limits) = scenario.levels();
+    let mut engine = Engine::new(&scenario.model, levels, &scenario.loads, scenario.options).map_err(refused)?;
+    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
+    let mut pose = engine.solve(&scenario.start).map_err(failed)?;
+    let held_at = |pose: &SolvedPosture| held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports);
+    let mut held = held_at(&pose)?;
+    let balanced = if held.missing.is_some() { in_balance(scenario, &pose).map_err(failed)? } else { None };
+    let kept_balance = balanced.is_some();
+    if let Some(balanced) = balanced {
+        let levels = engine.report(&balanced.posture).map_err(failed)?;
+        pose = SolvedPosture { levels, steps: pose.steps + balanced.steps, ..balanced };
+        held = held_at(&pose)?;
+    }
+    // The limits are not among the goals that are reported.
+    limits.map(|place| pose.levels.remove(place));
+    Ok(Posed { pose, held, kept_balance })
+}
+
+/// The posture nearest to the tasks among those that the supports hold; `None` where a task asks for balance, and where none was found.
+fn in_balance(scenario: &PoseScenario, falls: &SolvedPosture) -> Result<Option<SolvedPosture>, EngineError> {
+    let goals: Vec<PriorityLevel> = scenario.goals.iter().filter(|goal| !goal.hard).cloned().collect();
+    let asks = |task: &Task| matches!(task, Task::CenterOfMass(_));
+    if goals.iter().flat_map(|goal| &goal.tasks).any(asks) {
+        return Ok(None);
+    }
+    let options =
+        Options { max_step: BALANCE_STEP, max_steps: BALANCE_STEPS, local_minima: 0, ..Options::least_effort() };
+    let (model, supports) = (&scenario.model, scenario.supports.clone());
+    let mut engine = Engine::with_supports(model, &scenario.start, supports, goals, &scenario.loads, options)?;
+    scenario.locked.iter().for_each(|&rate| engine.lock(rate));
+    scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
+    let pose = engine.solve(&falls.posture)?;
+    Ok((pose.balance == Balance::Held).then_some(pose))
+}
+
+/// The answer, with the changes that were tried.
+pub(crate) fn answer(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held, suggest: SuggestArgs) -> Answer {
+    let verdict = verdict(scenario, pose, held);
+    let advice = advice(scenario, &verdict, pose.steps, suggest);
+    Answer { verdict, advice }
+}
+
+/// The changes that were tried. The supports stay where they are in the start, so that no foot changes its place.
+fn advice(scenario: &PoseScenario, verdict: &Verdict, steps: usize, suggest: SuggestArgs) -> Advice {
+    let Some(budget) = suggest.budget(steps) else { return Advice::default() };
+    let job = Job {
+        model: &scenario.model,
+        start: &scenario.start,
+        supports: &scenario.supports,
+        levels: scenario.goals.iter().collect(),
+        has_loads: !scenario.loads.is_empty(),
+        asked: None,
+        strategy: None,
+    };
+    let all = || changes(&job).into_iter().filter(|change| *change != Change::OtherFoot).collect();
+    Advice::new(verdict, &job, all, || None, budget, |change| trial(scenario, &job, change))
+}
+
+/// Solves for the posture with a change.
+fn trial(scenario: &PoseScenario, job: &Job<'_>, change: &Change) -> Trial {
+    let mut changed = scenario.clone();
+    changed.goals.iter_mut().for_each(|goal| change.apply_to_level(job, goal));
+    change.apply_to_loads(&mut changed.loads);
+    let Ok(Posed { pose, held, .. }) = posed("pose", &changed) else { return Trial::default() };
+    Trial { verdict: Some(verdict(&changed, &pose, &held)), steps: pose.steps }
 }
 
 /// The answer of a posture that is held.
@@ -95,7 +179,7 @@ pub(crate) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held
         groups: held.groups.clone(),
         missing: held.missing,
         slip: levels().filter(|(goal, _)| goal.hard).fold(Slip::default(), |slip, (_, level)| slip.with(level.slip())),
-        missed: Missed::of_levels(&scenario.model, targets),
+        missed: Missed::of_levels(&scenario.model, &pose.posture, targets),
         hazards: held.hazards.clone(),
     };
     Verdict::of_posture(&scenario.model, &posture)

@@ -3,21 +3,23 @@
 use std::fmt::Write;
 
 use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
-use contrapposto::joint_torques::{Hazard, active_torque};
+use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
-use contrapposto::verdict::{HeldPosture, Missed, Verdict};
+use contrapposto::suggestions::Advice;
+use contrapposto::verdict::{HeldPosture, Verdict};
 use contrapposto_formats::motion::{csv_cell, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};
 
-use crate::args::RelaxArgs;
+use super::trials::advice_of_search;
+use crate::args::{RelaxArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::progress::spinner;
 use crate::scenario_file::ScenarioFile;
-use crate::view::answer::{answered, first_lines, without_posture};
+use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::body;
 use crate::view::frame::frame_of_posture;
 use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibria};
@@ -26,10 +28,8 @@ use crate::view::text::relax::{RelaxText, percent, report};
 
 const RELAX_FILES: [&str; 6] =
     ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
-/// Largest change of a joint in one step, rad.
-const STEP: f64 = 0.1;
-/// Most steps of the last stage of each posture.
-const STEPS: usize = 300;
+/// Largest change of a joint in one step, rad, and most steps of the last stage of each posture.
+const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
 
 pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let file = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
@@ -38,32 +38,31 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &RELAX_FILES)).transpose()?;
     let spinner = spinner();
     let found = find(&scenario);
-    spinner.finish_and_clear();
     let found = match found {
         Ok(found) => found,
         Err(SearchError::CannotStand(missing)) => {
             let (title, body) = (&scenario.title, (&scenario.model, scenario.loads.as_slice()));
-            return without_posture("relax.json", title, body, missing, folder.as_ref(), args.json);
+            let advice = |verdict: &Verdict| advice_without(&scenario, verdict, args.suggest);
+            let answered = without_posture("relax.json", title, body, (missing, advice), folder.as_ref(), args.json);
+            spinner.finish_and_clear();
+            return answered;
         }
         Err(SearchError::Relax(error)) => return Err(Fail::Refused(format!("{name}: {error}"))),
         Err(error) => return Err(Fail::Job(format!("{name}: {error}"))),
     };
-    let verdict = verdict(&scenario, &found)?;
+    let answer = answer(&scenario, &found, args.suggest);
+    spinner.finish_and_clear();
     let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
     let names = RELAX_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = RelaxText::new(&scenario, &found, &verdict, files);
+    let text = RelaxText::new(&scenario, &found, &answer, files);
     let json = json_text("relax.json", &text)?;
     if let Some(folder) = &folder {
-        write(&scenario, &found, &verdict, (&text, &json), &figures, folder)?;
+        write(&scenario, &found, &answer, (&text, &json), &figures, folder)?;
     }
     let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
-    print(&if args.json {
-        json
-    } else {
-        first_lines(&verdict) + &report(&text) + page.as_deref().unwrap_or_default()
-    })?;
-    answered(&verdict)
+    print(&if args.json { json } else { answer.first_lines() + &report(&text) + page.as_deref().unwrap_or_default() })?;
+    answered(&answer.verdict)
 }
 
 /// The scenario of a file; notes about it go to standard error.
@@ -85,9 +84,9 @@ pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
     Ok(scenario)
 }
 
-/// The postures of least effort.
-pub(crate) fn find(scenario: &RelaxScenario) -> Result<Equilibria, SearchError> {
-    let search = Search {
+/// The search of a scenario.
+fn search(scenario: &RelaxScenario) -> Search<'_> {
+    Search {
         model: &scenario.model,
         start: &scenario.start,
         supports: &scenario.supports,
@@ -95,28 +94,37 @@ pub(crate) fn find(scenario: &RelaxScenario) -> Result<Equilibria, SearchError> 
         goals: &scenario.goals,
         loads: &scenario.loads,
         locked: &scenario.locked,
-    };
-    equilibria(&search, Options { max_step: STEP, max_steps: STEPS, ..Options::least_effort() })
+    }
 }
 
-/// The answer: that of the posture of least effort.
-pub(crate) fn verdict(scenario: &RelaxScenario, found: &Equilibria) -> Result<Verdict, Fail> {
-    let Some(best) = found.postures.first() else {
-        return Ok(Verdict::of_posture(&scenario.model, &HeldPosture::default()));
+/// The postures of least effort.
+pub(crate) fn find(scenario: &RelaxScenario) -> Result<Equilibria, SearchError> {
+    equilibria(&search(scenario), OPTIONS)
+}
+
+/// The answer: that of the posture of least effort, and the changes that were tried.
+pub(crate) fn answer(scenario: &RelaxScenario, found: &Equilibria, suggest: SuggestArgs) -> Answer {
+    let search = search(scenario);
+    let Some((verdict, best)) = Verdict::of_equilibria(&search, found).zip(found.postures.first()) else {
+        let verdict = Verdict::of_posture(&scenario.model, &HeldPosture::default());
+        return Answer { verdict, advice: Advice::default() };
     };
-    let lengths = best.relaxed.levels.iter().map(|level| level.length);
-    let missed = Missed::of_levels(&scenario.model, scenario.goals.iter().zip(lengths));
-    let frame = frame_of_posture(&scenario.model, best)?;
-    let hazards = Hazard::all(&scenario.model, &frame.angles, &frame.external, &frame.passive);
-    let posture = HeldPosture { hazards, ..HeldPosture::of_equilibrium(best, missed) };
-    Ok(Verdict::of_posture(&scenario.model, &posture))
+    let at_best = Search { start: &best.relaxed.posture, ..search.clone() };
+    let advice = advice_of_search(&verdict, (&search, &at_best), (OPTIONS, found.steps), suggest);
+    Answer { verdict, advice }
+}
+
+/// The changes that were tried of a body that cannot stand.
+pub(crate) fn advice_without(scenario: &RelaxScenario, verdict: &Verdict, suggest: SuggestArgs) -> Advice {
+    let search = search(scenario);
+    advice_of_search(verdict, (&search, &search), (OPTIONS, 0), suggest)
 }
 
 /// Writes all files.
 fn write(
     scenario: &RelaxScenario,
     found: &Equilibria,
-    verdict: &Verdict,
+    answer: &Answer,
     (text, json): (&RelaxText, &str),
     figures: &[(String, Vec<u8>)],
     folder: &ResultSet,
@@ -129,7 +137,7 @@ fn write(
     let csv = table(scenario, found);
     let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let page = report_of_equilibria(scenario, found, verdict)?;
+    let page = report_of_equilibria(scenario, found, answer)?;
     let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
     folder.write(&RELAX_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())

@@ -1,18 +1,18 @@
 //! `contrapposto simulate` and `contrapposto demo`: a scenario over time.
 
 mod snapshot;
-mod trials;
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 
 use self::snapshot::{SNAPSHOT, go_on, save};
-pub(crate) use self::trials::try_changes;
-use crate::args::{DemoArgs, SimulateArgs};
+use super::trials::{advice_of_run, advice_without_posture};
+use crate::args::{DemoArgs, SimulateArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::interruption;
 use crate::output::{ResultSet, json_text, print, print_note};
@@ -58,14 +58,18 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let run = read_run(&name, &bytes, model)?;
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
-    let SimulateArgs { resume, figures, json, no_suggest, .. } = *args;
-    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest: !no_suggest })
+    let SimulateArgs { resume, figures, json, suggest, .. } = *args;
+    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest })
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     let (name, text) = if args.figure_8 { FIGURE_8 } else { DEMO };
     let run = read_run(name, text.as_bytes(), None)?;
-    carry_out(&run, Some(&args.out), How { resume: false, figures: false, json: args.json, suggest: true })?;
+    carry_out(
+        &run,
+        Some(&args.out),
+        How { resume: false, figures: false, json: args.json, suggest: SuggestArgs::default() },
+    )?;
     if args.json {
         return Ok(());
     }
@@ -83,7 +87,7 @@ struct How {
     resume: bool,
     figures: bool,
     json: bool,
-    suggest: bool,
+    suggest: SuggestArgs,
 }
 
 /// Runs a scenario; without `out` nothing is recorded, drawn and written.
@@ -91,6 +95,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     let (RunScenario { scenario, things, .. }, How { resume, figures, json, suggest }) = (run, how);
     let folder = out.map(|out| ResultSet::open(out, &RUN_FILES)).transpose()?;
     interruption::watch();
+    let goes_on = || !interruption::is_requested();
     let failed = |error| Fail::job("simulation", error);
     let resumed =
         folder.as_ref().filter(|_| resume).map(|folder| go_on(scenario, &folder.path(SNAPSHOT))).transpose()?;
@@ -100,7 +105,15 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
             Ok(run) => (run, Recording::new(scenario)),
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
                 let body = (&scenario.model, scenario.loads.as_slice());
-                return without_posture("summary.json", &scenario.title, body, missing, folder.as_ref(), json);
+                let advice = |verdict: &Verdict| advice_without_posture(verdict, scenario, suggest, goes_on);
+                return without_posture(
+                    "summary.json",
+                    &scenario.title,
+                    body,
+                    (missing, advice),
+                    folder.as_ref(),
+                    json,
+                );
             }
             Err(error) => return Err(failed(error)),
         },
@@ -127,9 +140,8 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     progress.finish_and_clear();
     let summary = run.summary();
     let mut answer = Answer::of_run(scenario, &summary);
-    if suggest && summary.reason != StopReason::Interrupted {
-        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        try_changes(&mut answer, scenario, &summary, threads, || !interruption::is_requested());
+    if summary.reason != StopReason::Interrupted {
+        answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
     }
     let text = match &files {
         Some(files) => files.write((scenario, things), (&run, &summary), &answer, figures)?,
@@ -158,7 +170,7 @@ pub(crate) fn summary_json(
     answer: &Answer,
     files: Vec<String>,
 ) -> Result<String, Fail> {
-    json_text("summary.json", &SummaryText::new(scenario, summary, &answer.verdict, &answer.helping, files))
+    json_text("summary.json", &SummaryText::new(scenario, summary, &answer.verdict, &answer.advice, files))
 }
 
 /// The folder of a run, and all that its files show.

@@ -4,9 +4,9 @@ use contrapposto::contact::Missing;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::statics::{Load, LoadKind};
-use contrapposto::suggestions::Suggestion;
+use contrapposto::suggestions::Advice;
 use contrapposto::verdict::{Verdict, VerdictKind, Who, how_long, slip_in_words};
-use contrapposto_formats::VerdictText;
+use contrapposto_formats::{AdviceText, VerdictText};
 use serde::Serialize;
 
 use crate::fail::Fail;
@@ -18,26 +18,25 @@ struct AnswerText<'a> {
     title: &'a str,
     model: &'a str,
     verdict: VerdictText,
+    #[serde(flatten)]
+    advice: AdviceText,
 }
 
-/// The answer of a run: verdict, and the changes of the job that help.
+/// The answer to a job: verdict, and the changes that were tried.
 pub(crate) struct Answer {
     pub(crate) verdict: Verdict,
-    /// The change that helps most first.
-    pub(crate) helping: Vec<Suggestion>,
-    /// `What would help most: ...`
-    pub(crate) advice: Option<String>,
+    pub(crate) advice: Advice,
 }
 
 impl Answer {
     /// The verdict alone.
     pub(crate) fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
-        Self { verdict: Verdict::of_run(scenario, summary), helping: vec![], advice: None }
+        Self { verdict: Verdict::of_run(scenario, summary), advice: Advice::default() }
     }
 
     /// The lines that everything begins with.
     pub(crate) fn first_lines(&self) -> String {
-        let advice = self.advice.as_ref().map_or(String::new(), |advice| format!("{advice}\n"));
+        let advice = self.advice.sentence.as_ref().map_or(String::new(), |advice| format!("{advice}\n"));
         first_lines(&self.verdict) + &advice
     }
 }
@@ -50,7 +49,8 @@ pub(crate) fn group_of_title(verdict: &Verdict) -> Option<Who> {
 /// The sentence, and below it the findings of studies about its hazards, and the targets of lower priority that are missed.
 pub(crate) fn first_lines(verdict: &Verdict) -> String {
     let mut findings: Vec<&str> = vec![];
-    for finding in verdict.hazards.iter().map(|hazard| hazard.row.finding.as_str()) {
+    let passed = verdict.passed.iter().map(|passed| &passed.hazard);
+    for finding in verdict.hazards.iter().chain(passed).map(|hazard| hazard.row.finding.as_str()) {
         if !findings.contains(&finding) {
             findings.push(finding);
         }
@@ -62,7 +62,9 @@ pub(crate) fn first_lines(verdict: &Verdict) -> String {
 
 /// `Missed besides, of lower priority: look at head by 3.4°.`
 pub(crate) fn also_missed(verdict: &Verdict) -> Option<String> {
-    let lower = verdict.missed.iter().filter(|missed| !missed.decides);
+    // The sentence names the first that decides.
+    let named = verdict.missed.iter().position(|missed| missed.decides);
+    let lower = verdict.missed.iter().enumerate().filter(|(i, _)| Some(*i) != named).map(|(_, missed)| missed);
     let list: Vec<String> = lower.map(|missed| format!("{} by {}", missed.task, missed.by())).collect();
     (!list.is_empty()).then(|| format!("Missed besides, of lower priority: {}.", list.join(", ")))
 }
@@ -80,9 +82,14 @@ pub(crate) fn answered(verdict: &Verdict) -> Result<(), Fail> {
 }
 
 /// The text of the JSON file `name` of a body that no posture near the start keeps in balance.
-pub(crate) fn text_without_posture(name: &str, title: &str, model: &Model, missing: Missing) -> Result<String, Fail> {
-    let verdict = Verdict::of_fall(model, missing);
-    json_text(name, &AnswerText { title, model: model.name(), verdict: VerdictText::new(model, &verdict) })
+pub(crate) fn text_without_posture(
+    name: &str,
+    title: &str,
+    model: &Model,
+    (verdict, advice): (&Verdict, &Advice),
+) -> Result<String, Fail> {
+    let verdict = VerdictText::new(model, verdict);
+    json_text(name, &AnswerText { title, model: model.name(), verdict, advice: advice.into() })
 }
 
 /// Answers for a body that no posture near the start keeps in balance: prints the verdict, and writes it to the file `name`.
@@ -90,15 +97,16 @@ pub(crate) fn without_posture(
     name: &str,
     title: &str,
     (model, loads): (&Model, &[Load]),
-    missing: Missing,
+    (missing, advice): (Missing, impl FnOnce(&Verdict) -> Advice),
     folder: Option<&ResultSet>,
     json: bool,
 ) -> Result<(), Fail> {
     let verdict = Verdict::of_fall(model, missing);
-    let text = text_without_posture(name, title, model, missing)?;
+    let advice = advice(&verdict);
+    let text = text_without_posture(name, title, model, (&verdict, &advice))?;
     folder.map(|folder| folder.write(&[(name, text.as_bytes())])).transpose()?;
     let heavy = heavy(model, loads).map_or(String::new(), |heavy| heavy + "\n");
-    print(&if json { text } else { first_lines(&verdict) + &heavy })?;
+    print(&if json { text } else { Answer { verdict, advice }.first_lines() + &heavy })?;
     Err(Fail::Answered)
 }
 

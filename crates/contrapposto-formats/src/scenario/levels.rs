@@ -29,6 +29,7 @@ pub(super) fn levels(stage: &Stage<'_>, texts: &[TaskText]) -> Result<Vec<Level>
                 before.tasks.tasks.push(task);
                 before.labels.push(label);
                 before.above_relief |= text.above_relief;
+                before.tasks.demanded |= text.above_relief;
             }
             None if text.same_priority => {
                 let path = ["task", &i.to_string(), "same_priority"];
@@ -36,7 +37,7 @@ pub(super) fn levels(stage: &Stage<'_>, texts: &[TaskText]) -> Result<Vec<Level>
                 return Err(stage.at.key_error(&path, "no task stands before the first one", help));
             }
             _ => levels.push(Level {
-                tasks: task.into(),
+                tasks: PriorityLevel { demanded: text.above_relief, ..task.into() },
                 labels: vec![label],
                 above_relief: text.above_relief,
                 added: false,

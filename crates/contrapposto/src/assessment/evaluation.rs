@@ -98,6 +98,11 @@ impl<'a> Evaluation<'a> {
         (size(false), size(true))
     }
 
+    /// Whether the body has loads beside its weight.
+    pub(super) fn is_loaded(&self) -> bool {
+        !self.loads.is_empty()
+    }
+
     /// Whether the supports cannot hold the root.
     pub(super) fn is_out_of_balance(&self) -> bool {
         self.contact.as_ref().is_some_and(|contact| contact.balance() != Balance::Held)

@@ -15,6 +15,7 @@ mod settings;
 
 use nalgebra::Vector3;
 
+use crate::contact::{Condition, Missing};
 use crate::joint_torques::Hazard;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -27,6 +28,9 @@ use groups::Groups;
 pub use result::{Assessment, GroupAssessment, Instant, Peak, PeakKind, PeakTorques, Proposal};
 pub use settings::AssessSettings;
 
+/// Share of its weight above which a body lacks a force in every instant for nothing to carry it. Assumed: measured ground reaction of a
+/// walk leaves less in most of its instants, a motion without ground reaction leaves all of it.
+const UNCARRIED: f64 = 0.5;
 /// Longest motion, s: more than a day.
 const LONGEST_MOTION: f64 = 1e5;
 
@@ -55,6 +59,7 @@ pub fn assess(
     let mut found = Assessment { dynamics: !settings.rates.is_empty(), ..Assessment::default() };
     let mut centers: Vec<Vector3<f64>> = vec![];
     let mut before: Option<f64> = None;
+    let mut uncarried = 0;
     for (index, (time, posture)) in motion.iter().enumerate() {
         if !time.is_finite() || before.is_some_and(|before| *time < before) {
             return Err(AssessError::Order { index, time: *time });
@@ -63,6 +68,7 @@ pub fn assess(
         groups.add(&evaluation, index, *time, before.map_or(0.0, |before| time - before));
         found.take_root(&evaluation, index, *time);
         found.take_hazards(&evaluation);
+        uncarried += usize::from(found.take_uncarried(&evaluation));
         centers.extend(evaluation.torques.kinematics().center_of_mass(model));
         record(&Instant {
             index,
@@ -76,6 +82,7 @@ pub fn assess(
         });
         before = Some(*time);
     }
+    found.uncarried = found.uncarried.filter(|_| uncarried == motion.len() && !settings.root_held);
     (found.acceleration, found.fast_share) = acceleration(motion, &centers);
     found.groups = groups.summaries;
     for group in &mut found.groups {
@@ -92,6 +99,18 @@ pub fn assess(
 }
 
 impl Assessment {
+    /// Whether loads leave a body without supports more than half of its weight; takes in what the first such instant lacks.
+    fn take_uncarried(&mut self, evaluation: &Evaluation<'_>) -> bool {
+        let (force, moment) = evaluation.residual();
+        let weight = evaluation.model.mass() * evaluation.model.gravity().norm();
+        let falls = evaluation.contact.is_none() && force > UNCARRIED * weight;
+        if falls && self.uncarried.is_none() {
+            let condition = if evaluation.is_loaded() { Condition::Other } else { Condition::NoSupport };
+            self.uncarried = Some(Missing { force, moment, condition });
+        }
+        falls
+    }
+
     /// Takes in the hazards of an instant.
     fn take_hazards(&mut self, evaluation: &Evaluation<'_>) {
         let torques = &evaluation.torques;

@@ -144,6 +144,8 @@ pub struct Assessment {
     pub missing: Option<(Missing, f64)>,
     /// Inertia counts in all torques.
     pub dynamics: bool,
+    /// What a body without supports lacks, where the loads leave it more than half of its weight in every instant: nothing carries it.
+    pub uncarried: Option<Missing>,
     /// Greatest acceleration of the centre of mass, m/s^2.
     pub acceleration: Peak,
     /// Share of the instants in which it was above 1 m/s^2, so that a posture at rest says little.

@@ -11,6 +11,8 @@ pub struct AssessSettings {
     pub supports: Vec<Support>,
     /// Speeds and accelerations of every instant, whose inertia counts; empty for postures at rest.
     pub rates: Vec<Rates>,
+    /// Without supports: the root is held on purpose, and not said to be carried by nothing.
+    pub root_held: bool,
     /// By coordinate: the range (rad) outside of which its passive torque stays what it is at the nearer end; empty for none.
     pub passive_ranges: Vec<Option<(f64, f64)>>,
     /// Muscles that give joints passive torque and strength in every posture, beside the laws of the model.
@@ -26,6 +28,7 @@ impl Default for AssessSettings {
         Self {
             supports: vec![],
             rates: vec![],
+            root_held: false,
             passive_ranges: vec![],
             muscles: None,
             minimum_decrease_ratio: 0.9,

@@ -31,4 +31,4 @@ pub use scenario::{
     Event, ReliefSettings, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
 };
 pub use step::Simulation;
-pub use summary::{CoordinateSummary, Fall, StopReason, Summary};
+pub use summary::{CoordinateSummary, Fall, Hazardous, StopReason, Summary};

@@ -159,8 +159,9 @@ impl<'a> Run<'a> {
         };
         self.so_far.samples += 1;
         self.so_far.end_time = sample.time;
+        let coordinates = self.scenario.model.coordinates();
         for (i, summary) in self.so_far.coordinates.iter_mut().enumerate() {
-            summary.take(i, &sample);
+            summary.take(i, &coordinates[i], &sample);
         }
         self.so_far.reliefs.take(&sample);
         if !sample.stepping {
@@ -190,6 +191,11 @@ impl<'a> Run<'a> {
     /// The last snapshot.
     pub fn snapshot(&self) -> &Snapshot {
         &self.snapshot
+    }
+
+    /// Solver steps so far: one a sample, and those of the searches.
+    pub fn solver_steps(&self) -> usize {
+        self.simulation.searched() + self.so_far.samples as usize
     }
 
     /// The results so far.

@@ -94,6 +94,11 @@ impl<'a> Simulation<'a> {
         }
     }
 
+    /// Solver steps of all searches so far.
+    pub(super) fn searched(&self) -> usize {
+        self.state.searched
+    }
+
     /// The state from which another simulation goes on to the same numbers as this one. Whatever only makes this one faster is
     /// forgotten.
     pub(super) fn state(&mut self) -> State {

@@ -8,8 +8,8 @@ use super::{FootStep, ReliefLog, Sample, Standing};
 use crate::contact::{Missing, Slip};
 use crate::fatigue::LoadHistory;
 use crate::hybrid::{Case, Decision};
-use crate::joint_torques::GroupLoad;
-use crate::model::Side;
+use crate::joint_torques::{GroupLoad, Hazard};
+use crate::model::{Coordinate, Side};
 
 /// Most changes of case that are recorded in order; a run whose cases alternate has thousands.
 const MOST_CHANGES: usize = 200;
@@ -72,6 +72,19 @@ pub struct GroupAtEnd {
     pub seconds_left: Option<f64>,
 }
 
+/// How long ligaments carried a coordinate at an angle where that is a hazard, and the moment when they carried most.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hazardous {
+    /// Number of samples.
+    pub samples: u64,
+    /// The moment, s.
+    pub time: f64,
+    /// Angle there, rad.
+    pub angle: f64,
+    /// External and passive torque there, N m.
+    pub torques: [f64; 2],
+}
+
 /// Results of one coordinate.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateSummary {
@@ -95,6 +108,8 @@ pub struct CoordinateSummary {
     pub exhausted_at: [Option<f64>; 2],
     /// The last decision.
     pub last_decision: Option<Decision>,
+    /// Hazard by ligaments while no support was put elsewhere.
+    pub hazardous: Option<Hazardous>,
     /// Relative load of the positive and negative group over the run; while a support is put elsewhere the load before goes on.
     pub loads: [LoadHistory; 2],
 }
@@ -132,11 +147,12 @@ pub struct Summary {
 }
 
 impl CoordinateSummary {
-    pub(super) fn take(&mut self, i: usize, sample: &Sample) {
+    pub(super) fn take(&mut self, i: usize, coordinate: &Coordinate, sample: &Sample) {
         self.final_value = sample.posture[i];
         self.final_torques = [sample.external[i], sample.passive[i], sample.active[i]];
         if !sample.stepping {
             self.take_load(i, sample);
+            self.take_hazard(i, coordinate, sample);
         }
         let Some(decision) = &sample.decisions[i] else { return };
         self.iterations[decision.case as usize] += 1;
@@ -147,6 +163,20 @@ impl CoordinateSummary {
             }
         }
         self.last_decision = Some(*decision);
+    }
+
+    fn take_hazard(&mut self, i: usize, coordinate: &Coordinate, sample: &Sample) {
+        let (angle, torques) = (sample.posture[i], [sample.external[i], sample.passive[i]]);
+        if Hazard::at(coordinate, angle, torques[0], torques[1]).is_none() {
+            return;
+        }
+        let now = Hazardous { samples: 1, time: sample.time, angle, torques };
+        let hazardous = self.hazardous.get_or_insert(Hazardous { samples: 0, ..now });
+        let samples = hazardous.samples + 1;
+        if torques[1].abs() > hazardous.torques[1].abs() {
+            *hazardous = now;
+        }
+        hazardous.samples = samples;
     }
 
     /// Loads, fatigue and exhaustion; not of a sample in which a support is put elsewhere.

@@ -1,8 +1,9 @@
 //! Computes how long a job can be done with breaks.
 
 use super::trial::Suggestion;
-use crate::fatigue::FatigueLaw;
-use crate::model::Side;
+use crate::assessment::{Assessment, GroupAssessment};
+use crate::fatigue::{FatigueLaw, LoadHistory};
+use crate::model::{Model, Side};
 use crate::simulation::{Scenario, Summary};
 use crate::verdict::{Verdict, VerdictKind};
 
@@ -17,39 +18,76 @@ const STEADY: f64 = 1e-6;
 /// A time from here on, s, counts as no limit: a day.
 const LONGEST: f64 = 86_400.0;
 
-/// The job of a run with a break of a minute after every ten minutes of work: in a break no group has a load; between breaks each has
-/// that of the run, and after the run that of its end. `verdict` is that of the run. Time counts work and breaks. `None` where the run is too short for a break.
-pub fn with_breaks(scenario: &Scenario, summary: &Summary, verdict: &Verdict) -> Option<Suggestion> {
-    let asked = scenario.run.end();
+/// What a muscle group did in a job.
+#[derive(Clone, Copy, Debug)]
+pub struct Worked<'a> {
+    /// Its law of fatigue.
+    pub law: &'a FatigueLaw,
+    /// Its relative load.
+    pub loads: &'a LoadHistory,
+    /// Its relative load at the end.
+    pub end: f64,
+    /// Its fatigue at the start, 0..=1.
+    pub start: f64,
+}
+
+impl<'a> Worked<'a> {
+    /// All groups of known strength in a run.
+    pub fn in_run(scenario: &'a Scenario, summary: &'a Summary) -> Vec<Self> {
+        let mut all = vec![];
+        for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
+            let (Some(groups), course) = (&coordinate.groups, &summary.coordinates[i]) else { continue };
+            all.extend(Side::BOTH.map(Side::index).map(|side| Self {
+                law: &groups[side].fatigue,
+                loads: &course.loads[side],
+                end: course.final_groups[side].load,
+                start: scenario.start_fatigue[i][side],
+            }));
+        }
+        all
+    }
+
+    /// All groups of known strength in a motion.
+    pub fn in_motion(model: &'a Model, found: &'a Assessment) -> Vec<Self> {
+        let worked = |group: &'a GroupAssessment| {
+            let groups = model.coordinates()[group.coordinate].groups.as_ref()?;
+            let law = &groups[group.side.index()].fatigue;
+            Some(Self { law, loads: &group.loads, end: group.load, start: 0.0 })
+        };
+        found.groups.iter().filter_map(worked).collect()
+    }
+}
+
+/// The job of a run or motion with a break of a minute after every ten minutes of work: in a break no group has a load; between breaks each has
+/// that of the job, and after the job that of its end. `verdict` is that of the job, `begin` the time of its start, s. Time counts work and breaks.
+/// `None` where the job is too short for a break.
+pub fn with_breaks(
+    groups: &[Worked<'_>],
+    asked: f64,
+    (begin, end): (f64, f64),
+    verdict: &Verdict,
+) -> Option<Suggestion> {
     if asked <= BREAK_EVERY {
         return None;
     }
     let longest = LONGEST.max(asked);
     let mut first = longest;
-    for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
-        let Some(groups) = &coordinate.groups else { continue };
-        for side in Side::BOTH {
-            let start = scenario.start_fatigue[i][side.index()];
-            let course = &summary.coordinates[i];
-            if course.loads[side.index()].pieces().iter().all(|(_, load)| *load <= 0.0) {
-                continue;
-            }
-            let load_at = |work: f64| match work < summary.end_time {
-                true => course.loads[side.index()].at(work),
-                false => course.final_groups[side.index()].load,
-            };
-            first = first.min(failure(&groups[side.index()].fatigue, load_at, start, (summary.end_time, first)));
+    for group in groups {
+        if group.loads.pieces().iter().all(|(_, load)| *load <= 0.0) {
+            continue;
         }
+        let load_at = |work: f64| if work < end - begin { group.loads.at(begin + work) } else { group.end };
+        first = first.min(failure(group.law, load_at, group.start, (end - begin, first)));
     }
-    let held = first >= asked;
+    let kind = if first >= asked { VerdictKind::Holds } else { VerdictKind::HeldUntil };
     Some(Suggestion {
         change: "a break of a minute every ten minutes".to_owned(),
-        kind: if held { VerdictKind::Holds } else { VerdictKind::HeldUntil },
-        asked,
+        kind,
+        asked: Some(asked),
         seconds: (first < longest).then_some(first),
         least: None,
         hazards: verdict.hazards.len(),
-        load: summary.hardest.map(|(group, _)| group.load),
+        load: verdict.hardest.map(|group| group.load),
     })
 }
 

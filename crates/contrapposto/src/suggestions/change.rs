@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::equilibria::Mirror;
+use crate::contact::Support;
+use crate::equilibria::{Mirror, Search};
 use crate::hybrid::Strategy;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, plain_name};
@@ -31,99 +32,172 @@ pub enum Change {
     OtherFoot,
 }
 
-/// The changes that make sense for a scenario, in a fixed order.
-pub fn changes(scenario: &Scenario) -> Vec<Change> {
-    let model = &scenario.model;
+/// The parts of a job that changes concern.
+#[derive(Clone, Debug)]
+pub struct Job<'a> {
+    /// The body.
+    pub model: &'a Model,
+    /// Its posture at the start.
+    pub start: &'a Posture,
+    /// The supports that carry it, as far as they are known.
+    pub supports: &'a [Support],
+    /// Tasks, the most important first.
+    pub levels: Vec<&'a PriorityLevel>,
+    /// Whether there are loads at any time.
+    pub has_loads: bool,
+    /// The time that is asked for, s.
+    pub asked: Option<f64>,
+    /// The strategy of the whole body; `None` where there are several, and where nobody seeks relief.
+    pub strategy: Option<Strategy>,
+}
+
+impl<'a> From<&'a Scenario> for Job<'a> {
+    fn from(scenario: &'a Scenario) -> Self {
+        let kind = scenario.strategy.kind;
+        let is_one = scenario.strategies.iter().all(|strategy| *strategy == kind)
+            && scenario.events.iter().all(|event| event.strategies.is_none());
+        Self {
+            model: &scenario.model,
+            start: &scenario.start,
+            supports: &scenario.supports,
+            levels: scenario.tasks.iter().map(|task| &task.goal).collect(),
+            has_loads: !scenario.loads.is_empty() || scenario.events.iter().any(|event| event.loads.is_some()),
+            asked: Some(scenario.run.end()),
+            strategy: is_one.then_some(kind),
+        }
+    }
+}
+
+impl<'a> From<&Search<'a>> for Job<'a> {
+    fn from(search: &Search<'a>) -> Self {
+        Self {
+            model: search.model,
+            start: search.start,
+            supports: search.supports,
+            levels: search.goals.iter().collect(),
+            has_loads: !search.loads.is_empty(),
+            asked: None,
+            strategy: None,
+        }
+    }
+}
+
+/// The changes that make sense for a job, in a fixed order.
+pub fn changes(job: &Job<'_>) -> Vec<Change> {
+    let model = job.model;
     let mut changes = vec![];
     let up = (-model.gravity()).try_normalize(1e-9);
-    if let (Some(&(_, target)), Some(up)) = (targets(scenario).first(), up) {
+    if let (Some(&(_, target)), Some(up)) = (job.targets().first(), up) {
         changes.push(Change::Targets(-MOVED * up, "10 cm lower"));
         changes.push(Change::Targets(MOVED * up, "10 cm higher"));
         let mut kinematics = Kinematics::new(model);
-        let center = kinematics.update(model, &scenario.start).ok().and_then(|()| kinematics.center_of_mass(model));
+        let center = kinematics.update(model, job.start).ok().and_then(|()| kinematics.center_of_mass(model));
         let toward = center.map(|center| center - target).map(|away| away - away.dot(&up) * up);
         if let Some(toward) = toward.filter(|away| away.norm() > 2.0 * MOVED) {
             changes.push(Change::Targets(MOVED * toward.normalize(), "10 cm nearer"));
         }
     }
-    let has_loads = !scenario.loads.is_empty() || scenario.events.iter().any(|event| event.loads.is_some());
-    changes.extend(has_loads.then_some(Change::Loads(LIGHTER)));
-    let kind = scenario.strategy.kind;
-    if scenario.strategies.iter().all(|strategy| *strategy == kind)
-        && scenario.events.iter().all(|event| event.strategies.is_none())
-    {
-        changes.push(Change::Strategy(match kind {
+    changes.extend(job.has_loads.then_some(Change::Loads(LIGHTER)));
+    changes.extend(job.strategy.map(|kind| {
+        Change::Strategy(match kind {
             Strategy::Active => Strategy::Passive,
             Strategy::Passive => Strategy::Active,
-        }));
-    }
-    changes.extend(one_foot_is_ahead(scenario).then_some(Change::OtherFoot));
+        })
+    }));
+    changes.extend(job.one_foot_is_ahead().then_some(Change::OtherFoot));
     changes
 }
 
-/// Segments that carry nothing and are asked to a place, and these places, ground, m.
-fn targets(scenario: &Scenario) -> Vec<(usize, Vector3<f64>)> {
-    let carries = |segment: usize| scenario.supports.iter().any(|support| support.segment == segment);
-    let tasks = scenario.tasks.iter().flat_map(|task| &task.goal.tasks);
-    let target = |task: &Task| match task {
-        Task::Point(point) => Some((point.segment, point.target)),
-        Task::Placement(placement) => Some((placement.segment, placement.target.translation.vector)),
-        _ => None,
-    };
-    tasks.filter_map(target).filter(|(segment, _)| !carries(*segment)).collect()
-}
-
-/// Whether the body stands on two segments of both sides alone, one ahead of the other, and has a mirror image.
-fn one_foot_is_ahead(scenario: &Scenario) -> bool {
-    let model = &scenario.model;
-    let [a, b] = scenario.supports.as_slice() else { return false };
-    let mut kinematics = Kinematics::new(model);
-    if kinematics.update(model, &scenario.start).is_err() || (a.share_max - b.share_max).abs() > 0.0 {
-        return false;
+impl Job<'_> {
+    /// Segments that carry nothing and are asked to a place, and these places, ground, m.
+    fn targets(&self) -> Vec<(usize, Vector3<f64>)> {
+        let tasks = self.levels.iter().filter(|level| !level.hard).flat_map(|level| &level.tasks);
+        let target = |task: &Task| match task {
+            Task::Point(point) => Some((point.segment, point.target)),
+            Task::Placement(placement) => Some((placement.segment, placement.target.translation.vector)),
+            _ => None,
+        };
+        tasks.filter_map(target).filter(|(segment, _)| !self.carries(*segment)).collect()
     }
-    let place = |segment: usize| kinematics.placement(model, segment).translation.vector.x;
-    let names = [a, b].map(|support| plain_name(&model.segments()[support.segment].name));
-    let pair =
-        names.iter().any(|name| name.starts_with("right ")) && names.iter().any(|name| name.starts_with("left "));
-    pair && (place(a.segment) - place(b.segment)).abs() > AHEAD && Mirror::of(model).is_some()
+
+    fn carries(&self, segment: usize) -> bool {
+        self.supports.iter().any(|support| support.segment == segment)
+    }
+
+    /// Whether the body stands on two segments of both sides alone, one ahead of the other, and has a mirror image.
+    fn one_foot_is_ahead(&self) -> bool {
+        let model = self.model;
+        let [a, b] = self.supports else { return false };
+        let mut kinematics = Kinematics::new(model);
+        if kinematics.update(model, self.start).is_err() || (a.share_max - b.share_max).abs() > 0.0 {
+            return false;
+        }
+        let place = |segment: usize| kinematics.placement(model, segment).translation.vector.x;
+        let names = [a, b].map(|support| plain_name(&model.segments()[support.segment].name));
+        let pair =
+            names.iter().any(|name| name.starts_with("right ")) && names.iter().any(|name| name.starts_with("left "));
+        pair && (place(a.segment) - place(b.segment)).abs() > AHEAD && Mirror::of(model).is_some()
+    }
 }
 
 impl Change {
     /// The scenario with the change.
     #[must_use]
     pub fn apply(&self, scenario: &Scenario) -> Scenario {
-        let mut changed = scenario.clone();
-        match self {
-            Self::Targets(by, _) => {
-                let carries: Vec<usize> = scenario.supports.iter().map(|support| support.segment).collect();
-                let levels = changed.tasks.iter_mut().map(|task| &mut task.goal);
-                let later = changed.events.iter_mut().flat_map(|event| &mut event.tasks).map(|(_, goal)| goal);
-                levels.chain(later).for_each(|level| move_targets(level, *by, &carries));
-            }
-            Self::Loads(share) => {
-                let later = changed.events.iter_mut().filter_map(|event| event.loads.as_mut());
-                std::iter::once(&mut changed.loads).chain(later).flatten().for_each(|load| scale(load, *share));
-            }
-            Self::Strategy(kind) => {
-                changed.strategy.kind = *kind;
-                changed.strategies.fill(*kind);
-            }
-            Self::OtherFoot => {
-                if let Some(mirror) = Mirror::of(&scenario.model) {
-                    changed.start = legs_of(&scenario.model, &scenario.start, &mirror.posture(&scenario.start));
-                }
-            }
+        let (job, mut changed) = (Job::from(scenario), scenario.clone());
+        changed.tasks.iter_mut().for_each(|task| self.apply_to_level(&job, &mut task.goal));
+        self.apply_to_loads(&mut changed.loads);
+        for event in &mut changed.events {
+            event.tasks.iter_mut().for_each(|(_, goal)| self.apply_to_level(&job, goal));
+            event.loads.iter_mut().for_each(|loads| self.apply_to_loads(loads));
         }
+        if let Self::Strategy(kind) = self {
+            changed.strategy.kind = *kind;
+            changed.strategies.fill(*kind);
+        }
+        changed.start = self.start(&job);
         changed
     }
 
+    /// Moves the targets of a level.
+    pub fn apply_to_level(&self, job: &Job<'_>, level: &mut PriorityLevel) {
+        let Self::Targets(by, _) = self else { return };
+        for task in level.tasks.iter_mut().filter(|_| !level.hard) {
+            match task {
+                Task::Point(point) if !job.carries(point.segment) => point.target += by,
+                Task::Placement(placement) if !job.carries(placement.segment) => {
+                    placement.target.translation.vector += by;
+                }
+                Task::LookAt(LookAt { goal: LookAtGoal::Place(target), .. }) => *target += by,
+                _ => {}
+            }
+        }
+    }
+
+    /// Makes loads lighter.
+    pub fn apply_to_loads(&self, loads: &mut [Load]) {
+        let Self::Loads(share) = self else { return };
+        for load in loads {
+            match &mut load.kind {
+                LoadKind::Weight(mass) => *mass *= share,
+                LoadKind::Force(vector, _) | LoadKind::Couple(vector, _) => *vector *= *share,
+            }
+        }
+    }
+
+    /// The start with the change.
+    pub fn start(&self, job: &Job<'_>) -> Posture {
+        let mirror = if matches!(self, Self::OtherFoot) { Mirror::of(job.model) } else { None };
+        mirror.map_or_else(|| job.start.clone(), |mirror| legs_of(job.model, job.start, &mirror.posture(job.start)))
+    }
+
     /// `the target of right hand 10 cm lower`.
-    pub fn in_words(&self, scenario: &Scenario) -> String {
+    pub fn in_words(&self, job: &Job<'_>) -> String {
         match self {
             Self::Targets(_, how) => {
                 let mut names: Vec<String> = vec![];
-                for (segment, _) in targets(scenario) {
-                    let name = plain_name(&scenario.model.segments()[segment].name);
+                for (segment, _) in job.targets() {
+                    let name = plain_name(&job.model.segments()[segment].name);
                     if !names.contains(&name) {
                         names.push(name);
                     }
@@ -135,26 +209,6 @@ impl Change {
             Self::Strategy(Strategy::Passive) => "relief by the passive strategy".to_owned(),
             Self::OtherFoot => "the other foot ahead".to_owned(),
         }
-    }
-}
-
-fn move_targets(level: &mut PriorityLevel, by: Vector3<f64>, carries: &[usize]) {
-    for task in &mut level.tasks {
-        match task {
-            Task::Point(point) if !carries.contains(&point.segment) => point.target += by,
-            Task::Placement(placement) if !carries.contains(&placement.segment) => {
-                placement.target.translation.vector += by;
-            }
-            Task::LookAt(LookAt { goal: LookAtGoal::Place(target), .. }) => *target += by,
-            _ => {}
-        }
-    }
-}
-
-fn scale(load: &mut Load, share: f64) {
-    match &mut load.kind {
-        LoadKind::Weight(mass) => *mass *= share,
-        LoadKind::Force(vector, _) | LoadKind::Couple(vector, _) => *vector *= share,
     }
 }
 

@@ -1,6 +1,9 @@
-//! Runs a changed scenario until a muscle group fails.
+//! Tries changes of a job, and says what they give.
 
-use super::change::Change;
+use super::budget::Trial;
+use super::change::{Change, Job};
+use crate::equilibria::{Search, SearchError, equilibria};
+use crate::posture_solver::Options;
 use crate::simulation::{Run, Scenario, ScenarioError, StopReason};
 use crate::verdict::{Verdict, VerdictKind, how_long};
 
@@ -14,8 +17,8 @@ pub struct Suggestion {
     pub change: String,
     /// The kind of verdict with it.
     pub kind: VerdictKind,
-    /// The time that was asked for, s.
-    pub asked: f64,
+    /// The time that was asked for, s; `None` where none was.
+    pub asked: Option<f64>,
     /// How long the job can be done with it, s: until a group fails; of a job that holds, with the posture of its end held on. `None`
     /// where no muscle sets a limit, or where it cannot be done.
     pub seconds: Option<f64>,
@@ -27,48 +30,59 @@ pub struct Suggestion {
     pub load: Option<f64>,
 }
 
-/// Runs a scenario until a group needs more than its strength or fails, or to its end, and judges it. `None`: `go_on` said no.
-///
-/// # Errors
-/// [`ScenarioError`], but for a body that cannot stand, which is a verdict.
-fn trial(scenario: &Scenario, go_on: impl Fn() -> bool) -> Result<Option<Verdict>, ScenarioError> {
-    let mut run = match Run::new(scenario) {
+/// Runs a scenario with a change until a group needs more than its strength or fails, or a target is missed, or to its end, and judges
+/// it. No verdict: the changed scenario is not in order, or `go_on` said no.
+pub fn try_run(scenario: &Scenario, change: &Change, go_on: impl Fn() -> bool) -> Trial {
+    let changed = change.apply(scenario);
+    let mut run = match Run::new(&changed) {
         Ok(run) => run,
-        Err(ScenarioError::CannotStand(missing)) => return Ok(Some(Verdict::of_fall(&scenario.model, missing))),
-        Err(error) => return Err(error),
+        Err(ScenarioError::CannotStand(missing)) => {
+            return Trial { verdict: Some(Verdict::of_fall(&changed.model, missing)), steps: 0 };
+        }
+        Err(_) => return Trial::default(),
     };
-    let mut fails = false;
+    let verdict = judged(&changed, &mut run, go_on).unwrap_or_default();
+    Trial { verdict, steps: run.solver_steps() }
+}
+
+/// The verdict on a run, as soon as it is known; `None` where `go_on` said no.
+fn judged(scenario: &Scenario, run: &mut Run<'_>, go_on: impl Fn() -> bool) -> Result<Option<Verdict>, ScenarioError> {
+    let mut is_first = true;
     while let Some(sample) = run.next_sample()? {
-        fails = !sample.stepping
+        let fails = !sample.stepping
             && (sample.exhausted.iter().flatten().any(|exhausted| *exhausted)
                 || sample.load.iter().any(|load| *load > 1.0));
-        if fails {
-            break;
+        if fails || std::mem::take(&mut is_first) {
+            let mut summary = run.summary();
+            // It is left on purpose, with its answer known.
+            summary.reason = StopReason::Duration;
+            let verdict = Verdict::of_run(scenario, &summary);
+            // A target that is missed at first counts as missed however the run goes on.
+            if fails || verdict.kind == VerdictKind::NotReached {
+                return Ok(Some(verdict));
+            }
         }
         if !go_on() {
             return Ok(None);
         }
     }
-    let mut summary = run.summary();
-    if fails {
-        // It was left on purpose, with its answer known.
-        summary.reason = StopReason::Duration;
-    }
-    Ok(Some(Verdict::of_run(scenario, &summary)))
+    Ok(Some(Verdict::of_run(scenario, &run.summary())))
 }
 
-/// Tries a change; `None` where the changed scenario is not in order, or `go_on` said no.
-pub fn suggestion(scenario: &Scenario, change: &Change, go_on: impl Fn() -> bool) -> Option<Suggestion> {
-    let verdict = trial(&change.apply(scenario), go_on).ok()??;
-    Some(Suggestion {
-        change: change.in_words(scenario),
-        kind: verdict.kind,
-        asked: scenario.run.end(),
-        seconds: verdict.seconds,
-        least: verdict.range.map(|(least, _)| least),
-        hazards: verdict.hazards.len(),
-        load: verdict.hardest.map(|group| group.load),
-    })
+/// Searches the posture of least effort with a change, and judges it.
+pub fn try_search(search: &Search<'_>, options: Options, change: &Change) -> Trial {
+    let job = Job::from(search);
+    let (start, mut goals, mut loads) = (change.start(&job), search.goals.to_vec(), search.loads.to_vec());
+    goals.iter_mut().for_each(|level| change.apply_to_level(&job, level));
+    change.apply_to_loads(&mut loads);
+    let search = Search { start: &start, goals: &goals, loads: &loads, ..search.clone() };
+    match equilibria(&search, options) {
+        Ok(found) => Trial { verdict: Verdict::of_equilibria(&search, &found), steps: found.steps },
+        Err(SearchError::CannotStand(missing)) => {
+            Trial { verdict: Some(Verdict::of_fall(search.model, missing)), steps: 0 }
+        }
+        Err(SearchError::Relax(_)) => Trial::default(),
+    }
 }
 
 /// Times of a job for comparison: that of the mean person, and the least for two of three people, s; infinite without a limit.
@@ -77,6 +91,19 @@ fn times(seconds: Option<f64>, least: Option<f64>) -> (f64, f64) {
 }
 
 impl Suggestion {
+    /// A change that leads to a verdict.
+    pub fn new(job: &Job<'_>, change: &Change, verdict: &Verdict) -> Self {
+        Self {
+            change: change.in_words(job),
+            kind: verdict.kind,
+            asked: job.asked,
+            seconds: verdict.seconds,
+            least: verdict.range.map(|(least, _)| least),
+            hazards: verdict.hazards.len(),
+            load: verdict.hardest.map(|group| group.load),
+        }
+    }
+
     /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards or for longer; where no muscle
     /// limits the mean person before or after, longer for weaker ones.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
@@ -107,30 +134,18 @@ impl Suggestion {
     /// `with the target of right hand 10 cm lower it holds through the run (5.0 min), about 11.2 min in all`,
     /// `with 20 % less load it can be held 11 s of the 30 s asked`.
     pub fn in_words(&self) -> String {
-        let (change, asked) = (&self.change, how_long(self.asked));
+        let change = &self.change;
         let hazard = if self.hazards > 0 { ", with ligaments in hazard" } else { "" };
-        let time = match (self.kind, self.seconds) {
-            (VerdictKind::Holds, Some(time)) => {
-                format!("with {change} it holds through the run ({asked}), about {} in all", how_long(time))
+        let held = || how_long(self.seconds.unwrap_or(0.0));
+        let time = match (self.kind, self.asked.map(how_long), self.seconds) {
+            (VerdictKind::Holds, Some(asked), Some(time)) => {
+                format!("it holds through the run ({asked}), about {} in all", how_long(time))
             }
-            (VerdictKind::Holds, None) => format!("with {change} it holds through the run ({asked}) without a limit"),
-            (_, time) => format!("with {change} it can be held {} of the {asked} asked", how_long(time.unwrap_or(0.0))),
+            (VerdictKind::Holds, Some(asked), None) => format!("it holds through the run ({asked}) without a limit"),
+            (VerdictKind::Holds, None, _) => "it holds without a limit by muscles".to_owned(),
+            (_, Some(asked), _) => format!("it can be held {} of the {asked} asked", held()),
+            (_, None, _) => format!("it can be held {}", held()),
         };
-        time + hazard
-    }
-
-    /// The sentence after the verdict; `None` where nothing was tried.
-    pub fn sentence(helping: &[Self], tried: usize, verdict: &Verdict) -> Option<String> {
-        match helping {
-            _ if verdict.has_reserve() => Some("Nothing needs to change.".to_owned()),
-            _ if tried == 0 => None,
-            [] if tried == 1 => Some("The one change that was tried does not help.".to_owned()),
-            [] => Some(format!("None of the {tried} changes that were tried helps.")),
-            [best] => Some(format!("What would help: {}.", best.in_words())),
-            [best, rest @ ..] => {
-                let rest: Vec<String> = rest.iter().map(Self::in_words).collect();
-                Some(format!("What would help most: {}. Also: {}.", best.in_words(), rest.join("; ")))
-            }
-        }
+        format!("with {change} {time}{hazard}")
     }
 }

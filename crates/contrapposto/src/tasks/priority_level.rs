@@ -12,6 +12,8 @@ pub struct PriorityLevel {
     pub half_spaces: Vec<HalfSpace>,
     /// A level that must be met; the status of a step says where it is not.
     pub hard: bool,
+    /// A job that misses a target of this level is not done, whatever stands above the level. The steps are the same.
+    pub demanded: bool,
 }
 
 impl PriorityLevel {

@@ -6,7 +6,7 @@
 //!    its most important target is the best of those that do not do the job, and nobody need hold it: it is judged by that;
 //! 2. [`VerdictKind::CannotStand`]: the supports do not hold the body; of a posture that misses its target, too, it is not said. Supports
 //!    that slide by more than [`Slip::GREATEST`] do not hold it, and the loads of such a posture are those of another job;
-//! 3. [`VerdictKind::NotReached`]: the most important target is missed;
+//! 3. [`VerdictKind::NotReached`]: the most important target, or one that is demanded, is missed;
 //! 4. [`VerdictKind::HeldUntil`]: a group tires until it can no longer hold its load, before the end of the asked time;
 //! 5. [`VerdictKind::Holds`]: none of these.
 //!
@@ -23,7 +23,7 @@ mod run;
 mod spread;
 mod words;
 
-pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed};
+pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest, error_in_words};
 pub use posture::HeldPosture;
 pub use spread::spread;
 pub use words::{how_long, slip_in_words};
@@ -107,6 +107,20 @@ pub struct Tired {
     pub fatigue: f64,
 }
 
+/// A hazard of a run that was over at its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassedHazard {
+    /// At the moment when ligaments carried most.
+    pub hazard: Hazard,
+    /// That moment, s.
+    pub time: f64,
+    /// How long there was a hazard in all, s.
+    pub seconds: f64,
+}
+
+/// A hazard that lasted less, s, was a motion, and is not told. Assumed.
+const LEAST_HAZARD: f64 = 5.0;
+
 /// The answer to a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
@@ -132,6 +146,8 @@ pub struct Verdict {
     pub hazards: Vec<Hazard>,
     /// Distance of the supports from their places where it exceeds [`Slip::NOTICED`]; of a run the greatest, and when, s.
     pub slip: Option<(Slip, Option<f64>)>,
+    /// Hazards of a run that were over at its end.
+    pub passed: Vec<PassedHazard>,
     /// The first sentence of every result.
     pub sentence: String,
     /// Targets that are missed, the most important first.
@@ -140,10 +156,11 @@ pub struct Verdict {
 
 impl Verdict {
     /// Nothing needs to change: the job holds, for the weaker of two of three people, too, no group is tired at its end, and no
-    /// coordinate is in hazard.
+    /// coordinate is or was in hazard.
     pub fn has_reserve(&self) -> bool {
         let tired = self.tired.is_some_and(|tired| tired.fatigue > TIRED);
-        self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && self.hazards.is_empty()
+        let hazard = !self.hazards.is_empty() || !self.passed.is_empty();
+        self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && !hazard
     }
 }
 
@@ -170,6 +187,8 @@ pub(crate) struct Findings {
     pub(crate) tired: Option<Tired>,
     /// Coordinates in hazard.
     pub(crate) hazards: Vec<Hazard>,
+    /// Hazards of a run that were over at its end.
+    pub(crate) passed: Vec<PassedHazard>,
     /// Share of the instants of a motion whose acceleration a posture at rest leaves out, where the motion is fast.
     pub(crate) fast: Option<f64>,
     /// Inertia of the motion counts.
@@ -194,7 +213,7 @@ impl Findings {
 
     /// The kind, by precedence.
     fn kind(&self) -> VerdictKind {
-        let misses = self.missed.first().is_some_and(|missed| missed.decides);
+        let misses = self.missed.iter().any(|missed| missed.decides);
         let ends_in_a_fall = self.missing.is_some_and(|(_, time)| time.is_some());
         if self.slides.is_some() {
             VerdictKind::CannotStand

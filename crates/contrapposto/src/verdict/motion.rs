@@ -8,7 +8,7 @@ use crate::joint_torques::GroupLoad;
 use crate::model::Model;
 
 impl Verdict {
-    /// Of a motion of `seconds` that was assessed.
+    /// Of a motion of `seconds` that was assessed. Its times count from the start of the motion.
     pub fn of_motion(model: &Model, found: &Assessment, seconds: f64) -> Self {
         let hardest = found.groups.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value));
         let start = found.groups.first().and_then(|group| group.loads.pieces().first()).map_or(0.0, |(time, _)| *time);
@@ -22,8 +22,13 @@ impl Verdict {
         });
         let mut findings = Findings {
             asked: Some(seconds),
-            hardest: hardest.filter(|group| group.peak_load.value > 0.0).map(|g| (load_of(g), Some(g.peak_load.time))),
-            missing: found.missing.map(|(missing, time)| (missing, Some(time))),
+            hardest: hardest
+                .filter(|group| group.peak_load.value > 0.0)
+                .map(|g| (load_of(g), Some(g.peak_load.time - start))),
+            missing: found
+                .missing
+                .map(|(missing, time)| (missing, Some(time - start)))
+                .or(found.uncarried.map(|missing| (missing, None))),
             fast: Some(found.fast_share).filter(|share| *share > FAST_SHARE && !found.dynamics),
             dynamics: found.dynamics,
             fails,

@@ -2,8 +2,9 @@
 
 use super::holding::failures;
 use super::{Findings, Missed, Verdict};
+use crate::assessment::Assessment;
 use crate::contact::{Missing, Slip};
-use crate::equilibria::{RelaxedPosture, Work};
+use crate::equilibria::{Equilibria, RelaxedPosture, Search, Work};
 use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Model;
 
@@ -27,6 +28,20 @@ impl HeldPosture {
     pub fn of_equilibrium(found: &RelaxedPosture, missed: Vec<Missed>) -> Self {
         let groups = found.work.iter().map(GroupLoad::from).collect();
         Self { groups, slip: found.relaxed.slip, missed, ..Self::default() }
+    }
+}
+
+/// One posture that was assessed, held at rest.
+impl From<&Assessment> for HeldPosture {
+    fn from(found: &Assessment) -> Self {
+        let groups = found.groups.iter().filter(|group| group.peak_load.value > 0.0).map(|group| GroupLoad {
+            coordinate: group.coordinate,
+            side: group.side,
+            torque: group.peak_torque,
+            load: group.peak_load.value,
+        });
+        let missing = found.missing.map(|(missing, _)| missing);
+        Self { groups: groups.collect(), missing, hazards: found.hazards.clone(), ..Self::default() }
     }
 }
 
@@ -70,6 +85,24 @@ impl Verdict {
             ..Findings::default()
         }
         .verdict(model)
+    }
+
+    /// Of a search for postures of least effort: that of the first one; `None` where it found none.
+    pub fn of_equilibria(search: &Search<'_>, found: &Equilibria) -> Option<Self> {
+        let (model, best) = (search.model, found.postures.first()?);
+        let lengths = best.relaxed.levels.iter().map(|level| level.length);
+        let missed = Missed::of_levels(model, &best.relaxed.posture, search.goals.iter().zip(lengths));
+        let mut angles = best.relaxed.posture.values().to_vec();
+        for joint in model.three_axis_joints() {
+            let about_axes = joint.orientation(best.relaxed.posture.values()).angles.values;
+            joint.coordinates.into_iter().zip(about_axes).for_each(|(i, angle)| angles[i] = angle);
+        }
+        let of = |torques: &[f64]| -> Vec<f64> {
+            model.coordinates().iter().map(|coordinate| coordinate.rate.map_or(0.0, |rate| torques[rate])).collect()
+        };
+        let hazards = Hazard::all(model, &angles, &of(&best.torques[0]), &of(&best.torques[1]));
+        let posture = HeldPosture { hazards, ..HeldPosture::of_equilibrium(best, missed) };
+        Some(Self::of_posture(model, &posture))
     }
 
     /// Of a body for which no posture was found in which its supports hold it.

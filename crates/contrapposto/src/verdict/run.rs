@@ -2,15 +2,17 @@
 
 use super::holding::GroupAtEnd;
 use super::spread::spread;
-use super::{Failure, Findings, Missed, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, LEAST_HAZARD, Missed, PassedHazard, Verdict, VerdictKind, Who};
 use crate::joint_torques::Hazard;
 use crate::model::Side;
+use crate::posture::Posture;
 use crate::simulation::{CoordinateSummary, Scenario, StopReason, Summary};
 
 impl Verdict {
     /// Of a run, whether it went to its end or not.
     pub fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
         let levels = scenario.tasks.iter().map(|task| &task.goal).zip(summary.errors.iter().copied());
+        let end = Posture::new(summary.coordinates.iter().map(|coordinate| coordinate.final_value).collect());
         let interrupted = summary.reason == StopReason::Interrupted;
         let mut findings = Findings {
             asked: Some(summary.end_time),
@@ -18,9 +20,10 @@ impl Verdict {
             missing: summary.fall.map(|fall| (fall.missing, Some(fall.time))),
             slip: summary.slip.map(|(slip, time)| (slip, Some(time))),
             slides: summary.sliding_since.zip(summary.standing.as_ref()).map(|(since, last)| (last.slip, Some(since))),
-            missed: Missed::of_levels(&scenario.model, levels),
+            missed: Missed::of_levels(&scenario.model, &end, levels),
             fails: fails(scenario, summary),
             hazards: at_end(scenario, summary),
+            passed: passed(scenario, summary),
             interrupted: interrupted.then_some(summary.end_time),
             ..Findings::default()
         };
@@ -36,6 +39,21 @@ fn at_end(scenario: &Scenario, summary: &Summary) -> Vec<Hazard> {
     let of = |value: fn(&CoordinateSummary) -> f64| -> Vec<f64> { summary.coordinates.iter().map(value).collect() };
     let (external, passive) = (of(|end| end.final_torques[0]), of(|end| end.final_torques[1]));
     Hazard::all(&scenario.model, &of(|end| end.final_value), &external, &passive)
+}
+
+/// Hazards of a run that were over at its end.
+fn passed(scenario: &Scenario, summary: &Summary) -> Vec<PassedHazard> {
+    let hazard = |(i, course): (usize, &CoordinateSummary)| {
+        let coordinate = &scenario.model.coordinates()[i];
+        let worst = course.hazardous?;
+        let ([external, passive], [external_at_end, passive_at_end, _]) = (worst.torques, course.final_torques);
+        let is_over = Hazard::at(coordinate, course.final_value, external_at_end, passive_at_end).is_none();
+        let row = Hazard::at(coordinate, worst.angle, external, passive)?;
+        let seconds = worst.samples as f64 * scenario.run.step;
+        let hazard = Hazard { coordinate: i, angle: worst.angle, external, passive, row };
+        (is_over && seconds >= LEAST_HAZARD).then_some(PassedHazard { hazard, time: worst.time, seconds })
+    };
+    summary.coordinates.iter().enumerate().filter_map(hazard).collect()
 }
 
 /// All groups of known strength at the end of a run.

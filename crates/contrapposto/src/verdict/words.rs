@@ -1,10 +1,12 @@
 //! Says a verdict in one sentence.
 
-use super::{Failure, Findings, Missed, TIRED, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, Missed, Nearest, PassedHazard, TIRED, Verdict, VerdictKind, Who};
 use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
 use crate::tasks::Unit;
 
+/// A direction with less than this share of a distance is not named.
+const LEAST_PART: f64 = 0.05;
 /// A time from here on, s, is said as no limit: longer than a day.
 const A_DAY: f64 = 86_400.0;
 
@@ -48,6 +50,7 @@ impl Findings {
             fails_weaker: self.fails_weaker().map(|failure| failure.who),
             hazards: self.hazards,
             slip: self.slip.filter(|(slip, _)| slip.exceeds(Slip::NOTICED)),
+            passed: self.passed,
             sentence,
             missed: self.missed,
         }
@@ -79,8 +82,10 @@ impl Findings {
     }
 
     fn not_reached(&self) -> String {
-        let Some(missed) = self.missed.first() else { return String::new() };
-        format!("Not reached: {} is missed by {}.", missed.task, missed.by())
+        let Some(missed) = self.missed.iter().find(|missed| missed.decides) else { return String::new() };
+        let why = if missed.contradicts { "; a more important target of the same part is elsewhere" } else { "" };
+        let nearest = missed.nearest.filter(|_| !missed.contradicts).map(|nearest| format!(" {}", nearest.in_words()));
+        format!("Not reached: {} is missed by {}{why}.{}", missed.task, missed.by(), nearest.unwrap_or_default())
     }
 
     fn held_until(&self, model: &Model) -> String {
@@ -90,7 +95,8 @@ impl Findings {
         if time <= 0.0 {
             return format!("Cannot be held: {who} fails at once ({range}).");
         }
-        let hazards = self.ligaments(model).map_or(String::new(), |ligaments| format!("; but {ligaments}"));
+        let hazards: Vec<String> = self.ligaments(model).into_iter().chain(self.passed(model)).collect();
+        let hazards = if hazards.is_empty() { String::new() } else { format!("; but {}", listed(&hazards)) };
         format!("Can be held {} ({range}), then {who} fails first{hazards}.", how_long(time))
     }
 
@@ -118,13 +124,21 @@ impl Findings {
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
         let tired =
             tired.map(|tired| format!("{} is {} tired at the end", tired.who.name(model), percent(tired.fatigue)));
-        weaker.into_iter().chain(tired).chain(self.ligaments(model)).collect()
+        weaker.into_iter().chain(tired).chain(self.ligaments(model)).chain(self.passed(model)).collect()
     }
 
     /// `ligaments hold lumbar extension at −60.0° (74 % of 165 N m)`.
     fn ligaments(&self, model: &Model) -> Option<String> {
         let list: Vec<String> = self.hazards.iter().map(|hazard| hazard.in_words(model)).collect();
         (!list.is_empty()).then(|| format!("ligaments hold {}", list.join(" and ")))
+    }
+
+    /// `ligaments held for 40 s lumbar extension at −60.0° (74 % of 165 N m)`.
+    fn passed(&self, model: &Model) -> Option<String> {
+        let told =
+            |passed: &PassedHazard| format!("for {} {}", how_long(passed.seconds), passed.hazard.in_words(model));
+        let list: Vec<String> = self.passed.iter().map(told).collect();
+        (!list.is_empty()).then(|| format!("ligaments held {}", list.join(" and ")))
     }
 
     /// ` Held on like this: about 6.6 min in all (3.9 min to 21.4 min for two of three people), then right shoulder flexion fails first.`
@@ -167,15 +181,45 @@ fn listed(parts: &[String]) -> String {
     }
 }
 
+impl Nearest {
+    /// `It gets to 0.40, 1.97, 0.20 m (ground axes x, y, z); from there the target lies 62.9 cm higher and 3.1 cm along +z.`
+    fn in_words(&self) -> String {
+        let [x, y, z] = [self.at.x, self.at.y, self.at.z];
+        let whole = self.to_target.norm();
+        let counts = |part: f64| part.abs() > LEAST_PART * whole;
+        let rise = self.to_target.dot(&self.up);
+        let mut parts: Vec<String> = vec![];
+        if counts(rise) {
+            parts.push(format!("{} {}", length(rise.abs()), if rise > 0.0 { "higher" } else { "lower" }));
+        }
+        let level = self.to_target - rise * self.up;
+        for (part, axis) in level.iter().zip(["x", "y", "z"]).filter(|(part, _)| counts(**part)) {
+            parts.push(format!("{} along {}{axis}", length(part.abs()), if *part > 0.0 { "+" } else { "\u{2212}" }));
+        }
+        let at = format!("{x:.2}, {y:.2}, {z:.2}").replace('-', "\u{2212}");
+        format!("It gets to {at} m (ground axes x, y, z); from there the target lies {}.", parts.join(" and "))
+    }
+}
+
 impl Missed {
     /// `12.0 cm`, `3.4°`.
     pub fn by(&self) -> String {
-        match self.unit {
-            Some(Unit::Radian) => format!("{:.1}°", self.distance.to_degrees()),
-            Some(Unit::Metre) => centimetres(self.distance),
-            _ => format!("{:.3} (m and rad together)", self.distance),
-        }
+        by(self.distance, self.unit)
     }
+}
+
+/// An error in its unit.
+pub(super) fn by(error: f64, unit: Option<Unit>) -> String {
+    match unit {
+        Some(Unit::Radian) => format!("{:.1}°", error.to_degrees()),
+        Some(Unit::Metre) => length(error),
+        _ => format!("{error:.3} (m and rad together)"),
+    }
+}
+
+/// `12.0 cm`, from a metre on `1.23 m`.
+fn length(metres: f64) -> String {
+    if metres < 0.995 { format!("{:.1} cm", 100.0 * metres) } else { format!("{metres:.2} m") }
 }
 
 impl Who {
@@ -189,11 +233,6 @@ impl Who {
     }
 }
 
-/// `12.0 cm`, `1.20 m`.
-fn centimetres(distance: f64) -> String {
-    if distance < 0.995 { format!("{:.1} cm", 100.0 * distance) } else { format!("{distance:.2} m") }
-}
-
 /// `14 min to 27 min in two of three people`.
 fn in_words((least, greatest): (f64, f64)) -> String {
     let most = if greatest < A_DAY { how_long(greatest) } else { "no limit".to_owned() };
@@ -202,7 +241,7 @@ fn in_words((least, greatest): (f64, f64)) -> String {
 
 /// `5.3 cm and 2.1°`.
 pub fn slip_in_words(slip: Slip) -> String {
-    format!("{} and {:.1}°", centimetres(slip.distance), slip.angle.to_degrees())
+    format!("{} and {:.1}°", length(slip.distance), slip.angle.to_degrees())
 }
 
 fn percent(share: f64) -> String {

@@ -4,11 +4,13 @@ use contrapposto::posture_solver::SolvedPosture;
 use contrapposto_formats::{PoseScenario, PoseText};
 
 use super::source::ScenarioSource;
-use crate::commands::pose::{read, solve, verdict};
+use crate::args::SuggestArgs;
+use crate::commands::pose::{answer, read, solve};
 use crate::fail::Fail;
 use crate::library::failure::{Failure, Note, with_notes};
 use crate::library::frames::Frames;
 use crate::output::json_text;
+use crate::view::answer::Answer;
 use crate::view::held::held;
 use crate::view::report::pose::report_of_pose;
 
@@ -16,6 +18,7 @@ use crate::view::report::pose::report_of_pose;
 pub struct Posed {
     scenario: PoseScenario,
     pose: SolvedPosture,
+    answer: Answer,
     json: String,
     frames: Frames,
 }
@@ -30,12 +33,12 @@ impl Posed {
             let file = source.open()?;
             let name = file.name.clone();
             let scenario = read(file)?;
-            let pose = solve(&name, &scenario)?;
-            let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
-            let verdict = verdict(&scenario, &pose, &held);
-            let json = json_text("pose.json", &PoseText::new(&scenario, &pose, &verdict, vec![]))?;
+            let crate::commands::pose::Posed { pose, held, .. } = solve(&name, &scenario)?;
+            let answer = answer(&scenario, &pose, &held, SuggestArgs::default());
+            let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), vec![]);
+            let json = json_text("pose.json", &text)?;
             let frames = Frames::of(&scenario.model, &[held.frame]);
-            Ok(Self { scenario, pose, json, frames })
+            Ok(Self { scenario, pose, answer, json, frames })
         })
     }
 
@@ -55,10 +58,10 @@ impl Posed {
     /// [`Failure`] where the page cannot be drawn.
     pub fn report(&self) -> Result<String, Failure> {
         let page = || -> Result<String, Fail> {
-            let Self { scenario, pose, .. } = self;
+            let Self { scenario, pose, answer, .. } = self;
             let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
-            let verdict = verdict(scenario, pose, &held);
-            report_of_pose(scenario, pose, &PoseText::new(scenario, pose, &verdict, vec![]), held)
+            let text = PoseText::new(scenario, pose, (&answer.verdict, &answer.advice), vec![]);
+            report_of_pose(scenario, pose, (&text, answer), held)
         };
         page().map_err(Failure::from)
     }

@@ -5,12 +5,13 @@ use contrapposto::verdict::Verdict;
 use contrapposto_formats::RelaxScenario;
 
 use super::source::ScenarioSource;
-use crate::commands::relax::{find, read, verdict};
+use crate::args::SuggestArgs;
+use crate::commands::relax::{advice_without, answer, find, read};
 use crate::fail::Fail;
 use crate::library::failure::{Failure, Note, with_notes};
 use crate::library::frames::Frames;
 use crate::output::json_text;
-use crate::view::answer::text_without_posture;
+use crate::view::answer::{Answer, text_without_posture};
 use crate::view::frame::frame_of_posture;
 use crate::view::report::equilibria::report_of_equilibria;
 use crate::view::text::relax::RelaxText;
@@ -18,7 +19,7 @@ use crate::view::text::relax::RelaxText;
 /// The postures of least effort; none of a body that cannot stand.
 pub struct Relaxed {
     scenario: RelaxScenario,
-    found: Option<(Equilibria, Verdict)>,
+    found: Option<(Equilibria, Answer)>,
     json: String,
     frames: Frames,
 }
@@ -36,7 +37,10 @@ impl Relaxed {
             match find(&scenario) {
                 Ok(found) => Self::of(scenario, found),
                 Err(SearchError::CannotStand(missing)) => {
-                    let json = text_without_posture("relax.json", &scenario.title, &scenario.model, missing)?;
+                    let verdict = Verdict::of_fall(&scenario.model, missing);
+                    let advice = advice_without(&scenario, &verdict, SuggestArgs::default());
+                    let answer = (&verdict, &advice);
+                    let json = text_without_posture("relax.json", &scenario.title, &scenario.model, answer)?;
                     let frames = Frames::of(&scenario.model, &[]);
                     Ok(Self { scenario, found: None, json, frames })
                 }
@@ -47,11 +51,11 @@ impl Relaxed {
     }
 
     fn of(scenario: RelaxScenario, found: Equilibria) -> Result<Self, Fail> {
-        let verdict = verdict(&scenario, &found)?;
-        let json = json_text("relax.json", &RelaxText::new(&scenario, &found, &verdict, vec![]))?;
+        let answer = answer(&scenario, &found, SuggestArgs::default());
+        let json = json_text("relax.json", &RelaxText::new(&scenario, &found, &answer, vec![]))?;
         let frames = found.postures.iter().map(|posture| frame_of_posture(&scenario.model, posture));
         let frames = Frames::of(&scenario.model, &frames.collect::<Result<Vec<_>, _>>()?);
-        Ok(Self { scenario, found: Some((found, verdict)), json, frames })
+        Ok(Self { scenario, found: Some((found, answer)), json, frames })
     }
 
     /// The text of `relax.json`.
@@ -70,7 +74,7 @@ impl Relaxed {
     /// [`Failure`] where the page cannot be drawn, or the body cannot stand.
     pub fn report(&self) -> Result<String, Failure> {
         match &self.found {
-            Some((found, verdict)) => Ok(report_of_equilibria(&self.scenario, found, verdict)?),
+            Some((found, answer)) => Ok(report_of_equilibria(&self.scenario, found, answer)?),
             None => Err(Failure::failed("the body cannot stand: there is no posture to show")),
         }
     }

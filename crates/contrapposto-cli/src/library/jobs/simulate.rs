@@ -1,13 +1,14 @@
 //! Carries out a scenario over time.
 
-use std::num::NonZero;
-
 use contrapposto::simulation::{Fall, Run, ScenarioError, Summary};
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, read_run};
 
 use super::source::ScenarioSource;
-use crate::commands::simulate::{summary_json, try_changes};
+use crate::args::SuggestArgs;
+use crate::commands::simulate::summary_json;
+use crate::commands::trials::{advice_of_run, advice_without_posture};
 use crate::fail::Fail;
 use crate::library::failure::{Failure, Note, with_notes};
 use crate::library::frames::Frames;
@@ -47,11 +48,15 @@ impl Simulated {
 
     fn of(run: RunScenario, suggest: bool, go_on: impl Fn() -> bool + Sync) -> Result<Self, Fail> {
         let scenario = &run.scenario;
+        let trials = SuggestArgs { no_suggest: !suggest, ..SuggestArgs::default() };
         let failed = |error: ScenarioError| Fail::job("simulation", error);
         let mut under_way = match Run::new(scenario) {
             Ok(under_way) => under_way,
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
-                let json = text_without_posture("summary.json", &scenario.title, &scenario.model, missing)?;
+                let verdict = Verdict::of_fall(&scenario.model, missing);
+                let advice = advice_without_posture(&verdict, scenario, trials, &go_on);
+                let answer = (&verdict, &advice);
+                let json = text_without_posture("summary.json", &scenario.title, &scenario.model, answer)?;
                 let frames = Frames::of(&scenario.model, &[]);
                 return Ok(Self { run, course: None, json, frames });
             }
@@ -66,8 +71,8 @@ impl Simulated {
         let summary = under_way.summary();
         let mut answer = Answer::of_run(scenario, &summary);
         if suggest && go_on() {
-            let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-            try_changes(&mut answer, scenario, &summary, threads, go_on);
+            let job = (&summary, under_way.solver_steps());
+            answer.advice = advice_of_run(&answer.verdict, scenario, job, trials, &go_on);
         }
         let json = summary_json(scenario, &summary, &answer, vec![])?;
         let frames: Vec<Frame> = recording.rows().map(|row| Frame::of_row(&scenario.model, row)).collect();

@@ -13,7 +13,7 @@ use contrapposto_report::{Entry, Figure, List, Moments, Table};
 use nalgebra::Vector3;
 
 use crate::fail::Fail;
-use crate::view::answer::group_of_title;
+use crate::view::answer::{Answer, group_of_title};
 use crate::view::decision::answer;
 use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
@@ -21,6 +21,7 @@ use crate::view::scene::Scene;
 use crate::view::scene::hazard::{hazards, tell};
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
+use crate::view::text::assess::times_from;
 use crate::view::text::sources::StrengthAtText;
 use crate::view::words::{MOST_ROWS, group, percent, plain, sentence, value};
 
@@ -105,7 +106,7 @@ pub(crate) fn report_of_assessment(
     title: &str,
     assessed_frames: &AssessedFrames<'_>,
     (found, inertia): (&Assessment, Option<&str>),
-    verdict: &Verdict,
+    Answer { verdict, advice }: &Answer,
     supports: &[Support],
     held: &[Load],
     warnings: &[String],
@@ -134,7 +135,9 @@ pub(crate) fn report_of_assessment(
     report.open = assessed_frames.nearest(moment(found, verdict));
     let span = last.time - first.time;
     report.headline.clone_from(&verdict.sentence);
-    report.reasons = warnings.iter().map(|warning| sentence(warning) + ".").collect();
+    report.reasons = advice.sentence.clone().into_iter().collect();
+    report.reasons.extend(warnings.iter().map(|warning| sentence(warning) + "."));
+    report.reasons.extend(times_from(first.time));
     let manner = inertia.map_or_else(|| "Each posture is treated as held at rest".to_owned(), sentence);
     report.reasons.push(format!("{manner}; loads are interpolated linearly between postures."));
     report.figures = figures(model, found, &working, format!("{} postures", assessed_frames.instants), span);

@@ -5,13 +5,12 @@ use std::f64::consts::LN_2;
 use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture};
 use contrapposto::hybrid::{Carrier, Equilibrium};
 use contrapposto::model::Model;
-use contrapposto::verdict::Verdict;
 use contrapposto_formats::RelaxScenario;
 use contrapposto_report::{Entry, List, Moments, Table};
 
 use super::figure::{carriers, figure, figures_of, weight};
 use crate::fail::Fail;
-use crate::view::answer::{also_missed, also_slid};
+use crate::view::answer::{Answer, also_missed, also_slid};
 use crate::view::figures::figures_of_postures;
 use crate::view::frame::{Frame, frame_of_posture};
 use crate::view::muscles::{fails_first, hardest};
@@ -43,7 +42,7 @@ fn numbered(count: usize) -> Vec<String> {
 pub(crate) fn report_of_equilibria(
     scenario: &RelaxScenario,
     found: &Equilibria,
-    verdict: &Verdict,
+    Answer { verdict, advice }: &Answer,
 ) -> Result<String, Fail> {
     let model = &scenario.model;
     let frames = frames_of_postures(model, &found.postures)?;
@@ -69,7 +68,7 @@ pub(crate) fn report_of_equilibria(
     };
     let more = found.postures.get(1).map(|next| percent(next.relaxed.effort / best.relaxed.effort - 1.0));
     report.headline.clone_from(&verdict.sentence);
-    report.reasons.extend(also_missed(verdict).into_iter().chain(also_slid(verdict)));
+    report.reasons.extend(also_missed(verdict).into_iter().chain(also_slid(verdict)).chain(advice.sentence.clone()));
     report.reasons.push(match (found.postures.len(), &more) {
         (n, Some(more)) => {
             format!(

@@ -13,6 +13,8 @@ use crate::view::words::{how_long, percent, plain, sentence, value};
 
 /// A pelvis that hangs more than this, degrees, is no level one.
 const LEVEL: f64 = 4.0;
+/// A share below this is said as none.
+const NOTHING: f64 = 0.005;
 /// A joint that moved less, degrees, stayed.
 const STAYED: f64 = 0.5;
 
@@ -37,7 +39,7 @@ pub(super) fn write(
     report.reasons = also_missed(&answer.verdict)
         .into_iter()
         .chain(also_slid(&answer.verdict))
-        .chain(answer.advice.clone())
+        .chain(answer.advice.sentence.clone())
         .collect();
     // Of a job that cannot be done nothing else is said to hold.
     if answer.verdict.kind.is_done() {
@@ -151,8 +153,8 @@ impl Narrative<'_> {
             let before =
                 first.carried(main).map(|before| format!(", at the start {}", percent(before))).unwrap_or_default();
             let part = match share {
-                0.0..0.005 => "none".to_owned(),
-                0.005..0.5 => format!("only {}", percent(share)),
+                0.0..NOTHING => "none".to_owned(),
+                NOTHING..0.5 => format!("only {}", percent(share)),
                 _ => percent(share),
             };
             reasons.push(format!("Ligaments carry {part} of the external torque of {whole:.1} N m at {name}{before}."));
@@ -226,7 +228,7 @@ impl Narrative<'_> {
         if let Some(share) = last.carried(main).filter(|_| !last.against_muscles(main)) {
             figures.push(figure(
                 "Ligaments carry",
-                percent(share),
+                if share < NOTHING { "none".to_owned() } else { percent(share) },
                 format!("of the external torque at {}", plain(&scenario.model.coordinates()[main].name)),
             ));
         }

@@ -7,6 +7,7 @@ use contrapposto_report::{Moments, Table};
 
 use super::figure::{carriers, figure, figures_of};
 use crate::fail::Fail;
+use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
 use crate::view::held::{Held, held};
 use crate::view::scene::Scene;
@@ -20,7 +21,7 @@ use crate::view::words::{list, metres, percent, plain};
 pub(crate) fn report_of_pose(
     scenario: &PoseScenario,
     pose: &SolvedPosture,
-    text: &PoseText,
+    (text, answer): (&PoseText, &Answer),
     held: Held,
 ) -> Result<String, Fail> {
     let model = &scenario.model;
@@ -46,6 +47,7 @@ pub(crate) fn report_of_pose(
         missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), remaining(entries))).collect();
     report.headline.clone_from(&text.verdict.sentence);
     report.reasons = reasons(pose.reason, &missing, done == all.len());
+    report.reasons.splice(0..0, answer.advice.sentence.clone());
     let nothing = scenario.supports.is_empty() && !root_rates(model).is_empty();
     if unheld.is_some() || nothing {
         report.reasons.push("The torques shown are those of a body whose root is held, as if by hand.".to_owned());

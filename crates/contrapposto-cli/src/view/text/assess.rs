@@ -6,14 +6,14 @@ use std::path::Path;
 use contrapposto::assessment::{Assessment, GroupAssessment, Peak, PeakKind, Proposal};
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::CoordinateKind;
-use contrapposto::verdict::Verdict;
-use contrapposto_formats::VerdictText;
 use contrapposto_formats::tissue::SourcedModel;
+use contrapposto_formats::{AdviceText, VerdictText};
 use serde::Serialize;
 
 use super::group::GroupName;
 use super::plain_table;
 use super::sources::StrengthAtText;
+use crate::view::answer::Answer;
 use crate::view::words::MOST_ROWS;
 
 /// Most groups whose relief is listed.
@@ -26,6 +26,9 @@ pub(crate) struct AssessText {
     motion: String,
     /// The answer.
     verdict: VerdictText,
+    /// Changes of the job that were tried.
+    #[serde(flatten)]
+    advice: AdviceText,
     frames: usize,
     start_s: f64,
     end_s: f64,
@@ -99,7 +102,7 @@ impl AssessText {
         motion: &Path,
         times: &[f64],
         found: &Assessment,
-        verdict: &Verdict,
+        answer: &Answer,
         warnings: Vec<String>,
         files: Vec<String>,
     ) -> Self {
@@ -107,7 +110,8 @@ impl AssessText {
         Self {
             model: model.name().to_owned(),
             motion: motion.display().to_string(),
-            verdict: VerdictText::new(model, verdict),
+            verdict: VerdictText::new(model, &answer.verdict),
+            advice: (&answer.advice).into(),
             frames: times.len(),
             start_s: times.first().copied().unwrap_or_default(),
             end_s: times.last().copied().unwrap_or_default(),
@@ -172,6 +176,13 @@ impl ProposalText {
 }
 
 /// The worst groups, their relief, and the group that fails first.
+/// The note about times of a motion that does not begin at 0.
+pub(crate) fn times_from(start: f64) -> Option<String> {
+    (start.abs() > 0.0).then(|| {
+        format!("Times are those of the file, which begins at {start:.2} s; the first sentence counts from there.")
+    })
+}
+
 pub(crate) fn report(text: &AssessText) -> String {
     let working: Vec<&AssessedGroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
     let mut table = plain_table();
@@ -187,6 +198,9 @@ pub(crate) fn report(text: &AssessText) -> String {
         ]);
     }
     let mut out = format!("{table}\n");
+    if let Some(note) = times_from(text.start_s) {
+        let _ = writeln!(out, "{note}");
+    }
     if working.len() > MOST_ROWS {
         let _ = writeln!(out, "and {} groups with lower loads, which --json lists", working.len() - MOST_ROWS);
     }

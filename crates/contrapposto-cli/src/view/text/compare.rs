@@ -221,8 +221,9 @@ fn answer(postures: &[ComparedPosture]) -> String {
         VerdictKind::Holds => match stance.verdict.asked {
             Some(asked) => {
                 let load = stance.verdict.hardest.map_or(0.0, |group| group.load);
-                let all = stance.verdict.seconds.map_or_else(|| "without a limit".to_owned(), how_long);
-                format!("holds through {}, {all} in all, hardest worked at {:.0} %", how_long(asked), 100.0 * load)
+                let all = stance.verdict.seconds.map(how_long);
+                let all = all.map_or_else(|| " without a limit".to_owned(), |all| format!(", {all} in all"));
+                format!("holds through {}{all}, hardest worked at {:.0} %", how_long(asked), 100.0 * load)
             }
             None => "holds without a limit by muscles".to_owned(),
         },

@@ -7,7 +7,7 @@ use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 
 use super::plain_table;
 use crate::output::ResultSet;
-use crate::view::answer::first_lines;
+use crate::view::answer::Answer;
 use crate::view::words::metres;
 
 /// `remaining: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
@@ -58,8 +58,7 @@ fn unbalanced(scenario: &PoseScenario, verdict: &Verdict) -> String {
     if verdict.kind != VerdictKind::CannotStand || asked {
         return String::new();
     }
-    "`pose` keeps balance only where it is asked to: a task of kind `center_of_mass` keeps the body over its supports; `relax` and \
-     `simulate` always keep balance.\n"
+    "No posture that the supports hold was found near it; a task of kind `center_of_mass` asks for balance over a place of its own.\n"
         .to_owned()
 }
 
@@ -67,7 +66,7 @@ pub(crate) fn report(
     scenario: &PoseScenario,
     pose: &SolvedPosture,
     text: &PoseText,
-    verdict: &Verdict,
+    answer: &Answer,
     folder: Option<&ResultSet>,
 ) -> String {
     let mut table = plain_table();
@@ -90,6 +89,6 @@ pub(crate) fn report(
     let page = folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path("report.html").display()));
     format!(
         "{first}{title}{table}\n{reason} ({steps})\n{page}",
-        first = first_lines(verdict) + &unbalanced(scenario, verdict)
+        first = answer.first_lines() + &unbalanced(scenario, &answer.verdict)
     )
 }

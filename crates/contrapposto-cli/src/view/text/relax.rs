@@ -10,12 +10,12 @@ use contrapposto::model::Model;
 use contrapposto::posture_solver::Reason;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::Task;
-use contrapposto::verdict::Verdict;
-use contrapposto_formats::{RelaxScenario, SlipText, VerdictText};
+use contrapposto_formats::{AdviceText, RelaxScenario, SlipText, VerdictText};
 use serde::Serialize;
 
 use super::group::GroupName;
 use super::plain_table;
+use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
 use crate::view::words::MOST_JOINTS_SHOWN;
 use crate::view::words::how_long;
@@ -30,6 +30,9 @@ pub(crate) struct RelaxText {
     model: String,
     /// The answer: that of the posture of least effort.
     verdict: VerdictText,
+    /// Changes of the job that were tried.
+    #[serde(flatten)]
+    advice: AdviceText,
     /// Starts that were tried, and how many of them fell.
     starts: usize,
     fell: usize,
@@ -130,12 +133,13 @@ struct WorkText {
 }
 
 impl RelaxText {
-    pub(crate) fn new(scenario: &RelaxScenario, found: &Equilibria, verdict: &Verdict, files: Vec<String>) -> Self {
+    pub(crate) fn new(scenario: &RelaxScenario, found: &Equilibria, answer: &Answer, files: Vec<String>) -> Self {
         let names = scenario.model.coordinates().iter().map(|c| c.name.clone());
         Self {
             title: scenario.title.clone(),
             model: scenario.model.name().to_owned(),
-            verdict: VerdictText::new(&scenario.model, verdict),
+            verdict: VerdictText::new(&scenario.model, &answer.verdict),
+            advice: (&answer.advice).into(),
             starts: found.starts,
             fell: found.fell,
             left_out: found.yielded,

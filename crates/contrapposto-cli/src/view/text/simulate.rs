@@ -5,6 +5,7 @@ use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
 use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, StopReason, Summary, TaskSettings};
 use contrapposto::tasks::Task;
+use contrapposto::verdict::error_in_words;
 
 use super::plain_table;
 use crate::output::ResultSet;
@@ -129,7 +130,11 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
         let task = |(task, error): (&TaskSettings, &f64)| {
             let place = if task.above_relief { " (above relief)" } else { "" };
             let effort = task.goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
-            let off = if effort || *error < REACHED { String::new() } else { format!(" (off by {error:.4} m or rad)") };
+            let off = if effort || *error < REACHED {
+                String::new()
+            } else {
+                format!(" (off by {})", error_in_words(&task.goal, *error))
+            };
             task.label(&scenario.model) + place + &off
         };
         let tasks: Vec<String> = scenario.tasks.iter().zip(&standing.errors).map(task).collect();

@@ -1,0 +1,62 @@
+//! Says which changes of a job help, and which were not tried.
+
+use super::budget::{Budget, Trial, within};
+use super::change::{Change, Job};
+use super::trial::Suggestion;
+use crate::verdict::Verdict;
+
+/// The changes of a job that were tried.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Advice {
+    /// Those that help, the one that helps most first.
+    pub helping: Vec<Suggestion>,
+    /// Those that were not tried because the budget was used up, in words.
+    pub not_tried: Vec<String>,
+    /// `What would help most: ...`; `None` where there is nothing to say.
+    pub sentence: Option<String>,
+}
+
+impl Advice {
+    /// Tries changes of a job in their order within a budget; nothing for a job that holds with reserve. `known` are suggestions that
+    /// need no trial.
+    pub fn new(
+        verdict: &Verdict,
+        job: &Job<'_>,
+        changes: impl FnOnce() -> Vec<Change>,
+        known: impl FnOnce() -> Option<Suggestion>,
+        budget: Budget,
+        trial: impl Fn(&Change) -> Trial + Sync,
+    ) -> Self {
+        if verdict.has_reserve() {
+            return Self { sentence: Some("Nothing needs to change.".to_owned()), ..Self::default() };
+        }
+        let changes = changes();
+        let trials = within(budget, &changes, trial);
+        let not_tried: Vec<String> = changes[trials.len()..].iter().map(|change| change.in_words(job)).collect();
+        let suggestion =
+            |(change, trial): (&Change, &Trial)| Some(Suggestion::new(job, change, trial.verdict.as_ref()?));
+        let all: Vec<Suggestion> = changes.iter().zip(&trials).filter_map(suggestion).chain(known()).collect();
+        let tried = all.len();
+        let helping = Suggestion::that_help(all, verdict);
+        let sentence = sentence(&helping, tried, &not_tried);
+        Self { helping, not_tried, sentence }
+    }
+}
+
+/// The sentence after the verdict; `None` where there is nothing to try.
+fn sentence(helping: &[Suggestion], tried: usize, not_tried: &[String]) -> Option<String> {
+    let said = match helping {
+        [] if tried == 0 => None,
+        [] if tried == 1 => Some("The one change that was tried does not help.".to_owned()),
+        [] => Some(format!("None of the {tried} changes that were tried helps.")),
+        [best] => Some(format!("What would help: {}.", best.in_words())),
+        [best, rest @ ..] => {
+            let rest: Vec<String> = rest.iter().map(Suggestion::in_words).collect();
+            Some(format!("What would help most: {}. Also: {}.", best.in_words(), rest.join("; ")))
+        }
+    };
+    let left = (!not_tried.is_empty())
+        .then(|| format!("Not tried, because the budget of solver steps was used up: {}.", not_tried.join("; ")));
+    let parts: Vec<String> = said.into_iter().chain(left).collect();
+    (!parts.is_empty()).then(|| parts.join(" "))
+}
