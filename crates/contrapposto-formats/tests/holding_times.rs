@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use contrapposto::simulation::run;
+use contrapposto::suggestions::Advice;
 use contrapposto_formats::{SummaryText, read_scenario};
 
 /// Knuckles at a height, m, and so far ahead of the ankles; nobody shifts. The first group that gives up, and after how many
@@ -25,7 +26,7 @@ fn held(height: f64, ahead: f64) -> Option<(String, f64)> {
     let scenario = read_scenario("scenario.toml", text.as_bytes(), None).unwrap();
     let summary = run(&scenario, |_| {}).unwrap();
     let verdict = contrapposto::verdict::Verdict::of_run(&scenario, &summary);
-    let text = SummaryText::new(&scenario, &summary, &verdict, &[], vec![]);
+    let text = SummaryText::new(&scenario, &summary, &verdict, &Advice::default(), vec![]);
     println!("{height} m, {ahead} m: {:?}", text.failed_first);
     assert!(text.standing.unwrap().task_errors.iter().take(2).all(|error| *error < 1e-3));
     text.failed_first.map(|failed| (failed.group.unwrap(), failed.at_s / 60.0))

@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use contrapposto::assessment::assess as assessed;
-use contrapposto::assessment::{AssessSettings, Assessment, FAST_SHARE, GroupAssessment, Instant, PeakTorques};
+use contrapposto::assessment::{
+    AssessError, AssessSettings, Assessment, FAST_SHARE, GroupAssessment, Instant, PeakTorques,
+};
 use contrapposto::contact::Support;
 use contrapposto::joint_torques::JointMuscles;
+use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -69,25 +72,10 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
 
     let mut tables = Tables::new(model, motion.len(), said.as_deref());
     let mut assessed_frames = args.out.as_ref().map(|_| AssessedFrames::new(&opened, motion.len()));
-    let found = assessed(
-        model,
-        &motion,
-        |time, kinematics, loads| {
-            loads.extend_from_slice(&held);
-            ground.iter().for_each(|ground| ground.loads(time, model, kinematics, loads));
-        },
-        &settings,
-        |instant| {
-            tables.record(instant);
-            if let Some(assessed_frames) = &mut assessed_frames {
-                let measured = ground.as_ref();
-                assessed_frames.record(instant, |loads| {
-                    measured.iter().for_each(|g| g.loads(instant.time, model, instant.torques.kinematics(), loads));
-                });
-            }
-        },
-    )
-    .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
+    let whole = Motion { model, motion: &motion, held: &held, settings: &settings, ground: ground.as_ref() };
+    let found = whole
+        .assess(&mut tables, assessed_frames.as_mut())
+        .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
     let new = warnings(args, &opened, &found, motion.len());
     new.iter().for_each(|warning| print_note("warning", warning));
     let warnings = [of_muscles, doubts, new].concat();
@@ -101,12 +89,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let figures = figures.transpose()?.unwrap_or_default();
     let span = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
     let verdict = Verdict::of_motion(model, &found, span);
-    let advice = advice(
-        &Motion { model, motion: &motion, held: &held, settings: &settings, ground: ground.is_some() },
-        &found,
-        &verdict,
-        args.suggest,
-    );
+    let advice = advice(&whole, &found, &verdict, args.suggest);
     let answer = Answer { verdict, advice };
     let page = assessed_frames.map(|assessed_frames| {
         let manner = said.as_deref();
@@ -132,8 +115,33 @@ struct Motion<'a> {
     motion: &'a [(f64, Posture)],
     held: &'a [Load],
     settings: &'a AssessSettings,
-    /// The ground's forces are measured.
-    ground: bool,
+    /// The measured forces of the ground.
+    ground: Option<&'a GroundReaction>,
+}
+
+impl Motion<'_> {
+    /// Assesses all postures; what each shows goes into the tables and the frames.
+    fn assess(&self, tables: &mut Tables, mut frames: Option<&mut AssessedFrames>) -> Result<Assessment, AssessError> {
+        let model = self.model;
+        let measured = |time: f64, kinematics: &Kinematics, loads: &mut Vec<Load>| {
+            self.ground.iter().for_each(|ground| ground.loads(time, model, kinematics, loads));
+        };
+        assessed(
+            model,
+            self.motion,
+            |time, kinematics, loads| {
+                loads.extend_from_slice(self.held);
+                measured(time, kinematics, loads);
+            },
+            self.settings,
+            |instant| {
+                tables.record(instant);
+                if let Some(frames) = &mut frames {
+                    frames.record(instant, |loads| measured(instant.time, instant.torques.kinematics(), loads));
+                }
+            },
+        )
+    }
 }
 
 /// The changes that were tried: less load, and breaks. Measured forces of the ground belong to the load that was carried, so that
@@ -151,7 +159,7 @@ fn advice(given: &Motion<'_>, found: &Assessment, verdict: &Verdict, suggest: Su
         return Advice::default();
     }
     let start = &motion[0].1;
-    let (supports, has_loads) = (&settings.supports, !held.is_empty() && !ground);
+    let (supports, has_loads) = (&settings.supports, !held.is_empty() && ground.is_none());
     let job = Job { model, start, supports, levels: vec![], has_loads, asked: Some(end - begin), strategy: None };
     let all = || changes(&job).into_iter().filter(|change| *change != Change::OtherFoot).collect();
     let groups = Worked::in_motion(model, found);

@@ -119,25 +119,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         },
     };
     let mut files = folder.map(|folder| Files { folder, recording });
-    let progress = progress_bar(scenario.run.duration);
-    let mut number = run.snapshot().samples;
-    let mut saved = (Instant::now(), number);
-    // The start is always shown.
-    while number == 0 || !interruption::is_requested() {
-        let Some(sample) = run.next_sample().map_err(failed)? else { break };
-        if let Some(files) = &mut files {
-            files.recording.record(number, &sample);
-        }
-        number += 1;
-        if number.is_multiple_of(256) {
-            progress.set_position(sample.time as u64);
-            if saved.0.elapsed() > BETWEEN_SAVES && run.snapshot().samples > saved.1 {
-                files.iter().try_for_each(|files| save(scenario, &run, &files.recording, &files.folder))?;
-                saved = (Instant::now(), run.snapshot().samples);
-            }
-        }
-    }
-    progress.finish_and_clear();
+    go_through(scenario, &mut run, files.as_mut())?;
     let summary = run.summary();
     let mut answer = Answer::of_run(scenario, &summary);
     if summary.reason != StopReason::Interrupted {
@@ -153,6 +135,30 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
         false => answered(&answer.verdict),
     }
+}
+
+/// Computes and records all samples up to the end of a run, or until it is interrupted.
+fn go_through<'a>(scenario: &'a Scenario, run: &mut Run<'a>, mut files: Option<&mut Files>) -> Result<(), Fail> {
+    let progress = progress_bar(scenario.run.duration);
+    let mut number = run.snapshot().samples;
+    let mut saved = (Instant::now(), number);
+    // The start is always shown.
+    while number == 0 || !interruption::is_requested() {
+        let Some(sample) = run.next_sample().map_err(|error| Fail::job("simulation", error))? else { break };
+        if let Some(files) = files.as_deref_mut() {
+            files.recording.record(number, &sample);
+        }
+        number += 1;
+        if number.is_multiple_of(256) {
+            progress.set_position(sample.time as u64);
+            if saved.0.elapsed() > BETWEEN_SAVES && run.snapshot().samples > saved.1 {
+                files.iter().try_for_each(|files| save(scenario, run, &files.recording, &files.folder))?;
+                saved = (Instant::now(), run.snapshot().samples);
+            }
+        }
+    }
+    progress.finish_and_clear();
+    Ok(())
 }
 
 /// The error of an interrupted run.

@@ -111,13 +111,8 @@ fn is_direction(task: &Task) -> bool {
     matches!(task, Task::LookAt(LookAt { goal: LookAtGoal::Direction(_), .. }))
 }
 
-/// The error of a level in words: `12.0 cm`, `3.4°`.
-pub fn error_in_words(level: &PriorityLevel, error: f64) -> String {
-    super::words::by(error, unit(level))
-}
-
 /// The unit of all errors of a level.
-fn unit(level: &PriorityLevel) -> Option<Unit> {
+pub(super) fn unit(level: &PriorityLevel) -> Option<Unit> {
     let of = |task: &Task| match task {
         Task::Point(_) | Task::Distance(_) | Task::CenterOfMass(_) => Some(Unit::Metre),
         Task::Orientation(_) | Task::LookAt(_) => Some(Unit::Radian),

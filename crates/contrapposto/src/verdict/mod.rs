@@ -23,10 +23,10 @@ mod run;
 mod spread;
 mod words;
 
-pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest, error_in_words};
+pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest};
 pub use posture::HeldPosture;
 pub use spread::spread;
-pub use words::{how_long, slip_in_words};
+pub use words::{error_in_words, how_long, slip_in_words};
 
 use crate::contact::{Missing, Slip};
 use crate::joint_torques::{GroupLoad, Hazard};

@@ -1,9 +1,10 @@
 //! Says a verdict in one sentence.
 
+use super::missed::unit;
 use super::{Failure, Findings, Missed, Nearest, PassedHazard, TIRED, Verdict, VerdictKind, Who};
 use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
-use crate::tasks::Unit;
+use crate::tasks::{PriorityLevel, Unit};
 
 /// A direction with less than this share of a distance is not named.
 const LEAST_PART: f64 = 0.05;
@@ -130,7 +131,7 @@ impl Findings {
     /// `ligaments hold lumbar extension at −60.0° (74 % of 165 N m)`.
     fn ligaments(&self, model: &Model) -> Option<String> {
         let list: Vec<String> = self.hazards.iter().map(|hazard| hazard.in_words(model)).collect();
-        (!list.is_empty()).then(|| format!("ligaments hold {}", list.join(" and ")))
+        (!list.is_empty()).then(|| format!("ligaments hold {}", enumerated(&list)))
     }
 
     /// `ligaments held for 40 s lumbar extension at −60.0° (74 % of 165 N m)`.
@@ -138,7 +139,7 @@ impl Findings {
         let told =
             |passed: &PassedHazard| format!("for {} {}", how_long(passed.seconds), passed.hazard.in_words(model));
         let list: Vec<String> = self.passed.iter().map(told).collect();
-        (!list.is_empty()).then(|| format!("ligaments held {}", list.join(" and ")))
+        (!list.is_empty()).then(|| format!("ligaments held {}", enumerated(&list)))
     }
 
     /// ` Held on like this: about 6.6 min in all (3.9 min to 21.4 min for two of three people), then right shoulder flexion fails first.`
@@ -181,6 +182,14 @@ fn listed(parts: &[String]) -> String {
     }
 }
 
+/// `a`, `a and b`, `a, b and c`.
+fn enumerated(parts: &[String]) -> String {
+    match parts {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        _ => parts.concat(),
+    }
+}
+
 impl Nearest {
     /// `It gets to 0.40, 1.97, 0.20 m (ground axes x, y, z); from there the target lies 62.9 cm higher and 3.1 cm along +z.`
     fn in_words(&self) -> String {
@@ -197,7 +206,7 @@ impl Nearest {
             parts.push(format!("{} along {}{axis}", length(part.abs()), if *part > 0.0 { "+" } else { "\u{2212}" }));
         }
         let at = format!("{x:.2}, {y:.2}, {z:.2}").replace('-', "\u{2212}");
-        format!("It gets to {at} m (ground axes x, y, z); from there the target lies {}.", parts.join(" and "))
+        format!("It gets to {at} m (ground axes x, y, z); from there the target lies {}.", enumerated(&parts))
     }
 }
 
@@ -208,8 +217,13 @@ impl Missed {
     }
 }
 
+/// The error of a level in words: `12.0 cm`, `3.4°`.
+pub fn error_in_words(level: &PriorityLevel, error: f64) -> String {
+    by(error, unit(level))
+}
+
 /// An error in its unit.
-pub(super) fn by(error: f64, unit: Option<Unit>) -> String {
+fn by(error: f64, unit: Option<Unit>) -> String {
     match unit {
         Some(Unit::Radian) => format!("{:.1}°", error.to_degrees()),
         Some(Unit::Metre) => length(error),
