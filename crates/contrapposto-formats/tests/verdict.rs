@@ -396,17 +396,17 @@ fn a_lumbar_spine_bent_within_three_quarters_of_its_range_is_in_no_hazard() {
     assert!(verdict.hazards.is_empty() && !verdict.sentence.contains("ligaments"), "{}", verdict.sentence);
 }
 
-/// A man bent as above, whose chest a force pulls up from some time on, by more than what is above the lumbar spine weighs.
+/// A man bent as above, whose chest a force pushes down from some time on, so that muscles carry more than half of the torque.
 #[test]
 fn a_hazard_that_an_event_ends_is_told_with_its_seconds_and_not_as_one_of_the_end() {
     let text = |event: f64| {
         format!(
             "format = 1\n[posture]\npelvis_ty_m = 0.95\nlumbar_extension_deg = -60\n[coordinates]\nfree = []\n\
              [strategy]\nkind = \"active\"\n[[event]]\nat_s = {event}\n[[event.load]]\nsegment = \"torso\"\n\
-             force_n = [0, 900, 0]\nfixed_in = \"world\"\n[run]\nduration_s = 20\nstep_s = 0.1\n"
+             force_n = [0, -700, 0]\nfixed_in = \"world\"\n[run]\nduration_s = 20\nstep_s = 0.1\n"
         )
     };
-    let judged = |event: f64| run(&read_scenario("pulled.toml", text(event).as_bytes(), None).unwrap()).1;
+    let judged = |event: f64| run(&read_scenario("pushed.toml", text(event).as_bytes(), None).unwrap()).1;
     let verdict = judged(12.0);
     assert!(verdict.hazards.is_empty() && !verdict.has_reserve(), "{}", verdict.sentence);
     let [passed] = verdict.passed.as_slice() else { panic!("{:?}", verdict.passed) };

@@ -34,7 +34,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let name = file.name.clone();
     let scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POSE_FILES)).transpose()?;
-    let Posed { pose, held, .. } = solve(&name, &scenario)?;
+    let Posed { pose, held, kept_balance } = solve(&name, &scenario)?;
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let files = if args.out.is_some() { names.collect() } else { vec![] };
@@ -45,7 +45,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
         write(&scenario, &pose, (&text, &json, &answer), &figures, held, folder)?;
     }
     print(&if args.json { json } else { report(&scenario, &pose, &text, &answer, folder.as_ref()) })?;
-    exit(&pose, &answer.verdict)
+    exit(&pose, kept_balance, &answer.verdict)
 }
 
 /// The scenario of a file; notes about it go to standard error.
@@ -83,6 +83,9 @@ fn write(
     folder.write(&POSE_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())
 }
 
+/// The note about such a posture where the steps ended before effort was least.
+const STILL_FALLING: &str = "the effort of this posture still fell when the steps toward balance ended; `relax` searches for postures of less effort";
+
 /// The posture that was solved for.
 pub(crate) struct Posed {
     pub(crate) pose: SolvedPosture,
@@ -96,6 +99,9 @@ pub(crate) fn solve(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> 
     let posed = posed(name, scenario)?;
     if posed.kept_balance {
         print_note("note", KEPT_BALANCE);
+        if posed.pose.reason == Reason::StepLimit {
+            print_note("note", STILL_FALLING);
+        }
     }
     Ok(posed)
 }
@@ -185,13 +191,13 @@ pub(crate) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held
     Verdict::of_posture(&scenario.model, &posture)
 }
 
-/// A target of lower priority that is missed is no failure; the step limit is one.
-fn exit(pose: &SolvedPosture, verdict: &Verdict) -> Result<(), Fail> {
+/// A target of lower priority that is missed is no failure; the step limit of the scenario is one, that of the steps toward balance is not.
+fn exit(pose: &SolvedPosture, kept_balance: bool, verdict: &Verdict) -> Result<(), Fail> {
     match pose.reason {
-        Reason::StepLimit => Err(Fail::Job(format!(
+        Reason::StepLimit if !kept_balance => Err(Fail::Job(format!(
             "not converged after {} steps; the best posture is written. [solver] max_steps allows more",
             pose.steps
         ))),
-        Reason::Reached | Reason::Converged => answered(verdict),
+        Reason::StepLimit | Reason::Reached | Reason::Converged => answered(verdict),
     }
 }
