@@ -149,7 +149,7 @@ fn a_budget_that_is_used_up_leaves_the_changes_of_least_promise_which_are_named_
         // A posture near the end of the job tells little apart, but the two that help most come first.
         assert!(whole.helping[..2].contains(&one.helping[0]), "{:?}", one.helping);
         let sentence = one.sentence.unwrap();
-        let end = format!("Not tried, because the budget of solver steps was used up: {}.", one.not_tried.join("; "));
+        let end = format!("Not tried within the budget of solver steps: {}.", one.not_tried.join("; "));
         assert!(sentence.starts_with("What would help: with ") && sentence.ends_with(&end), "{sentence}");
         let none = advised(&scenario, &summary, &before, 0, threads);
         assert_eq!((none.helping.len(), none.not_tried.len()), (0, 5));

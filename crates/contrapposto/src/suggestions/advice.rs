@@ -56,7 +56,7 @@ fn sentence(helping: &[Suggestion], tried: usize, not_tried: &[String]) -> Optio
         }
     };
     let left = (!not_tried.is_empty())
-        .then(|| format!("Not tried, because the budget of solver steps was used up: {}.", not_tried.join("; ")));
+        .then(|| format!("Not tried within the budget of solver steps: {}.", not_tried.join("; ")));
     let parts: Vec<String> = said.into_iter().chain(left).collect();
     (!parts.is_empty()).then(|| parts.join(" "))
 }
