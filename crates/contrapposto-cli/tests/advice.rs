@@ -1,0 +1,97 @@
+//! Changes that `relax`, `pose` and `assess` suggest, written into the job by hand: the job alone gives the minutes that were promised.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::contrapposto;
+
+/// The right arm of a man holds a weight, kg, at a place, m.
+fn held(target: [f64; 3], kilograms: f64) -> String {
+    format!(
+        "format = 1\nupright = false\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 75 }}\n\
+         [posture]\narm_flex_r_deg = 60\nelbow_flex_r_deg = 60\nelbow_flex_l_deg = 20\n\
+         [[load]]\nsegment = \"hand_r\"\nmass_kg = {kilograms}\n\
+         [[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [{}, {}, {}]\n[[task]]\nkind = \"effort\"\n\
+         [coordinates]\nfree = [\"arm_flex_r\", \"arm_add_r\", \"arm_rot_r\", \"elbow_flex_r\", \"pro_sup_r\"]\n",
+        target[0], target[1], target[2]
+    )
+}
+
+const TARGET: [f64; 3] = [0.45, 1.25, 0.2];
+const KILOGRAMS: f64 = 4.0;
+
+/// The JSON that a command prints of a job.
+fn answer(folder: &Path, command: &[&str]) -> Value {
+    let run = contrapposto(command).folder(folder).run();
+    serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{command:?}: {error}: {}", run.stderr))
+}
+
+/// The suggested changes of a job, each with its minutes.
+fn suggested(found: &Value) -> Vec<(String, f64)> {
+    let all = found["suggestions"].as_array().unwrap();
+    all.iter().map(|one| (one["change"].as_str().unwrap().to_owned(), one["minutes"].as_f64().unwrap())).collect()
+}
+
+/// The minutes of a job without suggestions.
+fn minutes(found: &Value) -> f64 {
+    assert!(found["suggestions"].as_array().is_none_or(Vec::is_empty), "{}", found["suggestions"]);
+    found["verdict"]["minutes"].as_f64().unwrap()
+}
+
+fn changes_of_a_held_weight_give_the_minutes_of_the_changed_file(command: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let job = |name: &str, text: String, more: &[&str]| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        answer(folder.path(), &[&[command, name, "--json", "--out", "out"], more].concat())
+    };
+    let found = job("job.toml", held(TARGET, KILOGRAMS), &[]);
+    let before = found["verdict"]["minutes"].as_f64().unwrap();
+    let all = suggested(&found);
+    assert!(all.iter().any(|(change, _)| change.ends_with("less load")), "{all:?}");
+    for (change, promised) in &all {
+        let lower = [TARGET[0], TARGET[1] - 0.1, TARGET[2]];
+        let text = match change.as_str() {
+            "the target of right hand 10 cm lower" => held(lower, KILOGRAMS),
+            "20\u{a0}% less load" => held(TARGET, 0.8 * KILOGRAMS),
+            // The direction of "nearer" is that of the centre of mass, which a file does not name.
+            _ => continue,
+        };
+        let alone = minutes(&job("changed.toml", text, &["--no-suggest"]));
+        println!("{command}: {change}: {promised} min promised, {alone}");
+        assert!((promised - alone).abs() < 1e-3 * alone, "{command}: {change}: {promised} min promised, {alone}");
+        assert!(*promised > before, "{change}: {promised} min, without {before}");
+    }
+    let counted = all.iter().filter(|(change, _)| change.ends_with("lower") || change.ends_with("less load")).count();
+    assert_eq!(counted, 2, "{all:?}");
+}
+
+#[test]
+fn changes_that_relax_suggests_give_the_minutes_of_the_changed_file() {
+    changes_of_a_held_weight_give_the_minutes_of_the_changed_file("relax");
+}
+
+#[test]
+fn changes_that_pose_suggests_give_the_minutes_of_the_changed_file() {
+    changes_of_a_held_weight_give_the_minutes_of_the_changed_file("pose");
+}
+
+#[test]
+fn less_load_that_assess_suggests_gives_the_minutes_of_the_smaller_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = "time,elbow_flex_r_deg,elbow_flex_l_deg,arm_flex_r_deg\n0,90,20,60\n900,90,20,60\n";
+    std::fs::write(folder.path().join("held.csv"), motion).unwrap();
+    let assess = |load: &str, more: &[&str]| {
+        let command = ["assess", "adult", "held.csv", "--fixed-root", "--load", load, "--json"];
+        answer(folder.path(), &[&command, more].concat())
+    };
+    let found = assess("hand_r 4kg", &[]);
+    let all = suggested(&found);
+    let (_, promised) = all.iter().find(|(change, _)| change.ends_with("less load")).unwrap();
+    let alone = minutes(&assess("hand_r 3.2kg", &["--no-suggest"]));
+    assert!((promised - alone).abs() < 1e-9 * alone, "{promised} min promised, {alone}");
+    assert!(*promised > found["verdict"]["minutes"].as_f64().unwrap());
+}
