@@ -3,9 +3,9 @@
 use super::change::Change;
 use crate::verdict::Verdict;
 
-/// A budget is at least so many solver steps: about three seconds on one core. Assumed.
-pub const LEAST_BUDGET: usize = 20_000;
-/// A budget is so many times the solver steps of the job itself: on two cores, trials then take about as long as the job. Assumed.
+/// A budget is at least so many solver steps: about fifteen seconds on one core, enough for all changes of most jobs of minutes. Assumed.
+pub const LEAST_BUDGET: usize = 100_000;
+/// A budget is so many times the solver steps of the job itself: on two cores, trials of a long job take about as long as the job. Assumed.
 pub const BUDGET_FACTOR: usize = 2;
 
 /// Limits of trials.
