@@ -20,7 +20,6 @@ pub(crate) mod report;
 pub(crate) mod residual;
 pub(crate) mod scene;
 pub(crate) mod selection;
-mod solid;
 pub(crate) mod stage;
 mod surfaces;
 pub(crate) mod tables;

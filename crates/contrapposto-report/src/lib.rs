@@ -2,8 +2,7 @@
 //! over time or in a few postures, charts of every joint, and decisions in plain words. The page needs no network, and its content
 //! security policy allows none. Parts of the page about which nothing is known are hidden.
 //!
-//! Inside, a file uses only those above it in this list: `solid` (thickness of segments), `column` (numbers over time,
-//! short), `data` (the input of the page's script), `page` (the file). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
+//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `data` (the input of the page's script), `page` (the file). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
 //!
 //! Every function takes any input without panicking: numbers that are not finite count as 0, lists that are too short as if
 //! their last number went on. The same input gives the same bytes. Texts may come from strangers: they reach the page as text.
@@ -11,10 +10,8 @@
 mod column;
 mod data;
 mod page;
-mod solid;
 
 pub use page::write;
-pub use solid::balls_of;
 
 /// Everything a page shows. Ground axes: x forward, y up, z to the right; m, s, N, N m, degrees.
 #[derive(Clone, Debug, Default)]

@@ -1,12 +1,11 @@
 //! The body of a run for other programs: `motion.glb`, `motion.bvh`, `model.osim`.
 
 use contrapposto::simulation::Scenario;
-use contrapposto_formats::animation::{Clip, bvh, glb};
+use contrapposto_formats::animation::{Clip, bvh, glb, solids};
 use contrapposto_formats::write;
 
 use super::axes::directions;
 use super::recording::Recording;
-use super::solid::parts;
 use crate::fail::Fail;
 use crate::output::print_note;
 
@@ -22,7 +21,7 @@ pub(crate) fn bodies(scenario: &Scenario, recording: &Recording) -> Result<Vec<(
         times: recording.times(),
         postures: &postures,
     };
-    let solids: Vec<_> = (0..model.segments().len()).map(|s| parts(model, s)).collect();
+    let solids: Vec<_> = (0..model.segments().len()).map(|s| solids(model, s)).collect();
     let mut files = vec![
         ("motion.glb", glb(&clip, &solids).map_err(|error| Fail::job("motion.glb", error))?),
         ("motion.bvh", bvh(&clip).map_err(|error| Fail::job("motion.bvh", error))?.into_bytes()),

@@ -5,6 +5,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::simulation::Contact;
+use contrapposto_formats::animation::{joined_by, solids};
 use contrapposto_plot::{BodyForce, BodyPart, BodyPosture, BodyThing};
 use nalgebra::Point3;
 
@@ -16,7 +17,7 @@ use super::selection::shown;
 use super::stage::{Stage, place, push};
 use super::surfaces::surroundings;
 use super::words::{percent, plain};
-use super::{axes, solid};
+use super::axes;
 use crate::fail::Fail;
 
 /// Most supports whose share is listed.
@@ -30,11 +31,11 @@ pub(crate) fn parts(model: &Model, posture: &[f64], frame: Option<&Frame>) -> Re
     let mut parts = vec![];
     for s in 0..model.segments().len() {
         let place = kinematics.placement(model, s);
-        let moved_by = solid::joined_by(model, s);
+        let moved_by = joined_by(model, s);
         let moves = shown.iter().filter(|i| moved_by.contains(i) && model.coordinates()[**i].groups.is_some());
         let load = frame.and_then(|frame| moves.map(|&i| frame.load[i]).reduce(f64::max));
         let hazard = frame.is_some_and(|frame| moved_by.clone().any(|i| hazard(model, frame, i).is_some()));
-        for balls in solid::parts(model, s) {
+        for balls in solids(model, s) {
             let ball = |[x, y, z, r]: [f64; 4]| {
                 let [x, y, z] = turn.point((place * Point3::new(x, y, z)).coords);
                 [x, y, z, r]

@@ -6,6 +6,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
+use contrapposto_formats::animation::{joined_by, solids};
 use contrapposto_report::{Balance, Group, Joint, Moments, Push, Report, Segment, Thing};
 use nalgebra::Vector3;
 
@@ -15,7 +16,7 @@ use super::charts::Sweep;
 use super::frame::Frame;
 use super::selection::shown;
 use super::stage::{Stage, load_in_words, place, push};
-use super::{solid, surfaces, words};
+use super::{surfaces, words};
 use crate::fail::Fail;
 
 /// Angles at which the torques of a joint are drawn.
@@ -81,10 +82,10 @@ impl<'a> Scene<'a> {
         let mut kinematics = Kinematics::new(model);
         let mut parts: Vec<(usize, Segment)> = vec![];
         for (s, segment) in model.segments().iter().enumerate() {
-            let coordinates = solid::joined_by(model, s);
+            let coordinates = joined_by(model, s);
             let joints = shown.iter().enumerate().filter(|(_, i)| coordinates.contains(i)).map(|(place, _)| place);
             let joints: Vec<usize> = joints.collect();
-            for balls in solid::parts(model, s) {
+            for balls in solids(model, s) {
                 let name = segment.name.clone();
                 parts.push((s, Segment { name, balls, joints: joints.clone(), ..Segment::default() }));
             }

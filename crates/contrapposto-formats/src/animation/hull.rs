@@ -1,6 +1,9 @@
 //! Computes the surface of a solid: the convex hull of balls as a closed mesh with normals.
 
-/// The convex hull of balls: position in the segment's frame and radius, m.
+/// A ball: position in the segment's frame and radius, m.
+pub(super) type Ball = [f64; 4];
+
+/// The convex hull of balls.
 pub type Solid = Vec<[f64; 4]>;
 
 /// Rings from pole to pole, and points on each.

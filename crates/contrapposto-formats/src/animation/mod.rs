@@ -8,12 +8,15 @@ mod bvh;
 mod euler;
 mod glb;
 mod hull;
+mod solid;
+mod thickness;
 mod track;
 
 pub use bvh::bvh;
 pub(crate) use euler::zyx;
 pub use glb::glb;
 pub use hull::Solid;
+pub use solid::{joined_by, solids};
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Placement};

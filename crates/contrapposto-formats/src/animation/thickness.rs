@@ -1,6 +1,6 @@
 //! Computes the thickness of a segment from its volume: the convex hull of balls about its points has that volume.
 
-use crate::Ball;
+use super::hull::Ball;
 
 /// Directions in which hulls are measured: rings from pole to pole, and slices around.
 const RINGS: usize = 12;
@@ -11,7 +11,7 @@ const THIN: f64 = 0.012;
 const THICK: f64 = 0.5;
 
 /// Balls about `points` (position and relative thickness) whose hull has `volume`, m3, as near as radii from 12 mm to 0.5 m allow.
-pub fn balls_of(points: &[Ball], volume: f64) -> Vec<Ball> {
+pub(super) fn balls_of(points: &[Ball], volume: f64) -> Vec<Ball> {
     let balls = |size: f64| -> Vec<Ball> {
         let thick = |p: &Ball| [p[0], p[1], p[2], (size * p[3]).clamp(THIN, THICK)];
         points.iter().map(thick).collect()

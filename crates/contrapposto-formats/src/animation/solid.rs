@@ -1,8 +1,10 @@
 //! Computes the solid shape of every segment: hulls of balls between its joints, whose volume is that of its mass in water.
 
 use contrapposto::model::Model;
-use contrapposto_report::{Ball, balls_of};
 use nalgebra::Vector3;
+
+use super::hull::{Ball, Solid};
+use super::thickness::balls_of;
 
 /// Density of a body, kg/m3.
 const WATER: f64 = 1000.0;
@@ -12,7 +14,7 @@ const SAME_POINT: f64 = 1e-6;
 const EDGE: f64 = 0.012;
 
 /// Hulls of balls that together are the segment, in its frame; none for a segment without mass, child or patch.
-pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
+pub fn solids(model: &Model, s: usize) -> Vec<Solid> {
     let segment = &model.segments()[s];
     let joint = segment.in_segment.translation.vector;
     let mut ends: Vec<(Vector3<f64>, f64)> = vec![];
@@ -62,7 +64,7 @@ pub(crate) fn parts(model: &Model, s: usize) -> Vec<Vec<Ball>> {
 }
 
 /// Coordinates of the joint that moves a segment; a welded segment is moved by the joint of its carrier.
-pub(crate) fn joined_by(model: &Model, s: usize) -> std::ops::Range<usize> {
+pub fn joined_by(model: &Model, s: usize) -> std::ops::Range<usize> {
     let mut carrier = s;
     while let (true, Some(parent)) =
         (model.segments()[carrier].coordinates.is_empty(), model.segments()[carrier].parent)
