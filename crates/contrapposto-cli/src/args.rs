@@ -6,6 +6,7 @@ mod joint;
 mod model;
 mod muscles;
 mod scenario;
+mod studio;
 
 use std::path::PathBuf;
 
@@ -20,6 +21,7 @@ pub(crate) use model::{
 };
 pub(crate) use muscles::MuscleArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
+pub(crate) use studio::StudioArgs;
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.
 #[derive(Debug, Parser)]
@@ -72,6 +74,8 @@ pub(crate) enum Verb {
     Assess(AssessArgs),
     /// Write a model in another format: OpenSim, URDF or MJCF.
     Convert(ConvertArgs),
+    /// Open the studio, a page in which a body is taken by the hand, tires and rests.
+    Studio(StudioArgs),
     /// Print the JSON Schema of the scenario file.
     #[command(after_help = "Example:\n  contrapposto schema > scenario.schema.json")]
     Schema,

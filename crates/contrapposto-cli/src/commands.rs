@@ -13,5 +13,6 @@ pub(crate) mod passive;
 pub(crate) mod pose;
 pub(crate) mod relax;
 pub(crate) mod simulate;
+pub(crate) mod studio;
 pub(crate) mod torques;
 pub(crate) mod trials;

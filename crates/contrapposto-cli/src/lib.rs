@@ -24,7 +24,7 @@ use clap::Parser;
 use args::{Args, Verb};
 use commands::{
     assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, pose, relax, simulate,
-    torques,
+    studio, torques,
 };
 use output::Notes;
 
@@ -61,6 +61,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Muscles(args) => muscles::muscles(&args),
         Verb::Assess(args) => assess::assess(&args),
         Verb::Convert(args) => convert::convert(&args),
+        Verb::Studio(args) => studio::studio(&args),
         Verb::Schema => output::print(&format!("{:#}\n", contrapposto_formats::scenario_schema())),
     };
     output::print_waiting_notes();

@@ -11,7 +11,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
     Balance, Entry, Figure, ForceSolid, Group, Joint, List, Moments, Push, Report, Segment, Support, Surface, Table,
-    Target, Thing, balls_of, write,
+    Target, Thing, write,
 };
 use serde_json::json;
 use support::chromium::Chromium;
@@ -56,7 +56,7 @@ fn report() -> Report {
         figures: vec![Figure { label: HOSTILE.to_owned(), value: HOSTILE.to_owned(), note: HOSTILE.to_owned() }],
         segments: vec![Segment {
             name: HOSTILE.to_owned(),
-            balls: balls_of(&[[0.0, 0.0, 0.0, 1.0], [0.0, -0.8, 0.0, 0.7]], 0.008),
+            balls: vec![[0.0, 0.0, 0.0, 0.06], [0.0, -0.8, 0.0, 0.042]],
             joints: vec![0, 1],
             places: times.iter().map(place).collect(),
             start: place(&0.0),

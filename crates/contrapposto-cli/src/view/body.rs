@@ -9,6 +9,7 @@ use contrapposto_formats::animation::{joined_by, solids};
 use contrapposto_plot::{BodyForce, BodyPart, BodyPosture, BodyThing};
 use nalgebra::Point3;
 
+use super::axes;
 use super::axes::pelvis_list;
 use super::frame::Frame;
 use super::held::Held;
@@ -17,7 +18,6 @@ use super::selection::shown;
 use super::stage::{Stage, place, push};
 use super::surfaces::surroundings;
 use super::words::{percent, plain};
-use super::axes;
 use crate::fail::Fail;
 
 /// Most supports whose share is listed.

@@ -7,8 +7,8 @@ pub(super) type Ball = [f64; 4];
 pub type Solid = Vec<[f64; 4]>;
 
 /// Rings from pole to pole, and points on each.
-const RINGS: usize = 12;
-const SLICES: usize = 16;
+pub(super) const RINGS: usize = 12;
+pub(super) const SLICES: usize = 16;
 
 /// Directions in which a hull is measured: the poles first and last.
 fn directions() -> impl Iterator<Item = [f64; 3]> {

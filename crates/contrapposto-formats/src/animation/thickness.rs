@@ -1,22 +1,18 @@
 //! Computes the thickness of a segment from its volume: the convex hull of balls about its points has that volume.
 
-use super::hull::Ball;
-
-/// Directions in which hulls are measured: rings from pole to pole, and slices around.
-const RINGS: usize = 12;
-const SLICES: usize = 16;
+use super::hull::{Ball, RINGS, SLICES};
 
 /// Thinnest and thickest ball, m.
-const THIN: f64 = 0.012;
-const THICK: f64 = 0.5;
+const THINNEST: f64 = 0.012;
+const THICKEST: f64 = 0.5;
 
 /// Balls about `points` (position and relative thickness) whose hull has `volume`, m3, as near as radii from 12 mm to 0.5 m allow.
 pub(super) fn balls_of(points: &[Ball], volume: f64) -> Vec<Ball> {
     let balls = |size: f64| -> Vec<Ball> {
-        let thick = |p: &Ball| [p[0], p[1], p[2], (size * p[3]).clamp(THIN, THICK)];
+        let thick = |p: &Ball| [p[0], p[1], p[2], (size * p[3]).clamp(THINNEST, THICKEST)];
         points.iter().map(thick).collect()
     };
-    let (mut low, mut high) = (0.0, 2.0 * THICK);
+    let (mut low, mut high) = (0.0, 2.0 * THICKEST);
     for _ in 0..30 {
         let size = 0.5 * (low + high);
         if hull_volume(&balls(size)) < volume { low = size } else { high = size }
@@ -66,8 +62,8 @@ mod tests {
 
     #[test]
     fn volumes_of_zero_and_of_a_billion_give_the_thinnest_and_thickest_ball() {
-        assert_eq!(balls_of(&[[0.0, 0.0, 0.0, 1.0]], 0.0)[0][3], THIN);
-        assert_eq!(balls_of(&[[0.0, 0.0, 0.0, 1.0]], 1e9)[0][3], THICK);
+        assert_eq!(balls_of(&[[0.0, 0.0, 0.0, 1.0]], 0.0)[0][3], THINNEST);
+        assert_eq!(balls_of(&[[0.0, 0.0, 0.0, 1.0]], 1e9)[0][3], THICKEST);
         assert!(balls_of(&[], 1.0).is_empty());
         assert!(balls_of(&[[f64::NAN; 4]], f64::NAN).len() == 1);
     }

@@ -1,0 +1,165 @@
+//! Holds the scenario file of a session: its tables, the points that are held, the posture, and the files that it names.
+//!
+//! Every change of the body's job is a change of the document, which the readers of `contrapposto-formats` then read anew. Points
+//! that are held are its first tasks. Comments of an opened file are not kept.
+
+use std::collections::BTreeMap;
+
+use toml::{Table, Value};
+
+use crate::error::Refusal;
+use crate::message::Handle;
+
+/// The scenario of a new page.
+pub(crate) const FIRST: &str = include_str!("first.toml");
+/// Duration of a run of a scenario that says nothing about it, s, and its time step, s.
+const RUN: (f64, f64) = (3600.0, 0.1);
+
+/// A scenario file.
+#[derive(Clone, Debug)]
+pub(crate) struct Document {
+    /// As it was opened, with the changes of its own tables.
+    table: Table,
+    /// Points that stay where they are: with their places in ground, m.
+    pub(crate) held: Vec<(Handle, [f64; 3])>,
+    /// Names and values of all coordinates; empty where the file says how the body starts.
+    pub(crate) posture: Vec<(String, f64)>,
+    /// Texts of other files, by name.
+    pub(crate) files: BTreeMap<String, String>,
+}
+
+impl Document {
+    /// From the text of a scenario and of the files that it names. Only the grammar is checked here.
+    pub(crate) fn new(text: &str, files: BTreeMap<String, String>) -> Result<Self, Refusal> {
+        let mut table: Table = text.parse().map_err(Refusal::of)?;
+        let strategy = table.entry("strategy").or_insert_with(|| Value::Table(Table::new()));
+        if let Value::Table(strategy) = strategy {
+            strategy.entry("kind").or_insert_with(|| Value::String("passive".to_owned()));
+        }
+        let run = table.entry("run").or_insert_with(|| Value::Table(Table::new()));
+        if let Value::Table(run) = run
+            && run.is_empty()
+        {
+            run.insert("duration_s".to_owned(), Value::Float(RUN.0));
+            run.insert("step_s".to_owned(), Value::Float(RUN.1));
+        }
+        Ok(Self { table, held: vec![], posture: vec![], files })
+    }
+
+    /// The text of the file.
+    pub(crate) fn text(&self) -> String {
+        self.written(None)
+    }
+
+    /// The text of the file, whose run ends after `duration`, s.
+    pub(crate) fn text_of_run(&self, duration: f64) -> String {
+        self.written(Some(duration))
+    }
+
+    fn written(&self, duration: Option<f64>) -> String {
+        let mut table = self.table.clone();
+        let held = self.held.iter().map(|(handle, place)| point_task(handle, *place));
+        let of_file = table.get("task").and_then(Value::as_array).cloned().unwrap_or_default();
+        let tasks: Vec<Value> = held.chain(of_file).collect();
+        if !tasks.is_empty() {
+            table.insert("task".to_owned(), Value::Array(tasks));
+        }
+        if !self.posture.is_empty() {
+            let values = self.posture.iter().map(|(name, value)| (name.clone(), Value::Float(*value)));
+            table.insert("start_from".to_owned(), Value::Table(values.collect()));
+        }
+        if let (Some(duration), Some(Value::Table(run))) = (duration, table.get_mut("run")) {
+            run.insert("duration_s".to_owned(), Value::Float(duration));
+        }
+        // A table of texts and numbers can always be written.
+        toml::to_string(&table).unwrap_or_default()
+    }
+
+    /// Sex, stature (m) and mass (kg) of the built-in adult, where the file gives them.
+    pub(crate) fn adult(&self) -> Option<(String, f64, f64)> {
+        let adult = self.table.get("model")?.as_table()?.get("adult")?.as_table()?;
+        let number =
+            |key: &str| adult.get(key).and_then(|value| value.as_float().or(value.as_integer().map(|n| n as f64)));
+        Some((adult.get("sex")?.as_str()?.to_owned(), number("stature_m")?, number("mass_kg")?))
+    }
+
+    /// Gives the built-in adult another size. The body starts as the file says.
+    pub(crate) fn set_adult(&mut self, sex: &str, stature: f64, mass: f64) -> Result<(), Refusal> {
+        let model = self.table.entry("model").or_insert_with(|| Value::Table(Table::new()));
+        let Value::Table(model) = model else { return Err(Refusal::of("[model] is no table")) };
+        if model.contains_key("file") {
+            return Err(Refusal::of(
+                "this body comes from a file; only the built-in adult has a sex, a stature and a mass to choose",
+            ));
+        }
+        let adult = model.entry("adult").or_insert_with(|| Value::Table(Table::new()));
+        let Value::Table(adult) = adult else { return Err(Refusal::of("adult of [model] is no table")) };
+        adult.insert("sex".to_owned(), Value::String(sex.to_owned()));
+        adult.insert("stature_m".to_owned(), Value::Float(stature));
+        adult.insert("mass_kg".to_owned(), Value::Float(mass));
+        adult.remove("lengths_m");
+        self.held.clear();
+        self.posture.clear();
+        Ok(())
+    }
+
+    /// Hangs a weight, kg, on a segment in place of the one that hangs there; 0 takes it off.
+    pub(crate) fn set_load(&mut self, segment: &str, mass: f64) -> Result<(), Refusal> {
+        let loads = self.table.entry("load").or_insert_with(|| Value::Array(vec![]));
+        let Value::Array(loads) = loads else { return Err(Refusal::of("[[load]] is no list of tables")) };
+        let hangs = |load: &Value| {
+            load.as_table().is_some_and(|load| {
+                load.len() == 2 && load.contains_key("mass_kg") && load["segment"].as_str() == Some(segment)
+            })
+        };
+        loads.retain(|load| !hangs(load));
+        if mass != 0.0 {
+            let load =
+                [("segment".to_owned(), Value::String(segment.to_owned())), ("mass_kg".to_owned(), Value::Float(mass))];
+            loads.push(Value::Table(load.into_iter().collect()));
+        }
+        if loads.is_empty() {
+            self.table.remove("load");
+        }
+        Ok(())
+    }
+
+    /// Strategy of the whole body. Other strategies of regions go.
+    pub(crate) fn set_strategy(&mut self, kind: &str) {
+        if let Some(Value::Table(strategy)) = self.table.get_mut("strategy") {
+            strategy.insert("kind".to_owned(), Value::String(kind.to_owned()));
+            strategy.remove("of");
+            strategy.remove("by_region");
+        }
+    }
+
+    /// Fatigue at the start, by coordinate of the positive and negative group, 0 to 1; of all others 0.
+    pub(crate) fn set_fatigue(&mut self, levels: Vec<(String, [f64; 2])>) {
+        let sides = |[positive, negative]: [f64; 2]| {
+            let sides = [("positive", positive), ("negative", negative)];
+            Value::Table(sides.into_iter().map(|(side, level)| (side.to_owned(), Value::Float(level))).collect())
+        };
+        let start = levels.into_iter().map(|(name, levels)| (name, sides(levels))).collect();
+        let fatigue = self.table.entry("fatigue").or_insert_with(|| Value::Table(Table::new()));
+        if let Value::Table(fatigue) = fatigue {
+            fatigue.insert("start".to_owned(), Value::Table(start));
+        }
+    }
+
+    /// `active` or `passive`.
+    pub(crate) fn strategy(&self) -> &str {
+        self.table.get("strategy").and_then(|strategy| strategy.get("kind")?.as_str()).unwrap_or_default()
+    }
+}
+
+/// The task that holds a point at a place in ground.
+fn point_task(handle: &Handle, place: [f64; 3]) -> Value {
+    let numbers = |numbers: [f64; 3]| Value::Array(numbers.map(Value::Float).to_vec());
+    let task = [
+        ("kind".to_owned(), Value::String("point".to_owned())),
+        ("segment".to_owned(), Value::String(handle.segment.clone())),
+        ("at_m".to_owned(), numbers(handle.point)),
+        ("target_m".to_owned(), numbers(place)),
+    ];
+    Value::Table(task.into_iter().collect())
+}

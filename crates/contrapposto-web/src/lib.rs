@@ -1,0 +1,72 @@
+//! Runs the science inside a browser: one session, which takes requests as JSON texts and answers them as JSON texts.
+//!
+//! A session holds a scenario as a document ([`document`]). Everything that it shows is computed from what the readers of
+//! `contrapposto-formats` make of that document, so an exported scenario is the one that was shown. The same calls can be made natively:
+//! [`Studio`] has no part of the browser in it.
+//!
+//! | File | Holds |
+//! |---|---|
+//! | `message` | requests and answers |
+//! | `document` | the scenario file, its changes, the files that it names |
+//! | `body` | what the readers make of the document |
+//! | `mover` | steps of a posture: dragged, or settling |
+//! | `shown` | everything that is shown of one posture |
+//! | `balance` | the torques of one joint over its range |
+//! | `sample`, `play` | a run over time |
+//! | `studio` | the session |
+
+mod balance;
+mod body;
+mod document;
+mod error;
+mod message;
+mod mover;
+mod play;
+mod sample;
+mod shown;
+mod studio;
+
+use std::cell::RefCell;
+
+use wasm_bindgen::prelude::wasm_bindgen;
+
+pub use studio::Studio;
+
+thread_local! {
+    static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// A session of the page.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Session(Studio);
+
+#[wasm_bindgen]
+impl Session {
+    /// A session with the body that a new page shows. A panic from then on is kept for [`last_panic`].
+    #[wasm_bindgen(constructor)]
+    #[allow(clippy::new_without_default, reason = "the constructor of a JavaScript class")]
+    pub fn new() -> Self {
+        std::panic::set_hook(Box::new(|panic| {
+            LAST_PANIC.with(|last| *last.borrow_mut() = panic.to_string());
+        }));
+        Self(Studio::new())
+    }
+
+    /// Answers a request.
+    pub fn call(&mut self, request: &str) -> String {
+        self.0.call(request)
+    }
+}
+
+/// The message of the panic that ended the last call; empty without one. The module must not be used for anything else after a panic.
+#[wasm_bindgen]
+pub fn last_panic() -> String {
+    LAST_PANIC.with(|last| last.borrow().clone())
+}
+
+/// Version of the program.
+#[wasm_bindgen]
+pub fn version() -> String {
+    env!("CARGO_PKG_VERSION").to_owned()
+}

@@ -1,0 +1,216 @@
+//! Defines the requests of a page and the answers to them.
+
+use std::collections::BTreeMap;
+
+use contrapposto_formats::VerdictText;
+use serde::{Deserialize, Serialize};
+
+/// One request. Lengths in m, masses in kg, ground axes: x forward, y up, z to the right.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Request {
+    /// Opens a scenario, with the texts of the files that it names by their names.
+    Open {
+        scenario: String,
+        #[serde(default)]
+        files: BTreeMap<String, String>,
+    },
+    /// Opens a model file, on a scenario of its own.
+    OpenModel { name: String, text: String },
+    /// Gives the built-in adult another size; posture and held points begin anew.
+    Adult { sex: String, stature: f64, mass: f64 },
+    /// Takes hold of a point of a segment, in the segment's frame.
+    Grab { segment: String, point: [f64; 3] },
+    /// One step of the point that was grabbed toward a place in ground.
+    Drag { target: [f64; 3] },
+    /// Lets go of it; `hold`: the point stays where it is.
+    Release { hold: bool },
+    /// Frees a point that is held.
+    Free { segment: String },
+    /// One step toward the posture of least effort.
+    Settle {},
+    /// Hangs a weight on a segment in place of the one that hangs there; 0 takes it off.
+    Load { segment: String, mass: f64 },
+    /// Strategy of the whole body: `active` or `passive`.
+    Strategy { kind: String },
+    /// Lets time run for so many samples; the first call begins a run.
+    Play { samples: u32 },
+    /// Ends the run; `take`: the body stays in the posture, and its muscles as tired, as it has come to.
+    Stop { take: bool },
+    /// The torques of a coordinate over its range.
+    Balance { coordinate: String },
+    /// The scenario as a file.
+    Export {},
+    /// Takes the last change back.
+    Undo {},
+    /// Makes it again.
+    Redo {},
+    /// Back to the scenario as it was opened.
+    Reset {},
+}
+
+/// The answer to a request.
+#[derive(Debug, Serialize)]
+#[serde(tag = "is", rename_all = "snake_case")]
+pub(crate) enum Answer {
+    /// Another body or another job.
+    Scene(Box<Scene>),
+    /// Another posture.
+    Shown(Box<Shown>),
+    /// A run went on.
+    Played(Box<Played>),
+    /// Torques of a coordinate.
+    Balance(Balance),
+    /// A text.
+    Text { text: String },
+    /// The request was refused; nothing has changed.
+    Refused { sentence: String },
+}
+
+/// A body and its job.
+#[derive(Debug, Serialize)]
+pub(crate) struct Scene {
+    pub(crate) title: String,
+    pub(crate) person: Option<Person>,
+    pub(crate) coordinates: Vec<CoordinateScene>,
+    pub(crate) segments: Vec<SegmentScene>,
+    pub(crate) handles: Vec<Handle>,
+    pub(crate) held: Vec<Handle>,
+    pub(crate) supports: Vec<String>,
+    pub(crate) things: Vec<ThingScene>,
+    pub(crate) loads: Vec<Hung>,
+    pub(crate) strategy: String,
+    pub(crate) notes: Vec<String>,
+    pub(crate) can_undo: bool,
+    pub(crate) can_redo: bool,
+    pub(crate) shown: Shown,
+}
+
+/// Size of the built-in adult.
+#[derive(Debug, Serialize)]
+pub(crate) struct Person {
+    pub(crate) sex: String,
+    pub(crate) stature: f64,
+    pub(crate) mass: f64,
+}
+
+/// A coordinate with its two muscle groups.
+#[derive(Debug, Serialize)]
+pub(crate) struct CoordinateScene {
+    pub(crate) name: String,
+    pub(crate) label: String,
+    pub(crate) positive: String,
+    /// An angle, not a distance or a part of a quaternion.
+    pub(crate) turns: bool,
+    pub(crate) range: [f64; 2],
+    pub(crate) groups: Option<[String; 2]>,
+}
+
+/// A segment: hulls of balls in its frame, and the coordinates of the joint that moves it.
+#[derive(Debug, Serialize)]
+pub(crate) struct SegmentScene {
+    pub(crate) name: String,
+    pub(crate) label: String,
+    pub(crate) hulls: Vec<Vec<[f64; 4]>>,
+    pub(crate) coordinates: [usize; 2],
+}
+
+/// A point of a segment that can be dragged or is held.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Handle {
+    pub(crate) label: String,
+    pub(crate) segment: String,
+    pub(crate) point: [f64; 3],
+}
+
+/// A box around the body or in its hands.
+#[derive(Debug, Serialize)]
+pub(crate) struct ThingScene {
+    pub(crate) name: String,
+    pub(crate) size: [f64; 3],
+    /// Position and quaternion x, y, z, w, in ground or in the frame of the segment.
+    pub(crate) place: [f64; 7],
+    pub(crate) segment: Option<usize>,
+}
+
+/// A weight that hangs on a segment.
+#[derive(Debug, Serialize)]
+pub(crate) struct Hung {
+    pub(crate) segment: String,
+    pub(crate) mass: f64,
+}
+
+/// One posture and its torques, by coordinate; of three-axis joints about the axes that stand for their coordinates.
+#[derive(Debug, Serialize)]
+pub(crate) struct Shown {
+    pub(crate) q: Vec<f64>,
+    /// Angles, of three-axis joints about their axes.
+    pub(crate) angles: Vec<f64>,
+    pub(crate) external: Vec<f64>,
+    pub(crate) passive: Vec<f64>,
+    pub(crate) active: Vec<f64>,
+    pub(crate) load: Vec<f64>,
+    /// Position and quaternion x, y, z, w of every segment, in ground.
+    pub(crate) places: Vec<[f64; 7]>,
+    pub(crate) center: [f64; 3],
+    pub(crate) contacts: Vec<ContactShown>,
+    /// Corners of the patches on supports, in ground.
+    pub(crate) patches: Vec<[f64; 3]>,
+    pub(crate) pushes: Vec<Push>,
+    pub(crate) verdict: VerdictText,
+    /// Distance of the dragged point from its target, m.
+    pub(crate) miss: Option<f64>,
+    /// The last step moved next to nothing.
+    pub(crate) settled: bool,
+}
+
+/// The force of a support on the body.
+#[derive(Debug, Serialize)]
+pub(crate) struct ContactShown {
+    pub(crate) force: [f64; 3],
+    pub(crate) share: f64,
+    pub(crate) at: Option<[f64; 3]>,
+}
+
+/// A load on the body.
+#[derive(Debug, Serialize)]
+pub(crate) struct Push {
+    pub(crate) at: [f64; 3],
+    pub(crate) force: [f64; 3],
+}
+
+/// A run so far.
+#[derive(Debug, Serialize)]
+pub(crate) struct Played {
+    /// s.
+    pub(crate) time: f64,
+    pub(crate) samples: u64,
+    /// By coordinate: of the positive and of the negative group, 0 to 1.
+    pub(crate) fatigue: Vec<[f64; 2]>,
+    /// Muscle groups that ask for relief.
+    pub(crate) asking: Vec<String>,
+    /// What was decided and why: the sentences of `decisions.csv`, the latest last.
+    pub(crate) log: Vec<LogLine>,
+    /// How many there are in all.
+    pub(crate) decisions: u64,
+    /// Why the run ended; `None` while it goes on.
+    pub(crate) ended: Option<&'static str>,
+    pub(crate) shown: Shown,
+}
+
+/// A line of the log of a run.
+#[derive(Debug, Serialize)]
+pub(crate) struct LogLine {
+    /// s.
+    pub(crate) time: f64,
+    pub(crate) sentence: String,
+}
+
+/// Torques of one coordinate over its range, N m, about its axis, in the posture shown, that joint alone moving.
+#[derive(Debug, Serialize)]
+pub(crate) struct Balance {
+    pub(crate) coordinate: String,
+    pub(crate) angle: Vec<f64>,
+    pub(crate) external: Vec<f64>,
+    pub(crate) minus_passive: Vec<f64>,
+}

@@ -1,0 +1,97 @@
+//! Lets time run: a run of the scenario, some samples a call, with its log and its verdict so far.
+
+use contrapposto::model::plain_group_name;
+use contrapposto::simulation::{ReliefRecord, Run, Scenario, StopReason, Summary};
+use contrapposto::verdict::Verdict;
+use contrapposto_formats::{VerdictText, relief_sentence};
+use self_cell::self_cell;
+
+use crate::body::{Body, read_play};
+use crate::document::Document;
+use crate::error::Refusal;
+use crate::message::{LogLine, Played};
+use crate::sample::LastSample;
+use crate::shown;
+
+/// Lines of the log that are given with every answer.
+const MOST_LINES: usize = 40;
+
+self_cell!(
+    struct Course {
+        owner: Scenario,
+        #[covariant]
+        dependent: Run,
+    }
+
+    impl {Debug}
+);
+
+/// A run under way.
+#[derive(Debug)]
+pub(crate) struct Play {
+    course: Course,
+    pub(crate) last: LastSample,
+}
+
+impl Play {
+    /// A run of a document from its start.
+    pub(crate) fn new(document: &Document) -> Result<Self, Refusal> {
+        let scenario = read_play(document)?.scenario;
+        let course = Course::try_new(scenario, |scenario| Run::new(scenario)).map_err(Refusal::of)?;
+        Ok(Self { course, last: LastSample::default() })
+    }
+
+    /// The next samples.
+    pub(crate) fn advance(&mut self, body: &Body, samples: u32) -> Result<Played, Refusal> {
+        let Self { course, last } = self;
+        let mut ended = false;
+        course.with_dependent_mut(|_, run| {
+            for _ in 0..samples {
+                match run.next_sample().map_err(Refusal::of)? {
+                    Some(sample) => last.take(&sample),
+                    None => {
+                        ended = true;
+                        break;
+                    }
+                }
+            }
+            Ok::<(), Refusal>(())
+        })?;
+        self.played(body, ended)
+    }
+
+    fn played(&self, body: &Body, ended: bool) -> Result<Played, Refusal> {
+        let (scenario, last) = (self.course.borrow_owner(), &self.last);
+        let mut summary = self.course.borrow_dependent().summary();
+        // What was run is all that is judged: a run as long as that, not one that was broken off.
+        let reason = ended.then_some(summary.reason.word());
+        if summary.reason == StopReason::Interrupted {
+            summary.reason = StopReason::Duration;
+        }
+        let verdict = VerdictText::new(&scenario.model, &Verdict::of_run(scenario, &summary));
+        let group = |&(i, side): &(usize, usize)| {
+            let coordinate = &scenario.model.coordinates()[i];
+            let groups = coordinate.groups.as_ref();
+            groups.map_or_else(String::new, |groups| plain_group_name(&groups[side].name, &coordinate.name))
+        };
+        Ok(Played {
+            time: last.time,
+            samples: summary.samples,
+            fatigue: last.fatigue.clone(),
+            asking: last.asking.iter().map(group).collect(),
+            log: log(scenario, &summary),
+            decisions: summary.reliefs.count,
+            ended: reason,
+            shown: shown::sample(body, last, verdict)?,
+        })
+    }
+}
+
+/// The latest decisions, in the order in which they came.
+fn log(scenario: &Scenario, summary: &Summary) -> Vec<LogLine> {
+    let records = &summary.reliefs.records;
+    let latest = &records[records.len().saturating_sub(MOST_LINES)..];
+    let line =
+        |record: &ReliefRecord| LogLine { time: record.time.0, sentence: relief_sentence(&scenario.model, record) };
+    latest.iter().map(line).collect()
+}

@@ -1,0 +1,174 @@
+//! Sessions of the studio, natively: requests in, answers out.
+
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use contrapposto_web::Studio;
+use serde_json::{Value, json};
+
+fn ask(studio: &mut Studio, request: Value) -> Value {
+    let answer: Value = serde_json::from_str(&studio.call(&request.to_string())).unwrap();
+    assert_ne!(answer["is"], "refused", "{request}: {}", answer["sentence"]);
+    answer
+}
+
+fn refused(studio: &mut Studio, request: Value) -> String {
+    let answer: Value = serde_json::from_str(&studio.call(&request.to_string())).unwrap();
+    assert_eq!(answer["is"], "refused", "{request}");
+    answer["sentence"].as_str().unwrap().to_owned()
+}
+
+fn scenario(name: &str) -> String {
+    std::fs::read_to_string(format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// The place of a point of a segment, ground, m.
+fn place(scene: &Value, shown: &Value, handle: &Value) -> [f64; 3] {
+    let segments = scene["segments"].as_array().unwrap();
+    let s = segments.iter().position(|segment| segment["name"] == handle["segment"]).unwrap();
+    let n: Vec<f64> = shown["places"][s].as_array().unwrap().iter().map(number).collect();
+    let turn = nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(n[6], n[3], n[4], n[5]));
+    let point: Vec<f64> = handle["point"].as_array().unwrap().iter().map(number).collect();
+    let at = turn * nalgebra::Vector3::new(point[0], point[1], point[2]);
+    [n[0] + at.x, n[1] + at.y, n[2] + at.z]
+}
+
+fn handle(scene: &Value, label: &str) -> Value {
+    scene["handles"].as_array().unwrap().iter().find(|handle| handle["label"] == label).unwrap().clone()
+}
+
+/// Drags a point by `way` in `steps` steps, then some more; gives the scene and the last answer.
+fn drag(studio: &mut Studio, label: &str, way: [f64; 3], steps: usize) -> (Value, Value) {
+    let scene = ask(studio, json!({ "do": "open", "scenario": "" }));
+    let handle = handle(&scene, label);
+    let from = place(&scene, &scene["shown"], &handle);
+    ask(studio, json!({ "do": "grab", "segment": handle["segment"], "point": handle["point"] }));
+    let mut last = Value::Null;
+    for step in 1..=steps + 20 {
+        let share = (step as f64 / steps as f64).min(1.0);
+        let target = [0, 1, 2].map(|k| from[k] + share * way[k]);
+        last = ask(studio, json!({ "do": "drag", "target": target }));
+    }
+    (scene, last)
+}
+
+#[test]
+fn a_dragged_hand_follows_and_the_feet_stay() {
+    let mut studio = Studio::new();
+    let (scene, last) = drag(&mut studio, "right hand", [0.25, 0.35, 0.05], 40);
+    assert!(number(&last["miss"]) < 0.002, "{}", last["miss"]);
+    let patches = |shown: &Value| -> Vec<f64> {
+        shown["patches"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .flat_map(|p| p.as_array().unwrap().clone())
+            .map(|x| number(&x))
+            .collect()
+    };
+    let slip = patches(&scene["shown"]).iter().zip(patches(&last)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(slip < 1e-3, "the feet slid by {slip} m");
+    let sentence = last["verdict"]["sentence"].as_str().unwrap();
+    assert!(["holds", "held_until"].contains(&last["verdict"]["kind"].as_str().unwrap()), "{sentence}");
+}
+
+#[test]
+fn a_hand_dragged_out_of_reach_leaves_the_body_in_balance() {
+    let mut studio = Studio::new();
+    let (_, last) = drag(&mut studio, "right hand", [3.0, 1.0, 0.0], 60);
+    assert!(number(&last["miss"]) > 1.0);
+    let shares: f64 = last["contacts"].as_array().unwrap().iter().map(|contact| number(&contact["share"])).sum();
+    assert!((shares - 1.0).abs() < 1e-6, "{shares}");
+}
+
+#[test]
+fn five_kilograms_on_a_hand_change_the_torques_and_are_undone() {
+    let mut studio = Studio::new();
+    let before = ask(&mut studio, json!({ "do": "open", "scenario": "" }));
+    let loaded = ask(&mut studio, json!({ "do": "load", "segment": "hand_r", "mass": 5.0 }));
+    let names: Vec<&str> =
+        before["coordinates"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
+    let shoulder = names.iter().position(|name| name.starts_with("arm_flex_r")).unwrap();
+    let of = |scene: &Value| number(&scene["shown"]["external"][shoulder]);
+    assert_eq!(loaded["loads"][0], json!({ "segment": "hand_r", "mass": 5.0 }));
+    assert_ne!(of(&before), of(&loaded));
+    let undone = ask(&mut studio, json!({ "do": "undo" }));
+    assert_eq!(before["shown"]["external"], undone["shown"]["external"]);
+    let redone = ask(&mut studio, json!({ "do": "redo" }));
+    assert_eq!(loaded["shown"]["external"], redone["shown"]["external"]);
+}
+
+#[test]
+fn an_exported_posture_is_read_as_the_one_that_was_shown() {
+    let mut studio = Studio::new();
+    drag(&mut studio, "left hand", [0.2, 0.3, -0.1], 30);
+    let released = ask(&mut studio, json!({ "do": "release", "hold": true }));
+    assert_eq!(released["held"][0]["label"], "left hand");
+    let mut shown = Value::Null;
+    for _ in 0..50 {
+        shown = ask(&mut studio, json!({ "do": "settle" }));
+    }
+    let text = ask(&mut studio, json!({ "do": "export" }))["text"].as_str().unwrap().to_owned();
+    let opened = ask(&mut Studio::new(), json!({ "do": "open", "scenario": text }));
+    for key in ["q", "active"] {
+        let (a, b) = (&shown[key], &opened["shown"][key]);
+        let far = a.as_array().unwrap().iter().zip(b.as_array().unwrap()).map(|(a, b)| (number(a) - number(b)).abs());
+        let far = far.fold(0.0, f64::max);
+        assert!(far < 1e-6, "{key}: {far}");
+    }
+    assert_eq!(shown["verdict"]["kind"], opened["shown"]["verdict"]["kind"]);
+}
+
+#[test]
+fn time_runs_until_the_tired_hip_asks() {
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": scenario("stand-relaxed") }));
+    let mut asked = vec![];
+    for _ in 0..40 {
+        let played = ask(&mut studio, json!({ "do": "play", "samples": 30 }));
+        asked.extend(played["asking"].as_array().unwrap().iter().map(|who| who.as_str().unwrap().to_owned()));
+        if !asked.is_empty() {
+            assert!(!played["log"].as_array().unwrap().is_empty());
+            break;
+        }
+    }
+    assert!(asked.iter().any(|who| who.contains("hip")), "{asked:?}");
+}
+
+#[test]
+fn a_broken_scenario_is_refused_with_its_place_and_nothing_changes() {
+    let mut studio = Studio::new();
+    let before = ask(&mut studio, json!({ "do": "open", "scenario": "" }));
+    let sentence = refused(&mut studio, json!({ "do": "open", "scenario": "format = 1\n[model]\nadult = 3\n" }));
+    assert!(sentence.contains("line 3"), "{sentence}");
+    for text in ["format = ", "\u{0}", "[[[", "format = 2"] {
+        refused(&mut studio, json!({ "do": "open", "scenario": text }));
+    }
+    refused(&mut studio, json!({ "do": "adult", "sex": "male", "stature": 0.2, "mass": 70.0 }));
+    refused(&mut studio, json!({ "do": "open_model", "name": "body.osim", "text": "<html>" }));
+    refused(&mut studio, json!({ "do": "grab", "segment": "tail", "point": [0, 0, 0] }));
+    refused(&mut studio, json!({ "do": "drag", "target": [0, 0, 0] }));
+    refused(&mut studio, json!({ "do": "dance" }));
+    let after = ask(&mut studio, json!({ "do": "free", "segment": "hand_r" }));
+    assert_eq!(before["shown"]["q"], after["shown"]["q"]);
+}
+
+#[test]
+fn the_torques_of_a_joint_meet_at_its_posture() {
+    let mut studio = Studio::new();
+    let scene = ask(&mut studio, json!({ "do": "open", "scenario": scenario("figure-08") }));
+    let coordinates = scene["coordinates"].as_array().unwrap();
+    let elbow = coordinates.iter().position(|c| c["name"] == "elbow_flex_r").unwrap();
+    let curve = ask(&mut studio, json!({ "do": "balance", "coordinate": "elbow_flex_r" }));
+    let (angle, now) = (&curve["angle"], number(&scene["shown"]["angles"][elbow]));
+    let after = (1..91).find(|k| number(&angle[k]) >= now).unwrap();
+    let share = (now - number(&angle[after - 1])) / (number(&angle[after]) - number(&angle[after - 1]));
+    for (key, sign, shown) in [("external", 1.0, "external"), ("minus_passive", -1.0, "passive")] {
+        let on_curve = (1.0 - share) * number(&curve[key][after - 1]) + share * number(&curve[key][after]);
+        let shown = number(&scene["shown"][shown][elbow]);
+        assert!((sign * on_curve - shown).abs() < 0.05, "{key}: {on_curve} {shown}");
+    }
+}
