@@ -24,7 +24,7 @@ pub(crate) fn allow(folders: Vec<PathBuf>) {
 /// links lead. Otherwise why it is refused.
 pub(crate) fn confined(folder: &Path, name: &str) -> Result<PathBuf, String> {
     let path = folder.join(name);
-    // A file that is not there is told where it is opened.
+    // A missing file is reported where it is opened.
     let Ok(real) = path.canonicalize() else { return Ok(path) };
     let mut allowed = std::iter::once(folder).chain(ALLOWED.get().into_iter().flatten().map(PathBuf::as_path));
     if allowed.any(|allowed| allowed.canonicalize().is_ok_and(|allowed| real.starts_with(allowed))) {

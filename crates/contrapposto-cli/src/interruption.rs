@@ -31,7 +31,7 @@ pub(crate) fn watch() {
     }
 }
 
-/// From here on a write beyond the limit on file sizes (`ulimit -f`) fails with an error, which is told, instead of ending the
+/// From here on a write beyond the limit on file sizes (`ulimit -f`) fails with an error, which is reported, instead of ending the
 /// program without a word.
 pub(crate) fn tell_file_size_limit() {
     #[cfg(unix)]

@@ -48,7 +48,7 @@ fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<St
     let ground = if is_xml {
         external(path, &bytes, on, model)
     } else {
-        GroundReaction::read(&name, &bytes, on, model).map_err(told)
+        GroundReaction::read(&name, &bytes, on, model).map_err(fail_of)
     }?;
     ground.warnings().iter().for_each(|warning| print_note("warning", warning));
     for (label, segment) in ground.guessed() {
@@ -80,7 +80,7 @@ fn external(path: &Path, bytes: &[u8], on: &[String], model: &Model) -> Result<G
     )
 }
 
-fn told(error: GroundReactionError) -> Fail {
+fn fail_of(error: GroundReactionError) -> Fail {
     match error {
         GroundReactionError::Table(error) => Fail::from(error),
         GroundReactionError::Count { .. } => Fail::Refused(format!("--grf-on {error}")),

@@ -70,7 +70,7 @@ pub(crate) fn print_note(kind: &str, text: &str) {
         ("note", Notes::Quiet) => {}
         ("note", Notes::Folded) => {
             let mut waiting = WAITING.lock().unwrap_or_else(PoisonError::into_inner);
-            if !waiting.iter().any(|told| told == text) {
+            if !waiting.iter().any(|printed| printed == text) {
                 waiting.push(text.to_owned());
             }
         }

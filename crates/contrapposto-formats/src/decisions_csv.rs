@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     /// Of a hip that asked for 102 deg from 10 deg and came to `end`, deg.
-    fn told(end: f64, deferred: u64, taken_back: u64) -> String {
+    fn sentence_of(end: f64, deferred: u64, taken_back: u64) -> String {
         let model = adult(&Adult::default()).unwrap();
         let goal = Some(102f64.to_radians());
         let decision = Decision {
@@ -182,16 +182,16 @@ mod tests {
                 "hip_flexion_r, hip extension, tired to 0.60, goes to 102.0 deg, a balance, stable by ligaments: from 10.0 deg to {end} deg, active torque from -12.6 to -18.2 N m"
             )
         };
-        assert_eq!(told(102.0, 0, 0), way("102.0"));
+        assert_eq!(sentence_of(102.0, 0, 0), way("102.0"));
         assert_eq!(
-            told(26.0, 0, 0),
+            sentence_of(26.0, 0, 0),
             way("26.0") + "; the decision changed, or relief ended, before it reached its goal"
         );
         let stood = "supports, tasks or a more tired group prevented it in 8 steps";
-        assert_eq!(told(26.0, 8, 0), way("26.0") + "; it did not reach its goal: " + stood);
+        assert_eq!(sentence_of(26.0, 8, 0), way("26.0") + "; it did not reach its goal: " + stood);
         let worse = "5 steps increased the load and were reversed";
-        assert_eq!(told(26.0, 8, 5), way("26.0") + "; it did not reach its goal: " + stood + ", " + worse);
+        assert_eq!(sentence_of(26.0, 8, 5), way("26.0") + "; it did not reach its goal: " + stood + ", " + worse);
         // A goal that moves away is followed beyond its first value.
-        assert_eq!(told(110.0, 0, 5), way("110.0") + "; " + worse);
+        assert_eq!(sentence_of(110.0, 0, 5), way("110.0") + "; " + worse);
     }
 }

@@ -12,21 +12,21 @@ use crate::errors::{internal, panicked};
 /// Longest time between two looks for Ctrl-C.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
-/// Runs a job in a thread of its own, without the lock. On Ctrl-C `KeyboardInterrupt` is raised at once, and the job is told by the
+/// Runs a job in a thread of its own, without the lock. On Ctrl-C `KeyboardInterrupt` is raised at once, and the job learns it from the
 /// flag; a job that does not look at the flag ends later, and its result is dropped.
 pub(crate) fn in_background<T: Send + 'static>(
     py: Python<'_>,
     job: impl FnOnce(&AtomicBool) -> T + Send + 'static,
 ) -> PyResult<T> {
     let stop = Arc::new(AtomicBool::new(false));
-    let (told, ends) = channel();
+    let (sender, ends) = channel();
     let flag = Arc::clone(&stop);
     let worker = std::thread::Builder::new()
         .name("contrapposto".to_owned())
         .spawn(move || {
             let result = job(&flag);
             // Nobody waits after Ctrl-C.
-            let _ = told.send(result);
+            let _ = sender.send(result);
         })
         .map_err(|error| internal(py, &format!("no thread can be started: {error}")))?;
     // The receiver is not shared between threads: it moves into the waiting and back.

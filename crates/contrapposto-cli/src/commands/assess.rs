@@ -284,7 +284,7 @@ fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String
         let angle = opened.model.coordinates()[group.coordinate].kind == CoordinateKind::Rotation;
         angle && group.peak_load.value >= LIGAMENT_LOAD && group.at_peak.works_against_ligaments()
     };
-    let told = |group: &&GroupAssessment| {
+    let in_words = |group: &&GroupAssessment| {
         let PeakTorques { angle, external, passive, .. } = group.at_peak;
         let floor = StrengthAtText::new(opened, group).is_some_and(|strength| strength.is_floor());
         let [passive, external, active] = [passive, external, group.peak_torque].map(tenths);
@@ -297,7 +297,7 @@ fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String
         )
     };
     let groups: Vec<&GroupAssessment> = found.groups.iter().filter(worked).collect();
-    let listed: Vec<String> = groups.iter().take(MOST_LIGAMENTS).map(told).collect();
+    let listed: Vec<String> = groups.iter().take(MOST_LIGAMENTS).map(in_words).collect();
     let more = groups.len().saturating_sub(MOST_LIGAMENTS);
     let more = if more > 0 { format!("; and {more} more") } else { String::new() };
     (!groups.is_empty()).then(|| {

@@ -61,14 +61,14 @@ impl From<InputError> for Failure {
             let file = contents.name().unwrap_or_default().to_owned();
             Some(Place { file, line: contents.line() + 1, column: contents.column() + 1 })
         });
-        let told = label.as_ref().and_then(|label| label.label()).filter(|label| !label.is_empty());
-        let message = told.map_or_else(|| error.to_string(), |told| format!("{error}: {told}"));
+        let label = label.as_ref().and_then(|label| label.label()).filter(|label| !label.is_empty());
+        let message = label.map_or_else(|| error.to_string(), |label| format!("{error}: {label}"));
         let help = error.help().map(|help| help.to_string());
         Self { place, help, ..Self::refused(message) }
     }
 }
 
-/// Something that is told and is no failure.
+/// A message that is no failure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// `note` or `warning`.

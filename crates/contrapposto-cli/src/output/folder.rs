@@ -60,7 +60,7 @@ impl Folder {
         let _alone = lock_folder(path)?;
         let temporary = tempfile::Builder::new().prefix(PREFIX).tempdir_in(path).map_err(refused)?.keep();
         let lock = File::create_new(temporary.join(LOCK)).map_err(refused)?;
-        // Where files cannot be locked, leftovers are not told from folders in use, and stay.
+        // Where files cannot be locked, leftovers cannot be distinguished from folders in use, and stay.
         let _ = lock.try_lock();
         Ok(Self { path: path.to_owned(), made, temporary, changing: Cell::new(false), _lock: lock })
     }

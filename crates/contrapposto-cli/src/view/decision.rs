@@ -26,7 +26,7 @@ pub(crate) fn merged(model: &Model, events: &[(&Event, &Frame)]) -> Option<Strin
     Some(format!("{text} ({} times until {}{goals})", events.len(), how_long(last.time)))
 }
 
-/// Whether two events are told by one sentence pattern.
+/// Whether two events have one sentence pattern.
 pub(crate) fn alike(a: &Event, b: &Event) -> bool {
     let stays = |decision: &Decision| matches!(decision.outcome, Outcome::Stay | Outcome::None);
     a.coordinate == b.coordinate

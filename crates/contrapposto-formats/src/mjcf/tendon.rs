@@ -1,4 +1,4 @@
-//! Reads tendons as paths of muscles. One that cannot be read is told with its reason, and does not refuse the model.
+//! Reads tendons as paths of muscles. One that cannot be read is reported with its reason, and does not refuse the model.
 
 use std::collections::BTreeMap;
 

@@ -163,7 +163,7 @@ impl<'a> Signs<'a> {
         }
         let (theirs, ours) = (turning(self.model, index), turning(self.twin, own));
         let (Some(theirs), Some(ours)) = (theirs, ours) else {
-            return Err("its turning axis cannot be told".to_owned());
+            return Err("its turning axis cannot be determined".to_owned());
         };
         let along = theirs.dot(&ours);
         if along.abs() < AGREE {

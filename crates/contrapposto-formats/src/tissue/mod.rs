@@ -77,7 +77,7 @@ impl SourcedModel {
         read_model(name, bytes, root, include).map(Self::imported)
     }
 
-    /// Reads a model file for questions in which mass has no part: a body whose mass comes from a mesh has none, and a note tells of it.
+    /// Reads a model file for questions in which mass has no part: a body whose mass comes from a mesh has none, and a note reports it.
     ///
     /// # Errors
     /// As [`read_model`].
@@ -214,10 +214,10 @@ fn strength_note(model: &Model, format: ModelFormat) -> Option<String> {
 
 /// One note for everything in the file that the model does not have.
 fn left_out_note(left_out: &[(String, usize)]) -> Option<String> {
-    let told = |(kind, count): &(String, usize)| match kind.as_str() {
+    let in_words = |(kind, count): &(String, usize)| match kind.as_str() {
         "muscles" => format!("{count} muscles (neither their strength nor their passive torque)"),
         _ => format!("{count} {kind}"),
     };
-    let all: Vec<String> = left_out.iter().map(told).collect();
+    let all: Vec<String> = left_out.iter().map(in_words).collect();
     (!all.is_empty()).then(|| format!("in the file and not used: {}", all.join(", ")))
 }

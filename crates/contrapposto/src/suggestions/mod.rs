@@ -1,4 +1,4 @@
-//! Tries changes of a job, and tells for how long each lets the job go on.
+//! Tries changes of a job, and computes how long each lets the job go on.
 //!
 //! A change ([`Change`]) is one that a person can make: a target 10 cm higher, lower or nearer, a fifth less load, the other foot ahead,
 //! the other strategy, a break of a minute every ten minutes. A changed scenario is run like any other, from its start until a muscle

@@ -118,7 +118,7 @@ pub struct PassedHazard {
     pub seconds: f64,
 }
 
-/// A hazard that lasted less, s, was a motion, and is not told. Assumed.
+/// A hazard that lasted less, s, was a motion, and is not reported. Assumed.
 const LEAST_HAZARD: f64 = 5.0;
 
 /// The answer to a job.

@@ -136,9 +136,9 @@ impl Findings {
 
     /// `ligaments held for 40 s lumbar extension at −60.0° (74 % of 165 N m)`.
     fn passed(&self, model: &Model) -> Option<String> {
-        let told =
+        let sentence =
             |passed: &PassedHazard| format!("for {} {}", how_long(passed.seconds), passed.hazard.in_words(model));
-        let list: Vec<String> = self.passed.iter().map(told).collect();
+        let list: Vec<String> = self.passed.iter().map(sentence).collect();
         (!list.is_empty()).then(|| format!("ligaments held {}", enumerated(&list)))
     }
 

@@ -246,11 +246,11 @@ fn relief(model: &Model, found: &GroupAssessment, peak: &[Proposal]) -> String {
         PeakKind::Load => format!("greatest load, {} of its strength", percent(found.peak_load.value)),
         PeakKind::Fatigue => format!("greatest fatigue, {}", percent(found.peak_fatigue.value)),
     };
-    let told = |proposal: &Proposal| {
+    let of_proposal = |proposal: &Proposal| {
         let goal = proposal.decision.goal.map(|goal| value(model, i, goal)).unwrap_or_default();
         answer(&proposal.decision, &value(model, i, proposal.angle), &goal)
     };
-    let answers: Vec<String> = peak.iter().map(told).collect();
+    let answers: Vec<String> = peak.iter().map(of_proposal).collect();
     let agree = answers.iter().all(|answer| *answer == answers[0]);
     let relief = match answers.as_slice() {
         [active, passive] if !agree => format!("Active strategy: {active} Passive strategy: {passive}"),

@@ -186,10 +186,10 @@ impl Narrative<'_> {
             StopReason::Slid => "the supports slid",
         };
         let why = summary.fall.map_or(String::new(), |fall| format!(" {}.", sentence(&fall.to_string())));
-        let told = excerpt.events.len() as u64;
-        let more = match excerpt.happened - told {
+        let listed = excerpt.events.len() as u64;
+        let more = match excerpt.happened - listed {
             0 => String::new(),
-            more => format!(" Of {} decisions the first {told} are listed; {more} more follow.", excerpt.happened),
+            more => format!(" Of {} decisions the first {listed} are listed; {more} more follow.", excerpt.happened),
         };
         format!("The run ended after {:.0} s: {how}.{why}{more}", summary.end_time)
     }

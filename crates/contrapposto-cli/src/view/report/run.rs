@@ -61,7 +61,7 @@ fn moment(verdict: &Verdict, summary: &Summary) -> f64 {
     }
 }
 
-/// Decisions, those that repeat told once; changes of the scenario; and steps of feet. In the order of time.
+/// Decisions, those that repeat listed once; changes of the scenario; and steps of feet. In the order of time.
 fn entries(scenario: &Scenario, summary: &Summary, excerpt: &RunExcerpt, shown: &[usize]) -> Vec<Entry> {
     let frame_at = |time: f64| excerpt.frames.iter().position(|frame| frame.time >= time);
     let mut kinds: Vec<Vec<(&Event, &Frame)>> = vec![];
@@ -84,12 +84,12 @@ fn entries(scenario: &Scenario, summary: &Summary, excerpt: &RunExcerpt, shown: 
         let joint = shown.iter().position(|&i| i == step.coordinate);
         (step.time.0, joint, step_in_words(scenario, step))
     });
-    let mut told: Vec<(f64, Option<usize>, String)> = decided.chain(changed).chain(stepped).collect();
-    told.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut entries: Vec<(f64, Option<usize>, String)> = decided.chain(changed).chain(stepped).collect();
+    entries.sort_by(|a, b| a.0.total_cmp(&b.0));
     let entry = |(time, joint, text): (f64, Option<usize>, String)| {
         Some(Entry { frame: frame_at(time)?, time: Some(time), joint, text })
     };
-    told.into_iter().filter_map(entry).collect()
+    entries.into_iter().filter_map(entry).collect()
 }
 
 /// What an event of the scenario changes, a sentence each.

@@ -209,16 +209,16 @@ pub(crate) fn report(text: &AssessText) -> String {
         if group.proposals.is_empty() {
             let _ = writeln!(out, "{}: no falling passive curve of this joint is known", group.name);
         }
-        let mut told: Vec<String> = vec![];
+        let mut previous: Vec<String> = vec![];
         for peak in group.proposals.chunk_by(|a, b| a.at == b.at) {
             let sentences = sentences(peak);
-            if sentences != told {
+            if sentences != previous {
                 let ProposalText { at, time_s, angle_deg, .. } = peak[0];
                 let _ = writeln!(out, "{}, greatest {at} at {time_s:.2} s, {angle_deg:.1} deg:", group.name);
                 for sentence in &sentences {
                     let _ = writeln!(out, "  {sentence}");
                 }
-                told = sentences;
+                previous = sentences;
             }
         }
     }
