@@ -19,7 +19,7 @@ pub(crate) use model::{
     AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,
     RuleChoice, TorquesArgs,
 };
-pub(crate) use muscles::MuscleArgs;
+pub(crate) use muscles::use_muscles;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;
 

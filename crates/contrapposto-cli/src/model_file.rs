@@ -7,11 +7,11 @@ use std::path::Path;
 
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto_formats::model_ir::RootAttachment;
-use contrapposto_formats::tissue::SourcedModel;
+use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size};
 
-use crate::args::{ModelArgs, MuscleArgs, PassiveFrom, RootChoice};
+use crate::args::{ModelArgs, PassiveFrom, RootChoice, use_muscles};
 use crate::fail::Fail;
 use crate::input::read;
 use crate::output::print_note;
@@ -24,14 +24,13 @@ pub(crate) fn open(args: &ModelArgs, filled: bool) -> Result<SourcedModel, Fail>
     Ok(open_with(args, filled, None, SourcedModel::read)?.0)
 }
 
-/// Opens MODEL, what is unknown filled in, and gives its muscles what is asked of them; with warnings about these muscles.
+/// Opens MODEL, what is unknown filled in, and gives its muscles what is asked of them under some name; with warnings about these muscles.
 pub(crate) fn open_with_muscles(
     args: &ModelArgs,
-    muscles: &MuscleArgs,
+    muscles: (Option<MuscleUse>, &str),
 ) -> Result<(SourcedModel, Option<JointMuscles>, Vec<String>), Fail> {
     let (mut opened, library) = open_with(args, true, Some(muscles), SourcedModel::read)?;
-    let muscles = opened.joint_muscles();
-    let doubts = library.filter(|_| muscles.is_some()).map_or(vec![], |library| opened.muscle_doubts(&library));
+    let (muscles, doubts) = library.map_or((None, vec![]), |library| opened.joint_muscles(&library));
     doubts.iter().for_each(|doubt| print_note("warning", doubt));
     Ok((opened, muscles, doubts))
 }
@@ -53,7 +52,7 @@ type Read = fn(
 fn open_with(
     args: &ModelArgs,
     filled: bool,
-    muscles: Option<&MuscleArgs>,
+    muscles: Option<(Option<MuscleUse>, &str)>,
     read_file: Read,
 ) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
     let root = args.root.map(RootChoice::body);
@@ -76,7 +75,7 @@ fn open_with(
     }
     let library = muscles.map(|_| opened.clone());
     if let Some(muscles) = muscles {
-        muscles.apply(&mut opened)?;
+        use_muscles(&mut opened, muscles)?;
     }
     let fill = match args.passive {
         Some(from) => from == PassiveFrom::Library,

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Model;
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::{MOST_BYTES, ModelFile, scenario_model};
@@ -11,7 +12,7 @@ use serde_json::Value;
 use crate::args::{ModelArgs, RootChoice};
 use crate::fail::Fail;
 use crate::input::{confined, read};
-use crate::model_file::open;
+use crate::model_file::open_with_muscles;
 use crate::output::print_note;
 
 /// A scenario file that was read, not yet understood.
@@ -20,6 +21,8 @@ pub(crate) struct ScenarioFile {
     pub(crate) bytes: Vec<u8>,
     /// The model that it names, if it names one.
     pub(crate) model: Option<Model>,
+    /// The muscles of that model, where the scenario asks for their strength.
+    pub(crate) muscles: Option<JointMuscles>,
 }
 
 impl ScenarioFile {
@@ -27,8 +30,8 @@ impl ScenarioFile {
         let name = path.display().to_string();
         refuse_model(path, &name)?;
         let bytes = read(path, MOST_BYTES)?;
-        let model = model_of(path, &name, &bytes)?;
-        Ok(Self { name, bytes, model })
+        let (model, muscles) = model_of(path, &name, &bytes)?.unzip();
+        Ok(Self { name, bytes, model, muscles: muscles.flatten() })
     }
 
     /// From a text; the files that it names are in the present folder.
@@ -40,8 +43,8 @@ impl ScenarioFile {
                 text.len()
             )));
         }
-        let model = model_of(Path::new(&name), &name, text.as_bytes())?;
-        Ok(Self { name, bytes: text.as_bytes().to_vec(), model })
+        let (model, muscles) = model_of(Path::new(&name), &name, text.as_bytes())?.unzip();
+        Ok(Self { name, bytes: text.as_bytes().to_vec(), model, muscles: muscles.flatten() })
     }
 
     /// As [`Self::read`]; the body starts in the posture of a result, if one is given.
@@ -96,17 +99,20 @@ fn refuse_model(path: &Path, name: &str) -> Result<(), Fail> {
     Err(Fail::Refused(format!("{name}: {why}")))
 }
 
-/// The model file that a scenario names, if it names one.
-fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<Model>, Fail> {
+/// The model file that a scenario names, if it names one, and its muscles in use.
+fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<(Model, Option<JointMuscles>)>, Fail> {
     let Some(file) = scenario_model(name, bytes)? else { return Ok(None) };
-    let opened = open(&model_args(scenario, name, &file)?, true)?.with_fatigue(&file.fatigue);
+    let key = format!("{name}: [model] muscles");
+    let asked = (Some(file.muscles), key.as_str());
+    let (opened, muscles, _) = open_with_muscles(&model_args(scenario, name, &file)?, asked)?;
+    let opened = opened.with_fatigue(&file.fatigue);
     if opened.model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
         let unknown = "no strength of its joints is known: their load, fatigue and effort are unknown, not 0";
         let model = opened.model.name();
         print_note("warning", &format!("`{model}`: {unknown}; lay one over it with `overlay` in [model]"));
     }
     opened.notes.iter().for_each(|note| print_note("note", note));
-    Ok(Some(opened.model))
+    Ok(Some((opened.model, muscles)))
 }
 
 /// How the scenario's model file is opened: its paths are seen from the scenario's folder.

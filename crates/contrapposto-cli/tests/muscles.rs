@@ -201,7 +201,8 @@ fn passive_torque_and_strength_of_a_crossed_joint_are_the_muscles_and_others_kee
                 let beyond = sign * (greatest - passive);
                 let strength = &found["strength"][side];
                 assert!(beyond > 1.0 && (number(&strength["strength_nm"]) - beyond).abs() < 1e-9, "{uses}: {found}");
-                assert_eq!((&strength["status"], &strength["source"]), (&source["status"], &source["source"]));
+                assert_eq!((&strength["status"], &strength["floor"]), (&source["status"], &false.into()));
+                assert_eq!(strength["source"], "muscles of the model, isometric");
             }
         }
     }
@@ -234,7 +235,7 @@ fn assess_judges_every_frame_by_the_strength_of_the_muscles_in_it() {
     let group = groups.iter().find(right).unwrap();
     let of_frame = &frames[usize::from(number(&group["peak_load"]["at_s"]) > 5.0)]["coordinates"]["elbow_flex_r"];
     let (active, strength) = (number(&group["active_at_peak_nm"]), number(&group["strength_at_peak"]["strength_nm"]));
-    assert_eq!(group["strength_at_peak"]["source"], "muscles of the model");
+    assert_eq!(group["strength_at_peak"]["source"], "muscles of the model, isometric");
     assert!((number(&group["peak_load"]["value"]) - active.abs() / strength).abs() < 1e-12, "{group}");
     assert!(
         (strength - number(&of_frame["strength"][usize::from(active < 0.0)]["strength_nm"])).abs() < 1e-12,
@@ -245,7 +246,7 @@ fn assess_judges_every_frame_by_the_strength_of_the_muscles_in_it() {
     let page = folder.path().join("out");
     assert_eq!(run(&["assess", &file, &motion, "--load", "b 4kg", "--out", page.to_str().unwrap()]).code, 0);
     let text = std::fs::read_to_string(page.join("report.html")).unwrap();
-    assert!(text.contains("derived (muscles of the model)"), "the page names the source");
+    assert!(text.contains("derived (muscles of the model, isometric)"), "the page names the source");
 }
 
 #[test]
@@ -266,7 +267,7 @@ fn a_passive_law_and_a_strength_of_an_overlay_are_whole_joints_to_which_no_muscl
 }
 
 #[test]
-fn muscles_far_weaker_than_people_and_muscles_that_could_not_be_read_are_warned_of() {
+fn a_joint_whose_muscles_are_far_weaker_than_people_keeps_the_built_in_strength_with_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     let (file, motion) = elbows(folder.path());
     let text = std::fs::read_to_string(&file).unwrap();
@@ -282,14 +283,92 @@ fn muscles_far_weaker_than_people_and_muscles_that_could_not_be_read_are_warned_
         warnings.as_array().unwrap().iter().any(|warning| warning.as_str().unwrap().starts_with(said)),
         "{warnings}"
     );
+    let elbow = |more: &[&str]| {
+        let frames = json(&[&["torques", &weak, &motion, "--json"], more].concat());
+        frames[0]["coordinates"]["elbow_flex_r"].clone()
+    };
+    let (kept, built_in) = (elbow(&[]), elbow(&["--muscles", "off"]));
+    assert_eq!(kept["strength"], built_in["strength"], "that of the built-in data, with its status");
+    assert_eq!(kept["passive_source"]["source"], "muscles of the model", "passive torque stays the muscles'");
+    assert_ne!(kept["passive"], built_in["passive"]);
+}
+
+#[test]
+fn a_sense_in_which_no_muscle_pulls_has_the_least_strength_marked_as_assumed_where_no_built_in_one_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(folder.path(), "m.osim", &model(&muscle("Thelen2003Muscle", "t", "")));
+    let frames = json(&["torques", &file, "default", "--json"]);
+    let [pulled, not_pulled] = [0, 1].map(|side| &frames[0]["coordinates"]["q"]["strength"][side]);
+    assert_eq!((&pulled["status"], &pulled["floor"]), (&"derived".into(), &false.into()), "{pulled}");
+    assert_eq!((&not_pulled["status"], &not_pulled["floor"]), (&"assumed".into(), &true.into()), "{not_pulled}");
+    assert_eq!(not_pulled["strength_nm"], 0.001);
+}
+
+#[test]
+fn muscles_that_could_not_be_read_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, motion) = elbows(folder.path());
+    let text = std::fs::read_to_string(&file).unwrap();
+    let told = |file: &str| run(&["torques", file, &motion, "--quiet"]).stderr;
     let unread = text.replace("<Thelen2003Muscle name=\"back\">", "<RigidTendonMuscle name=\"back\">");
     assert_ne!(unread, text);
     let end = unread.rfind("</Thelen2003Muscle>").unwrap();
     let unread = format!("{}</RigidTendonMuscle>{}", &unread[..end], &unread[end + "</Thelen2003Muscle>".len()..]);
     let unread = write(folder.path(), "unread.osim", &unread);
-    assert!(
-        told(&unread, &["--quiet"]).contains("warning: 1 of 3 muscles could not be read"),
-        "{}",
-        told(&unread, &[])
+    assert!(told(&unread).contains("warning: 1 of 3 muscles could not be read"), "{}", told(&unread));
+}
+
+/// The arm of `elbows` with a hand at 60 degrees of flexion and a weight in it.
+fn weight_in_hand(folder: &std::path::Path, name: &str, model: &str) -> String {
+    let text = format!(
+        "format = 1\n[model]\n{model}\n[posture]\nelbow_flex_r_deg = 20\n[[load]]\nsegment = \"b\"\nmass_kg = 6\n\
+         [[task]]\nkind = \"point\"\nsegment = \"b\"\nat_m = [0, -0.3, 0]\ntarget_m = [0.259807621, -0.15, 0]\n"
     );
+    write(folder, name, &text)
+}
+
+#[test]
+fn the_posture_of_a_scenario_has_the_strength_of_the_muscles_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    elbows(folder.path());
+    let scenario = |uses: &str| {
+        let model = format!("file = \"elbows.osim\"\nmuscles = \"{uses}\"");
+        json(&["relax", &weight_in_hand(folder.path(), &format!("{uses}.toml"), &model), "--json"])
+    };
+    let work = |found: &serde_json::Value| {
+        let groups = found["postures"][0]["groups"].as_array().unwrap();
+        groups.iter().find(|group| group["coordinate"] == "elbow_flex_r").unwrap().clone()
+    };
+    let (found, without) = (scenario("strength"), scenario("off"));
+    let angle = number(&found["postures"][0]["coordinates"]["elbow_flex_r"]).to_degrees();
+    assert!((angle - 60.0).abs() < 0.1, "{angle}");
+    let motion = format!("time,elbow_flex_r_deg,elbow_flex_l_deg\n0,{angle:?},0\n");
+    let motion = write(folder.path(), "there.csv", &motion);
+    let file = folder.path().join("elbows.osim");
+    let frames = json(&["torques", file.to_str().unwrap(), &motion, "--json", "--muscles", "strength"]);
+    let (group, side) = (work(&found), usize::from(number(&work(&found)["active_nm"]) < 0.0));
+    let expected = number(&frames[0]["coordinates"]["elbow_flex_r"]["strength"][side]["strength_nm"]);
+    let strength = number(&group["strength_nm"]);
+    assert!((strength / expected - 1.0).abs() < 2e-6, "{strength} N m for {expected}");
+    assert!((number(&group["relative_load"]) - number(&group["active_nm"]).abs() / strength).abs() < 1e-12, "{group}");
+    assert!((number(&work(&without)["strength_nm"]) / strength - 1.0).abs() > 0.01, "the built-in one differs");
+}
+
+#[test]
+fn a_scenario_refuses_muscles_that_it_cannot_use_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    elbows(folder.path());
+    let told = |model: &str| refused(&["relax", &weight_in_hand(folder.path(), "refused.toml", model)]);
+    for word in ["passive", "both"] {
+        let text = told(&format!("file = \"elbows.osim\"\nmuscles = \"{word}\""));
+        assert!(text.contains(&format!("muscles is \"{word}\"")) && text.contains("refused.toml:4:"), "{text}");
+        assert!(text.contains("write \"strength\" or \"off\""), "{text}");
+    }
+    let text = told("muscles = \"strength\"\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75 }");
+    assert!(text.contains("`muscles` goes with a model file"), "{text}");
+    write(folder.path(), "bare.osim", &model(""));
+    let text = told("file = \"bare.osim\"\nmuscles = \"strength\"");
+    assert!(text.contains("refused.toml: [model] muscles: no muscle could be read from the model"), "{text}");
+    let text = told("file = \"elbows.osim\"\nmuscles = \"all\"");
+    assert!(text.contains("`off`") && text.contains("`strength`"), "{text}");
 }

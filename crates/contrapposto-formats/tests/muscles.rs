@@ -309,9 +309,12 @@ fn muscles_in_use_give_gait2392_the_passive_torque_of_opensim_and_strength_beyon
     let no_includes = &mut |_: &str| Err("none".to_owned());
     let mut opened = SourcedModel::read("gait2392.osim", &bytes, None, no_includes).unwrap();
     assert_eq!(opened.default_muscle_use(), MuscleUse::Both);
+    let library = opened.clone().fill(&Person::default()).unwrap();
     assert!(opened.use_muscles(MuscleUse::Both));
     let mut opened = opened.fill(&Person::default()).unwrap();
-    let muscles = opened.joint_muscles().unwrap();
+    let (muscles, warnings) = opened.joint_muscles(&library);
+    let muscles = muscles.unwrap();
+    assert_eq!(warnings, [""; 0]);
     let mut body =
         JointTorques::with_passive_ranges(&opened.model, &opened.passive_ranges()).with_muscles(Some(muscles));
     let hip = opened.model.coordinate("hip_adduction_r").unwrap();

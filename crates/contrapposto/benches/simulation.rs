@@ -40,6 +40,7 @@ fn ten_minutes() -> Scenario {
             tables: Tables::Total,
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
+        muscles: None,
         start_fatigue: vec![[0.0; 2]; n],
         run: RunSettings { duration: 600.0, step: 1.0 / 30.0, stop_when_settled: false },
     }

@@ -90,6 +90,7 @@ fn scenario(model: Model, on_its_feet: bool) -> Scenario {
             tables: Tables::Total,
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
+        muscles: None,
         start_fatigue: vec![[0.7; 2]; n],
         run: RunSettings { duration: 1.0, step: 1.0 / 30.0, stop_when_settled: false },
         model,

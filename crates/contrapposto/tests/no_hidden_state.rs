@@ -90,6 +90,7 @@ impl Setting {
                 tables: Tables::Total,
             },
             hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
+            muscles: None,
             start_fatigue: vec![[0.5; 2]; n],
             run: RunSettings { duration: 0.5, step: 1.0 / 30.0, stop_when_settled: false },
         }

@@ -43,6 +43,7 @@ fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
             tables: Tables::Total,
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
+        muscles: None,
         start_fatigue: vec![[0.0; 2]; n],
         run: RunSettings { duration, step: 1.0 / 30.0, stop_when_settled: false },
     };

@@ -28,19 +28,25 @@ pub(crate) enum MuscleChoice {
 }
 
 impl MuscleArgs {
-    /// Leaves to the muscles of a model what is asked of them.
-    pub(crate) fn apply(&self, opened: &mut SourcedModel) -> Result<(), Fail> {
-        let uses = match self.muscles {
-            None => opened.default_muscle_use(),
-            Some(MuscleChoice::Off) => MuscleUse::Off,
-            Some(MuscleChoice::Strength) => MuscleUse::Strength,
-            Some(MuscleChoice::Passive) => MuscleUse::Passive,
-            Some(MuscleChoice::Both) => MuscleUse::Both,
-        };
-        if opened.use_muscles(uses) || uses == MuscleUse::Off {
-            return Ok(());
-        }
-        let why = "no muscle could be read from MODEL; it must be an OpenSim or MJCF file with muscles, and `contrapposto inspect` counts them";
-        Err(Fail::Refused(format!("--muscles: {why}")))
+    /// What is asked of muscles, and by which name; without a use the default of the model.
+    pub(crate) fn asked(&self) -> (Option<MuscleUse>, &'static str) {
+        let uses = self.muscles.map(|choice| match choice {
+            MuscleChoice::Off => MuscleUse::Off,
+            MuscleChoice::Strength => MuscleUse::Strength,
+            MuscleChoice::Passive => MuscleUse::Passive,
+            MuscleChoice::Both => MuscleUse::Both,
+        });
+        (uses, "--muscles")
     }
+}
+
+/// Leaves to the muscles of a model what is asked of them under the name `key`.
+pub(crate) fn use_muscles(opened: &mut SourcedModel, (uses, key): (Option<MuscleUse>, &str)) -> Result<(), Fail> {
+    let uses = uses.unwrap_or_else(|| opened.default_muscle_use());
+    if opened.use_muscles(uses) || uses == MuscleUse::Off {
+        return Ok(());
+    }
+    let why = "no muscle could be read from the model; it must be an OpenSim or MJCF file with muscles, and `contrapposto \
+        inspect` counts them";
+    Err(Fail::Refused(format!("{key}: {why}")))
 }

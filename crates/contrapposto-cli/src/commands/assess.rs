@@ -176,7 +176,7 @@ fn advice(given: &Motion<'_>, found: &Assessment, verdict: &Verdict, suggest: Su
 
 /// The model with its fatigue, and its muscles with warnings about them.
 fn open(args: &AssessArgs) -> Result<(SourcedModel, Option<JointMuscles>, Vec<String>), Fail> {
-    let (opened, muscles, doubts) = open_with_muscles(&args.model, &args.muscles)?;
+    let (opened, muscles, doubts) = open_with_muscles(&args.model, args.muscles.asked())?;
     Ok((opened.with_fatigue(&args.fatigue.choice()?), muscles, doubts))
 }
 

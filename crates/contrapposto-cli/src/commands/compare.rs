@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
+use contrapposto::posture::Posture;
 use contrapposto::simulation::Run;
 use contrapposto::verdict::Verdict;
-use contrapposto_formats::{RunScenario, read_pose, read_run, scenario_runs};
+use contrapposto_formats::{RunScenario, read_pose, scenario_runs};
 use contrapposto_plot::{BodyFigure, BodyPosture, body_figure};
 
 use super::pose::{Posed, solve, verdict};
+use super::simulate;
 use crate::args::CompareArgs;
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print};
@@ -49,11 +51,12 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Fail> {
 
 /// A scenario with a duration is simulated, and its last posture taken; one without is posed.
 pub(super) fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fail> {
-    let ScenarioFile { name: file, bytes, model } = ScenarioFile::read(path)?;
-    if !scenario_runs(&file, &bytes)? {
-        return posed(&file, &bytes, model, letter);
+    let source = ScenarioFile::read(path)?;
+    let file = source.name.clone();
+    if !scenario_runs(&file, &source.bytes)? {
+        return posed(source, letter);
     }
-    let RunScenario { scenario, things, .. } = read_run(&file, &bytes, model)?;
+    let RunScenario { mut scenario, things, .. } = simulate::read(source)?;
     let failed = |error| Fail::job(&file, error);
     let mut run = Run::new(&scenario).map_err(failed)?;
     let progress = progress_bar(scenario.run.duration);
@@ -64,13 +67,20 @@ pub(super) fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fa
     }
     progress.finish_and_clear();
     let Some(frame) = last else { return Err(Fail::job(&file, "the run has no sample")) };
+    let verdict = Verdict::of_run(&scenario, &run.summary());
+    let loads = Stage::of_run(&scenario, &things).loads_at(frame.time).to_vec();
+    // The strength of the posture that is compared.
+    if let Some(muscles) = &mut scenario.muscles {
+        let posture = Posture::new(frame.posture.clone());
+        muscles.pose(&mut scenario.model, &posture).map_err(|error| Fail::job(&file, error))?;
+    }
     Ok(ComparedPosture {
         letter,
         title: title(&scenario.title, path),
         how: format!("simulated, {:.0} s", frame.time),
-        verdict: Verdict::of_run(&scenario, &run.summary()),
+        verdict,
         posture: frame.posture.clone(),
-        loads: Stage::of_run(&scenario, &things).loads_at(frame.time).to_vec(),
+        loads,
         frame: Some(frame),
         things,
         supports: scenario.supports,
@@ -79,19 +89,16 @@ pub(super) fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fa
     })
 }
 
-fn posed(
-    file: &str,
-    bytes: &[u8],
-    model: Option<contrapposto::model::Model>,
-    letter: char,
-) -> Result<ComparedPosture, Fail> {
-    let scenario = read_pose(file, bytes, model)?;
-    let Posed { pose, held, .. } = solve(file, &scenario)?;
+fn posed(source: ScenarioFile, letter: char) -> Result<ComparedPosture, Fail> {
+    let ScenarioFile { name: file, bytes, model, muscles } = source;
+    let mut scenario = read_pose(&file, &bytes, model)?;
+    scenario.take_muscles(muscles);
+    let Posed { pose, held, .. } = solve(&file, &mut scenario)?;
     let verdict = verdict(&scenario, &pose, &held);
     let frame = held.known();
     Ok(ComparedPosture {
         letter,
-        title: title(&scenario.title, Path::new(file)),
+        title: title(&scenario.title, Path::new(&file)),
         how: "posed".to_owned(),
         verdict,
         posture: pose.posture.values().to_vec(),
@@ -100,7 +107,7 @@ fn posed(
         loads: scenario.loads,
         supports: scenario.supports,
         model: scenario.model,
-        file: file.to_owned(),
+        file,
     })
 }
 

@@ -43,7 +43,7 @@ fn inspect_scenario(path: &Path, args: &InspectArgs) -> Result<(), Fail> {
         let why = "a scenario says in its table [model] what --overlay, --root, --passive and --person say of a model";
         return Err(Fail::Refused(format!("{}: {why}", path.display())));
     }
-    let ScenarioFile { name, bytes, model } = ScenarioFile::read(path)?;
+    let ScenarioFile { name, bytes, model, .. } = ScenarioFile::read(path)?;
     let contents = read_contents(&name, &bytes, model)?;
     draw(&contents.model, args)?;
     let report = scenario_report(&contents, &name);

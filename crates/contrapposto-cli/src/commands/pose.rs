@@ -10,6 +10,7 @@ use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
 use contrapposto_plot::body_figure;
 
+use super::relax::{MOST_STRENGTH_ROUNDS, SAME_STRENGTH, unsettled};
 use crate::args::{PoseArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note};
@@ -32,9 +33,9 @@ const KEPT_BALANCE: &str = "the posture nearest to the tasks falls, and no task 
 pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let file = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
     let name = file.name.clone();
-    let scenario = read(file)?;
+    let mut scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POSE_FILES)).transpose()?;
-    let Posed { pose, held, kept_balance } = solve(&name, &scenario)?;
+    let Posed { pose, held, kept_balance, .. } = solve(&name, &mut scenario)?;
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let files = if args.out.is_some() { names.collect() } else { vec![] };
@@ -50,8 +51,9 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
 
 /// The scenario of a file; notes about it go to standard error.
 pub(crate) fn read(file: ScenarioFile) -> Result<PoseScenario, Fail> {
-    let ScenarioFile { name, bytes, model } = file;
-    let scenario = read_pose(&name, &bytes, model)?;
+    let ScenarioFile { name, bytes, model, muscles } = file;
+    let mut scenario = read_pose(&name, &bytes, model)?;
+    scenario.take_muscles(muscles);
     if !scenario.unused.is_empty() {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
         print_note("note", &format!("{} is ignored by `pose`; it is for `simulate`", list.join(", ")));
@@ -92,11 +94,16 @@ pub(crate) struct Posed {
     pub(crate) held: Held,
     /// Balance was put above the tasks, because the posture nearest to them falls.
     pub(crate) kept_balance: bool,
+    /// The last change of a strength of muscles, as a share, where it has not settled.
+    unsettled: Option<f64>,
 }
 
 /// Solves for the posture of a scenario named `name`, with the errors of its goals. Where the supports do not hold the one nearest to the tasks, and no task asks for balance, balance comes first.
-pub(crate) fn solve(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> {
+pub(crate) fn solve(name: &str, scenario: &mut PoseScenario) -> Result<Posed, Fail> {
     let posed = posed(name, scenario)?;
+    if let Some(change) = posed.unsettled {
+        print_note("warning", &unsettled(change));
+    }
     if posed.kept_balance {
         print_note("note", KEPT_BALANCE);
         if posed.pose.reason == Reason::StepLimit {
@@ -106,8 +113,27 @@ pub(crate) fn solve(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> 
     Ok(posed)
 }
 
-/// As [`solve`], without a word.
-fn posed(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> {
+/// As [`solve`], without a word. A body with muscles has the strength of that posture: where effort counts it is solved for again until
+/// that stays.
+fn posed(name: &str, scenario: &mut PoseScenario) -> Result<Posed, Fail> {
+    let asks = |goal: &PriorityLevel| goal.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
+    let effort = scenario.goals.iter().any(asks);
+    let mut round = 0;
+    loop {
+        let mut posed = posed_once(name, scenario)?;
+        let change = scenario.take_strength(&posed.pose.posture);
+        let settles = change <= SAME_STRENGTH || !effort;
+        if settles || round == MOST_STRENGTH_ROUNDS {
+            posed.held = held(&scenario.model, &posed.pose.posture, &scenario.loads, &scenario.supports)?;
+            posed.unsettled = (!settles).then_some(change);
+            return Ok(posed);
+        }
+        round += 1;
+    }
+}
+
+/// The posture at the strength that the body has.
+fn posed_once(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> {
     let refused = |error: EngineError| Fail::Refused(format!("{name}: {error}"));
     let failed = |error| Fail::job("pose", error);
     let (levels, limits) = scenario.levels();
@@ -125,7 +151,7 @@ fn posed(name: &str, scenario: &PoseScenario) -> Result<Posed, Fail> {
     }
     // The limits are not among the goals that are reported.
     limits.map(|place| pose.levels.remove(place));
-    Ok(Posed { pose, held, kept_balance })
+    Ok(Posed { pose, held, kept_balance, unsettled: None })
 }
 
 /// The posture nearest to the tasks among those that the supports hold; `None` where a task asks for balance, and where none was found.
@@ -173,7 +199,7 @@ fn trial(scenario: &PoseScenario, job: &Job<'_>, change: &Change) -> Trial {
     let mut changed = scenario.clone();
     changed.goals.iter_mut().for_each(|goal| change.apply_to_level(job, goal));
     change.apply_to_loads(&mut changed.loads);
-    let Ok(Posed { pose, held, .. }) = posed("pose", &changed) else { return Trial::default() };
+    let Ok(Posed { pose, held, .. }) = posed("pose", &mut changed) else { return Trial::default() };
     Trial { verdict: Some(verdict(&changed, &pose, &held)), steps: pose.steps }
 }
 

@@ -31,13 +31,18 @@ const RELAX_FILES: [&str; 6] =
 /// Largest change of a joint in one step, rad, and most steps of the last stage of each posture.
 const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
 
+/// Most times that a posture is sought again with the strength that muscles have in the one before.
+pub(crate) const MOST_STRENGTH_ROUNDS: usize = 20;
+/// Change of a strength, as a share, from which on a posture is sought again.
+pub(crate) const SAME_STRENGTH: f64 = 1e-6;
+
 pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let file = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
     let name = file.name.clone();
-    let scenario = read(file)?;
+    let mut scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &RELAX_FILES)).transpose()?;
     let spinner = spinner();
-    let found = find(&scenario);
+    let found = find(&mut scenario);
     let found = match found {
         Ok(found) => found,
         Err(SearchError::CannotStand(missing)) => {
@@ -67,8 +72,9 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
 
 /// The scenario of a file; notes about it go to standard error.
 pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
-    let ScenarioFile { name, bytes, model } = file;
-    let scenario = read_relax(&name, &bytes, model)?;
+    let ScenarioFile { name, bytes, model, muscles } = file;
+    let mut scenario = read_relax(&name, &bytes, model)?;
+    scenario.take_muscles(muscles);
     if !scenario.unused.is_empty() {
         let list: Vec<String> = scenario.unused.iter().map(|table| format!("[{table}]")).collect();
         print_note(
@@ -97,9 +103,31 @@ fn search(scenario: &RelaxScenario) -> Search<'_> {
     }
 }
 
-/// The postures of least effort.
-pub(crate) fn find(scenario: &RelaxScenario) -> Result<Equilibria, SearchError> {
-    equilibria(&search(scenario), OPTIONS)
+/// The postures of least effort. A body with muscles has the strength of the best of them: it is searched again until that stays.
+pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchError> {
+    let mut round = 0;
+    loop {
+        let found = equilibria(&search(scenario), OPTIONS)?;
+        let Some(best) = found.postures.first() else { return Ok(found) };
+        let change = scenario.take_strength(&best.relaxed.posture);
+        if change <= SAME_STRENGTH {
+            return Ok(found);
+        }
+        if round == MOST_STRENGTH_ROUNDS {
+            print_note("warning", &unsettled(change));
+            return Ok(found);
+        }
+        round += 1;
+    }
+}
+
+/// A warning that the strength of muscles changes by this share still.
+pub(crate) fn unsettled(change: f64) -> String {
+    format!(
+        "the strength of the muscles has not settled in {MOST_STRENGTH_ROUNDS} rounds: in the posture that was found, that of a \
+         group differs by {} from the one by which it was found",
+        percent(change)
+    )
 }
 
 /// The answer: that of the posture of least effort, and the changes that were tried.

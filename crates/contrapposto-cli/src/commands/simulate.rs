@@ -54,12 +54,19 @@ const RUN_FILES: [&str; 17] = [
 const BETWEEN_SAVES: Duration = Duration::from_secs(20);
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
-    let ScenarioFile { name, bytes, model } = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
-    let run = read_run(&name, &bytes, model)?;
+    let run = read(ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?)?;
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
     let SimulateArgs { resume, figures, json, suggest, .. } = *args;
     carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest })
+}
+
+/// The run of a file, with the muscles of its model.
+pub(crate) fn read(file: ScenarioFile) -> Result<RunScenario, Fail> {
+    let ScenarioFile { name, bytes, model, muscles } = file;
+    let mut run = read_run(&name, &bytes, model)?;
+    run.scenario.muscles = muscles;
+    Ok(run)
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {

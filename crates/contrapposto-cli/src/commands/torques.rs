@@ -35,7 +35,7 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
         return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
     }
     let target = args.out.as_deref().map(Target::new).transpose()?;
-    let (mut opened, muscles, _) = open_with_muscles(&args.model, &args.muscles)?;
+    let (mut opened, muscles, _) = open_with_muscles(&args.model, args.muscles.asked())?;
     let mut notes = std::mem::take(&mut opened.notes);
     let model = &opened.model;
     let mut recorded = recorded(args, model, &mut notes)?;

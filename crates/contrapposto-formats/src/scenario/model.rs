@@ -6,11 +6,11 @@ use super::error_keys::adult_path;
 use super::fatigue_choice::fatigue_choice;
 use super::head::check_head;
 use super::names::coordinate;
-use super::text::{AdultText, ModelText, PartText, PersonText, RootText, ScenarioText, SexText};
+use super::text::{AdultText, ModelText, MusclesText, PartText, PersonText, RootText, ScenarioText, SexText};
 use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
 use crate::passive_law::passive_curve;
-use crate::tissue::{FatigueChoice, Person, SourcedModel};
+use crate::tissue::{FatigueChoice, MuscleUse, Person, SourcedModel};
 use crate::toml_file::{Located, read_toml, shown};
 
 /// A model file that a scenario names.
@@ -26,6 +26,8 @@ pub struct ModelFile {
     pub strength: bool,
     /// Fatigue law of its muscle groups, for [`SourcedModel::with_fatigue`].
     pub fatigue: FatigueChoice,
+    /// What its muscles give: strength or nothing.
+    pub muscles: MuscleUse,
     /// The person whom it stands for.
     pub person: Person,
 }
@@ -48,6 +50,7 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
             ("overlay", text.overlay.is_some()),
             ("root", text.root.is_some()),
             ("file_strength", text.file_strength.is_some()),
+            ("muscles", text.muscles.is_some()),
             ("person", text.person.is_some()),
         ];
         for (key, given) in given {
@@ -74,7 +77,23 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
     let fatigue = fatigue_choice(at, scenario)?;
     let person = text.person.as_ref().map_or(Ok(Person::default()), |text| person(at, text))?;
     let strength = text.file_strength.unwrap_or(true);
-    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, strength, fatigue, person }))
+    let muscles = text.muscles.map_or(Ok(MuscleUse::Off), |text| muscles(at, text))?;
+    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, strength, fatigue, muscles, person }))
+}
+
+fn muscles(at: &Located, text: MusclesText) -> Result<MuscleUse, InputError> {
+    let word = match text {
+        MusclesText::Off => return Ok(MuscleUse::Off),
+        MusclesText::Strength => return Ok(MuscleUse::Strength),
+        MusclesText::Passive => "passive",
+        MusclesText::Both => "both",
+    };
+    let message = format!(
+        "muscles is \"{word}\": a scenario has no passive torque of muscles, since relief needs a curve of each joint"
+    );
+    let help =
+        "write \"strength\" or \"off\"; `contrapposto torques` and `assess` take passive torque from muscles, too";
+    Err(at.error(&["model", "muscles"], message, Some(help.to_owned())))
 }
 
 fn person(at: &Located, text: &PersonText) -> Result<Person, InputError> {

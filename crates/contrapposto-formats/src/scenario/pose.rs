@@ -1,6 +1,7 @@
 //! Reads a scenario for `contrapposto pose`: body, start, loads and tasks in order of priority.
 
 use contrapposto::contact::Support;
+use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::Options;
@@ -22,6 +23,8 @@ pub struct PoseScenario {
     pub title: String,
     /// The body.
     pub model: Model,
+    /// Muscles of its file that give its groups strength: [`PoseScenario::take_muscles`].
+    pub muscles: Option<JointMuscles>,
     /// Where it starts: inside all ranges, quaternions of length 1, coordinates that follow others where they must be.
     pub start: Posture,
     /// Rates that do not move, besides those of coordinates that the model itself locks.
@@ -47,6 +50,18 @@ pub struct PoseScenario {
 }
 
 impl PoseScenario {
+    /// Takes the muscles of the scenario's model, in the posture of the start.
+    pub fn take_muscles(&mut self, muscles: Option<JointMuscles>) {
+        self.muscles = muscles;
+        self.take_strength(&self.start.clone());
+    }
+
+    /// Gives the body the strength of its muscles in `posture`. Returns the greatest change of one as a share; 0 without muscles.
+    pub fn take_strength(&mut self, posture: &Posture) -> f64 {
+        // A posture of the body fits it.
+        self.muscles.as_mut().and_then(|muscles| muscles.pose(&mut self.model, posture).ok()).unwrap_or(0.0)
+    }
+
     /// The levels to be solved for: supports, limits, the other goals; and the place of the limits, if there are any.
     pub fn levels(&self) -> (Vec<PriorityLevel>, Option<usize>) {
         let mut levels = self.goals.clone();
@@ -92,6 +107,7 @@ fn pose(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<PoseSc
     unused.extend(present(at, &["event", "run"]));
     Ok(PoseScenario {
         title: text.title.clone(),
+        muscles: None,
         // Friction, planes and shares have no part in the goals: an error of one of them is none here.
         supports: setup.supports.unwrap_or_default(),
         locked,

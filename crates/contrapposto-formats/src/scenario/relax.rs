@@ -1,6 +1,7 @@
 //! Reads a scenario for `contrapposto relax`: body, start, loads, supports and tasks.
 
 use contrapposto::contact::{Support, root_rates};
+use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -20,6 +21,8 @@ pub struct RelaxScenario {
     pub title: String,
     /// The body.
     pub model: Model,
+    /// Muscles of its file that give its groups strength: [`RelaxScenario::take_muscles`].
+    pub muscles: Option<JointMuscles>,
     /// Where it starts, inside all ranges.
     pub start: Posture,
     /// Rates that do not move, besides those of coordinates that the model itself locks.
@@ -42,6 +45,20 @@ pub struct RelaxScenario {
     pub unused: Vec<&'static str>,
     /// What was changed or added, a sentence each.
     pub notes: Vec<String>,
+}
+
+impl RelaxScenario {
+    /// Takes the muscles of the scenario's model, in the posture of the start.
+    pub fn take_muscles(&mut self, muscles: Option<JointMuscles>) {
+        self.muscles = muscles;
+        self.take_strength(&self.start.clone());
+    }
+
+    /// Gives the body the strength of its muscles in `posture`. Returns the greatest change of one as a share; 0 without muscles.
+    pub fn take_strength(&mut self, posture: &Posture) -> f64 {
+        // A posture of the body fits it.
+        self.muscles.as_mut().and_then(|muscles| muscles.pose(&mut self.model, posture).ok()).unwrap_or(0.0)
+    }
 }
 
 /// Reads a scenario for `relax`. `name` is the file's name for messages; `model` is the model of the file that
@@ -83,6 +100,7 @@ fn relax(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Relax
     unused.extend(present(at, &["event", "run"]));
     Ok(RelaxScenario {
         title: text.title.clone(),
+        muscles: None,
         locked,
         loads,
         supports,

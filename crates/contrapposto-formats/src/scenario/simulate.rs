@@ -73,6 +73,7 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Ru
         title: text.title.clone(),
         start_fatigue: start_fatigue(at, &model, &text.fatigue)?,
         model,
+        muscles: None,
         start,
         free,
         loads,

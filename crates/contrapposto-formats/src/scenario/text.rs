@@ -141,6 +141,8 @@ pub(crate) struct ModelText {
     pub(crate) root: Option<RootText>,
     /// Whether the joints of a URDF or MJCF file have the strength that it gives to their motors; true when left out.
     pub(crate) file_strength: Option<bool>,
+    /// The use of the muscles of a model file; `off` when left out.
+    pub(crate) muscles: Option<MusclesText>,
     /// The person whom a model file stands for: size of the built-in strength and passive torque.
     pub(crate) person: Option<PersonText>,
 }
@@ -155,6 +157,20 @@ pub(crate) struct PersonText {
     pub(crate) stature_m: Option<f64>,
     /// Mass, kg, 30 to 250; the model's when left out.
     pub(crate) mass_kg: Option<f64>,
+}
+
+/// The use of the muscles of a model file.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum MusclesText {
+    /// None.
+    Off,
+    /// Strength of the joints that they cross, in each posture.
+    Strength,
+    /// Refused in scenarios.
+    Passive,
+    /// Refused in scenarios.
+    Both,
 }
 
 /// How a root is attached.

@@ -85,9 +85,24 @@ impl SourcedModel {
         true
     }
 
-    /// The muscles that [`SourcedModel::use_muscles`] left passive torque or strength to; `None` where it left nothing. Writes
-    /// their strength in the default posture to the model's groups.
-    pub fn joint_muscles(&mut self) -> Option<JointMuscles> {
+    /// The muscles that [`SourcedModel::use_muscles`] left passive torque or strength to, `None` where it left nothing, and warnings about
+    /// them. Writes their strength in the default posture to the model's groups. A coordinate that they leave far weaker there than
+    /// `library`, the same model without its muscles, keeps the strength of `library`.
+    pub fn joint_muscles(&mut self, library: &Self) -> (Option<JointMuscles>, Vec<String>) {
+        let Some(mut muscles) = self.posed_muscles() else { return (None, vec![]) };
+        let weak = self.weaker_than(library);
+        for &(coordinate, _) in &weak {
+            self.keep_strength(library, coordinate);
+        }
+        let warnings = self.muscle_doubts(weak);
+        if let Some(fewer) = self.posed_muscles() {
+            muscles = fewer;
+        }
+        (Some(muscles), warnings)
+    }
+
+    /// The muscles that passive torque or strength is left to, in the default posture, with their strength in the model's groups.
+    fn posed_muscles(&mut self) -> Option<JointMuscles> {
         let rates = |of: &dyn Fn(usize) -> Origin| -> Vec<usize> {
             let coordinates = self.model.coordinates().iter().enumerate();
             coordinates.filter(|(i, _)| of(*i) == Origin::Muscles).filter_map(|(_, c)| c.rate).collect()
@@ -102,6 +117,14 @@ impl SourcedModel {
         muscles.update(&self.model, &posture, &Kinematics::new(&self.model)).ok()?;
         muscles.write_strength(&mut self.model);
         Some(muscles)
+    }
+
+    /// Gives a coordinate the strength that it has in `library`.
+    fn keep_strength(&mut self, library: &Self, coordinate: usize) {
+        let Some(groups) = library.model.coordinates()[coordinate].groups.clone() else { return };
+        self.model = self.model.clone().with_groups(coordinate, groups);
+        self.origins[coordinate].strength = library.origins[coordinate].strength;
+        self.origins[coordinate].fatigue = library.origins[coordinate].fatigue;
     }
 
     /// The coordinates of rates.
@@ -166,7 +189,7 @@ impl SourcedModel {
         self.notes.push(format!(
             "{what} of the joints that the model's {} muscles cross are theirs in each posture (derived; strength is a plain sum), in place of \
              the built-in data{rest}. Muscles have no joint capsule and fascia, so that passive torque may be less than a joint's. \
-             --muscles off leaves them out",
+             --muscles off, in a scenario `muscles = \"off\"`, leaves them out",
             self.muscles.muscles.len(),
         ));
         if !kept.is_empty() {

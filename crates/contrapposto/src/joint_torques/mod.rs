@@ -25,7 +25,7 @@ mod muscles;
 pub use about_axes::AboutAxes;
 pub use group_load::{GroupLoad, relative_load};
 pub use hazard::{Hazard, carried};
-pub use muscles::{JointMuscles, RESTING_ACTIVATION};
+pub use muscles::{JointMuscles, LEAST_MUSCLE_STRENGTH, RESTING_ACTIVATION};
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};

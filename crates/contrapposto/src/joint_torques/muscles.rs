@@ -9,8 +9,8 @@
 //! ```
 //!
 //! Strength is that beyond passive torque, for active torque is (Eq. 1), and a plain sum: dynamometers measure a joint while straps
-//! hold the others, so that two-joint muscles pull as they can. All arms are taken twice: about coordinates, and about the axes of
-//! three-axis joints, by the body that has a ball for each.
+//! hold the others, so that two-joint muscles pull as they can. It is isometric: fibres stand still, whatever the motion. All arms
+//! are taken twice: about coordinates, and about the axes of three-axis joints, by the body that has a ball for each.
 
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
@@ -22,8 +22,8 @@ use crate::strength::Strength;
 
 /// Activation of a muscle at rest: the least of OpenSim's muscles.
 pub const RESTING_ACTIVATION: f64 = 0.01;
-/// Least strength, N m: where no muscle pulls, relative load stays finite (assumed).
-const LEAST_STRENGTH: f64 = 1e-3;
+/// Least strength that muscles give, N m (N for slides): where none pulls, relative load stays finite (assumed).
+pub const LEAST_MUSCLE_STRENGTH: f64 = 1e-3;
 
 /// Passive torque and strength of a body from its muscles. Depend on the posture; filled by [`JointMuscles::update`].
 #[derive(Clone, Debug)]
@@ -108,6 +108,26 @@ impl JointMuscles {
         self.torques.each_ref().map(Vec::as_slice)
     }
 
+    /// Gives the muscle groups of `model` the strength that they have in `posture`, and returns the greatest change of one, as a share
+    /// of the new strength.
+    ///
+    /// # Errors
+    /// [`PostureError`] when the posture does not fit the model.
+    pub fn pose(&mut self, model: &mut Model, posture: &Posture) -> Result<f64, PostureError> {
+        let mut kinematics = Kinematics::new(model);
+        kinematics.update(model, posture)?;
+        self.update(model, posture, &kinematics)?;
+        let strengths = |model: &Model| -> Vec<f64> {
+            let coordinates = self.strong.iter().filter_map(|&rate| model.rates[rate].coordinate);
+            let groups = coordinates.filter_map(|coordinate| model.coordinates[coordinate].groups.as_ref());
+            groups.flatten().map(|group| group.strength.peak).collect()
+        };
+        let before = strengths(model);
+        self.write_strength(model);
+        let changes = before.iter().zip(strengths(model)).map(|(before, after)| (before / after - 1.0).abs());
+        Ok(changes.fold(0.0, f64::max))
+    }
+
     /// Gives the muscle groups of the coordinates at which strength counts the strength of the last update.
     pub fn write_strength(&self, model: &mut Model) {
         for &rate in &self.strong {
@@ -115,7 +135,7 @@ impl JointMuscles {
             let Some(coordinate) = model.rates[rate].coordinate else { continue };
             let Some(groups) = model.coordinates[coordinate].groups.as_mut() else { continue };
             for (side, beyond) in [(Side::Positive, positive - passive), (Side::Negative, passive - negative)] {
-                groups[side.index()].strength = Strength::constant(beyond.max(LEAST_STRENGTH));
+                groups[side.index()].strength = Strength::constant(beyond.max(LEAST_MUSCLE_STRENGTH));
             }
         }
     }

@@ -135,6 +135,12 @@ impl<'a> Engine<'a> {
         &mut self.settings.levels
     }
 
+    /// Replaces the model by the same body with other strength.
+    pub(crate) fn set_model(&mut self, model: impl Into<SharedModel<'a>>) {
+        self.iterate.invalidate();
+        self.settings.model = model.into();
+    }
+
     /// Replaces the loads.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::contact::{Balance, ContactForces, Missing, Place, Slip, Support};
 use crate::joint_torques::JointTorques;
-use crate::model::Model;
+use crate::model::SharedModel;
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, Options};
 use crate::statics::{Load, LoadKind};
@@ -46,7 +46,8 @@ pub(super) struct BodyMotion<'a> {
     pub(super) engine: Engine<'a>,
     /// The support that is in the air, and an engine without it.
     pub(super) lifted: Option<(usize, Engine<'a>)>,
-    model: &'a Model,
+    /// The body, with the strength of its present posture.
+    pub(super) model: SharedModel<'a>,
     /// Number of levels above the reliefs.
     above: usize,
     /// Level of each of the scenario's tasks.
@@ -73,8 +74,11 @@ struct Slope {
 
 impl<'a> BodyMotion<'a> {
     /// The body on its supports as they are in the posture `placed_at`.
-    pub(super) fn new(scenario: &'a Scenario, placed_at: &Posture) -> Result<Self, ScenarioError> {
-        let model = &scenario.model;
+    pub(super) fn new(
+        scenario: &'a Scenario,
+        model: SharedModel<'a>,
+        placed_at: &Posture,
+    ) -> Result<Self, ScenarioError> {
         // A foot that carries does not slide.
         let stays = |support: &Support| Support { place: Place::Fixed, ..support.clone() };
         let supports: Vec<Support> = scenario.supports.iter().map(stays).collect();
@@ -89,13 +93,13 @@ impl<'a> BodyMotion<'a> {
         let options = Options { reject_steps: false, max_step, local_minima: 0, ..Options::least_effort() };
         Ok(Self {
             scenario,
-            engine: engine(scenario, placed_at, &supports, levels, options)?,
+            engine: engine((scenario, model.clone()), placed_at, &supports, levels, options)?,
             supports,
             lifted: None,
-            model,
             above: above.len(),
             task_levels,
             slopes: vec![None; model.coordinates().len()],
+            model,
             placed_at: placed_at.clone(),
             before: placed_at.clone(),
             convergence_count: 0,
@@ -209,7 +213,7 @@ impl<'a> BodyMotion<'a> {
     /// load. Where no such posture is found `posture` stays; the answer is the force and moment that are missing there.
     pub(super) fn recover_balance(&mut self, posture: &mut Posture) -> Result<Option<Missing>, ScenarioError> {
         self.update(posture)?;
-        let missing = self.contact().missing(self.model, self.torques().kinematics());
+        let missing = self.contact().missing(&self.model, self.torques().kinematics());
         if missing.is_none() {
             return Ok(None);
         }
@@ -266,6 +270,15 @@ impl<'a> BodyMotion<'a> {
         Ok(self.engine.set_loads(loads)?)
     }
 
+    /// Replaces the body by the same one with other strength.
+    pub(super) fn set_model(&mut self, model: &SharedModel<'a>) {
+        self.model = model.clone();
+        self.engine.set_model(model.clone());
+        if let Some((_, engine)) = &mut self.lifted {
+            engine.set_model(model.clone());
+        }
+    }
+
     pub(super) fn set_task(&mut self, task: usize, goal: &PriorityLevel) {
         self.restart_convergence();
         self.engine.levels_mut()[self.task_levels[task]].clone_from(goal);
@@ -296,17 +309,17 @@ impl<'a> BodyMotion<'a> {
         standing.errors.clear();
         standing.errors.extend(self.task_levels.iter().map(|&level| self.engine.error(level)));
         standing.slip = self.lifted.as_ref().map_or(&self.engine, |(_, engine)| engine).slip();
-        standing.center_of_mass = self.torques().kinematics().center_of_mass(self.model).unwrap_or_default();
+        standing.center_of_mass = self.torques().kinematics().center_of_mass(&self.model).unwrap_or_default();
     }
 
     fn contact_of(&self, support: usize) -> Contact {
         let (contact, kinematics) = (self.contact(), self.torques().kinematics());
-        let center_of_pressure = contact.center_of_pressure(self.model, kinematics, support);
+        let center_of_pressure = contact.center_of_pressure(&self.model, kinematics, support);
         let about = center_of_pressure.unwrap_or_default();
         let mut couple = Vector3::zeros();
         for load in &contact.loads()[contact.corners(support)] {
             if let LoadKind::Force(force, _) = load.kind {
-                let at = kinematics.station(self.model, load.segment, load.point);
+                let at = kinematics.station(&self.model, load.segment, load.point);
                 couple += (at - about).cross(&force);
             }
         }
@@ -319,15 +332,14 @@ pub(super) fn is_effort(level: &PriorityLevel) -> bool {
     level.tasks.iter().any(|task| matches!(task, Task::Effort(_)))
 }
 
-/// An engine for a scenario's body that moves its free coordinates.
+/// An engine for a scenario's body, which has the strength of `model`, that moves its free coordinates.
 pub(super) fn engine<'a>(
-    scenario: &'a Scenario,
+    (scenario, model): (&'a Scenario, SharedModel<'a>),
     placed_at: &Posture,
     supports: &[Support],
     levels: Vec<PriorityLevel>,
     options: Options,
 ) -> Result<Engine<'a>, ScenarioError> {
-    let model = &scenario.model;
     let mut engine = Engine::with_supports(model, placed_at, supports.to_vec(), levels, &scenario.loads, options)?;
     scenario.locked_rates().for_each(|rate| engine.lock(rate));
     scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;

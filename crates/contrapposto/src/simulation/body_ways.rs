@@ -19,7 +19,7 @@ impl BodyMotion<'_> {
         let scenario = self.scenario;
         let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
         let levels = self.levels().cloned().collect();
-        let mut nearest = engine(scenario, &scenario.start, &self.supports, levels, options)?;
+        let mut nearest = engine((scenario, self.model.clone()), &scenario.start, &self.supports, levels, options)?;
         let mut posture = nearest.solve(&scenario.start)?.posture;
         // A body whose weight acts at the very edge of its supports may be off balance by rounding.
         if let Some(missing) = self.recover_balance(&mut posture)? {
@@ -39,7 +39,7 @@ impl BodyMotion<'_> {
         self.engine.evaluate(posture)?;
         let effort = self.effort();
         let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
-        let now = Now { posture, levels: &levels, loads: self.engine.loads(), effort };
+        let now = Now { model: &self.model, posture, levels: &levels, loads: self.engine.loads(), effort };
         // A search that finds nothing leaves the body as it is.
         Ok(easiest(self.scenario, now, &self.supports).unwrap_or((None, 0)))
     }
@@ -52,7 +52,7 @@ impl BodyMotion<'_> {
         let keeps = |level: &&PriorityLevel| lifted.is_none() || level.half_spaces.is_empty();
         let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
         let (supports, loads) = (&self.supports[..], self.engine.loads());
-        let planner = Planner { scenario: self.scenario, supports, levels: &levels, loads };
+        let planner = Planner { scenario: self.scenario, model: &self.model, supports, levels: &levels, loads };
         let planned = match lifted {
             Some(support) => planner.step(from, to, support),
             None => planner.way(from, to),
@@ -71,7 +71,7 @@ impl BodyMotion<'_> {
             let others: Vec<Support> = others.map(|(_, support)| support.clone()).collect();
             let levels = self.engine.levels().to_vec();
             let options = Options::least_effort();
-            let mut engine = engine(self.scenario, &self.placed_at, &others, levels, options)?;
+            let mut engine = engine((self.scenario, self.model.clone()), &self.placed_at, &others, levels, options)?;
             engine.set_loads(self.engine.loads())?;
             self.lifted = Some((lifted, engine));
         }
@@ -81,7 +81,7 @@ impl BodyMotion<'_> {
     /// Stands on the supports as they are in `posture`: one has been put elsewhere.
     pub(super) fn place_again(&mut self, posture: &Posture) -> Result<(), ScenarioError> {
         let (levels, loads) = (self.engine.levels().to_vec(), self.engine.loads().to_vec());
-        *self = Self::new(self.scenario, posture)?;
+        *self = Self::new(self.scenario, self.model.clone(), posture)?;
         self.engine.levels_mut().clone_from_slice(&levels);
         self.engine.set_loads(&loads)?;
         self.requested.clear();

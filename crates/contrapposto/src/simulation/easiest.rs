@@ -5,6 +5,7 @@
 
 use crate::contact::{Support, rates_that_move};
 use crate::equilibria::{RelaxedPosture, Search, SearchError, equilibria};
+use crate::model::Model;
 use crate::posture::Posture;
 use crate::posture_solver::Options;
 use crate::statics::Load;
@@ -27,6 +28,8 @@ const MOST_SLIP: f64 = 1e-5;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now<'a> {
     pub(super) posture: &'a Posture,
+    /// The body, with the strength of its present posture.
+    pub(super) model: &'a Model,
     /// All levels, tasks and reliefs.
     pub(super) levels: &'a [PriorityLevel],
     pub(super) loads: &'a [Load],
@@ -60,7 +63,7 @@ pub(super) fn search(
     let asks = |level: &&PriorityLevel| !level.tasks.is_empty() || !level.half_spaces.is_empty();
     let goals: Vec<PriorityLevel> = now.levels.iter().filter(asks).cloned().collect();
     let search = Search {
-        model: &scenario.model,
+        model: now.model,
         start: now.posture,
         supports,
         limits: &scenario.limits,

@@ -58,7 +58,7 @@ pub(super) fn plan_step(
         supports[i].place = support.place.clone();
         let effort = body.effort();
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
-        let now = Now { posture, levels: &levels, loads: body.loads(), effort };
+        let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort };
         let locked: Vec<usize> = scenario.locked_rates().collect();
         let Ok((found, steps)) = search(scenario, now, &supports, &locked) else { continue };
         all += steps;

@@ -21,6 +21,7 @@ mod sample;
 mod scenario;
 mod state;
 mod step;
+mod strength;
 mod summary;
 mod under_way;
 

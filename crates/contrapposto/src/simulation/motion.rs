@@ -4,6 +4,7 @@ use super::body_motion::BodyMotion;
 use super::joint_motion::JointMotion;
 use super::{Event, Scenario, ScenarioError};
 use crate::joint_torques::JointTorques;
+use crate::model::SharedModel;
 use crate::posture::Posture;
 
 /// How reliefs move the body.
@@ -17,9 +18,13 @@ pub(super) enum Motion<'a> {
 
 impl<'a> Motion<'a> {
     /// The motion of a scenario whose supports are as in the posture `placed_at`.
-    pub(super) fn new(scenario: &'a Scenario, placed_at: &Posture) -> Result<Self, ScenarioError> {
+    pub(super) fn new(
+        scenario: &'a Scenario,
+        model: SharedModel<'a>,
+        placed_at: &Posture,
+    ) -> Result<Self, ScenarioError> {
         if scenario.has_supports_or_tasks() {
-            return Ok(Self::Body(Box::new(BodyMotion::new(scenario, placed_at)?)));
+            return Ok(Self::Body(Box::new(BodyMotion::new(scenario, model, placed_at)?)));
         }
         Ok(Self::Joints(Box::new(JointMotion::new(scenario))))
     }

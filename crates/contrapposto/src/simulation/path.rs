@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::{Balance, Support};
 use crate::joint_torques::relative_load;
 use crate::kinematics::Kinematics;
-use crate::model::{Coordinate, Placement};
+use crate::model::{Coordinate, Model, Placement};
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, EngineError, Options};
 use crate::statics::Load;
@@ -89,6 +89,8 @@ impl Path {
 /// Plans ways of a scenario's body.
 pub(super) struct Planner<'a> {
     pub(super) scenario: &'a Scenario,
+    /// The body, with the strength of its present posture.
+    pub(super) model: &'a Model,
     /// All supports, none of them free.
     pub(super) supports: &'a [Support],
     /// The levels above effort.
@@ -131,7 +133,7 @@ impl Planner<'_> {
         first: Vec<Task>,
         to: &Posture,
     ) -> Result<Engine<'_>, EngineError> {
-        let model = &self.scenario.model;
+        let model = self.model;
         let mut levels: Vec<PriorityLevel> = first.into_iter().map(PriorityLevel::from).collect();
         levels.iter_mut().take(1).for_each(|level| level.hard = true);
         levels.extend_from_slice(self.levels);
@@ -149,7 +151,7 @@ impl Planner<'_> {
 
     /// Where the segment of a support is in a posture.
     fn placement(&self, posture: &Posture, support: usize) -> Result<Placement, EngineError> {
-        let model = &self.scenario.model;
+        let model = self.model;
         let mut kinematics = Kinematics::new(model);
         kinematics.update(model, posture).map_err(crate::joint_torques::JointTorquesError::from)?;
         Ok(kinematics.placement(model, self.supports[support].segment))
@@ -176,7 +178,7 @@ impl Planner<'_> {
 
     /// The centre of mass over the other supports, each by the weight that it carries in `from`; `None` where they carry nothing.
     fn over_the_others(&self, from: &Posture, lifted: usize) -> Result<Option<Task>, EngineError> {
-        let model = &self.scenario.model;
+        let model = self.model;
         let mut engine = self.engine(from, self.supports, vec![], from)?;
         engine.evaluate(from)?;
         let (mut target, mut weight) = (Vector3::zeros(), 0.0);
@@ -201,7 +203,7 @@ impl Planner<'_> {
             let active = coordinate.rate.map_or(0.0, |rate| torques.active_torque()[rate]);
             relative_load(coordinate, torques.angles()[i], active)
         };
-        let strong = self.scenario.model.coordinates().iter().enumerate().map(load).all(|load| load <= 1.0);
+        let strong = self.model.coordinates().iter().enumerate().map(load).all(|load| load <= 1.0);
         Ok(strong && engine.contact().balance() == Balance::Held)
     }
 

@@ -4,7 +4,7 @@ use super::Fall;
 use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
-use crate::joint_torques::JointTorquesError;
+use crate::joint_torques::{JointMuscles, JointTorquesError};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::posture_solver::EngineError;
@@ -104,6 +104,8 @@ pub struct Scenario {
     pub title: String,
     /// The body.
     pub model: Model,
+    /// Muscles that give groups of the body their strength, that of each sample's posture.
+    pub muscles: Option<JointMuscles>,
     /// The posture at the start, inside all ranges.
     pub start: Posture,
     /// Whether each coordinate may move.

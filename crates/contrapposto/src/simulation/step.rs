@@ -4,10 +4,11 @@ use super::motion::Motion;
 use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
 use super::state::State;
+use super::strength::PosedStrength;
 use super::{Event, Fall, Scenario, ScenarioError};
 use crate::contact::Balance;
 use crate::joint_torques::{active_torque, effort, relative_load};
-use crate::model::Side;
+use crate::model::{SharedModel, Side};
 
 /// A step of relief below this size, rad, counts as none.
 pub(super) const SMALLEST_STEP: f64 = 1e-6;
@@ -15,12 +16,17 @@ pub(super) const SMALLEST_STEP: f64 = 1e-6;
 pub(super) const TIME_TOLERANCE: f64 = 1e-9;
 /// A motion for relief may raise active torque to so many times its predicted peak.
 const PEAK_LIMIT: f64 = 1.5;
+
 /// A scenario under way.
 #[derive(Debug)]
 pub struct Simulation<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) state: State,
     pub(super) motion: Motion<'a>,
+    /// The body, with the strength of its present posture.
+    model: SharedModel<'a>,
+    /// For a body with muscles.
+    strength: Option<PosedStrength>,
     pub(super) record: Record,
     /// Values of the posture and active torque before the last motion.
     values_before: Vec<f64>,
@@ -36,16 +42,14 @@ impl<'a> Simulation<'a> {
     /// [`ScenarioError`] when the scenario is not in order.
     pub fn new(scenario: &'a Scenario) -> Result<Self, ScenarioError> {
         scenario.check()?;
-        let (mut motion, mut start) = (Motion::new(scenario, &scenario.start)?, scenario.start.clone());
-        let mut searched = 0;
-        if let Some(body) = motion.body_mut() {
-            (start, searched) = body.start()?;
-        }
         let strategies = match scenario.strategies.is_empty() {
             true => vec![scenario.strategy.kind; scenario.model.coordinates().len()],
             false => scenario.strategies.clone(),
         };
-        let mut simulation = Self::with(scenario, motion, State { searched, ..State::new(start, strategies) });
+        let mut simulation = Self::with(scenario, State::new(scenario.start.clone(), strategies))?;
+        if let Some(body) = simulation.motion.body_mut() {
+            (simulation.state.posture, simulation.state.searched) = body.start()?;
+        }
         simulation.carry_out_reliefs()?;
         for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
             let Some(groups) = &coordinate.groups else { continue };
@@ -71,9 +75,8 @@ impl<'a> Simulation<'a> {
         if !fit || !state.fits(n, scenario.supports.len(), scenario.events.len()) {
             return Err(ScenarioError::Snapshot);
         }
-        let motion = Motion::new(scenario, state.placed_at.as_ref().unwrap_or(&scenario.start))?;
         let events = state.next_event;
-        let mut simulation = Self::with(scenario, motion, state.clone());
+        let mut simulation = Self::with(scenario, state.clone())?;
         for event in &scenario.events[..events] {
             simulation.apply(event)?;
         }
@@ -81,17 +84,26 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    fn with(scenario: &'a Scenario, motion: Motion<'a>, state: State) -> Self {
+    fn with(scenario: &'a Scenario, state: State) -> Result<Self, ScenarioError> {
         let n = scenario.model.coordinates().len();
-        Self {
+        let mut strength = scenario.muscles.clone().map(PosedStrength::new);
+        let model = match &mut strength {
+            Some(strength) => strength.pose(&scenario.model, &state.posture)?.map(SharedModel::from),
+            None => None,
+        };
+        let model = model.unwrap_or(SharedModel::Borrowed(&scenario.model));
+        let placed_at = state.placed_at.as_ref().unwrap_or(&scenario.start);
+        Ok(Self {
+            motion: Motion::new(scenario, model.clone(), placed_at)?,
             scenario,
             state,
-            motion,
+            model,
+            strength,
             record: Record::new(n),
             values_before: vec![0.0; n],
             active_before: vec![0.0; n],
             relief_step: vec![0.0; n],
-        }
+        })
     }
 
     /// Solver steps of all searches so far.
@@ -270,9 +282,16 @@ impl<'a> Simulation<'a> {
 
     /// Computes torques and relative loads in the present posture; gives the effort.
     pub(super) fn evaluate(&mut self) -> Result<f64, ScenarioError> {
+        let posed = self.strength.as_mut().map(|strength| strength.pose(&self.scenario.model, &self.state.posture));
+        if let Some(model) = posed.transpose()?.flatten() {
+            self.model = model.into();
+            if let Some(body) = self.motion.body_mut() {
+                body.set_model(&self.model);
+            }
+        }
         self.motion.update(&self.state.posture)?;
         let torques = self.motion.torques();
-        for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
+        for (i, coordinate) in self.model.coordinates().iter().enumerate() {
             let of_rate = |rate| torques.external_and_passive(rate);
             let (external, passive) = coordinate.rate.map_or((0.0, 0.0), of_rate);
             (self.record.external[i], self.record.passive[i]) = (external, passive);

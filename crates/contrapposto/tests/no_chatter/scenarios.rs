@@ -61,6 +61,7 @@ pub(crate) fn random(random: &mut Random) -> Scenario {
             tables: Tables::Total,
         },
         hysteresis: Hysteresis { critical_level, recovery_level },
+        muscles: None,
         start_fatigue,
         run: RunSettings { duration, step: STEP, stop_when_settled: false },
         start,

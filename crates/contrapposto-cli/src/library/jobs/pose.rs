@@ -32,8 +32,8 @@ impl Posed {
         with_notes(|| {
             let file = source.open()?;
             let name = file.name.clone();
-            let scenario = read(file)?;
-            let crate::commands::pose::Posed { pose, held, .. } = solve(&name, &scenario)?;
+            let mut scenario = read(file)?;
+            let crate::commands::pose::Posed { pose, held, .. } = solve(&name, &mut scenario)?;
             let answer = answer(&scenario, &pose, &held, SuggestArgs::default());
             let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), vec![]);
             let json = json_text("pose.json", &text)?;

@@ -33,8 +33,8 @@ impl Relaxed {
         with_notes(|| {
             let file = source.open()?;
             let name = file.name.clone();
-            let scenario = read(file)?;
-            match find(&scenario) {
+            let mut scenario = read(file)?;
+            match find(&mut scenario) {
                 Ok(found) => Self::of(scenario, found),
                 Err(SearchError::CannotStand(missing)) => {
                     let verdict = Verdict::of_fall(&scenario.model, missing);

@@ -2,18 +2,17 @@
 
 use contrapposto::simulation::{Fall, Run, ScenarioError, Summary};
 use contrapposto::verdict::Verdict;
+use contrapposto_formats::RunScenario;
 use contrapposto_formats::tissue::fatigue_notes;
-use contrapposto_formats::{RunScenario, read_run};
 
 use super::source::ScenarioSource;
 use crate::args::SuggestArgs;
-use crate::commands::simulate::summary_json;
+use crate::commands::simulate::{read, summary_json};
 use crate::commands::trials::{advice_of_run, advice_without_posture};
 use crate::fail::Fail;
 use crate::library::failure::{Failure, Note, with_notes};
 use crate::library::frames::Frames;
 use crate::output::print_note;
-use crate::scenario_file::ScenarioFile;
 use crate::view::answer::{Answer, text_without_posture};
 use crate::view::frame::Frame;
 use crate::view::recording::Recording;
@@ -38,8 +37,7 @@ impl Simulated {
         go_on: impl Fn() -> bool + Sync,
     ) -> Result<(Self, Vec<Note>), Failure> {
         with_notes(|| {
-            let ScenarioFile { name, bytes, model } = source.open()?;
-            let run = read_run(&name, &bytes, model)?;
+            let run = read(source.open()?)?;
             run.notes.iter().for_each(|note| print_note("note", note));
             fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
             Self::of(run, suggest, go_on)

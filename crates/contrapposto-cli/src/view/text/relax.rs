@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture, Work};
 use contrapposto::hybrid::{Carrier, Equilibrium};
+use contrapposto::joint_torques::LEAST_MUSCLE_STRENGTH;
 use contrapposto::model::Model;
 use contrapposto::posture_solver::Reason;
 use contrapposto::tasks::PriorityLevel;
@@ -181,7 +182,8 @@ impl RelaxedPostureText {
             strength_is_floor: model.coordinates()[work.coordinate]
                 .groups
                 .as_ref()
-                .is_some_and(|groups| groups[work.side.index()].strength.is_floor_torque(work.strength)),
+                .is_some_and(|groups| groups[work.side.index()].strength.is_floor_torque(work.strength))
+                || work.strength <= LEAST_MUSCLE_STRENGTH,
             endurance_s: work.endurance.is_finite().then_some(work.endurance),
         };
         let values = found.relaxed.posture.values().iter().copied();

@@ -3,13 +3,16 @@
 use std::fmt::Write;
 
 use contrapposto::assessment::GroupAssessment;
+use contrapposto::joint_torques::LEAST_MUSCLE_STRENGTH;
 use contrapposto::model::data::{self, Reference};
 use contrapposto::model::{CoordinateKind, MuscleGroup, Sex, Side};
 use contrapposto_formats::tissue::{Origin, SourcedModel};
 use serde::Serialize;
 
-/// Source of a number that the muscles of the model give.
+/// Source of a passive torque that the muscles of the model give.
 const OF_MUSCLES: &str = "muscles of the model";
+/// Source of a strength that they give: it holds for fibres that stand still.
+const ISOMETRIC: &str = "muscles of the model, isometric";
 
 /// Status and source of a number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -78,7 +81,10 @@ impl Known {
                 Some(strength) => strength.map(|of| Some(of.size)),
                 None => [None; 2],
             };
-            known.strength = [positive, negative].into_iter().filter_map(|r| pick(origins.strength, r)).collect();
+            known.strength = match origins.strength {
+                Origin::Muscles => vec![Source { source: ISOMETRIC.to_owned(), ..Source::of_status("derived") }],
+                origin => [positive, negative].into_iter().filter_map(|r| pick(origin, r)).collect(),
+            };
             let shapes = sources.and_then(|s| s.strength).filter(|_| origins.strength == Origin::Library);
             known.shapes = shapes.map(|shapes| shapes.map(|of| Source::reference(of.shape)));
             if let Some(shapes) = known.shapes.as_mut().filter(|_| origins.turned) {
@@ -113,7 +119,7 @@ pub(crate) struct StrengthAtText {
     /// Where muscles of the model give it.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<&'static str>,
-    /// It is the least share of the peak, below which the curve over the angle would fall.
+    /// It is the least share of the peak, below which the curve over the angle would fall, or the least strength of muscles.
     floor: bool,
 }
 
@@ -126,7 +132,14 @@ impl StrengthAtText {
         }
         // The strength of muscles is that of the posture at the peak; a group without a load has none.
         let strength_nm = found.at_peak.strength;
-        (strength_nm > 0.0).then_some(Self { strength_nm, ..text })
+        (strength_nm > 0.0).then(|| Self { angle_deg: text.angle_deg, ..Self::of_muscles(strength_nm) })
+    }
+
+    /// Of muscles that give a group `strength_nm`; the least strength is an assumption.
+    fn of_muscles(strength_nm: f64) -> Self {
+        let floor = strength_nm <= LEAST_MUSCLE_STRENGTH;
+        let status = if floor { "assumed" } else { "derived" }.to_owned();
+        Self { angle_deg: None, strength_nm, status, source: Some(ISOMETRIC), floor }
     }
 
     /// Of a group at an angle (rad, m); `None` where the strength is not known.
@@ -135,7 +148,9 @@ impl StrengthAtText {
         let coordinate = &opened.model.coordinates()[coordinate];
         let strength = coordinate.groups.as_ref()?[side.index()].strength;
         let of_twin = if origins.turned { 1 - side.index() } else { side.index() };
+        let angle_deg = (coordinate.kind == CoordinateKind::Rotation).then(|| angle.to_degrees());
         let status = match origins.strength {
+            Origin::Muscles => return Some(Self { angle_deg, ..Self::of_muscles(strength.torque(angle)) }),
             Origin::File => Some("from the file".to_owned()),
             Origin::Overlay => Some("from the overlay".to_owned()),
             Origin::Library => {
@@ -143,12 +158,9 @@ impl StrengthAtText {
                 let strengths = sources.and_then(|sources| sources.strength);
                 strengths.map(|of| of[of_twin].status_at(&strength, angle).to_string())
             }
-            Origin::Muscles => Some("derived".to_owned()),
         };
-        let angle_deg = (coordinate.kind == CoordinateKind::Rotation).then(|| angle.to_degrees());
         let (strength_nm, floor) = (strength.torque(angle), strength.is_floor(angle));
-        let source = (origins.strength == Origin::Muscles).then_some(OF_MUSCLES);
-        Some(Self { angle_deg, strength_nm, status: status.unwrap_or_default(), source, floor })
+        Some(Self { angle_deg, strength_nm, status: status.unwrap_or_default(), source: None, floor })
     }
 
     /// Whether it is the floor.
