@@ -8,7 +8,7 @@ use contrapposto::model::{CoordinateKind, Model, plain_group_name, plain_name};
 use contrapposto::posture::Posture;
 use contrapposto::statics::LoadKind;
 use contrapposto_formats::animation::{joined_by, solids};
-use contrapposto_formats::tissue::SourcedModel;
+use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use contrapposto_formats::{ModelFile, RelaxScenario, RunScenario, Thing, read_relax, read_run, scenario_model};
 use nalgebra::{Isometry3, Vector3};
 
@@ -175,7 +175,11 @@ pub(crate) fn place(placement: &Isometry3<f64>) -> [f64; 7] {
 /// The model of the file that a scenario names, read as the program reads it; `None` for the built-in adult.
 fn model_file(files: &BTreeMap<String, String>, text: &str) -> Result<Option<Model>, Refusal> {
     let Some(file) = scenario_model(NAME, text.as_bytes())? else { return Ok(None) };
-    let ModelFile { file: name, overlay, root, strength, fatigue, person } = &file;
+    let ModelFile { file: name, overlay, root, strength, fatigue, person, muscles } = &file;
+    if *muscles != MuscleUse::Off {
+        let why = "the page has no strength of muscles; leave `muscles` out of [model], or use the program";
+        return Err(Refusal(why.to_owned()));
+    }
     let mut include = |name: &str| files.get(name).map(|text| text.clone().into_bytes()).ok_or_else(|| absent(name));
     let bytes = include(name).map_err(Refusal)?;
     let refused = |error| Refusal(format!("{name}: {error}"));
