@@ -1,0 +1,125 @@
+// Requests to a session, and its answers: the types of crates/contrapposto-web/src/message.rs.
+
+export type Vector = [number, number, number];
+/** Position, then quaternion x, y, z, w. */
+export type Place = [number, number, number, number, number, number, number];
+
+export type Request =
+  | { do: "open"; scenario: string; files?: Record<string, string> }
+  | { do: "open_model"; name: string; text: string }
+  | { do: "adult"; sex: string; stature: number; mass: number }
+  | { do: "grab"; segment: string; point: Vector }
+  | { do: "drag"; target: Vector }
+  | { do: "release"; hold: boolean }
+  | { do: "free"; segment: string }
+  | { do: "settle" }
+  | { do: "load"; segment: string; mass: number }
+  | { do: "strategy"; kind: string }
+  | { do: "play"; samples: number }
+  | { do: "stop"; take: boolean }
+  | { do: "balance"; coordinate: string }
+  | { do: "export" }
+  | { do: "undo" }
+  | { do: "redo" }
+  | { do: "reset" };
+
+export interface Verdict {
+  kind: string;
+  minutes: number | null;
+  who: string | null;
+  load: number | null;
+  sentence: string;
+}
+
+export interface Shown {
+  q: number[];
+  angles: number[];
+  external: number[];
+  passive: number[];
+  active: number[];
+  load: number[];
+  places: Place[];
+  center: Vector;
+  contacts: { force: Vector; share: number; at: Vector | null }[];
+  patches: Vector[];
+  pushes: { at: Vector; force: Vector }[];
+  verdict: Verdict;
+  miss: number | null;
+  settled: boolean;
+}
+
+export interface Handle {
+  label: string;
+  segment: string;
+  point: Vector;
+}
+
+export interface Coordinate {
+  name: string;
+  label: string;
+  positive: string;
+  turns: boolean;
+  range: [number, number];
+  groups: [string, string] | null;
+}
+
+export interface Segment {
+  name: string;
+  label: string;
+  hulls: [number, number, number, number][][];
+  coordinates: [number, number];
+}
+
+export interface Scene {
+  title: string;
+  person: { sex: string; stature: number; mass: number } | null;
+  coordinates: Coordinate[];
+  segments: Segment[];
+  handles: Handle[];
+  held: Handle[];
+  supports: string[];
+  things: { name: string; size: Vector; place: Place; segment: number | null }[];
+  loads: { segment: string; mass: number }[];
+  strategy: string;
+  notes: string[];
+  can_undo: boolean;
+  can_redo: boolean;
+  shown: Shown;
+}
+
+export interface Played {
+  time: number;
+  samples: number;
+  fatigue: [number, number][];
+  asking: string[];
+  log: { time: number; sentence: string }[];
+  decisions: number;
+  ended: string | null;
+  shown: Shown;
+}
+
+export interface Balance {
+  coordinate: string;
+  angle: number[];
+  external: number[];
+  minus_passive: number[];
+}
+
+export type Answer =
+  | ({ is: "scene" } & Scene)
+  | ({ is: "shown" } & Shown)
+  | ({ is: "played" } & Played)
+  | ({ is: "balance" } & Balance)
+  | { is: "text"; text: string }
+  | { is: "refused"; sentence: string };
+
+/** What the worker sends: an answer with the duration of the call, ms; or the reason why the module is gone. */
+export type FromWorker =
+  | { kind: "ready"; version: string }
+  | { kind: "answer"; id: number; answer: Answer; ms: number }
+  | { kind: "broken"; id: number; sentence: string };
+
+export interface ToWorker {
+  id: number;
+  request: Request;
+}

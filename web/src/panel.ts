@@ -1,0 +1,251 @@
+// The controls beside the picture: what they show follows the scene, what they do is told to the page.
+import { draw } from "./chart";
+import { Slider, button, labelled, make } from "./dom";
+import type { Balance, Handle, Played, Scene, Shown, Vector } from "./messages";
+import { duration, texts } from "./texts";
+
+/** Way of a press of a button, m. */
+const NUDGE = 0.02;
+/** Simulated seconds in a second. */
+const SPEEDS = [1, 10, 60, 600];
+
+export interface Doing {
+  adult(sex: string, stature: number, mass: number): void;
+  nudge(handle: Handle, way: Vector): void;
+  free(segment: string): void;
+  load(segment: string, mass: number): void;
+  strategy(kind: string): void;
+  play(): void;
+  endPlay(take: boolean): void;
+  joint(name: string): void;
+  undo(): void;
+  redo(): void;
+  reset(): void;
+  openFiles(files: File[]): void;
+  save(): void;
+  link(): void;
+}
+
+const WAYS: [keyof typeof texts.moves, Vector, string][] = [
+  ["up", [0, NUDGE, 0], "PageUp"],
+  ["down", [0, -NUDGE, 0], "PageDown"],
+  ["forward", [NUDGE, 0, 0], "ArrowUp"],
+  ["back", [-NUDGE, 0, 0], "ArrowDown"],
+  ["left", [0, 0, -NUDGE], "ArrowLeft"],
+  ["right", [0, 0, NUDGE], "ArrowRight"],
+];
+
+function section(title: string, ...children: (Node | string)[]): HTMLElement {
+  return make("section", {}, make("h2", { textContent: title }), ...children);
+}
+
+export class Panel {
+  private scene?: Scene;
+  private readonly part = make("select", { id: "part" });
+  private readonly held = make("ul", { id: "held" });
+  private readonly weight: Slider;
+  private readonly sex: HTMLSelectElement;
+  private readonly stature: Slider;
+  private readonly mass: Slider;
+  private readonly strategies: HTMLInputElement[];
+  private readonly playing: HTMLButtonElement;
+  private readonly speeds = make("select", { id: "speed" }, ...SPEEDS.map((x) => make("option", { value: String(x), textContent: `${x}×` })));
+  private readonly clock = make("output", { id: "clock" });
+  private readonly asking = make("p", { id: "asking" });
+  private readonly log = make("ol", { id: "log" });
+  private readonly count = make("p", { className: "quiet" });
+  private readonly run: HTMLElement;
+  private readonly jointChoice = make("select", { id: "joint" });
+  private readonly numbers = make("p", { id: "torques" });
+  private readonly chart = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  private readonly contacts = make("p", { id: "contacts" });
+  private readonly notes = make("ul", { id: "notes" });
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
+
+  constructor(
+    root: HTMLElement,
+    private readonly doing: Doing,
+  ) {
+    const size = () => doing.adult(this.sex.value, this.stature.value, this.mass.value);
+    this.sex = make(
+      "select",
+      { id: "sex" },
+      make("option", { value: "female", textContent: texts.female }),
+      make("option", { value: "male", textContent: texts.male }),
+    );
+    this.sex.addEventListener("change", size);
+    this.stature = new Slider(texts.stature, "stature", [1.2, 2.3, 0.01], "m", size);
+    this.mass = new Slider(texts.mass, "mass", [30, 250, 1], "kg", size);
+    this.weight = new Slider(texts.weight, "weight", [0, 30, 0.5], "kg", (mass) => {
+      const handle = this.handle();
+      if (handle) doing.load(handle.segment, mass);
+    });
+    this.part.addEventListener("change", () => this.showWeight());
+    this.strategies = ["passive", "active"].map((kind) => {
+      const choice = make("input", { type: "radio", name: "strategy", value: kind, id: kind });
+      choice.addEventListener("change", () => doing.strategy(kind));
+      return choice;
+    });
+    this.playing = button(texts.play, "play", () => doing.play());
+    this.undo = button(texts.undo, "undo", () => doing.undo());
+    this.redo = button(texts.redo, "redo", () => doing.redo());
+    this.jointChoice.addEventListener("change", () => doing.joint(this.jointChoice.value));
+    this.chart.id = "chart";
+    this.chart.setAttribute("role", "img");
+    this.run = make(
+      "div",
+      { className: "row" },
+      button(texts.keep, "keep", () => doing.endPlay(true)),
+      button(texts.back, "back", () => doing.endPlay(false)),
+    );
+    this.speeds.value = "60";
+    root.append(...this.sections());
+    this.ended();
+  }
+
+  private sections(): HTMLElement[] {
+    const picker = make("input", { type: "file", multiple: true, hidden: true, accept: ".toml,.osim,.urdf,.xml,.mjcf" });
+    picker.addEventListener("change", () => {
+      this.doing.openFiles([...(picker.files ?? [])]);
+      picker.value = "";
+    });
+    const way = ([name, step]: (typeof WAYS)[number]) => button(texts.moves[name], `move-${name}`, () => this.nudge(step));
+    const strategy = (choice: HTMLInputElement, text: string) => make("label", { className: "choice" }, choice, text);
+    const files = make(
+      "div",
+      { className: "row" },
+      button(texts.open, "open", () => picker.click()),
+      button(texts.export, "export", () => this.doing.save()),
+      button(texts.link, "link", () => this.doing.link()),
+      picker,
+    );
+    return [
+      section(texts.partTitle, labelled(texts.part, this.part), make("div", { className: "row" }, ...WAYS.map(way)), make("p", { className: "quiet", textContent: texts.moveHelp }), this.weight.element, make("h3", { textContent: texts.held }), this.held),
+      section(
+        texts.time,
+        make("div", { className: "row" }, this.playing, labelled(texts.speed, this.speeds), this.clock),
+        this.run,
+        this.asking,
+        make("fieldset", {}, make("legend", { textContent: texts.strategyTitle }), strategy(this.strategies[0], texts.relaxed), strategy(this.strategies[1], texts.ready)),
+        make("h3", { textContent: texts.log }),
+        this.log,
+        this.count,
+      ),
+      section(texts.jointTitle, labelled(texts.joint, this.jointChoice), this.chart as unknown as HTMLElement, this.numbers, make("h3", { textContent: texts.contacts }), this.contacts),
+      section(texts.body, labelled(texts.sex, this.sex), this.stature.element, this.mass.element),
+      section(texts.files, make("div", { className: "row" }, this.undo, this.redo, button(texts.reset, "reset", () => this.doing.reset())), files, make("p", { className: "quiet", textContent: texts.about }), make("h3", { textContent: texts.notes }), this.notes),
+    ];
+  }
+
+  /** The part that the controls move. */
+  private handle(): Handle | undefined {
+    return this.scene?.handles[this.part.selectedIndex];
+  }
+
+  private nudge(way: Vector): void {
+    const handle = this.handle();
+    if (handle) this.doing.nudge(handle, way);
+  }
+
+  /** A key that was pressed on the picture; whether it moves a part. */
+  key(name: string): boolean {
+    const way = WAYS.find(([, , key]) => key === name);
+    if (way) this.nudge(way[1]);
+    return way !== undefined;
+  }
+
+  get speed(): number {
+    return Number(this.speeds.value);
+  }
+
+  get jointName(): string {
+    return this.jointChoice.value;
+  }
+
+  /** Another body or another job. */
+  open(scene: Scene): void {
+    const [part, joint] = [this.part.selectedIndex, this.jointChoice.value];
+    this.scene = scene;
+    this.part.replaceChildren(...scene.handles.map(({ label }) => make("option", { textContent: label })));
+    this.part.selectedIndex = Math.max(0, Math.min(part, scene.handles.length - 1));
+    const joints = scene.coordinates.filter(({ groups, turns }) => groups && turns);
+    this.jointChoice.replaceChildren(...joints.map(({ name, label }) => make("option", { value: name, textContent: label })));
+    this.jointChoice.value = joints.some(({ name }) => name === joint) ? joint : hardest(scene);
+    const free = ({ label, segment }: Handle) => make("li", {}, button(texts.free(label), `free-${segment}`, () => this.doing.free(segment)));
+    this.held.replaceChildren(...(scene.held.length ? scene.held.map(free) : [make("li", { className: "quiet", textContent: texts.nothingHeld })]));
+    if (scene.person) {
+      this.sex.value = scene.person.sex;
+      this.stature.value = scene.person.stature;
+      this.mass.value = scene.person.mass;
+    }
+    for (const control of [this.sex, this.stature, this.mass]) control.disabled = scene.person === null;
+    for (const choice of this.strategies) choice.checked = choice.value === scene.strategy;
+    [this.undo.disabled, this.redo.disabled] = [!scene.can_undo, !scene.can_redo];
+    this.notes.replaceChildren(...scene.notes.map((textContent) => make("li", { textContent })));
+    this.showWeight();
+    this.show(scene.shown);
+  }
+
+  private showWeight(): void {
+    const segment = this.handle()?.segment;
+    this.weight.value = this.scene?.loads.find((load) => load.segment === segment)?.mass ?? 0;
+  }
+
+  /** Another posture: the numbers of the chosen joint, and the contact forces. */
+  show(shown: Shown): void {
+    const { scene } = this;
+    if (!scene) return;
+    const index = scene.coordinates.findIndex(({ name }) => name === this.jointChoice.value);
+    const torque = (value: number) => value.toFixed(1).replace("-", "−");
+    if (index >= 0) {
+      const angle = ((shown.angles[index] * 180) / Math.PI).toFixed(1).replace("-", "−");
+      const values = `${texts.external} ${torque(shown.external[index])}, ${texts.passive} ${torque(shown.passive[index])}, ${texts.active} ${torque(shown.active[index])} ${texts.quantity}`;
+      this.numbers.textContent = `${angle}°: ${values}; ${texts.load} ${Math.round(100 * shown.load[index])} %`;
+    }
+    const label = (segment: string) => scene.segments.find(({ name }) => name === segment)?.label ?? segment;
+    const share = ({ share }: { share: number }, i: number) => texts.share(label(scene.supports[i] ?? ""), `${Math.round(100 * share)} %`);
+    this.contacts.textContent = shown.contacts.map(share).join(", ");
+  }
+
+  drawChart(balance: Balance, shown: Shown): void {
+    const index = this.scene?.coordinates.findIndex(({ name }) => name === balance.coordinate) ?? -1;
+    if (index >= 0) draw(this.chart, balance, shown, index, this.scene!.coordinates[index].label);
+  }
+
+  /** A run goes on. */
+  played(played: Played, before: number): void {
+    this.clock.textContent = duration(before + played.time);
+    this.asking.textContent = played.asking.length ? texts.asking(played.asking.join(", ")) : texts.nobody;
+    if (this.log.childElementCount !== played.log.length || this.log.dataset.last !== played.log.at(-1)?.sentence) {
+      this.log.dataset.last = played.log.at(-1)?.sentence ?? "";
+      this.log.replaceChildren(...played.log.map(({ time, sentence }) => make("li", { textContent: `${duration(before + time)}: ${sentence}` })));
+    }
+    this.count.textContent = played.decisions > played.log.length ? texts.more(played.decisions) : "";
+    this.run.hidden = false;
+  }
+
+  running(running: boolean): void {
+    this.playing.textContent = running ? texts.pause : texts.play;
+    this.playing.setAttribute("aria-pressed", String(running));
+  }
+
+  /** No run is under way. */
+  ended(): void {
+    this.running(false);
+    this.run.hidden = true;
+    this.clock.textContent = duration(0);
+    this.asking.textContent = "";
+    this.count.textContent = "";
+    this.log.replaceChildren();
+  }
+}
+
+/** The coordinate with the greatest load. */
+function hardest({ coordinates, shown }: Scene): string {
+  let best = coordinates.findIndex(({ groups, turns }) => groups && turns);
+  coordinates.forEach(({ groups, turns }, i) => {
+    if (groups && turns && shown.load[i] > shown.load[best]) best = i;
+  });
+  return coordinates[best]?.name ?? "";
+}

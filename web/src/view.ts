@@ -1,0 +1,259 @@
+// The picture: the body with its loads in colour, contact forces, centre of mass, held points, things; and the hand that drags.
+import {
+  ArrowHelper,
+  BoxGeometry,
+  Color,
+  DirectionalLight,
+  EdgesGeometry,
+  GridHelper,
+  Group,
+  HemisphereLight,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Plane,
+  Raycaster,
+  Scene as World,
+  SphereGeometry,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { colourOf } from "./colours";
+import { hull } from "./figure";
+import type { Handle, Place, Scene, Shown, Vector } from "./messages";
+
+/** Length of an arrow of the whole weight, m. */
+const ARROW = 0.6;
+
+/** What the view tells the page. */
+export interface Dragging {
+  grab(segment: string, point: Vector): void;
+  drag(target: Vector): void;
+  release(): void;
+}
+
+function put(object: Group, place: Place): void {
+  object.position.set(place[0], place[1], place[2]);
+  object.quaternion.set(place[3], place[4], place[5], place[6]);
+}
+
+export class View {
+  private readonly renderer: WebGLRenderer;
+  private readonly world = new World();
+  private readonly camera = new PerspectiveCamera(40, 1, 0.05, 60);
+  private readonly controls: OrbitControls;
+  private body = new Group();
+  private marks = new Group();
+  private segments: Group[] = [];
+  private materials: MeshLambertMaterial[][] = [];
+  private things: (Group | null)[] = [];
+  private scene?: Scene;
+  private shown?: Shown;
+  private due = false;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly dragging: Dragging,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.camera.position.set(2.3, 1.45, 2.1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.target.set(0.05, 0.9, 0);
+    this.controls.enablePan = false;
+    this.controls.minDistance = 0.8;
+    this.controls.maxDistance = 8;
+    this.controls.addEventListener("change", () => this.redraw());
+    this.world.add(new HemisphereLight("#ffffff", "#8a8f98", 2.1), this.body, this.marks);
+    const lamp = new DirectionalLight("#ffffff", 1.6);
+    lamp.position.set(2, 4, 3);
+    this.world.add(lamp);
+    this.listen();
+    new ResizeObserver(() => this.redraw()).observe(canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.paint());
+    this.controls.update();
+  }
+
+  /** Another body or another job. */
+  open(scene: Scene): void {
+    const before = this.scene;
+    this.scene = scene;
+    if (JSON.stringify(before?.segments) !== JSON.stringify(scene.segments)) this.build(scene);
+    this.things.forEach((thing) => thing?.removeFromParent());
+    this.things = scene.things.map(({ size, place, segment }) => {
+      const box = new BoxGeometry(...size);
+      const group = new Group();
+      const colour = this.colour("--thing");
+      group.add(new Mesh(box, new MeshLambertMaterial({ color: colour, transparent: true, opacity: 0.35 })));
+      group.add(new LineSegments(new EdgesGeometry(box), new LineBasicMaterial({ color: colour })));
+      put(group, place);
+      (segment === null ? this.world : this.segments[segment]).add(group);
+      return group;
+    });
+    this.show(scene.shown, scene.held);
+  }
+
+  private build(scene: Scene): void {
+    this.body.clear();
+    this.segments = [];
+    this.materials = [];
+    for (const [index, segment] of scene.segments.entries()) {
+      const group = new Group();
+      const materials: MeshLambertMaterial[] = [];
+      for (const balls of segment.hulls) {
+        const material = new MeshLambertMaterial();
+        const mesh = new Mesh(hull(balls), material);
+        mesh.userData.segment = index;
+        materials.push(material);
+        group.add(mesh);
+      }
+      this.segments.push(group);
+      this.materials.push(materials);
+      this.body.add(group);
+    }
+  }
+
+  /** Another posture. */
+  show(shown: Shown, held: Handle[]): void {
+    if (!this.scene) return;
+    this.shown = shown;
+    shown.places.forEach((place, i) => put(this.segments[i], place));
+    this.mark(shown, held);
+    this.paint();
+  }
+
+  private paint(): void {
+    const { scene, shown } = this;
+    if (!scene || !shown) return;
+    const unknown = this.colour("--none");
+    scene.segments.forEach(({ coordinates: [from, to] }, i) => {
+      let share: number | null = null;
+      for (let c = from; c < to; c++) if (scene.coordinates[c].groups) share = Math.max(share ?? 0, shown.load[c]);
+      for (const material of this.materials[i]) {
+        if (share === null) material.color.copy(unknown);
+        else colourOf(share, material.color);
+      }
+    });
+    this.world.background = this.colour("--scene");
+    this.redraw();
+  }
+
+  private mark(shown: Shown, held: Handle[]): void {
+    for (const old of [...this.marks.children]) {
+      old.removeFromParent();
+      if (old instanceof ArrowHelper || old instanceof GridHelper) old.dispose();
+    }
+    const weight = shown.contacts.reduce((sum, { force }) => sum + force[1], 0) || 600;
+    const arrow = (at: Vector, force: Vector, colour: string, least: number) => {
+      const way = new Vector3(...force);
+      const length = Math.max((way.length() / Math.abs(weight)) * ARROW, least);
+      if (length < 0.012 || !Number.isFinite(length)) return;
+      const drawn = new ArrowHelper(way.normalize(), new Vector3(...at), length, this.colour(colour), 0.07, 0.045);
+      // Forces within the body are seen through it.
+      for (const part of [drawn.line, drawn.cone]) {
+        Object.assign(part.material, { depthTest: false, transparent: true });
+        part.renderOrder = 1;
+      }
+      this.marks.add(drawn);
+    };
+    for (const { at, force } of shown.contacts) if (at) arrow(at, force, "--force", 0);
+    for (const { at, force } of shown.pushes) arrow(at, force, "--load", 0.16);
+    const [x, y, z] = shown.center;
+    const ball = (at: Vector, radius: number, colour: string, through: boolean) => {
+      const material = new MeshBasicMaterial({ color: this.colour(colour), depthTest: !through, transparent: through });
+      const mesh = new Mesh(new SphereGeometry(radius, 16, 12), material);
+      mesh.position.set(...at);
+      mesh.renderOrder = through ? 1 : 0;
+      this.marks.add(mesh);
+    };
+    ball([x, y, z], 0.025, "--center", true);
+    if (shown.patches.length > 0) {
+      const floor = Math.min(...shown.patches.map((corner) => corner[1]));
+      ball([x, floor + 0.004, z], 0.018, "--center", false);
+      const grid = new GridHelper(3, 12, this.colour("--ground"), this.colour("--ground"));
+      grid.position.y = floor - 0.001;
+      this.marks.add(grid);
+    }
+    for (const { segment, point } of held) {
+      const index = this.scene!.segments.findIndex(({ name }) => name === segment);
+      const at = new Vector3(...point).applyQuaternion(this.segments[index].quaternion).add(this.segments[index].position);
+      ball([at.x, at.y, at.z], 0.022, "--target", true);
+    }
+  }
+
+  private colour(name: string): Color {
+    return new Color(getComputedStyle(this.canvas).getPropertyValue(name).trim() || "#888888");
+  }
+
+  private redraw(): void {
+    if (this.due) return;
+    this.due = true;
+    requestAnimationFrame(() => {
+      this.due = false;
+      const { clientWidth: width, clientHeight: height } = this.canvas;
+      if (!width || !height) return;
+      this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+      this.renderer.setSize(width, height, false);
+      this.camera.aspect = width / height;
+      this.camera.updateProjectionMatrix();
+      this.renderer.render(this.world, this.camera);
+    });
+  }
+
+  /** Where a point of ground is on the canvas, px. */
+  onCanvas(at: Vector): [number, number] {
+    this.camera.updateMatrixWorld();
+    const seen = new Vector3(...at).project(this.camera);
+    return [((seen.x + 1) / 2) * this.canvas.clientWidth, ((1 - seen.y) / 2) * this.canvas.clientHeight];
+  }
+
+  /** A press on a part drags it in the plane of the screen; a press beside the body turns the view. */
+  private listen(): void {
+    const ray = new Raycaster();
+    const plane = new Plane();
+    let pointer: number | null = null;
+    const aim = (event: PointerEvent) => {
+      const box = this.canvas.getBoundingClientRect();
+      const x = ((event.clientX - box.left) / box.width) * 2 - 1;
+      const y = 1 - ((event.clientY - box.top) / box.height) * 2;
+      this.camera.updateMatrixWorld();
+      ray.setFromCamera(new Vector2(x, y), this.camera);
+    };
+    this.canvas.addEventListener(
+      "pointerdown",
+      (event) => {
+        if (pointer !== null || event.button !== 0 || !this.scene) return;
+        aim(event);
+        const hit = ray.intersectObjects(this.body.children, true).find(({ object }) => "segment" in object.userData);
+        if (!hit) return;
+        const index = hit.object.userData.segment as number;
+        pointer = event.pointerId;
+        this.controls.enabled = false;
+        this.canvas.setPointerCapture(pointer);
+        plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), hit.point);
+        const inside = this.segments[index].worldToLocal(hit.point.clone());
+        this.dragging.grab(this.scene.segments[index].name, [inside.x, inside.y, inside.z]);
+        event.stopImmediatePropagation();
+      },
+      { capture: true },
+    );
+    this.canvas.addEventListener("pointermove", (event) => {
+      if (event.pointerId !== pointer) return;
+      aim(event);
+      const target = ray.ray.intersectPlane(plane, new Vector3());
+      if (target) this.dragging.drag([target.x, target.y, target.z]);
+    });
+    for (const end of ["pointerup", "pointercancel"] as const) {
+      this.canvas.addEventListener(end, (event) => {
+        if (event.pointerId !== pointer) return;
+        pointer = null;
+        this.controls.enabled = true;
+        this.dragging.release();
+      });
+    }
+  }
+}

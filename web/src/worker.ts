@@ -1,0 +1,38 @@
+// Runs the session beside the page: requests in, answers out, in their order.
+import init, { Session, last_panic, version } from "./module/contrapposto_web.js";
+import address from "./module/contrapposto_web_bg.wasm?url";
+import type { Answer, FromWorker, ToWorker } from "./messages";
+
+let session: Session | undefined;
+
+function send(message: FromWorker): void {
+  self.postMessage(message);
+}
+
+function answer({ id, request }: ToWorker): void {
+  const begin = performance.now();
+  try {
+    if (!session) throw new Error("the session has ended");
+    const answer = JSON.parse(session.call(JSON.stringify(request))) as Answer;
+    send({ kind: "answer", id, answer, ms: performance.now() - begin });
+  } catch (error) {
+    // After a panic nothing in the module can be trusted: the page starts another worker.
+    session = undefined;
+    send({ kind: "broken", id, sentence: last_panic() || String(error) });
+  }
+}
+
+const waiting: ToWorker[] = [];
+self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
+  if (session) answer(event.data);
+  else waiting.push(event.data);
+});
+
+init({ module_or_path: address }).then(
+  () => {
+    session = new Session();
+    send({ kind: "ready", version: version() });
+    for (const request of waiting.splice(0)) answer(request);
+  },
+  (error: unknown) => send({ kind: "broken", id: -1, sentence: String(error) }),
+);
