@@ -7,6 +7,7 @@ mod model;
 mod muscles;
 mod scenario;
 mod studio;
+mod sweep;
 
 use std::path::PathBuf;
 
@@ -22,6 +23,7 @@ pub(crate) use model::{
 pub(crate) use muscles::use_muscles;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;
+pub(crate) use sweep::SweepArgs;
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.
 #[derive(Debug, Parser)]
@@ -55,6 +57,8 @@ pub(crate) enum Verb {
     Relax(RelaxArgs),
     /// Carry out two to five scenarios and show their postures side by side: a picture, and the differences.
     Compare(CompareArgs),
+    /// Run a scenario for many bodies, loads or other values, as a plan says, on all cores; the answers as a table.
+    Sweep(SweepArgs),
     /// The greatest force at a hand in every direction: by joint strength, balance, friction and, held for a time, fatigue.
     Capacity(CapacityArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.

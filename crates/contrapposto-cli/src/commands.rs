@@ -14,5 +14,6 @@ pub(crate) mod pose;
 pub(crate) mod relax;
 pub(crate) mod simulate;
 pub(crate) mod studio;
+pub(crate) mod sweep;
 pub(crate) mod torques;
 pub(crate) mod trials;

@@ -24,7 +24,7 @@ use clap::Parser;
 use args::{Args, Verb};
 use commands::{
     assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, pose, relax, simulate,
-    studio, torques,
+    studio, sweep, torques,
 };
 use output::Notes;
 
@@ -53,6 +53,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Relax(args) => relax::relax(&args),
         Verb::Compare(args) => compare::compare(&args),
         Verb::Capacity(args) => capacity::capacity(&args),
+        Verb::Sweep(args) => sweep::sweep(&args),
         Verb::Figures(args) => figures::figures(&args),
         Verb::Minimize(args) => minimize::minimize(&args),
         Verb::Passive(args) => passive::passive(&args),

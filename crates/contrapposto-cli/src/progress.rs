@@ -17,6 +17,18 @@ pub(crate) fn progress_bar(duration: f64) -> ProgressBar {
     shown(bar, |bar| format!("{} of {} s simulated", bar.position(), bar.length().unwrap_or_default()))
 }
 
+/// Finished runs on standard error, with the time that is left.
+pub(crate) fn rows_bar(rows: u64) -> ProgressBar {
+    let bar = ProgressBar::new(rows);
+    if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} runs, {eta} left") {
+        bar.set_style(style);
+    }
+    shown(bar, |bar| {
+        let (done, all, left) = (bar.position(), bar.length().unwrap_or_default(), bar.eta().as_secs());
+        format!("{done} of {all} runs, about {left} s left,")
+    })
+}
+
 /// Something that turns on standard error.
 pub(crate) fn spinner() -> ProgressBar {
     let bar = ProgressBar::new_spinner();

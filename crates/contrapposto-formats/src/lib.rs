@@ -27,6 +27,7 @@ mod passive_law;
 mod pose;
 mod scenario;
 mod summary;
+mod sweep;
 mod thing;
 mod toml_file;
 mod trajectory_csv;
@@ -47,6 +48,7 @@ pub use scenario::{
     read_pose, read_relax, read_run, read_scenario, scenario_model, scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SlipText, SummaryText, iterations};
+pub use sweep::{Design, Distribution, Parameter, Plan, Template, Value, read_plan};
 pub use thing::Thing;
 pub use trajectory_csv::{TableRow, csv_header, csv_row};
 pub use verdict::{AdviceText, MissedText, SuggestionText, VerdictText};

@@ -16,11 +16,17 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
     convert: impl FnOnce(&Located, &T) -> Result<R, InputError>,
 ) -> Result<R, InputError> {
     let text = utf8(name, bytes)?;
+    let (source, tree) = parse_toml(name, text)?;
+    let parsed: T = toml::from_str(text).map_err(|error| reworded(&source, &error))?;
+    convert(&Located { source, tree: tree.get_ref(), aliases: vec![] }, &parsed)
+}
+
+/// The keys and values of a text, all numbers finite, and where they stand.
+pub(crate) fn parse_toml<'a>(name: &'a str, text: &'a str) -> Result<(Source<'a>, Spanned<DeTable<'a>>), InputError> {
     let source = Source { name, text };
     let tree = DeTable::parse(text).map_err(|error| not_toml(&source, &error))?;
     refuse_non_finite(&source, tree.get_ref())?;
-    let parsed: T = toml::from_str(text).map_err(|error| reworded(&source, &error))?;
-    convert(&Located { source, tree: tree.get_ref(), aliases: vec![] }, &parsed)
+    Ok((source, tree))
 }
 
 /// An error of the grammar; where the line has a decimal comma, the help says so.

@@ -23,6 +23,7 @@ mod posture;
 mod relax;
 mod setup;
 mod simulate;
+mod spread;
 mod stage;
 mod support;
 mod surface;

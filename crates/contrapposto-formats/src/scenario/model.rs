@@ -6,6 +6,7 @@ use super::error_keys::adult_path;
 use super::fatigue_choice::fatigue_choice;
 use super::head::check_head;
 use super::names::coordinate;
+use super::spread::with_spread;
 use super::text::{AdultText, ModelText, MusclesText, PartText, PersonText, RootText, ScenarioText, SexText};
 use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
@@ -118,12 +119,12 @@ pub(super) fn body(at: &Located, text: &ScenarioText, file: Option<Model>) -> Re
         (None, Some(_)) => return Err(at.key_error(&["model", "file"], "the model file was not opened", None)),
         (None, None) => built_in(at, text)?,
     };
-    for (name, passive) in &text.passive {
+    for (name, passive) in &text.passive.curves {
         let index = coordinate(at, &model, &["passive", name], name)?;
         let curve = passive_curve(at, &["passive", name], &model.coordinates()[index], None, passive)?;
         model = model.with_passive(index, curve);
     }
-    Ok(model)
+    with_spread(at, model, &text.strength, &text.passive)
 }
 
 fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {

@@ -8,10 +8,10 @@ use serde::Deserialize;
 
 use super::fatigue_text::FatigueText;
 use super::obstacle_text::ObstacleText;
+use super::spread::{PassiveTable, StrengthText};
 use super::task_text::{SolverText, SupportText, TaskText};
 use super::world::text::{BagText, BoxText, FloorText, HandleText, SeatText, StepText, TableText, ToolText, WallText};
 use crate::escaped::{escaped, turns_direction};
-use crate::passive_law::PassiveText;
 use crate::toml_file::numbers;
 
 /// An experiment: a body, its posture, loads, supports and tasks; for `simulate` the relief wanted and how long.
@@ -26,9 +26,12 @@ pub(crate) struct ScenarioText {
     /// The body; the built-in reference man when left out.
     #[serde(default)]
     pub(crate) model: ModelText,
-    /// Passive curves by coordinate; the built-in curve of each coordinate when left out.
+    /// Passive curves by coordinate, the built-in curve of each coordinate when left out; and a factor of passive torque.
     #[serde(default)]
-    pub(crate) passive: BTreeMap<String, PassiveText>,
+    pub(crate) passive: PassiveTable,
+    /// Strength of the person beside the mean of people of that sex and size.
+    #[serde(default)]
+    pub(crate) strength: StrengthText,
     /// Start: `NAME_deg` for rotations, `NAME_m` for slides, bare names for quaternions. What is not named is at its default.
     #[serde(default)]
     pub(crate) posture: BTreeMap<String, f64>,

@@ -58,6 +58,14 @@ impl Expression {
         Ok(Self { text: text.to_owned(), operations })
     }
 
+    /// The formula with `times` the value everywhere.
+    pub(crate) fn scaled(&self, times: f64) -> Self {
+        let last = self.operations.len() - 1;
+        let product = [Operation::Constant(times), Operation::Binary(Binary::Multiply, last, last + 1)];
+        let operations = self.operations.iter().copied().chain(product).collect();
+        Self { text: format!("{times}*({})", self.text), operations }
+    }
+
     /// The formula as written.
     #[must_use]
     pub fn text(&self) -> &str {

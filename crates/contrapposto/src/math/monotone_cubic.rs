@@ -129,6 +129,16 @@ impl MonotoneCubic {
         finite.then_some(Self { pieces })
     }
 
+    /// The same curve with `times` the ordinate everywhere.
+    pub(crate) fn scaled(&self, times: f64) -> Self {
+        let scaled = |piece: &Piece| Piece {
+            coefficients: piece.coefficients.map(|coefficient| times * coefficient),
+            end_slope: times * piece.end_slope,
+            ..piece.clone()
+        };
+        Self { pieces: self.pieces.iter().map(scaled).collect() }
+    }
+
     /// The cubic pieces from left to right.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces

@@ -124,6 +124,17 @@ impl Exponentials {
         Ok(sum)
     }
 
+    /// The same sum with `times` the torque at every angle.
+    pub(super) fn scaled(&self, times: f64) -> Self {
+        let term = |term: Term| Term { torque: times * term.torque, ..term };
+        Self {
+            terms: self.terms.map(term),
+            stiffness: times * self.stiffness,
+            constant: times * self.constant,
+            ..self.clone()
+        }
+    }
+
     /// The exponential terms as (torque N m, rate 1/rad, angle rad).
     pub fn exponential_terms(&self) -> impl Iterator<Item = (f64, f64, f64)> {
         self.terms().iter().map(|term| (term.torque, term.rate, term.angle))

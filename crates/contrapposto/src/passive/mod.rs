@@ -12,6 +12,7 @@ mod exponentials;
 mod law;
 mod reshape;
 mod riener_edrich1999;
+mod scaled;
 mod tabulated;
 
 pub use coordinate_limit_force::CoordinateLimitForce;

@@ -62,6 +62,11 @@ impl Tabulated {
         self.cubic.pieces()
     }
 
+    /// The same table with `times` the torque at every angle.
+    pub(super) fn scaled(&self, times: f64) -> Self {
+        Self { cubic: self.cubic.scaled(times), energies: self.energies.iter().map(|energy| times * energy).collect() }
+    }
+
     /// The evaluable form.
     pub fn form(self) -> Form {
         Form::Tabulated(self)

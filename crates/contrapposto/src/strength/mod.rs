@@ -84,6 +84,12 @@ impl Strength {
         self.torque(self.best)
     }
 
+    /// `times` the torque at every angle; `times` is positive.
+    #[must_use]
+    pub fn scaled(self, times: f64) -> Self {
+        Self { peak: times * self.peak, ..self }
+    }
+
     /// The same strength of a coordinate that counts the other way round.
     #[must_use]
     pub fn mirrored(self) -> Self {

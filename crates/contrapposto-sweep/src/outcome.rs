@@ -1,0 +1,83 @@
+//! Carries out one row: the run of a scenario, and what counts of its answer.
+
+use contrapposto::contact::Missing;
+use contrapposto::model::Model;
+use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError};
+use contrapposto::verdict::{Verdict, Who};
+use contrapposto_formats::read_run;
+
+/// The answer of one run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// Kind of the verdict; `refused` where the reader refuses the scenario with these values.
+    pub kind: &'static str,
+    /// How long the job can be done, min; `None` where muscles set no limit, and where the job cannot be done.
+    pub minutes: Option<f64>,
+    /// The muscle group that is too weak or fails first; where none does, the one with the greatest load.
+    pub who: Option<String>,
+    /// The muscle group with the greatest load.
+    pub hardest: Option<String>,
+    /// Its active torque over its strength.
+    pub load: Option<f64>,
+    /// Sum of (active torque / strength)^2 at the end.
+    pub effort: Option<f64>,
+    /// Simulated time, s.
+    pub seconds: Option<f64>,
+    /// Why the scenario is refused.
+    pub note: Option<String>,
+}
+
+impl Outcome {
+    /// Of the scenario `text`, while `go_on` says yes; `None` where it says no. `name` is its name for messages.
+    pub fn of(name: &str, text: &str, go_on: impl Fn() -> bool) -> Option<Self> {
+        let scenario = match read_run(name, text.as_bytes(), None) {
+            Ok(run) => run.scenario,
+            Err(error) => return Some(Self { kind: "refused", note: Some(error.to_string()), ..Self::default() }),
+        };
+        let mut run = match Run::new(&scenario) {
+            Ok(run) => run,
+            Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
+                return Some(Self::without_posture(&scenario.model, missing));
+            }
+            Err(error) => return Some(Self::refused(&error)),
+        };
+        let mut loads = vec![];
+        loop {
+            if !go_on() {
+                return None;
+            }
+            match run.next_sample() {
+                Ok(Some(sample)) => {
+                    loads.clear();
+                    loads.extend_from_slice(sample.load);
+                }
+                Ok(None) => break,
+                Err(error) => return Some(Self::refused(&error)),
+            }
+        }
+        let summary = run.summary();
+        let effort = summary.standing.as_ref().map_or_else(|| loads.iter().map(|load| load * load).sum(), |s| s.effort);
+        let verdict = Verdict::of_run(&scenario, &summary);
+        Some(Self { effort: Some(effort), seconds: Some(summary.end_time), ..Self::answered(&scenario, &verdict) })
+    }
+
+    fn refused(error: &ScenarioError) -> Self {
+        Self { kind: "refused", note: Some(error.to_string()), ..Self::default() }
+    }
+
+    fn without_posture(model: &Model, missing: Missing) -> Self {
+        Self { kind: Verdict::of_fall(model, missing).kind.word(), ..Self::default() }
+    }
+
+    fn answered(scenario: &Scenario, verdict: &Verdict) -> Self {
+        let name = |who: Who| who.name(&scenario.model);
+        Self {
+            kind: verdict.kind.word(),
+            minutes: verdict.seconds.filter(|seconds| seconds.is_finite()).map(|seconds| seconds / 60.0),
+            who: verdict.who.map(name),
+            hardest: verdict.hardest.map(name),
+            load: verdict.hardest.map(|who| who.load),
+            ..Self::default()
+        }
+    }
+}

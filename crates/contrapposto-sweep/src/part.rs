@@ -1,0 +1,113 @@
+//! Writes a part of a plan, some rows together, as the text of a table, and the key that tells whether a part on a disk is this one.
+
+use contrapposto_formats::{InputError, Plan, Template, Value};
+use sha2::{Digest, Sha256};
+
+use super::outcome::Outcome;
+use super::sampler::Sampler;
+
+/// Columns of a part after `row` and the parameters, with their meaning.
+pub const COLUMNS: [(&str, &str); 8] = [
+    (
+        "kind",
+        "verdict: cannot_be_done, cannot_stand, not_reached, held_until or holds; refused: not a scenario with these values",
+    ),
+    ("minutes", "min; how long the job can be done; empty: muscles set no limit, or it cannot be done"),
+    ("who", "muscle group that is too weak or fails first; where none does, the one with the greatest load"),
+    ("hardest", "muscle group with the greatest load"),
+    ("load", "1; active torque of `hardest` over its strength"),
+    ("effort", "1; sum of (active torque / strength)^2 at the end"),
+    ("seconds", "s; simulated time"),
+    ("note", "why the scenario is refused"),
+];
+
+/// Characters of a key: 64 bits of a hash, two of which meet by chance once in four thousand million parts.
+const KEY_CHARACTERS: usize = 16;
+
+/// A plan with its base scenario, ready to compute any part.
+#[derive(Clone, Debug)]
+pub struct Study {
+    name: String,
+    template: Template,
+    sampler: Sampler,
+}
+
+impl Study {
+    /// The plan over the base scenario of these bytes; `name` is its name for messages.
+    ///
+    /// # Errors
+    /// [`InputError`] where the scenario is not TOML, or a parameter's path leads nowhere in it.
+    pub fn new(name: &str, base: &[u8], plan: &Plan) -> Result<Self, InputError> {
+        let keys = plan.parameters.iter().map(|parameter| parameter.key.as_str());
+        Ok(Self { name: name.to_owned(), template: Template::new(name, base, keys)?, sampler: Sampler::new(plan) })
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan {
+        self.sampler.plan()
+    }
+
+    /// The text of the scenario of a row.
+    pub fn scenario(&self, row: usize) -> String {
+        self.template.text(&self.sampler.values(row))
+    }
+
+    /// Key of a part: a hash of this program's version, the names of the columns, and the scenarios of all rows.
+    pub fn key(&self, part: usize) -> String {
+        let mut hash = Sha256::new();
+        hash.update(concat!("contrapposto ", env!("CARGO_PKG_VERSION"), "\n"));
+        hash.update(self.header());
+        for row in self.plan().rows_of(part) {
+            let text = self.scenario(row);
+            hash.update((row as u64).to_le_bytes());
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        }
+        let hash = hash.finalize();
+        let bytes = hash.iter().take(KEY_CHARACTERS / 2);
+        bytes.map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// The text of a part, while `go_on` says yes; `None` where it says no. `done` is told of every row.
+    pub fn part(&self, part: usize, go_on: impl Fn() -> bool, done: impl Fn()) -> Option<String> {
+        let mut text = self.header();
+        for row in self.plan().rows_of(part) {
+            let values = self.sampler.values(row);
+            let outcome = Outcome::of(&self.name, &self.template.text(&values), &go_on)?;
+            text += &line(row, &values, &outcome);
+            done();
+        }
+        Some(text)
+    }
+
+    /// The first line of every part: names of the columns.
+    fn header(&self) -> String {
+        let parameters = self.plan().parameters.iter().map(|parameter| parameter.key.as_str());
+        let names = ["row"].into_iter().chain(parameters).chain(COLUMNS.iter().map(|(name, _)| *name));
+        names.map(cell).collect::<Vec<_>>().join(",") + "\n"
+    }
+}
+
+/// A row as text; every number has all the digits that are needed to read the same value again.
+fn line(row: usize, values: &[Value], outcome: &Outcome) -> String {
+    let number = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
+    let text = |text: &Option<String>| text.as_deref().map_or(String::new(), cell);
+    let value = |value: &Value| if let Value::Text(text) = value { cell(text) } else { value.to_string() };
+    let answer = [
+        outcome.kind.to_owned(),
+        number(outcome.minutes),
+        text(&outcome.who),
+        text(&outcome.hardest),
+        number(outcome.load),
+        number(outcome.effort),
+        number(outcome.seconds),
+        text(&outcome.note),
+    ];
+    let cells = std::iter::once(row.to_string()).chain(values.iter().map(value)).chain(answer);
+    cells.collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// A text as a cell of a CSV file (RFC 4180).
+fn cell(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
