@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 use std::num::NonZero;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::sync_channel;
+use std::sync::mpsc::{SyncSender, sync_channel};
 
 use contrapposto_formats::{MOST_BYTES, Plan, read_plan, read_run, scenario_model};
 use contrapposto_sweep::{COLUMNS, Study};
+use indicatif::ProgressBar;
 use serde::Serialize;
 
 use crate::args::SweepArgs;
@@ -82,37 +83,49 @@ fn compute(
 ) -> Result<usize, Fail> {
     let rows = parts.iter().map(|part| study.plan().rows_of(*part).len()).sum::<usize>();
     let bar = rows_bar(rows as u64);
-    let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let go_on = || !interruption::is_requested() && !stop.load(Ordering::Relaxed);
+    let work = Work { study, parts, bar, next: AtomicUsize::new(0), stop: AtomicBool::new(false) };
     // A thread that is ahead waits, so that no more parts are in memory than two for each thread.
     let (sender, finished) = sync_channel(threads);
     let mut written = 0;
     let result = std::thread::scope(|scope| {
         for _ in 0..threads.min(parts.len()) {
-            let (sender, next, go_on, bar) = (sender.clone(), &next, &go_on, &bar);
-            scope.spawn(move || {
-                while let Some(&part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let Some(text) = study.part(part, go_on, || bar.inc(1)) else { break };
-                    if sender.send((part, text)).is_err() {
-                        break;
-                    }
-                }
-            });
+            let (sender, work) = (sender.clone(), &work);
+            scope.spawn(move || work.carry_out(&sender));
         }
         drop(sender);
-        // The receiver ends here: a thread that waits to send goes on and ends.
-        let finished = finished;
-        for (part, text) in &finished {
-            if let Err(error) = write(part, text) {
-                stop.store(true, Ordering::Relaxed);
-                return Err(error);
-            }
+        // The receiver ends with this block: a thread that waits to send goes on and ends.
+        for (part, text) in finished {
+            write(part, text).inspect_err(|_| work.stop.store(true, Ordering::Relaxed))?;
             written += 1;
         }
         Ok(())
     });
-    bar.finish_and_clear();
+    work.bar.finish_and_clear();
     result.map(|()| written)
+}
+
+/// The parts that threads share.
+struct Work<'a> {
+    study: &'a Study,
+    parts: &'a [usize],
+    bar: ProgressBar,
+    /// Place in `parts` of the next part that no thread has taken.
+    next: AtomicUsize,
+    /// A part could not be written.
+    stop: AtomicBool,
+}
+
+impl Work<'_> {
+    /// Computes one part after another until none is left, or the user interrupts.
+    fn carry_out(&self, finished: &SyncSender<(usize, String)>) {
+        let go_on = || !interruption::is_requested() && !self.stop.load(Ordering::Relaxed);
+        while let Some(&part) = self.parts.get(self.next.fetch_add(1, Ordering::Relaxed)) {
+            let Some(text) = self.study.part(part, go_on, || self.bar.inc(1)) else { break };
+            if finished.send((part, text)).is_err() {
+                break;
+            }
+        }
+    }
 }
 
 /// `part-00012-1f0c9a7be2d34455.csv`.
