@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
-use contrapposto_formats::{Design, Distribution, InputError, Template, Value, read_plan, read_run};
+use contrapposto_formats::{Design, Distribution, InputError, Template, Value, read_plan, read_run, scenario_model};
 use miette::Diagnostic;
 
 const PLAN: &str = r#"base = "../hold-tool.toml"
@@ -189,4 +189,12 @@ fn spreads_beyond_people_are_refused_with_their_limits() {
     let text = format!("{BASE}\n[passive]\nelbow_flx_r = {{ curve = \"elbow_neutral\" }}\n");
     let error = told(&read_run("a.toml", text.as_bytes(), None).unwrap_err());
     assert!(error.0 == 16 && error.2.contains("did you mean `elbow_flex_r`?"), "{error:?}");
+}
+
+#[test]
+fn a_spread_of_strength_beside_the_strength_of_muscles_is_refused() {
+    let text = "format = 1\n[model]\nfile = \"a.osim\"\nmuscles = \"strength\"\n[strength]\nspread = 2\n";
+    let error = told(&scenario_model("a.toml", text.as_bytes()).unwrap_err());
+    assert!(error.0 == 5 && error.2.contains("not that of muscles; leave [strength] out"), "{error:?}");
+    assert!(scenario_model("a.toml", text.replace("\"strength\"", "\"off\"").as_bytes()).is_ok());
 }

@@ -79,6 +79,14 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
     let person = text.person.as_ref().map_or(Ok(Person::default()), |text| person(at, text))?;
     let strength = text.file_strength.unwrap_or(true);
     let muscles = text.muscles.map_or(Ok(MuscleUse::Off), |text| muscles(at, text))?;
+    if muscles != MuscleUse::Off && at.holds(&["strength"]) {
+        let help = Some("leave [strength] out, or write muscles = \"off\"".to_owned());
+        return Err(at.key_error(
+            &["strength"],
+            "[strength] multiplies the strength of the data, not that of muscles",
+            help,
+        ));
+    }
     Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, strength, fatigue, muscles, person }))
 }
 
