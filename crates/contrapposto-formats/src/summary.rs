@@ -39,6 +39,9 @@ pub struct SummaryText {
     /// How a body with supports or tasks stood at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standing: Option<StandingText>,
+    /// A search for an easier posture ended at its budget of solver steps, so that there may be an easier one.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub search_cut: bool,
     /// Supports that were put elsewhere, to relieve a muscle group.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<StepText>,
@@ -233,6 +236,7 @@ impl SummaryText {
             end_s: summary.end_time,
             samples: summary.samples,
             standing: summary.standing.as_ref().map(|standing| StandingText::new(scenario, summary, standing)),
+            search_cut: summary.search_cut,
             steps: summary.foot_steps.iter().map(|step| StepText::new(scenario, step)).collect(),
             reliefs: summary.reliefs.count,
             coordinate_order: names.collect(),

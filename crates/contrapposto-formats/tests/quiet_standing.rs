@@ -74,6 +74,7 @@ fn most_tired(text: &str, model: Option<Model>) -> Tired {
         goals: &scenario.goals,
         loads: &scenario.loads,
         locked: &scenario.locked,
+        most_work: usize::MAX,
     };
     let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
     let found = equilibria(&search, options).unwrap();

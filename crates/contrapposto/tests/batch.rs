@@ -352,6 +352,7 @@ fn relaxed_arms_with_many_loads_have_the_same_bits_in_any_number_of_threads() {
                 limits: &[],
                 loads: &loads,
                 locked: &[],
+                most_work: usize::MAX,
             };
             equilibria(&search, Options { local_minima: 0, ..Options::least_effort() })
         };

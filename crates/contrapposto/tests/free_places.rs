@@ -104,6 +104,7 @@ fn found() -> &'static [(Waiting, Equilibria); 2] {
                 goals: &waiting.goals,
                 loads: &[],
                 locked: &[],
+                most_work: usize::MAX,
             };
             let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
             let found = equilibria(&search, options).unwrap();

@@ -138,6 +138,7 @@ fn a_search_is_finite_or_refused_by_name() {
             goals: &goals,
             loads: &[],
             locked: &[],
+            most_work: usize::MAX,
         };
         match equilibria(&search, Options { max_steps: 60, ..Options::least_effort() }) {
             Ok(found) => {

@@ -198,7 +198,16 @@ impl Setting {
     fn search(&self) -> Stage<'_> {
         Box::new(move |posture| {
             let (model, supports, goals, loads) = (&self.model, &self.supports, &self.goals, &self.loads);
-            let search = Search { model, start: posture, supports, limits: &[], goals, loads, locked: &[] };
+            let search = Search {
+                model,
+                start: posture,
+                supports,
+                limits: &[],
+                goals,
+                loads,
+                locked: &[],
+                most_work: usize::MAX,
+            };
             format!(
                 "{:?}",
                 equilibria(

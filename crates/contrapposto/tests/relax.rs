@@ -90,6 +90,7 @@ impl Standing {
             goals: &self.goals,
             loads: &self.loads,
             locked: &[],
+            most_work: usize::MAX,
         }
     }
 
@@ -117,6 +118,23 @@ fn imbalance(standing: &Standing, engine: &Engine<'_>, posture: &Posture) -> f64
 fn resting_left() -> &'static Equilibria {
     static FOUND: OnceLock<Equilibria> = OnceLock::new();
     FOUND.get_or_init(|| equilibria(&Standing::new(Some("l"), None).search(), OPTIONS).unwrap())
+}
+
+/// A search that may do little work ends after the start in which its budget is spent, says so, and finds the same each time.
+#[test]
+fn a_search_with_little_work_ends_early_says_so_and_finds_the_same_again() {
+    const MOST_WORK: usize = 600;
+    let standing = Standing::new(Some("l"), None);
+    let whole = resting_left();
+    let find = || equilibria(&Search { most_work: MOST_WORK, ..standing.search() }, OPTIONS).unwrap();
+    let found = find();
+    println!("work {} of {}, starts {} of {}", found.work, whole.work, found.starts, whole.starts);
+    assert!(found.cut && !whole.cut);
+    assert!(found.starts < whole.starts && found.work < whole.work);
+    // One start may go on when the budget ends.
+    assert!(found.work < 2 * MOST_WORK + OPTIONS.max_steps, "{}", found.work);
+    assert!(!found.postures.is_empty());
+    assert_eq!(found, find());
 }
 
 #[test]

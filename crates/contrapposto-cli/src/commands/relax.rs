@@ -100,6 +100,7 @@ fn search(scenario: &RelaxScenario) -> Search<'_> {
         goals: &scenario.goals,
         loads: &scenario.loads,
         locked: &scenario.locked,
+        most_work: usize::MAX,
     }
 }
 
@@ -135,11 +136,11 @@ pub(crate) fn answer(scenario: &RelaxScenario, found: &Equilibria, suggest: Sugg
     let search = search(scenario);
     let Some((verdict, best)) = Verdict::of_equilibria(&search, found).zip(found.postures.first()) else {
         let verdict = Verdict::of_posture(&scenario.model, &HeldPosture::default());
-        return Answer { verdict, advice: Advice::default() };
+        return Answer { verdict, advice: Advice::default(), search_cut: false };
     };
     let at_best = Search { start: &best.relaxed.posture, ..search.clone() };
     let advice = advice_of_search(&verdict, (&search, &at_best), (OPTIONS, found.steps), suggest);
-    Answer { verdict, advice }
+    Answer { verdict, advice, search_cut: false }
 }
 
 /// The changes that were tried of a body that cannot stand.

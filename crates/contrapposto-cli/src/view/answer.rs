@@ -26,18 +26,27 @@ struct AnswerText<'a> {
 pub(crate) struct Answer {
     pub(crate) verdict: Verdict,
     pub(crate) advice: Advice,
+    /// [`Summary::search_cut`].
+    pub(crate) search_cut: bool,
 }
 
 impl Answer {
     /// The verdict alone.
     pub(crate) fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
-        Self { verdict: Verdict::of_run(scenario, summary), advice: Advice::default() }
+        let (verdict, search_cut) = (Verdict::of_run(scenario, summary), summary.search_cut);
+        Self { verdict, advice: Advice::default(), search_cut }
     }
 
     /// The lines that everything begins with.
     pub(crate) fn first_lines(&self) -> String {
-        let advice = self.advice.sentence.as_ref().map_or(String::new(), |advice| format!("{advice}\n"));
-        first_lines(&self.verdict) + &advice
+        let more: String = self.also_cut().iter().chain(&self.advice.sentence).map(|line| format!("{line}\n")).collect();
+        first_lines(&self.verdict) + &more
+    }
+
+    /// A search that ended at its budget is no proof that the body has no easier posture.
+    pub(crate) fn also_cut(&self) -> Option<String> {
+        let text = "A search for an easier posture ended at its budget of solver steps: there may be an easier one.";
+        self.search_cut.then(|| text.to_owned())
     }
 }
 
@@ -116,4 +125,26 @@ fn heavy(model: &Model, loads: &[Load]) -> Option<String> {
     let held: f64 = loads.iter().map(weight).sum();
     (held > model.mass())
         .then(|| format!("The loads weigh {held} kg, the body {:.0} kg: are kilograms meant?", model.mass()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use contrapposto::simulation::{Summary, run};
+    use contrapposto_formats::read_scenario;
+
+    use super::Answer;
+
+    #[test]
+    fn a_search_that_ended_at_its_budget_is_said_in_the_first_lines() {
+        let text = "format = 1\n[coordinates]\nfree = [\"elbow_flex_r\"]\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n";
+        let scenario = read_scenario("arm.toml", text.as_bytes(), None).unwrap();
+        let mut summary = run(&scenario, |_| {}).unwrap();
+        let says =
+            |summary: &Summary| Answer::of_run(&scenario, summary).first_lines().contains("budget of solver steps");
+        assert!(!says(&summary));
+        summary.search_cut = true;
+        assert!(says(&summary));
+    }
 }

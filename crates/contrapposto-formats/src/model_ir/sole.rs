@@ -26,10 +26,11 @@ pub(super) fn with_soles(mut model: Model, solids: &[SolidIr]) -> Model {
     if solids.is_empty() || kinematics.update(&model, &model.default_posture()).is_err() {
         return model;
     }
-    for segment in 0..model.segments().len() {
+    let mut by_segment: Vec<Vec<&SolidIr>> = vec![vec![]; model.segments().len()];
+    solids.iter().for_each(|solid| by_segment[solid.segment].push(solid));
+    for (segment, solids) in by_segment.into_iter().enumerate().filter(|(_, solids)| !solids.is_empty()) {
         let down = kinematics.placement(&model, segment).rotation.inverse() * down;
-        let of_segment = solids.iter().filter(|solid| solid.segment == segment);
-        let corners: Vec<Vector3<f64>> = of_segment.flat_map(|solid| lowest(solid, &down)).collect();
+        let corners: Vec<Vector3<f64>> = solids.into_iter().flat_map(|solid| lowest(solid, &down)).collect();
         let corners = sole(corners, &down);
         if !corners.is_empty() {
             model = model.with_patch(segment, corners);
@@ -70,14 +71,10 @@ fn sole(mut corners: Vec<Vector3<f64>>, down: &Unit<Vector3<f64>>) -> Vec<Vector
     corners.retain(|corner| corner.iter().all(|x| x.abs() <= LARGEST));
     let deepest = corners.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
     corners.retain(|corner| depth(corner) >= deepest - SOLE_DEPTH);
-    let mut kept: Vec<Vector3<f64>> = vec![];
-    for corner in corners {
-        if kept.iter().all(|other| (other - corner).norm() > SAME_PLACE) {
-            kept.push(corner);
-        }
-    }
-    if kept.len() <= SOLE_CORNERS {
-        return kept;
+    // One more is enough to know that there are too many.
+    let few = distinct(&corners, SOLE_CORNERS + 1);
+    if few.len() <= SOLE_CORNERS {
+        return few;
     }
     let right = down.cross(&Vector3::ith(down.iamin(), 1.0)).normalize();
     let ahead = down.cross(&right);
@@ -85,9 +82,21 @@ fn sole(mut corners: Vec<Vector3<f64>>, down: &Unit<Vector3<f64>>) -> Vec<Vector
     for i in 0..SOLE_CORNERS {
         let angle = TAU * i as f64 / SOLE_CORNERS as f64;
         let direction = angle.cos() * right + angle.sin() * ahead;
-        let place = (0..kept.len()).max_by(|&a, &b| kept[a].dot(&direction).total_cmp(&kept[b].dot(&direction)));
-        farthest.extend(place.filter(|place| !farthest.contains(place)));
+        let along = |place: usize| corners[place].dot(&direction);
+        farthest.extend((0..corners.len()).max_by(|&a, &b| along(a).total_cmp(&along(b))));
     }
     farthest.sort_unstable();
-    farthest.into_iter().map(|place| kept[place]).collect()
+    let farthest: Vec<Vector3<f64>> = farthest.into_iter().map(|place| corners[place]).collect();
+    distinct(&farthest, SOLE_CORNERS)
+}
+
+/// The first `most` different corners.
+fn distinct(corners: &[Vector3<f64>], most: usize) -> Vec<Vector3<f64>> {
+    let mut kept: Vec<Vector3<f64>> = vec![];
+    for corner in corners {
+        if kept.len() < most && kept.iter().all(|other| (other - corner).norm() > SAME_PLACE) {
+            kept.push(*corner);
+        }
+    }
+    kept
 }

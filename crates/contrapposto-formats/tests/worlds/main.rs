@@ -7,7 +7,8 @@
 mod samples;
 mod world;
 
-use std::time::Instant;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
 
 use contrapposto::contact::Slip;
 use contrapposto::simulation::{Run, Scenario, ScenarioError, Snapshot, StopReason};
@@ -81,6 +82,46 @@ fn random_worlds_keep_the_promises_of_every_sample_and_repeat_to_the_bit() {
         "{count} worlds: {held} ran ({slid} of them slid, {slow} had a step over {SLOW} s), {refused} cannot stand"
     );
     assert!(held >= count / 2, "the generator makes worlds in which bodies stand");
+}
+
+/// Random scenarios that once took up to 22 s of processor: no step, nor the start, takes 10 s, and all repeat to the bit.
+#[test]
+fn slow_worlds_take_less_than_ten_seconds_of_processor_a_step() {
+    const MOST_SECONDS: f64 = 10.0;
+    let files: [(&str, &[u8]); 3] = [
+        ("10035", include_bytes!("slow-10035.toml")),
+        ("10214", include_bytes!("slow-10214.toml")),
+        ("10338", include_bytes!("slow-10338.toml")),
+    ];
+    for (name, bytes) in files {
+        let scenario = read_scenario(name, bytes, None).unwrap();
+        let begin = processor_time();
+        let mut run = Run::new(&scenario).unwrap();
+        let mut slowest = processor_time() - begin;
+        let mut digests = vec![];
+        loop {
+            let begin = processor_time();
+            let Some(sample) = run.next_sample().unwrap() else { break };
+            digests.push(digest(&sample));
+            slowest = slowest.max(processor_time() - begin);
+        }
+        println!("{name}: the slowest step, or the start, took {slowest:?} of processor");
+        assert!(slowest.as_secs_f64() < MOST_SECONDS, "{name}: {slowest:?}");
+        let mut again = Run::new(&scenario).unwrap();
+        let mut expected = digests.iter();
+        while let Some(sample) = again.next_sample().unwrap() {
+            assert_eq!(Some(&digest(&sample)), expected.next(), "{name}");
+        }
+        assert_eq!(expected.next(), None, "{name}");
+    }
+}
+
+/// Time of this thread on the processor, where the system tells it.
+fn processor_time() -> Duration {
+    static START: OnceLock<Instant> = OnceLock::new();
+    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let on_processor = statistics.split(' ').next().and_then(|ns| ns.parse().ok());
+    on_processor.map_or_else(|| START.get_or_init(Instant::now).elapsed(), Duration::from_nanos)
 }
 
 /// A second run, and one from the snapshot, show the same bits.

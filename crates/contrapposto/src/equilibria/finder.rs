@@ -87,6 +87,10 @@ struct Finder<'a> {
     refused: Option<EngineError>,
     starts: usize,
     steps: usize,
+    /// Work beyond the steps.
+    changes: usize,
+    /// A start was left out, since the budget was spent.
+    cut: bool,
 }
 
 impl<'a> Finder<'a> {
@@ -113,7 +117,34 @@ impl<'a> Finder<'a> {
         let mut engines = [engine(exploratory, 0, &levels)?, engine(most, 0, &levels)?, engine(most, minima, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
         let approach = engine(EXPLORATORY_STEPS, 0, &levels[..=slot])?;
-        Ok(Self { search, engines, approach, slot, found: vec![], fell: vec![], refused: None, starts: 0, steps: 0 })
+        Ok(Self {
+            search,
+            engines,
+            approach,
+            slot,
+            found: vec![],
+            fell: vec![],
+            refused: None,
+            starts: 0,
+            steps: 0,
+            changes: 0,
+            cut: false,
+        })
+    }
+
+    fn work(&self) -> usize {
+        self.steps + self.changes
+    }
+
+    /// Whether no further start may be begun.
+    fn is_spent(&mut self, stage: Stage) -> bool {
+        let most = match stage {
+            Stage::Exploratory => self.search.most_work / 2,
+            Stage::Converged | Stage::Lowest => self.search.most_work,
+        };
+        let spent = self.starts > 0 && self.work() >= most;
+        self.cut |= spent;
+        spent
     }
 
     /// Solves from all starts, a few steps each.
@@ -176,10 +207,13 @@ impl<'a> Finder<'a> {
 
     /// Solves from a posture with the engine of a stage, and keeps the result if it is new or better.
     fn solve(&mut self, stage: Stage, from: &Posture, starts: Vec<String>) {
+        if self.is_spent(stage) {
+            return;
+        }
         let (model, engine) = (self.search.model, &mut self.engines[stage as usize]);
         engine.levels_mut()[self.slot].half_spaces.clear();
         self.starts += 1;
-        let mut relaxed = match engine.solve(from) {
+        let mut relaxed = match engine.solve_watched(from, |step, _| self.changes += step.work() - 1) {
             Ok(relaxed) => relaxed,
             Err(error) => {
                 self.fell.push(EVERYTHING);
@@ -218,6 +252,9 @@ impl<'a> Finder<'a> {
     /// Solves from other places of each free support.
     fn explore_places(&mut self) {
         for (task, label) in other_places(self.search.model, self.search.supports) {
+            if self.is_spent(Stage::Exploratory) {
+                return;
+            }
             self.approach.levels_mut()[self.slot].tasks = vec![task];
             let from = self.approached(self.search.start);
             self.solve(Stage::Exploratory, &from, vec![label]);
@@ -237,6 +274,9 @@ impl<'a> Finder<'a> {
 
     /// Moves to the tasks without regard to effort first: from afar the two would obstruct each other.
     fn solve_from_tasks(&mut self, from: &Posture, start: String) {
+        if self.is_spent(Stage::Exploratory) {
+            return;
+        }
         let posture = self.approached(from);
         self.solve(Stage::Exploratory, &posture, vec![start]);
     }
@@ -248,7 +288,7 @@ impl<'a> Finder<'a> {
         for _ in 0..EXPLORATORY_STEPS {
             self.steps += 1;
             match self.approach.step(&mut posture) {
-                Ok(step) if step.largest > APPROACH_TOLERANCE => {}
+                Ok(step) if step.largest > APPROACH_TOLERANCE => self.changes += step.work() - 1,
                 _ => break,
             }
         }
@@ -258,6 +298,9 @@ impl<'a> Finder<'a> {
 
     /// Solves with goal angles as half-spaces, and then without them.
     fn explore_with(&mut self, from: &Posture, goals: &[&Goal], label: String) {
+        if self.is_spent(Stage::Exploratory) {
+            return;
+        }
         let n = self.search.model.coordinates().len();
         let mut spaces = vec![];
         for goal in goals {
@@ -268,7 +311,7 @@ impl<'a> Finder<'a> {
         }
         let engine = &mut self.engines[Stage::Exploratory as usize];
         engine.levels_mut()[self.slot].half_spaces = spaces;
-        if let Ok(under) = engine.solve(from) {
+        if let Ok(under) = engine.solve_watched(from, |step, _| self.changes += step.work() - 1) {
             self.steps += under.steps;
             self.solve(Stage::Exploratory, &under.posture, vec![label]);
         }
@@ -395,6 +438,7 @@ impl<'a> Finder<'a> {
             answers.take(self.search.model, engine.torques().kinematics(), posture);
         }
         let DifferentWays { postures, alike, .. } = answers;
-        Ok(Equilibria { postures, starts: self.starts, fell: self.fell.len(), yielded, alike, steps: self.steps })
+        let (starts, fell, steps, work, cut) = (self.starts, self.fell.len(), self.steps, self.work(), self.cut);
+        Ok(Equilibria { postures, starts, fell, yielded, alike, steps, work, cut })
     }
 }

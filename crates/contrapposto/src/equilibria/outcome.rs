@@ -98,4 +98,8 @@ pub struct Equilibria {
     pub alike: usize,
     /// Steps of all starts together.
     pub steps: usize,
+    /// Those steps and the changes of their working sets ([`Step::work`](crate::posture_solver::Step::work)).
+    pub work: usize,
+    /// The search ended at [`Search::most_work`](super::Search::most_work), not because all starts were tried.
+    pub cut: bool,
 }

@@ -1,5 +1,7 @@
 //! Builds a model from segments, and refuses data that contradict each other.
 
+use std::collections::HashMap;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::coordinate::{Coordinate, CoordinateKind, CoordinateSpec};
@@ -17,6 +19,8 @@ type Specs = Vec<(CoordinateSpec, CoordinateKind)>;
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
     model: Model,
+    /// Segments by name.
+    segments: HashMap<String, usize>,
 }
 
 impl ModelBuilder {
@@ -42,7 +46,7 @@ impl ModelBuilder {
             has_balls: false,
             direct: true,
         };
-        Self { model }
+        Self { model, segments: HashMap::new() }
     }
 
     /// Adds a segment with its joint.
@@ -72,6 +76,7 @@ impl ModelBuilder {
         };
         *mass += spec.mass;
         *moment += first_moment;
+        self.segments.insert(spec.name.clone(), model.segments.len());
         model.segments.push(Segment {
             name: spec.name,
             parent,
@@ -93,11 +98,11 @@ impl ModelBuilder {
     /// Index of the parent segment and the coordinates of the joint, if the segment fits the model.
     fn check(&self, spec: &SegmentSpec, motions: &[Motion]) -> Result<(Option<usize>, Specs), ModelError> {
         let model = &self.model;
-        if model.segment(&spec.name).is_some() {
+        if self.segments.contains_key(&spec.name) {
             return Err(ModelError::Duplicate { what: "segment", name: spec.name.clone() });
         }
         let missing = |name: &String| ModelError::Parent { segment: spec.name.clone(), parent: name.clone() };
-        let index = |name: &String| model.segment(name).ok_or_else(|| missing(name));
+        let index = |name: &String| self.segments.get(name).copied().ok_or_else(|| missing(name));
         let parent = spec.parent.as_ref().map(index).transpose()?;
         check_size(&model.name, "gravity (m/s^2)", model.gravity.as_slice())?;
         check_segment(spec, motions)?;

@@ -56,6 +56,16 @@ pub struct Step {
     pub changes: usize,
 }
 
+/// Changes of a working set that take as long as the rest of a step (fitted to five searches of whole bodies: 0.1 ms and 0.3 ms).
+const CHANGES_OF_A_STEP: usize = 3;
+
+impl Step {
+    /// A measure of the time that the step took, which is the same on every machine: 1, and 1 for every three changes of the working set.
+    pub fn work(&self) -> usize {
+        1 + self.changes / CHANGES_OF_A_STEP
+    }
+}
+
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {

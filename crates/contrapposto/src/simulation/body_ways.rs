@@ -1,8 +1,10 @@
 //! Finds where a body begins and where it may go: the start, easier postures, ways to them, and supports put elsewhere.
 
+use std::cell::Cell;
+
 use super::ScenarioError;
 use super::body_motion::{BodyMotion, engine, is_effort};
-use super::easiest::{Now, easiest};
+use super::easiest::{Now, SEARCH_BUDGET_OF_STEP, Searched, easiest};
 use super::path::{Path, Planner};
 use crate::contact::Support;
 use crate::posture::Posture;
@@ -14,8 +16,8 @@ const START_MAX_STEP: f64 = 0.1;
 
 impl BodyMotion<'_> {
     /// The posture nearest to the scenario's start in which the supports hold the body and its tasks are done; what carries nothing
-    /// takes the posture of least effort that a search finds. Gives the number of steps of the search, too.
-    pub(super) fn start(&mut self) -> Result<(Posture, usize), ScenarioError> {
+    /// takes the posture of least effort that a search finds.
+    pub(super) fn start(&mut self) -> Result<Searched<Posture>, ScenarioError> {
         let scenario = self.scenario;
         let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
         let levels = self.levels().cloned().collect();
@@ -25,38 +27,49 @@ impl BodyMotion<'_> {
         if let Some(missing) = self.recover_balance(&mut posture)? {
             return Err(ScenarioError::CannotStand(missing));
         }
-        let (better, steps) = self.easiest(&posture)?;
+        let Searched { found, work, cut } = self.easiest(&posture, SEARCH_BUDGET_OF_STEP)?;
         self.forget();
-        Ok((better.unwrap_or(posture), steps))
+        Ok(Searched { found: found.unwrap_or(posture), work, cut })
     }
 
-    /// A posture of less effort that the body can take without moving a support, if there is one worth a motion, and the number of
-    /// steps of the search.
-    pub(super) fn easiest(&mut self, posture: &Posture) -> Result<(Option<Posture>, usize), ScenarioError> {
+    /// A posture of less effort that the body can take without moving a support, if `budget` of work shows one worth a motion.
+    pub(super) fn easiest(
+        &mut self,
+        posture: &Posture,
+        budget: usize,
+    ) -> Result<Searched<Option<Posture>>, ScenarioError> {
         if !self.engine.levels().iter().any(is_effort) {
-            return Ok((None, 0));
+            return Ok(Searched::default());
         }
         self.engine.evaluate(posture)?;
         let effort = self.effort();
         let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
         let now = Now { model: &self.model, posture, levels: &levels, loads: self.engine.loads(), effort };
         // A search that finds nothing leaves the body as it is.
-        Ok(easiest(self.scenario, now, &self.supports).unwrap_or((None, 0)))
+        Ok(easiest(self.scenario, now, &self.supports, budget).unwrap_or_default())
     }
 
-    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none, or where a law gives no
-    /// numbers on it.
-    pub(super) fn way(&self, from: &Posture, to: &Posture, lifted: Option<usize>) -> Option<Path> {
+    /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none, where a law gives no
+    /// numbers on it, or where `budget` of work, which becomes less, shows none.
+    pub(super) fn way(&self, from: &Posture, to: &Posture, lifted: Option<usize>, budget: &mut usize) -> Option<Path> {
         let levels: Vec<PriorityLevel> = self.levels().take_while(|level| !is_effort(level)).cloned().collect();
         // A step may leave what reliefs ask for at the old place.
         let keeps = |level: &&PriorityLevel| lifted.is_none() || level.half_spaces.is_empty();
         let levels: Vec<PriorityLevel> = levels.iter().filter(keeps).cloned().collect();
         let (supports, loads) = (&self.supports[..], self.engine.loads());
-        let planner = Planner { scenario: self.scenario, model: &self.model, supports, levels: &levels, loads };
+        let planner = Planner {
+            scenario: self.scenario,
+            model: &self.model,
+            supports,
+            levels: &levels,
+            loads,
+            left: Cell::new(*budget),
+        };
         let planned = match lifted {
             Some(support) => planner.step(from, to, support),
             None => planner.way(from, to),
         };
+        *budget = planner.left.get();
         planned.ok().flatten()
     }
 

@@ -17,8 +17,10 @@ use super::Scenario;
 const SEARCH_STEP: f64 = 0.1;
 /// Most steps of a solve.
 const SEARCH_SOLVE_STEPS: usize = 300;
-/// Solver steps that all searches of a run may take together, about three seconds.
-pub(super) const SEARCH_BUDGET: usize = 20_000;
+/// Work of the solver ([`crate::posture_solver::Step::work`]) that all searches of a run may do together: about 18 seconds.
+pub(super) const SEARCH_BUDGET: usize = 60_000;
+/// Work that the searches of one time step, or of the start, may do together, with the ways that they plan: about 7 seconds.
+pub(super) const SEARCH_BUDGET_OF_STEP: usize = 25_000;
 /// A posture is worth a motion if its effort is less than this share of the present one.
 const WORTH_A_MOTION: f64 = 0.98;
 /// A posture whose supports are farther off their places is none, m and rad together.
@@ -36,21 +38,31 @@ pub(super) struct Now<'a> {
     pub(super) effort: f64,
 }
 
-/// A better posture, if there is one, and the number of steps that the search took.
+/// What a search came to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Searched<T> {
+    pub(super) found: T,
+    pub(super) work: usize,
+    /// It ended at its budget.
+    pub(super) cut: bool,
+}
+
+/// A better posture, if `budget` of work shows one.
 pub(super) fn easiest(
     scenario: &Scenario,
     now: Now<'_>,
     supports: &[Support],
-) -> Result<(Option<Posture>, usize), SearchError> {
+    budget: usize,
+) -> Result<Searched<Option<Posture>>, SearchError> {
     let mut locked = rates_that_move(&scenario.model, supports);
     scenario.locked_rates().for_each(|rate| locked[rate] = true);
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
-    let (found, steps) = search(scenario, now, supports, &locked)?;
+    let Searched { found, work, cut } = search(scenario, now, supports, &locked, budget)?;
     let better = |best: &RelaxedPosture| {
         best.relaxed.slip.length() <= MOST_SLIP && best.relaxed.effort < WORTH_A_MOTION * now.effort
     };
     let better = found.into_iter().next().filter(better);
-    Ok((better.map(|best| best.relaxed.posture), steps))
+    Ok(Searched { found: better.map(|best| best.relaxed.posture), work, cut })
 }
 
 /// The postures that a search finds, that of least effort first.
@@ -59,7 +71,8 @@ pub(super) fn search(
     now: Now<'_>,
     supports: &[Support],
     locked: &[usize],
-) -> Result<(Vec<RelaxedPosture>, usize), SearchError> {
+    budget: usize,
+) -> Result<Searched<Vec<RelaxedPosture>>, SearchError> {
     let asks = |level: &&PriorityLevel| !level.tasks.is_empty() || !level.half_spaces.is_empty();
     let goals: Vec<PriorityLevel> = now.levels.iter().filter(asks).cloned().collect();
     let search = Search {
@@ -70,8 +83,9 @@ pub(super) fn search(
         goals: &goals,
         loads: now.loads,
         locked,
+        most_work: budget,
     };
     let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };
     let found = equilibria(&search, options)?;
-    Ok((found.postures, found.steps))
+    Ok(Searched { found: found.postures, work: found.work, cut: found.cut })
 }

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::ScenarioError;
 use super::body_motion::BodyMotion;
-use super::easiest::{Now, search};
+use super::easiest::{Now, Searched, search};
 use super::path::Path;
 use super::sample::FootStep;
 use crate::contact::{Place, Support};
@@ -42,14 +42,15 @@ pub(super) struct PlannedStep {
     pub(super) step: FootStep,
 }
 
-/// The step that relieves `tired` most, if there is one, and the number of solver steps that the search took.
+/// The step that relieves `tired` most, if `budget` of work shows one.
 pub(super) fn plan_step(
     body: &mut BodyMotion<'_>,
     posture: &Posture,
     tired: Tired,
-) -> Result<(Option<PlannedStep>, usize), ScenarioError> {
+    budget: usize,
+) -> Result<Searched<Option<PlannedStep>>, ScenarioError> {
     let scenario = body.scenario();
-    let mut all = 0;
+    let (mut left, mut cut) = (budget, false);
     for (i, support) in scenario.supports.iter().enumerate() {
         if support.place == Place::Fixed {
             continue;
@@ -60,25 +61,27 @@ pub(super) fn plan_step(
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
         let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort };
         let locked: Vec<usize> = scenario.locked_rates().collect();
-        let Ok((found, steps)) = search(scenario, now, &supports, &locked) else { continue };
-        all += steps;
+        let Ok(searched) = search(scenario, now, &supports, &locked, left) else { continue };
+        left = left.saturating_sub(searched.work);
+        cut |= searched.cut;
         let before = middle(body, posture, support)?;
-        for candidate in found {
+        for candidate in searched.found {
             let to = &candidate.relaxed.posture;
             let after = middle(body, to, support)?;
             let worth = candidate.relaxed.effort < WORTH_A_STEP * effort && relieves(&candidate, posture, tired);
             if !worth || (after - before).norm() < LEAST_SHIFT {
                 continue;
             }
-            if let Some(path) = body.way(posture, to, Some(i)) {
+            if let Some(path) = body.way(posture, to, Some(i), &mut left) {
                 let (coordinate, side) = (tired.coordinate, tired.side);
                 let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
                 let step = FootStep { support: i, coordinate, side, time: (0.0, 0.0), place, effort };
-                return Ok((Some(PlannedStep { path, step }), all));
+                return Ok(Searched { found: Some(PlannedStep { path, step }), work: budget - left, cut });
             }
         }
+        cut |= left == 0;
     }
-    Ok((None, all))
+    Ok(Searched { found: None, work: budget - left, cut })
 }
 
 /// Whether the tired joint is nearer to its goal in a posture, and its group works clearly less.

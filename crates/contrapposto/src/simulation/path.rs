@@ -5,6 +5,8 @@
 //! to its new place, and the body takes the posture. The whole way is planned before the first sample is shown. A way on which any sample would be off
 //! balance, or in which a muscle group would need more than its strength, is no way.
 
+use std::cell::Cell;
+
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -96,6 +98,8 @@ pub(super) struct Planner<'a> {
     /// The levels above effort.
     pub(super) levels: &'a [PriorityLevel],
     pub(super) loads: &'a [Load],
+    /// Work that is left of the budget; a way that needs more is none.
+    pub(super) left: Cell<usize>,
 }
 
 impl Planner<'_> {
@@ -113,6 +117,16 @@ impl Planner<'_> {
         let Some(begin) = self.shift(from, &unloaded, &mut path)? else { return Ok(None) };
         let Some(landed) = self.swing(&begin, to, lifted, &mut path)? else { return Ok(None) };
         Ok(self.shift(&landed, to, &mut path)?.map(|_| path))
+    }
+
+    /// One step of the solver; gives the largest change, none where the budget is spent.
+    fn step_within_budget(&self, engine: &mut Engine<'_>, posture: &mut Posture) -> Result<Option<f64>, EngineError> {
+        if self.left.get() == 0 {
+            return Ok(None);
+        }
+        let step = engine.step(posture)?;
+        self.left.set(self.left.get().saturating_sub(step.work()));
+        Ok(Some(step.largest))
     }
 
     /// Steps of the solver from one sample to the next, so that no rate moves faster than [`SPEED`].
@@ -169,7 +183,8 @@ impl Planner<'_> {
         let mut engine = self.engine(from, &self.without(lifted), vec![stays, over_the_others], from)?;
         let mut posture = from.clone();
         for _ in 0..UNLOADING_STEPS {
-            if engine.step(&mut posture)?.largest <= AT_POSTURE {
+            let Some(largest) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
+            if largest <= AT_POSTURE {
                 break;
             }
         }
@@ -219,7 +234,8 @@ impl Planner<'_> {
             }
             let mut largest = 0.0f64;
             for _ in 0..self.steps_of_sample() {
-                largest = largest.max(engine.step(&mut posture)?.largest);
+                let Some(change) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
+                largest = largest.max(change);
                 steps += 1;
             }
             if !self.is_held(&mut engine, &posture)? || steps > MOST_STEPS_OF_PART {
@@ -255,7 +271,7 @@ impl Planner<'_> {
             let rotation = UnitQuaternion::slerp(&begin.rotation, &end.rotation, share);
             let target = Placement::from_parts(translation.into(), rotation);
             engine.levels_mut()[0].tasks[0] = self.held_at(target, lifted);
-            engine.step(&mut posture)?;
+            let Some(_) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
             if k % steps == 0 && k < count {
                 if !self.is_held(&mut engine, &posture)? {
                     return Ok(None);
@@ -265,8 +281,8 @@ impl Planner<'_> {
         }
         // The last of the arc: until the support has come to rest on its place.
         for _ in 0..MOST_STEPS_OF_PART {
-            let still = engine.step(&mut posture)?.largest <= AT_POSTURE;
-            if still && engine.report(&posture)?.first().is_some_and(|level| level.length <= PLACED) {
+            let Some(largest) = self.step_within_budget(&mut engine, &mut posture)? else { return Ok(None) };
+            if largest <= AT_POSTURE && engine.report(&posture)?.first().is_some_and(|level| level.length <= PLACED) {
                 break;
             }
         }

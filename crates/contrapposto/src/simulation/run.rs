@@ -214,6 +214,7 @@ impl<'a> Run<'a> {
             coordinates: self.so_far.coordinates.clone(),
             reliefs: self.so_far.reliefs.clone(),
             effort_at_start: self.so_far.effort_at_start,
+            search_cut: self.simulation.state.search_cut,
             foot_steps: self.simulation.foot_steps().to_vec(),
             standing: self.standing.clone(),
         }

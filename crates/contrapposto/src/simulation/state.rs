@@ -43,8 +43,10 @@ pub(super) struct State {
     pub(super) foot_steps: Vec<FootStep>,
     /// By coordinate: a step was looked for in its present recovery.
     pub(super) step_tried: Vec<bool>,
-    /// Solver steps of all searches so far.
+    /// Work of all searches so far.
     pub(super) searched: usize,
+    /// A search ended at its budget, or was not begun since that of the run is spent.
+    pub(super) search_cut: bool,
     /// The body has not moved since the last search.
     pub(super) searched_here: bool,
 }
@@ -118,6 +120,7 @@ impl State {
             foot_steps: vec![],
             step_tried: vec![false; n],
             searched: 0,
+            search_cut: false,
             searched_here: true,
         }
     }

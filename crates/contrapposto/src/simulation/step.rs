@@ -1,5 +1,6 @@
 //! Advances a scenario by one time step (Rodriguez & Boulic 2007, section 3).
 
+use super::easiest::Searched;
 use super::motion::Motion;
 use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
@@ -48,7 +49,8 @@ impl<'a> Simulation<'a> {
         };
         let mut simulation = Self::with(scenario, State::new(scenario.start.clone(), strategies))?;
         if let Some(body) = simulation.motion.body_mut() {
-            (simulation.state.posture, simulation.state.searched) = body.start()?;
+            let Searched { found, work, cut } = body.start()?;
+            (simulation.state.posture, simulation.state.searched, simulation.state.search_cut) = (found, work, cut);
         }
         simulation.carry_out_reliefs()?;
         for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {

@@ -136,6 +136,8 @@ pub struct Summary {
     pub reliefs: ReliefLog,
     /// Effort of a body with supports or tasks in the first sample.
     pub effort_at_start: Option<f64>,
+    /// A search for an easier posture ended at its budget of solver steps, or was not begun since that of the run is spent.
+    pub search_cut: bool,
     /// Supports that were put elsewhere.
     pub foot_steps: Vec<FootStep>,
     /// The greatest distance of the supports from their places, and when that was, s; `None` without supports.

@@ -1,6 +1,6 @@
 //! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, or an easier posture at rest.
 
-use super::easiest::SEARCH_BUDGET;
+use super::easiest::{SEARCH_BUDGET, SEARCH_BUDGET_OF_STEP, Searched};
 use super::foot_step::{PlannedStep, Tired, plan_step};
 use super::{FootStep, ScenarioError, Simulation};
 use crate::hybrid::Decision;
@@ -73,15 +73,16 @@ impl Simulation<'_> {
     pub(super) fn look_for_step(&mut self, i: usize, side: Side, decision: &Decision) -> Result<(), ScenarioError> {
         let Some(goal) = decision.goal else { return Ok(()) };
         let toward = goal - self.motion.torques().angles()[i];
-        if self.state.step_tried[i] || self.state.path.is_some() || self.state.searched >= SEARCH_BUDGET {
+        if self.state.step_tried[i] || self.state.path.is_some() {
             return Ok(());
         }
+        let budget = self.search_budget();
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         self.state.step_tried[i] = true;
         let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
-        let (planned, searched) = plan_step(body, &self.state.posture, tired)?;
-        self.state.searched += searched;
-        if let Some(PlannedStep { path, mut step }) = planned {
+        let Searched { found, work, cut } = plan_step(body, &self.state.posture, tired, budget)?;
+        self.count_search(work, cut);
+        if let Some(PlannedStep { path, mut step }) = found {
             step.time.0 = self.state.steps as f64 * self.scenario.run.step;
             self.state.foot_steps.push(step);
             self.state.path = Some(path);
@@ -91,18 +92,31 @@ impl Simulation<'_> {
 
     /// Looks for an easier posture once the body has come to rest.
     pub(super) fn look_for_ease(&mut self) -> Result<(), ScenarioError> {
-        if !self.motion.is_at_rest() || self.state.searched >= SEARCH_BUDGET {
+        if !self.motion.is_at_rest() {
             return Ok(());
         }
+        let mut budget = self.search_budget();
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         if std::mem::replace(&mut self.state.searched_here, true) {
             return Ok(());
         }
-        let (better, searched) = body.easiest(&self.state.posture)?;
-        self.state.searched += searched;
-        if let Some(better) = better {
-            self.state.path = body.way(&self.state.posture, &better, None);
+        let Searched { found, work, cut } = body.easiest(&self.state.posture, budget)?;
+        let all = budget;
+        budget = budget.saturating_sub(work);
+        if let Some(better) = found {
+            self.state.path = body.way(&self.state.posture, &better, None, &mut budget);
         }
+        self.count_search(all - budget, cut || budget == 0);
         Ok(())
+    }
+
+    /// Work that the searches of this time step may do.
+    fn search_budget(&self) -> usize {
+        SEARCH_BUDGET_OF_STEP.min(SEARCH_BUDGET.saturating_sub(self.state.searched))
+    }
+
+    fn count_search(&mut self, work: usize, cut: bool) {
+        self.state.searched += work;
+        self.state.search_cut |= cut;
     }
 }

@@ -39,6 +39,7 @@ pub(super) fn write(
     report.reasons = also_missed(&answer.verdict)
         .into_iter()
         .chain(also_slid(&answer.verdict))
+        .chain(answer.also_cut())
         .chain(answer.advice.sentence.clone())
         .collect();
     // Of a job that cannot be done nothing else is said to hold.
