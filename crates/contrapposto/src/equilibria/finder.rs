@@ -139,7 +139,7 @@ impl<'a> Finder<'a> {
     /// Whether no further start may be begun.
     fn is_spent(&mut self, stage: Stage) -> bool {
         let most = match stage {
-            Stage::Exploratory => self.search.most_work / 2,
+            Stage::Exploratory => self.search.most_work / 4 * 3,
             Stage::Converged | Stage::Lowest => self.search.most_work,
         };
         let spent = self.starts > 0 && self.work() >= most;

@@ -24,7 +24,7 @@ pub struct Search<'a> {
     pub loads: &'a [Load],
     /// Rates that do not move, besides those of locked coordinates.
     pub locked: &'a [usize],
-    /// Greatest work ([`Equilibria::work`](super::Equilibria::work)): no start is begun after so much, nor after half of it while starts
+    /// Greatest work ([`Equilibria::work`](super::Equilibria::work)): no start is begun after so much, nor after three quarters while starts
     /// are explored, so that a search ends at the same start on every machine.
     pub most_work: usize,
 }
