@@ -1,25 +1,20 @@
 //! Makes the starts of a search, solves from each of them, and selects the different postures of least effort.
 
 use super::candidate::{Candidate, places};
-use super::description::{describe, relative_torques, work_of};
+use super::description::{describe, relative_torques};
 use super::hanging_limbs::hanging_limbs;
 use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
 use super::search::{Search, SearchError};
 use super::ways_to_stand::DifferentWays;
-use crate::constraint::HalfSpace;
 use crate::contact::{Condition, Missing};
 use crate::effort::hessian::HessianModel;
-use crate::hybrid::{Problem, Strategy, minimise};
-use crate::model::CoordinateKind;
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, EngineError, Options};
 use crate::tasks::PriorityLevel;
 use crate::tasks::{Effort, Task};
 
-/// Coordinates whose goal angles are starts of their own.
-const SINGLE_GOALS: usize = 6;
 /// Times that goal angles are taken, each time from a better posture.
 const ROUNDS: usize = 2;
 /// Best postures from which lower local minima are searched for.
@@ -31,14 +26,8 @@ const EXPLORATORY_STEPS: usize = 40;
 const ALLOWED_ERROR: [f64; 3] = [0.02, 1e-5, 1e-5];
 /// Missing contact force and moment that are allowed to exploratory and to converged postures, body weights (times 1 m).
 const ALLOWED_MISSING: [f64; 3] = [1e-3, 1e-8, 1e-8];
-/// Distance of a goal angle below which it is no start, rad or m.
-const LEAST_GOAL_DISTANCE: f64 = 0.01;
 /// Change of every rate below which the approach to the tasks ends, rad or m.
 const APPROACH_TOLERANCE: f64 = 1e-6;
-/// `R_min` of the tables: every active goal that lessens torque is a start.
-const MINIMUM_DECREASE_RATIO: f64 = 0.0;
-/// `eps` of the tables, N m.
-const TORQUE_TOLERANCE: f64 = 0.05;
 /// Missing forces of a posture whose numbers are not finite.
 const EVERYTHING: Missing = Missing { force: f64::INFINITY, moment: f64::INFINITY, condition: Condition::Other };
 
@@ -55,40 +44,31 @@ pub fn equilibria(search: &Search<'_>, options: Options) -> Result<Equilibria, S
 
 /// Stage of a search: its index in the engines and in the allowed errors.
 #[derive(Clone, Copy, Debug)]
-enum Stage {
+pub(super) enum Stage {
     Exploratory = 0,
     Converged = 1,
     /// Basin hopping from the best postures.
     Lowest = 2,
 }
 
-/// A goal angle of a coordinate.
-#[derive(Clone, Debug)]
-struct Goal {
-    /// About the axis of the coordinate, rad.
-    angle: f64,
-    /// The least step of all coordinates that turns the joint so far.
-    step: Vec<f64>,
-}
-
 /// Engines and what they have found.
-struct Finder<'a> {
-    search: &'a Search<'a>,
+pub(super) struct Finder<'a> {
+    pub(super) search: &'a Search<'a>,
     /// For exploratory and for converging solves.
-    engines: [Engine<'a>; 3],
+    pub(super) engines: [Engine<'a>; 3],
     /// Without effort.
     approach: Engine<'a>,
     /// Index of the level of goal angles among the engines' levels.
-    slot: usize,
+    pub(super) slot: usize,
     found: Vec<Candidate>,
     /// Missing contact forces where the body fell.
     fell: Vec<Missing>,
     /// Error of the first posture whose numbers are not finite.
     refused: Option<EngineError>,
     starts: usize,
-    steps: usize,
+    pub(super) steps: usize,
     /// Work beyond the steps.
-    changes: usize,
+    pub(super) changes: usize,
     /// A start was left out, since the budget was spent.
     cut: bool,
 }
@@ -137,7 +117,7 @@ impl<'a> Finder<'a> {
     }
 
     /// Whether no further start may be begun.
-    fn is_spent(&mut self, stage: Stage) -> bool {
+    pub(super) fn is_spent(&mut self, stage: Stage) -> bool {
         let most = match stage {
             Stage::Exploratory => self.search.most_work / 4 * 3,
             Stage::Converged | Stage::Lowest => self.search.most_work,
@@ -206,7 +186,7 @@ impl<'a> Finder<'a> {
     }
 
     /// Solves from a posture with the engine of a stage, and keeps the result if it is new or better.
-    fn solve(&mut self, stage: Stage, from: &Posture, starts: Vec<String>) {
+    pub(super) fn solve(&mut self, stage: Stage, from: &Posture, starts: Vec<String>) {
         if self.is_spent(stage) {
             return;
         }
@@ -294,99 +274,6 @@ impl<'a> Finder<'a> {
         }
         self.approach.levels_mut()[self.slot].tasks.clear();
         posture
-    }
-
-    /// Solves with goal angles as half-spaces, and then without them.
-    fn explore_with(&mut self, from: &Posture, goals: &[&Goal], label: String) {
-        if self.is_spent(Stage::Exploratory) {
-            return;
-        }
-        let n = self.search.model.coordinates().len();
-        let mut spaces = vec![];
-        for goal in goals {
-            let mut space = HalfSpace::new(n);
-            if space.ask_for(from.values(), &goal.step) {
-                spaces.push(space);
-            }
-        }
-        let engine = &mut self.engines[Stage::Exploratory as usize];
-        engine.levels_mut()[self.slot].half_spaces = spaces;
-        if let Ok(under) = engine.solve_watched(from, |step, _| self.changes += step.work() - 1) {
-            self.steps += under.steps;
-            self.solve(Stage::Exploratory, &under.posture, vec![label]);
-        }
-    }
-
-    /// Solves with the goal angles of both strategies in a posture: all together, and one by one.
-    fn explore_goals(&mut self, posture: &Posture) -> Result<(), SearchError> {
-        let model = self.search.model;
-        let mut asked: Vec<(f64, usize, [Option<Goal>; 2])> = vec![];
-        for i in 0..model.coordinates().len() {
-            let goals = self.goals_of(posture, i)?;
-            if goals.iter().any(Option::is_some) {
-                let load = work_of(model, &self.engines[0], i).map_or(0.0, |work| work.relative_load());
-                asked.push((load, i, goals));
-            }
-        }
-        for (k, word) in ["active", "passive"].into_iter().enumerate() {
-            let all: Vec<&Goal> = asked.iter().filter_map(|(_, _, goals)| goals[k].as_ref()).collect();
-            if !all.is_empty() {
-                self.explore_with(posture, &all, format!("all {word} goals"));
-            }
-        }
-        // A stable sort: of equals the first of the model.
-        asked.sort_by(|a, b| b.0.total_cmp(&a.0));
-        asked.truncate(SINGLE_GOALS);
-        for (_, i, goals) in asked {
-            for (goal, word) in goals.into_iter().zip(["active", "passive"]) {
-                let Some(goal) = goal else { continue };
-                let coordinate = &model.coordinates()[i];
-                let value = match coordinate.kind {
-                    CoordinateKind::Rotation => format!("{:.1} deg", goal.angle.to_degrees()),
-                    _ => format!("{:.3} m", goal.angle),
-                };
-                self.explore_with(posture, &[&goal], format!("{word} goal of {}, {value}", coordinate.name));
-            }
-        }
-        Ok(())
-    }
-
-    /// Active and passive goal of a coordinate that are not reached yet.
-    fn goals_of(&mut self, posture: &Posture, i: usize) -> Result<[Option<Goal>; 2], SearchError> {
-        const NONE: [Option<Goal>; 2] = [None, None];
-        let coordinate = &self.search.model.coordinates()[i];
-        let (Some(rate), true) = (coordinate.rate, coordinate.groups.is_some()) else { return Ok(NONE) };
-        if self.search.locked.contains(&rate) || coordinate.locked || self.search.model.is_dependent(i) {
-            return Ok(NONE);
-        }
-        let engine = &mut self.engines[Stage::Exploratory as usize];
-        let Some(external_slope) = engine.slope_along(posture, rate, self.slot)? else { return Ok(NONE) };
-        let (model, body) = (self.search.model, engine.torques());
-        let passive_torque = body.passive_torque();
-        let Some(curve) = passive_torque.curve_about_axis(model, body.kinematics(), i, coordinate.range) else {
-            return Ok(NONE);
-        };
-        let goal = |strategy: Strategy| {
-            let problem = Problem {
-                curve: &curve,
-                angle: passive_torque.angles()[i],
-                external_torque: body.external_about_axes()[rate],
-                external_slope,
-                strategy,
-                minimum_decrease_ratio: MINIMUM_DECREASE_RATIO,
-                torque_tolerance: TORQUE_TOLERANCE,
-                accepted: None,
-            };
-            let angle = minimise(&problem).ok()?.goal?;
-            let turn = angle - problem.angle;
-            let mut step = vec![0.0; model.coordinates().len()];
-            body.write_turn(model, i, turn, &mut step);
-            (turn.abs() > LEAST_GOAL_DISTANCE).then_some(Goal { angle, step })
-        };
-        let (active, passive) = (goal(Strategy::Active), goal(Strategy::Passive));
-        // The tables give both strategies the same answer where there is only one.
-        let same = active.as_ref().map(|goal| goal.angle) == passive.as_ref().map(|goal| goal.angle);
-        Ok([active.filter(|_| !same), passive])
     }
 
     /// The posture of least effort so far.

@@ -21,6 +21,7 @@
 mod candidate;
 mod description;
 mod finder;
+mod goal_starts;
 mod hanging_limbs;
 mod mirror;
 mod other_places;
