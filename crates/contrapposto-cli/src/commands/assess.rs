@@ -90,7 +90,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let span = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
     let verdict = Verdict::of_motion(model, &found, span);
     let advice = advice(&whole, &found, &verdict, args.suggest);
-    let answer = Answer { verdict, advice };
+    let answer = Answer::new(verdict, advice);
     let page = assessed_frames.map(|assessed_frames| {
         let manner = said.as_deref();
         report_of_assessment(&title, &assessed_frames, (&found, manner), &answer, &settings.supports, &held, &warnings)

@@ -175,7 +175,7 @@ fn in_balance(scenario: &PoseScenario, falls: &SolvedPosture) -> Result<Option<S
 pub(crate) fn answer(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held, suggest: SuggestArgs) -> Answer {
     let verdict = verdict(scenario, pose, held);
     let advice = advice(scenario, &verdict, pose.steps, suggest);
-    Answer { verdict, advice }
+    Answer::new(verdict, advice)
 }
 
 /// The changes that were tried. The supports stay where they are in the start, so that no foot changes its place.

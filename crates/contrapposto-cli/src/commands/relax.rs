@@ -136,11 +136,11 @@ pub(crate) fn answer(scenario: &RelaxScenario, found: &Equilibria, suggest: Sugg
     let search = search(scenario);
     let Some((verdict, best)) = Verdict::of_equilibria(&search, found).zip(found.postures.first()) else {
         let verdict = Verdict::of_posture(&scenario.model, &HeldPosture::default());
-        return Answer { verdict, advice: Advice::default(), search_cut: false };
+        return Answer::new(verdict, Advice::default());
     };
     let at_best = Search { start: &best.relaxed.posture, ..search.clone() };
     let advice = advice_of_search(&verdict, (&search, &at_best), (OPTIONS, found.steps), suggest);
-    Answer { verdict, advice, search_cut: false }
+    Answer::new(verdict, advice)
 }
 
 /// The changes that were tried of a body that cannot stand.

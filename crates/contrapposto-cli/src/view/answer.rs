@@ -27,10 +27,15 @@ pub(crate) struct Answer {
     pub(crate) verdict: Verdict,
     pub(crate) advice: Advice,
     /// [`Summary::search_cut`].
-    pub(crate) search_cut: bool,
+    search_cut: bool,
 }
 
 impl Answer {
+    /// Without a run.
+    pub(crate) fn new(verdict: Verdict, advice: Advice) -> Self {
+        Self { verdict, advice, search_cut: false }
+    }
+
     /// The verdict alone.
     pub(crate) fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
         let (verdict, search_cut) = (Verdict::of_run(scenario, summary), summary.search_cut);
@@ -39,7 +44,8 @@ impl Answer {
 
     /// The lines that everything begins with.
     pub(crate) fn first_lines(&self) -> String {
-        let more: String = self.also_cut().iter().chain(&self.advice.sentence).map(|line| format!("{line}\n")).collect();
+        let more: String =
+            self.also_cut().iter().chain(&self.advice.sentence).map(|line| format!("{line}\n")).collect();
         first_lines(&self.verdict) + &more
     }
 
@@ -115,7 +121,7 @@ pub(crate) fn without_posture(
     let text = text_without_posture(name, title, model, (&verdict, &advice))?;
     folder.map(|folder| folder.write(&[(name, text.as_bytes())])).transpose()?;
     let heavy = heavy(model, loads).map_or(String::new(), |heavy| heavy + "\n");
-    print(&if json { text } else { Answer { verdict, advice }.first_lines() + &heavy })?;
+    print(&if json { text } else { Answer::new(verdict, advice).first_lines() + &heavy })?;
     Err(Fail::Answered)
 }
 

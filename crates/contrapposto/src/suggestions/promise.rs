@@ -29,6 +29,7 @@ pub fn by_promise(scenario: &Scenario, summary: &Summary, changes: Vec<Change>) 
             limits: &end.limits,
             loads: &end.loads,
             locked: &locked,
+            most_work: usize::MAX,
         },
         changes,
     )

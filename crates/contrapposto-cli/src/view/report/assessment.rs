@@ -106,7 +106,7 @@ pub(crate) fn report_of_assessment(
     title: &str,
     assessed_frames: &AssessedFrames<'_>,
     (found, inertia): (&Assessment, Option<&str>),
-    Answer { verdict, advice }: &Answer,
+    Answer { verdict, advice, .. }: &Answer,
     supports: &[Support],
     held: &[Load],
     warnings: &[String],

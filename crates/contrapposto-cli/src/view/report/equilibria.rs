@@ -42,7 +42,7 @@ fn numbered(count: usize) -> Vec<String> {
 pub(crate) fn report_of_equilibria(
     scenario: &RelaxScenario,
     found: &Equilibria,
-    Answer { verdict, advice }: &Answer,
+    Answer { verdict, advice, .. }: &Answer,
 ) -> Result<String, Fail> {
     let model = &scenario.model;
     let frames = frames_of_postures(model, &found.postures)?;
