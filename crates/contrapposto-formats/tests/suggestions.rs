@@ -115,7 +115,11 @@ fn every_change_gives_the_time_of_its_own_run(seconds: f64) -> Verdict {
     for one in &helping {
         assert!(one.seconds.unwrap() > before.seconds.unwrap() || one.kind > before.kind, "{one:?}");
         if one.kind == VerdictKind::HeldUntil {
-            assert!(one.in_words().ends_with(&format!("of the {} asked", how_long(seconds))), "{}", one.in_words());
+            assert!(
+                one.in_words(&before).ends_with(&format!("of the {} asked", how_long(seconds))),
+                "{}",
+                one.in_words(&before)
+            );
         }
     }
     before

@@ -38,21 +38,21 @@ impl Advice {
         let all: Vec<Suggestion> = changes.iter().zip(&trials).filter_map(suggestion).chain(known()).collect();
         let tried = all.len();
         let helping = Suggestion::that_help(all, verdict);
-        let sentence = sentence(&helping, tried, &not_tried);
+        let sentence = sentence(verdict, &helping, tried, &not_tried);
         Self { helping, not_tried, sentence }
     }
 }
 
 /// The sentence after the verdict; `None` where there is nothing to try.
-fn sentence(helping: &[Suggestion], tried: usize, not_tried: &[String]) -> Option<String> {
+fn sentence(verdict: &Verdict, helping: &[Suggestion], tried: usize, not_tried: &[String]) -> Option<String> {
     let said = match helping {
         [] if tried == 0 => None,
         [] if tried == 1 => Some("The one change that was tried does not help.".to_owned()),
         [] => Some(format!("None of the {tried} changes that were tried helps.")),
-        [best] => Some(format!("What would help: {}.", best.in_words())),
+        [best] => Some(format!("What would help: {}.", best.in_words(verdict))),
         [best, rest @ ..] => {
-            let rest: Vec<String> = rest.iter().map(Suggestion::in_words).collect();
-            Some(format!("What would help most: {}. Also: {}.", best.in_words(), rest.join("; ")))
+            let rest: Vec<String> = rest.iter().map(|one| one.in_words(verdict)).collect();
+            Some(format!("What would help most: {}. Also: {}.", best.in_words(verdict), rest.join("; ")))
         }
     };
     let left = (!not_tried.is_empty())

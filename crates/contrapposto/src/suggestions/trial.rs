@@ -132,10 +132,14 @@ impl Suggestion {
     }
 
     /// `with the target of right hand 10 cm lower it holds through the run (5.0 min), about 11.2 min in all`,
-    /// `with 20 % less load it can be held 11 s of the 30 s asked`.
-    pub fn in_words(&self) -> String {
+    /// `with 20 % less load it can be held 11 s of the 30 s asked`; beside the verdict on the job without the change.
+    pub fn in_words(&self, before: &Verdict) -> String {
         let change = &self.change;
-        let hazard = if self.hazards > 0 { ", with ligaments in hazard" } else { "" };
+        let hazard = match (before.hazards.len(), self.hazards) {
+            (0, 0) => "",
+            (_, 0) => ", and no ligaments are in hazard",
+            _ => ", with ligaments in hazard",
+        };
         let held = || how_long(self.seconds.unwrap_or(0.0));
         let time = match (self.kind, self.asked.map(how_long), self.seconds) {
             (VerdictKind::Holds, Some(asked), Some(time)) => {

@@ -30,7 +30,8 @@ pub(super) fn write(
     // The joint that was relieved; without reliefs that of the title.
     let of_title = group_of_title(&answer.verdict).filter(|_| excerpt.happened == 0).map(|group| group.coordinate);
     let main = of_title.unwrap_or_else(|| main_coordinate(scenario, summary));
-    let narrative = Narrative { scenario, names, first, last, main };
+    let ligaments = answer.verdict.hazards.first().map_or(main, |hazard| hazard.coordinate);
+    let narrative = Narrative { scenario, names, first, last, main, ligaments };
     let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
@@ -78,6 +79,8 @@ struct Narrative<'a> {
     first: &'a Frame,
     last: &'a Frame,
     main: usize,
+    /// The coordinate whose passive torque is reported: the first in hazard, or `main`.
+    ligaments: usize,
 }
 
 impl Narrative<'_> {
@@ -141,26 +144,36 @@ impl Narrative<'_> {
                 sentence(&name)
             ));
         }
-        if let Some(share) = last.carried(main) {
-            let whole = last.external[main].abs();
-            if last.against_muscles(main) {
-                let [ligaments, muscles] = [last.passive[main], last.active(main)].map(f64::abs);
-                reasons.push(format!(
-                    "Ligaments of {name} pull with {ligaments:.1} N m, more than the external torque of {whole:.1} N m; muscles hold the \
-                     difference of {muscles:.1} N m against them."
-                ));
-                return reasons;
-            }
-            let before =
-                first.carried(main).map(|before| format!(", at the start {}", percent(before))).unwrap_or_default();
-            let part = match share {
-                0.0..NOTHING => "none".to_owned(),
-                NOTHING..0.5 => format!("only {}", percent(share)),
-                _ => percent(share),
-            };
-            reasons.push(format!("Ligaments carry {part} of the external torque of {whole:.1} N m at {name}{before}."));
-        }
+        reasons.extend(self.of_ligaments());
         reasons
+    }
+
+    /// The share of the external torque that passive tissue carries; `None` where it carries nothing.
+    fn of_ligaments(&self) -> Option<String> {
+        let Self { scenario, first, last, ligaments: i, .. } = *self;
+        let name = plain(&scenario.model.coordinates()[i].name);
+        let whole = last.external[i].abs();
+        let share = last.carried(i)?;
+        if last.against_muscles(i) {
+            let [ligaments, muscles] = [last.passive[i], last.active(i)].map(f64::abs);
+            return Some(format!(
+                "Ligaments of {name} pull with {ligaments:.1} N m, more than the external torque of {whole:.1} N m; muscles hold the \
+                 difference of {muscles:.1} N m against them."
+            ));
+        }
+        let before = first.carried(i).unwrap_or_default();
+        if share < NOTHING && before < NOTHING {
+            return None;
+        }
+        let part = match share {
+            0.0..NOTHING => "none".to_owned(),
+            NOTHING..0.5 => format!("only {}", percent(share)),
+            _ => percent(share),
+        };
+        let before = percent(before);
+        Some(format!(
+            "Ligaments carry {part} of the external torque of {whole:.1} N m at {name}, at the start {before}."
+        ))
     }
 
     /// A support that was put elsewhere.
@@ -196,7 +209,7 @@ impl Narrative<'_> {
     }
 
     fn figures(&self, standing: Option<(f64, f64)>, summary: &Summary) -> Vec<Figure> {
-        let Self { scenario, names, first, last, main } = *self;
+        let Self { scenario, names, first, last, main, ligaments } = *self;
         let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
         let mut figures = vec![];
         if let Some((before, after)) = standing {
@@ -226,12 +239,10 @@ impl Narrative<'_> {
                 format!("{before:.1} N m at the start"),
             ));
         }
-        if let Some(share) = last.carried(main).filter(|_| !last.against_muscles(main)) {
-            figures.push(figure(
-                "Ligaments carry",
-                if share < NOTHING { "none".to_owned() } else { percent(share) },
-                format!("of the external torque at {}", plain(&scenario.model.coordinates()[main].name)),
-            ));
+        let carried = last.carried(ligaments).filter(|share| *share >= NOTHING && !last.against_muscles(ligaments));
+        if let Some(share) = carried {
+            let name = plain(&scenario.model.coordinates()[ligaments].name);
+            figures.push(figure("Ligaments carry", percent(share), format!("of the external torque at {name}")));
         }
         let [before, after] = [first, last].map(Frame::effort);
         let change =
