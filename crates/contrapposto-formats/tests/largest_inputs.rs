@@ -403,10 +403,10 @@ fn external_loads_of_16_mib_need_at_most_64_mib_and_1_s_for_each_mib() {
     is_modest("ExternalLoads", make, |bytes| external_loads(bytes).is_ok());
 }
 
-/// The solver's memory grows with the square of the number of tasks, which are at most 200.
+/// The solver's memory grows with the square of the number of tasks, which are at most 150.
 #[test]
 fn a_run_with_as_many_tasks_as_are_allowed_needs_at_most_64_mib() {
-    let tasks: String = (0..200).map(|_| tables_of_a_job(0, 0)).collect();
+    let tasks: String = (0..150).map(|_| tables_of_a_job(0, 0)).collect();
     let feet = "[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n";
     let text = format!("format = 1\n[strategy]\nkind = \"active\"\n{feet}{tasks}[run]\nduration_s = 1\nstep_s = 0.1\n");
     let scenario = read_scenario("s.toml", text.as_bytes(), None).unwrap();
@@ -415,6 +415,6 @@ fn a_run_with_as_many_tasks_as_are_allowed_needs_at_most_64_mib() {
         while run.next_sample().unwrap().is_some() {}
     });
     let memory = memory.bytes_max as f64 / MEBIBYTE;
-    println!("200 tasks: {memory:.1} MiB");
+    println!("150 tasks: {memory:.1} MiB");
     assert!(memory <= MOST_MEMORY);
 }

@@ -21,7 +21,7 @@ use crate::sample::LastSample;
 pub(crate) fn held(body: &Body, engine: &mut Engine<'_>, posture: &Posture, moved: Moved) -> Result<Shown, Refusal> {
     let levels = engine.report(posture).map_err(Refusal::of)?;
     let targets = engine.levels().iter().zip(levels.iter().map(|level| level.length));
-    let missed = Missed::of_levels(&body.model, targets);
+    let missed = Missed::of_levels(&body.model, posture, targets);
     let (torques, contact) = (engine.torques(), engine.contact());
     let numbers = Numbers::of(body, torques);
     let start = body.kinematics(&body.scenario.start)?;
