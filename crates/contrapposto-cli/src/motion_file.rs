@@ -161,6 +161,8 @@ fn first_of(names: &[String]) -> String {
 
 /// Beyond a limit of a range without a word, rad or m.
 const SLACK: f64 = 1e-3;
+/// A hinge that lies so far beyond its range, rad, is an error of the file: a quarter of a turn (assumed).
+const FAR: f64 = std::f64::consts::FRAC_PI_2;
 /// Share of the frames that counts as nearly all.
 const NEARLY_ALL: f64 = 0.9;
 
@@ -182,6 +184,8 @@ pub(crate) fn note_values_out_of_range(
         let outside = share_outside(&values, coordinate.range, 1.0);
         if outside >= NEARLY_ALL {
             warnings.push(out_of_range(coordinate, &values, outside));
+        } else if let Some(far) = far_outside(coordinate, frames, index) {
+            warnings.push(far);
         } else if outside > 0.0 {
             beyond.push(format!("`{}`", coordinate.name));
         }
@@ -198,6 +202,27 @@ pub(crate) fn note_values_out_of_range(
         }
     }
     warnings
+}
+
+/// The warning about a hinge that some frame turns [`FAR`] beyond its range, as no body does.
+fn far_outside(coordinate: &Coordinate, frames: &[(f64, Posture)], index: usize) -> Option<String> {
+    let (min, max) = coordinate.range;
+    let beyond = |value: f64| (min - value).max(value - max);
+    let (time, worst) = frames
+        .iter()
+        .map(|(time, posture)| (*time, posture.values()[index]))
+        .max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1)))?;
+    (coordinate.kind == CoordinateKind::Rotation && beyond(worst) > FAR).then(|| {
+        format!(
+            "`{}` is at {:.1} deg at {time} s, {:.1} deg beyond its range {:.1} .. {:.1} deg: no body turns so far, so that the answer \
+             is not that of a person",
+            coordinate.name,
+            worst.to_degrees(),
+            beyond(worst).to_degrees(),
+            min.to_degrees(),
+            max.to_degrees()
+        )
+    })
 }
 
 /// The share of values that lie outside a range after a multiplication with `sign`.

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use contrapposto::statics::{ExternalTorque, FixedIn, Load, LoadKind};
 use serde_json::Value;
-use support::{json, refused, run, write};
+use support::{contrapposto, json, refused, run, write};
 
 fn formats(path: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../contrapposto-formats/tests").join(path).to_str().unwrap().to_owned()
@@ -411,4 +411,52 @@ fn a_table_with_a_wrong_number_of_rows_is_read_with_a_warning() {
         "{}",
         answer.stderr
     );
+}
+
+/// `assess` of the adult on both feet under a motion.
+fn assessed_on_feet(motion: &str) -> support::Run {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("motion.csv");
+    std::fs::write(&path, motion).unwrap();
+    contrapposto(["assess", "adult"])
+        .arg(&path)
+        .args(["--degrees", "--support", "calcn_r,calcn_l", "--no-suggest"])
+        .run()
+}
+
+#[test]
+fn a_foot_in_the_air_that_is_named_as_a_support_gives_a_warning_with_its_height() {
+    let run =
+        assessed_on_feet("time,hip_flexion_r,knee_angle_r,elbow_flex_r,elbow_flex_l\n0,90,90,20,20\n60,90,90,20,20\n");
+    let warning = run.stderr.lines().find(|line| line.contains("support `calcn_r` is ")).unwrap();
+    let height: f64 = warning.split("is ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    // The thigh of the adult is level, its shank hangs: the foot is about a thigh's length up.
+    assert!((30.0..50.0).contains(&height) && warning.contains("100 % of the frames"), "{warning}");
+    assert!(!run.stderr.contains("support `calcn_l` is "), "{}", run.stderr);
+}
+
+#[test]
+fn tilted_soles_give_a_warning_with_their_angle_and_level_ones_none() {
+    let tilted = assessed_on_feet("time,ankle_angle_r,ankle_angle_l,elbow_flex_r,elbow_flex_l\n0,-30,-30,20,20\n");
+    for foot in ["calcn_r", "calcn_l"] {
+        let words = format!("the patch of support `{foot}` is tilted by 30 deg at 0 s");
+        assert!(tilted.stderr.contains(&words), "{}", tilted.stderr);
+    }
+    let level = assessed_on_feet("time,elbow_flex_r,elbow_flex_l\n0,20,20\n");
+    assert!(!level.stderr.contains("tilted") && !level.stderr.contains("lowest support"), "{}", level.stderr);
+}
+
+#[test]
+fn a_hinge_a_quarter_turn_beyond_its_range_gives_a_warning_with_its_frame() {
+    let run = assessed_on_feet(
+        "time,hip_flexion_r,elbow_flex_r,elbow_flex_l\n0,0,20,20\n1,0,20,20\n2,300,20,20\n3,0,20,20\n",
+    );
+    assert!(run.stderr.contains("warning: `hip_flexion_r` is at 300.0 deg at 2 s, "), "{}", run.stderr);
+}
+
+#[test]
+fn frames_that_all_have_one_time_are_refused() {
+    let run = assessed_on_feet("time,elbow_flex_r\n0,20\n0,20\n");
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("its 2 frames all have the time 0 s; times must rise"), "{}", run.stderr);
 }

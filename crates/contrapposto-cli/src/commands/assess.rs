@@ -1,5 +1,7 @@
 //! `contrapposto assess`: the muscle group that fails first in a recorded motion, its time, and its relief.
 
+mod support_doubts;
+
 use std::path::Path;
 
 use contrapposto::assessment::assess as assessed;
@@ -19,6 +21,7 @@ use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use nalgebra::Vector3;
 
+use self::support_doubts::support_doubts;
 use crate::args::{AssessArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
@@ -76,7 +79,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let found = whole
         .assess(&mut tables, assessed_frames.as_mut())
         .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
-    let new = warnings(args, &opened, &found, motion.len());
+    let new =
+        [support_doubts(model, &motion, &settings.supports), warnings(args, &opened, &found, motion.len())].concat();
     new.iter().for_each(|warning| print_note("warning", warning));
     let warnings = [of_muscles, doubts, new].concat();
 
@@ -191,6 +195,12 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
     let mut recorded = Recorded::new(&args.motion.display().to_string(), all, (&args.dynamics, span), model)?;
     let (held, ground) = loads_of(&args.under, model, &mut notes)?;
     keep_overlap(&mut recorded, ground.as_ref())?;
+    if let ([(first, _), .., (last, _)], frames) = (recorded.frames.as_slice(), recorded.frames.len())
+        && first >= last
+    {
+        let why = format!("its {frames} frames all have the time {first} s; times must rise, or give one frame");
+        return Err(Fail::Refused(format!("{}: {why}", args.motion.display())));
+    }
     let Recorded { frames: motion, rates, said } = recorded;
     if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
         let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";

@@ -1,6 +1,7 @@
 //! `contrapposto pose`: one posture from tasks in order of priority.
 
 use contrapposto::contact::{Balance, Slip};
+use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedPosture};
 use contrapposto::suggestions::{Advice, Change, Job, Trial, changes};
 use contrapposto::tasks::{PriorityLevel, Task};
@@ -26,6 +27,8 @@ const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv
 /// Largest change of a joint in a step toward a posture in balance, rad, and most of these steps.
 const BALANCE_STEP: f64 = 0.1;
 const BALANCE_STEPS: usize = 300;
+/// Most work of the search where these steps end in a fall: about ten seconds on one core (assumed).
+const MOST_BALANCE_WORK: usize = 30_000;
 /// The note about a posture that had to be brought into balance.
 const KEPT_BALANCE: &str = "the posture nearest to the tasks falls, and no task asks for balance: balance over the supports came before the \
      tasks, as in `relax` and `simulate`";
@@ -164,11 +167,27 @@ fn in_balance(scenario: &PoseScenario, falls: &SolvedPosture) -> Result<Option<S
     let options =
         Options { max_step: BALANCE_STEP, max_steps: BALANCE_STEPS, local_minima: 0, ..Options::least_effort() };
     let (model, supports) = (&scenario.model, scenario.supports.clone());
-    let mut engine = Engine::with_supports(model, &scenario.start, supports, goals, &scenario.loads, options)?;
+    let mut engine = Engine::with_supports(model, &scenario.start, supports, goals.clone(), &scenario.loads, options)?;
     scenario.locked.iter().for_each(|&rate| engine.lock(rate));
     scenario.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
     let pose = engine.solve(&falls.posture)?;
-    Ok((pose.balance == Balance::Held).then_some(pose))
+    Ok((pose.balance == Balance::Held).then_some(pose).or_else(|| least_effort_in_balance(scenario, &goals)))
+}
+
+/// The posture of least effort that the search of `relax` finds, for where the steps toward balance end in a fall.
+fn least_effort_in_balance(scenario: &PoseScenario, goals: &[PriorityLevel]) -> Option<SolvedPosture> {
+    let search = Search {
+        model: &scenario.model,
+        start: &scenario.start,
+        supports: &scenario.supports,
+        goals,
+        limits: &scenario.limits,
+        loads: &scenario.loads,
+        locked: &scenario.locked,
+        most_work: MOST_BALANCE_WORK,
+    };
+    let found = equilibria(&search, Options { local_minima: 0, ..Options::least_effort() }).ok()?;
+    found.postures.into_iter().next().map(|best| best.relaxed)
 }
 
 /// The answer, with the changes that were tried.
