@@ -64,7 +64,7 @@ test("200 drags, torques of a joint, a load: the module agrees with the native p
   assert.ok(greatest < 1e-9, String(greatest));
 });
 
-// The libraries of the two differ in the last digit of sines and exponentials. Where a body descends to its posture of least effort, a search
+// Probably the libraries of the two differ in the last digit of sines and exponentials. Where a body descends to its posture of least effort, a search
 // passes through postures that depend on that digit; the posture that it comes to does not.
 test("ten minutes of stand-relaxed: the same decisions; numbers to 1e-9 but within one second of descent", (t) => {
   const [ours, theirs] = both(run("stand-relaxed", 600));

@@ -116,7 +116,7 @@ fn every_change_gives_the_time_of_its_own_run(seconds: f64) -> Verdict {
         assert!(one.seconds.unwrap() > before.seconds.unwrap() || one.kind > before.kind, "{one:?}");
         if one.kind == VerdictKind::HeldUntil {
             assert!(
-                one.in_words(&before).ends_with(&format!("of the {} asked", how_long(seconds))),
+                one.in_words(&before).contains(&format!("of the {} asked (weaker people: ", how_long(seconds))),
                 "{}",
                 one.in_words(&before)
             );

@@ -220,7 +220,7 @@ fn a_target_195_metres_up_is_not_reached_by_its_distance_from_the_hand() {
     let at = kinematics.station(&scenario.model, hand, Vector3::new(0.0, -0.07, 0.0));
     let nearest = verdict.missed[0].nearest.unwrap();
     assert!((nearest.at - at).norm() < 1e-9 && (nearest.to_target - (target - at)).norm() < 1e-9, "{nearest:?}");
-    let words = format!("It gets to {:.2}, {:.2}, {:.2} m", at.x, at.y, at.z).replace('-', "\u{2212}");
+    let words = format!("It ends at {:.2}, {:.2}, {:.2} m", at.x, at.y, at.z).replace('-', "\u{2212}");
     let end = format!("from there the target lies {:.2} m higher.", target.y - at.y);
     assert!(verdict.sentence.contains(&words) && verdict.sentence.ends_with(&end), "{}", verdict.sentence);
 }

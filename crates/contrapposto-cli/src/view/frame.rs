@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 
 use super::recording::Row;
 use super::three_axis::angles;
+use super::words::shares_of_all;
 use crate::fail::Fail;
 
 /// Passive tissue gives more than the external torque from this share of it on.
@@ -113,9 +114,7 @@ impl Frame {
     /// Shares of the weight of body and loads that the supports carry, each a share of what all of them carry upwards.
     pub(crate) fn shares(&self) -> Vec<f64> {
         let contacts = self.standing.iter().flat_map(|standing| &standing.contacts);
-        let shares: Vec<f64> = contacts.map(|contact| contact.share).collect();
-        let all: f64 = shares.iter().sum();
-        if all > 0.0 { shares.iter().map(|share| share / all).collect() } else { shares }
+        shares_of_all(&contacts.map(|contact| contact.share).collect::<Vec<_>>())
     }
 
     /// Whether passive tissue gives more than the external torque of a coordinate, so that muscles hold the rest against it.

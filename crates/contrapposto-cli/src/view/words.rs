@@ -66,3 +66,9 @@ mod tests {
         assert_eq!(sentence("élan"), "Élan");
     }
 }
+
+/// Shares of the weight of body and loads: each share of the body's weight as a share of what all supports carry.
+pub(crate) fn shares_of_all(of_body: &[f64]) -> Vec<f64> {
+    let all: f64 = of_body.iter().sum();
+    if all > 0.0 { of_body.iter().map(|share| share / all).collect() } else { of_body.to_vec() }
+}

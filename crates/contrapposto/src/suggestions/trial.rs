@@ -132,14 +132,18 @@ impl Suggestion {
     }
 
     /// `with the target of right hand 10 cm lower it holds through the run (5.0 min), about 11.2 min in all`,
-    /// `with 20 % less load it can be held 11 s of the 30 s asked`; beside the verdict on the job without the change.
+    /// `with 20 % less load it can be held 11 s of the 30 s asked (weaker people: 5.0 s)`; beside the verdict on the job without the change.
     pub fn in_words(&self, before: &Verdict) -> String {
         let change = &self.change;
+        let shorter = times(self.seconds, None).0 < times(before.seconds, None).0;
         let hazard = match (before.hazards.len(), self.hazards) {
             (0, 0) => "",
-            (_, 0) => ", and no ligaments are in hazard",
+            (_, 0) if shorter => ", without ligaments in hazard, but for a shorter time",
+            (_, 0) => ", without ligaments in hazard",
             _ => ", with ligaments in hazard",
         };
+        let weaker = self.least.filter(|least| self.asked.is_some_and(|asked| *least < asked));
+        let weaker = weaker.map_or_else(String::new, |least| format!(" (weaker people: {})", how_long(least)));
         let held = || how_long(self.seconds.unwrap_or(0.0));
         let time = match (self.kind, self.asked.map(how_long), self.seconds) {
             (VerdictKind::Holds, Some(asked), Some(time)) => {
@@ -150,6 +154,6 @@ impl Suggestion {
             (_, Some(asked), _) => format!("it can be held {} of the {asked} asked", held()),
             (_, None, _) => format!("it can be held {}", held()),
         };
-        format!("with {change} {time}{hazard}")
+        format!("with {change} {time}{weaker}{hazard}")
     }
 }

@@ -191,7 +191,7 @@ fn enumerated(parts: &[String]) -> String {
 }
 
 impl Nearest {
-    /// `It gets to 0.40, 1.97, 0.20 m (ground axes x, y, z); from there the target lies 62.9 cm higher and 3.1 cm along +z.`
+    /// `It ends at 0.40, 1.97, 0.20 m (ground axes x, y, z); from there the target lies 62.9 cm higher and 3.1 cm along +z.`
     fn in_words(&self) -> String {
         let [x, y, z] = [self.at.x, self.at.y, self.at.z];
         let whole = self.to_target.norm();
@@ -206,7 +206,7 @@ impl Nearest {
             parts.push(format!("{} along {}{axis}", length(part.abs()), if *part > 0.0 { "+" } else { "\u{2212}" }));
         }
         let at = format!("{x:.2}, {y:.2}, {z:.2}").replace('-', "\u{2212}");
-        format!("It gets to {at} m (ground axes x, y, z); from there the target lies {}.", enumerated(&parts))
+        format!("It ends at {at} m (ground axes x, y, z); from there the target lies {}.", enumerated(&parts))
     }
 }
 

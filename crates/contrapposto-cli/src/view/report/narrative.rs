@@ -1,6 +1,7 @@
 //! The words of a run's page: a headline, the reasons, and the few numbers that say most.
 
 use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
+use contrapposto::verdict::TIRED;
 use contrapposto_report::{Figure, Report};
 
 use crate::view::answer::{Answer, also_missed, also_slid, group_of_title};
@@ -44,7 +45,8 @@ pub(super) fn write(
         .chain(answer.advice.sentence.clone())
         .collect();
     // Of a job that cannot be done nothing else is said to hold.
-    if answer.verdict.kind.is_done() {
+    let tired = answer.verdict.tired.is_some_and(|tired| tired.fatigue > TIRED);
+    if answer.verdict.kind.is_done() && !(tired && excerpt.happened == 0) {
         report.reasons.push(match standing {
             _ if excerpt.happened == 0 => of_rest(summary.end_time),
             Some((before, after)) if after.abs() >= LEVEL => narrative.of_list(before, after),

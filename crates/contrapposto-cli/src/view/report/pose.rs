@@ -15,7 +15,7 @@ use crate::view::scene::hazard::{hazards, tell};
 use crate::view::stage::Stage;
 use crate::view::targets::targets;
 use crate::view::text::pose::{mark, reached, tasks as tasks_of};
-use crate::view::words::{list, metres, percent, plain};
+use crate::view::words::{list, metres, plain};
 
 /// The page of a solved pose.
 pub(crate) fn report_of_pose(
@@ -104,7 +104,7 @@ fn remaining(entries: &[PoseLevelText]) -> String {
     let text = |level: &PoseLevelText| match level.unit {
         "m" => metres(level.residual).unwrap_or_else(|| format!("{:.1} mm", 1e3 * level.residual)),
         "rad" => format!("{:.1}°", level.residual.to_degrees()),
-        _ => format!("{} of strength", percent(level.residual)),
+        _ => format!("{:.3}, sum of squared relative loads", level.residual.powi(2)),
     };
     if reached(entries) { "nothing".to_owned() } else { entries.iter().map(text).collect::<Vec<_>>().join(", ") }
 }

@@ -45,7 +45,8 @@ fn remaining(level: &PoseLevelText) -> String {
     let (value, unit) = match level.unit {
         "m" => (1e3 * level.residual, " mm"),
         "rad" => (level.residual.to_degrees(), " deg"),
-        _ => (level.residual, " of strength"),
+        // Effort is one number everywhere: the sum of squared relative loads.
+        _ => (level.residual.powi(2), ", sum of squared relative loads"),
     };
     // An error below the tolerance is written without its digits.
     if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }

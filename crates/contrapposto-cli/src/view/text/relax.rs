@@ -20,6 +20,7 @@ use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
 use crate::view::words::MOST_JOINTS_SHOWN;
 use crate::view::words::how_long;
+use crate::view::words::shares_of_all;
 
 /// Slip that a table shows, m or degrees.
 const SLIP_SHOWN: f64 = 1e-6;
@@ -232,8 +233,10 @@ pub(crate) fn percent(share: f64) -> String {
 
 /// `calcn_r 85 %, calcn_l 15 %`.
 pub(crate) fn weight(posture: &RelaxedPostureText) -> String {
-    let shares = posture.supports.iter().map(|support| format!("{} {}", support.segment, percent(support.share)));
-    shares.collect::<Vec<_>>().join(", ")
+    let shares = shares_of_all(&posture.supports.iter().map(|support| support.share).collect::<Vec<_>>());
+    let words =
+        posture.supports.iter().zip(shares).map(|(support, share)| format!("{} {}", support.segment, percent(share)));
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// One row a posture, then the details of each.

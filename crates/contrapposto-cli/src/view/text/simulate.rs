@@ -3,7 +3,7 @@
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Case;
 use contrapposto::model::CoordinateKind;
-use contrapposto::simulation::{Contact, CoordinateSummary, Scenario, Standing, StopReason, Summary, TaskSettings};
+use contrapposto::simulation::{CoordinateSummary, Scenario, Standing, StopReason, Summary, TaskSettings};
 use contrapposto::tasks::Task;
 use contrapposto::verdict::error_in_words;
 
@@ -11,7 +11,7 @@ use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
-use crate::view::words::MOST_ROWS;
+use crate::view::words::{MOST_ROWS, shares_of_all};
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
 const REACHED: f64 = 1e-3;
@@ -119,10 +119,11 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
 /// `tasks: point hand_r (above relief), head upright, effort`, with the error of those that are off at the end.
 fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) -> String {
     let segments = scenario.model.segments();
-    let share = |(support, contact): (&Support, &Contact)| {
-        format!("{} carries {:.1} %", segments[support.segment].name, 100.0 * contact.share)
+    let shares = shares_of_all(&standing.contacts.iter().map(|contact| contact.share).collect::<Vec<_>>());
+    let share = |(support, share): (&Support, f64)| {
+        format!("{} carries {:.1} %", segments[support.segment].name, 100.0 * share)
     };
-    let mut parts: Vec<String> = scenario.supports.iter().zip(&standing.contacts).map(share).collect();
+    let mut parts: Vec<String> = scenario.supports.iter().zip(shares).map(share).collect();
     let start = summary.effort_at_start.unwrap_or(standing.effort);
     parts.push(format!("effort {start:.4} at the start, {:.4} at the end", standing.effort));
     let mut text = parts.join(", ") + "\n";
