@@ -396,31 +396,52 @@ fn a_lumbar_spine_bent_within_three_quarters_of_its_range_is_in_no_hazard() {
     assert!(verdict.hazards.is_empty() && !verdict.sentence.contains("ligaments"), "{}", verdict.sentence);
 }
 
-/// A man bent as above, whose chest a force pushes down from some time on, so that muscles carry more than half of the torque.
+/// A man whose root is held and whose foot a force pulls forward, so that his right knee is hyperextended, until the force turns round.
 #[test]
 fn a_hazard_that_an_event_ends_is_told_with_its_seconds_and_not_as_one_of_the_end() {
-    let text = |event: f64| {
+    let text = |event: Option<f64>| {
+        let pull = |table: &str, newtons: f64| {
+            format!("[[{table}]]\nsegment = \"calcn_r\"\nforce_n = [{newtons}, 0, 0]\nfixed_in = \"world\"\n")
+        };
+        let turned = event.map(|at| format!("[[event]]\nat_s = {at}\n{}", pull("event.load", -20.0)));
         format!(
-            "format = 1\n[posture]\npelvis_ty_m = 0.95\nlumbar_extension_deg = -60\n[coordinates]\nfree = []\n\
-             [strategy]\nkind = \"active\"\n[[event]]\nat_s = {event}\n[[event.load]]\nsegment = \"torso\"\n\
-             force_n = [0, -700, 0]\nfixed_in = \"world\"\n[run]\nduration_s = 20\nstep_s = 0.1\n"
+            "format = 1\n[posture]\npelvis_ty_m = 0.95\nknee_angle_r_deg = -5\nelbow_flex_r_deg = 20\nelbow_flex_l_deg = 20\n\
+             [coordinates]\nfree = []\n{}[strategy]\nkind = \"active\"\n{}[run]\nduration_s = 20\nstep_s = 0.1\n",
+            pull("load", 80.0),
+            turned.unwrap_or_default()
         )
     };
-    let judged = |event: f64| run(&read_scenario("pushed.toml", text(event).as_bytes(), None).unwrap()).1;
-    let verdict = judged(12.0);
+    let judged = |event: Option<f64>| run(&read_scenario("pulled.toml", text(event).as_bytes(), None).unwrap()).1;
+    let (verdict, held) = (judged(Some(12.0)), judged(None));
     assert!(verdict.hazards.is_empty() && !verdict.has_reserve(), "{}", verdict.sentence);
     let [passed] = verdict.passed.as_slice() else { panic!("{:?}", verdict.passed) };
     assert!((passed.seconds - 12.0).abs() < 0.15 && passed.time < 12.0, "{passed:?}");
-    let (_, held, _) = run(&bent(-60.0));
     // Torque and share are those of the same posture without the event.
     assert_eq!((held.hazards.len(), held.hazards[0].external), (1, passed.hazard.external));
-    assert!(
-        verdict.sentence.contains("ligaments held for 12\u{a0}s lumbar extension at \u{2212}60.0°"),
-        "{}",
-        verdict.sentence
-    );
+    let words = "ligaments held for 12\u{a0}s right knee at \u{2212}5.0°";
+    assert!(verdict.sentence.contains(words), "{}", verdict.sentence);
     // One that lasts less than 5 s is a motion.
-    assert!(judged(3.0).passed.is_empty());
+    assert!(judged(Some(3.0)).passed.is_empty());
+}
+
+/// The torque of ligaments at full flexion, the strength of the muscles, and what more weight in the hands makes of the share.
+#[test]
+fn no_load_that_muscles_can_hold_takes_the_hazard_of_a_fully_bent_spine_away() {
+    let mut named = 0;
+    for kilograms in (0..=120).step_by(10) {
+        let text = format!(
+            "format = 1\n[posture]\npelvis_ty_m = 0.95\nlumbar_extension_deg = -60\n[coordinates]\nfree = []\n[[load]]\n\
+             segment = \"torso\"\nforce_n = [0, {}, 0]\nfixed_in = \"world\"\n[strategy]\nkind = \"active\"\n\
+             [run]\nduration_s = 0.1\nstep_s = 0.1\n",
+            -GRAVITY * f64::from(kilograms)
+        );
+        let (_, verdict, _) = run(&read_scenario("loaded.toml", text.as_bytes(), None).unwrap());
+        if verdict.kind != VerdictKind::CannotBeDone {
+            assert_eq!(verdict.hazards.len(), 1, "{kilograms} kg: {}", verdict.sentence);
+            named += 1;
+        }
+    }
+    assert!(named >= 8, "{named}");
 }
 
 /// The hand of a standing man asked to two heights, the first of them above relief.
