@@ -192,3 +192,29 @@ fn every_stored_plan_is_read_with_its_base() {
     }
     assert_eq!(count, 2);
 }
+
+#[test]
+fn a_folder_in_which_another_sweep_writes_is_refused_and_any_number_of_threads_is_taken() {
+    let (folder, plan) = plan(PLAN);
+    let out = folder.path().join("out");
+    std::fs::create_dir(&out).unwrap();
+    let held = std::fs::File::create(out.join("sweep.lock")).unwrap();
+    held.try_lock().unwrap();
+    let (code, words) = sweep(&plan, &out, &[]);
+    assert!(code == 2 && words.contains("another sweep writes into this folder"), "{words}");
+    drop(held);
+    let (code, words) = sweep(&plan, &out, &["--threads", "18446744073709551615"]);
+    assert_eq!(code, 0, "{words}");
+    assert!(!files(&out).contains_key("sweep.lock"));
+}
+
+#[test]
+fn one_value_has_one_key_and_a_formula_is_no_cell() {
+    let (folder, two) = plan(&PLAN.replace("\"strength.deviations\"", "\"load.00.mass_kg\""));
+    let (code, words) = sweep(&two, &folder.path().join("out"), &[]);
+    assert!(code == 2 && words.contains("`00` of `load.00.mass_kg`"), "{words}");
+    let (folder, plan) = plan(&PLAN.replace("[parameters]\n", "[parameters]\n\"title\" = { list = [\"=1+1\"] }\n"));
+    let out = folder.path().join("out");
+    assert_eq!(sweep(&plan, &out, &[]).0, 0);
+    assert!(rows(&out).iter().all(|row| row["title"] == "_1+1"));
+}

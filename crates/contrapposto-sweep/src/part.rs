@@ -1,5 +1,6 @@
 //! Writes a part of a plan, some rows together, as the text of a table, and the key that tells whether a part on a disk is this one.
 
+use contrapposto_formats::motion::csv_cell;
 use contrapposto_formats::{InputError, Plan, Template, Value};
 use sha2::{Digest, Sha256};
 
@@ -84,15 +85,15 @@ impl Study {
     fn header(&self) -> String {
         let parameters = self.plan().parameters.iter().map(|parameter| parameter.key.as_str());
         let names = ["row"].into_iter().chain(parameters).chain(COLUMNS.iter().map(|(name, _)| *name));
-        names.map(cell).collect::<Vec<_>>().join(",") + "\n"
+        names.map(csv_cell).collect::<Vec<_>>().join(",") + "\n"
     }
 }
 
 /// A row as text; every number has all the digits that are needed to read the same value again.
 fn line(row: usize, values: &[Value], outcome: &Outcome) -> String {
     let number = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
-    let text = |text: &Option<String>| text.as_deref().map_or(String::new(), cell);
-    let value = |value: &Value| if let Value::Text(text) = value { cell(text) } else { value.to_string() };
+    let text = |text: &Option<String>| text.as_deref().map_or(String::new(), csv_cell);
+    let value = |value: &Value| if let Value::Text(text) = value { csv_cell(text) } else { value.to_string() };
     let answer = [
         outcome.kind.to_owned(),
         number(outcome.minutes),
@@ -105,9 +106,4 @@ fn line(row: usize, values: &[Value], outcome: &Outcome) -> String {
     ];
     let cells = std::iter::once(row.to_string()).chain(values.iter().map(value)).chain(answer);
     cells.collect::<Vec<_>>().join(",") + "\n"
-}
-
-/// A text as a cell of a CSV file (RFC 4180).
-fn cell(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

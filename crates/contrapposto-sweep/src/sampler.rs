@@ -94,7 +94,7 @@ fn value(distribution: &Distribution, point: f64, score: Option<f64>) -> Value {
     match distribution {
         Distribution::Normal { mean, deviation } => Value::Number(mean + deviation * normal()),
         Distribution::Lognormal { median, deviation } => Value::Number(median * (deviation * normal()).exp()),
-        Distribution::Range { low, high } => Value::Number((low + (high - low) * point()).clamp(*low, *high)),
+        Distribution::Range { low, high } => Value::Number((low * (1.0 - point()) + high * point()).clamp(*low, *high)),
         Distribution::List(list) => {
             let place = (point() * list.len() as f64) as usize;
             list.get(place.min(list.len().saturating_sub(1))).cloned().unwrap_or(Value::Number(f64::NAN))

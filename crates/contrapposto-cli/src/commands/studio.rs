@@ -21,8 +21,11 @@ use crate::output::{print, print_note};
 const MOST_HEAD: u64 = 16 << 10;
 /// Longest wait for a request, s.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Longest scenario that an address can hold in every browser, bytes.
-const MOST_IN_ADDRESS: usize = 1 << 20;
+/// Longest scenario that an address can hold in every browser, and an argument on Linux, bytes.
+const MOST_IN_ADDRESS: usize = 64 << 10;
+/// What the page and its workers may load; a worker takes the policy of its own answer, not that of the page.
+const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; \
+     img-src 'self' blob: data:; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 pub(crate) fn studio(args: &StudioArgs) -> Result<(), Fail> {
     let page = page(args.page.as_deref())?;
@@ -38,8 +41,8 @@ pub(crate) fn studio(args: &StudioArgs) -> Result<(), Fail> {
     }
     for stream in listener.incoming().flatten() {
         let page = page.clone();
-        // A connection that breaks off concerns nobody else.
-        std::thread::spawn(move || drop(answer(&stream, &page, port)));
+        // A connection that breaks off concerns nobody else; one for which there is no thread is closed.
+        let _ = std::thread::Builder::new().spawn(move || drop(answer(&stream, &page, port)));
     }
     Ok(())
 }
@@ -105,7 +108,8 @@ fn answer(stream: &TcpStream, page: &Path, port: u16) -> std::io::Result<()> {
     write!(
         out,
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nX-Content-Type-Options: nosniff\r\n\
-         Cross-Origin-Resource-Policy: same-origin\r\nCache-Control: no-cache\r\nConnection: close\r\n\r\n"
+         Cross-Origin-Resource-Policy: same-origin\r\nContent-Security-Policy: {POLICY}\r\nCache-Control: no-cache\r\n\
+         Connection: close\r\n\r\n"
     )?;
     if !head.first().is_some_and(|line| line.starts_with("HEAD ")) {
         out.write_all(&body)?;

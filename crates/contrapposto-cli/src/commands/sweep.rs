@@ -1,8 +1,9 @@
 //! `contrapposto sweep`: a plan in, many runs of one scenario, parts of a table out.
 
 use std::collections::BTreeSet;
+use std::fs::{File, TryLockError};
 use std::num::NonZero;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
 
@@ -20,6 +21,10 @@ use crate::progress::rows_bar;
 
 /// The file that lists the parts of a finished sweep.
 const LIST: &str = "sweep.json";
+/// The file that is locked while a sweep writes into a folder, so that a second one is refused.
+const LOCK: &str = "sweep.lock";
+/// Most threads.
+const MOST_THREADS: usize = 256;
 
 pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Fail> {
     let study = open(&args.plan)?;
@@ -32,12 +37,14 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Fail> {
     }
     let names: Vec<String> = (0..parts).map(|part| part_name(part, &study.key(part))).collect();
     let folder = Folder::open(&args.out)?;
+    let _lock = Lock::of(&folder)?;
     // Without its list a sweep is not whole.
     folder.remove(LIST)?;
     let wanted: BTreeSet<&String> = names.iter().collect();
     there.iter().filter(|name| !wanted.contains(name)).try_for_each(|name| folder.remove(name))?;
     let missing: Vec<usize> = (0..parts).filter(|part| !there.contains(&names[*part])).collect();
     let threads = args.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
+    let threads = threads.min(missing.len()).clamp(1, MOST_THREADS);
     interruption::watch();
     let written = compute(&study, &missing, threads, |part, text| folder.write(&[(names[part].as_str(), text)]))?;
     if written < missing.len() {
@@ -49,6 +56,32 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Fail> {
     let kept = parts - written;
     let kept = if kept > 0 { format!(", {kept} of them kept") } else { String::new() };
     print(&format!("{} rows in {parts} parts{kept}: {}\n", study.plan().rows, args.out.display()))
+}
+
+/// The lock of a folder for one sweep; its file goes with it.
+struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Lock {
+    /// Locks a folder, or refuses it while another sweep has it. Where files cannot be locked, nothing is refused.
+    fn of(folder: &Folder) -> Result<Self, Fail> {
+        let path = folder.path(LOCK);
+        let failed = |error| Fail::job(path.display().to_string(), error);
+        let file = File::options().write(true).create(true).truncate(false).open(&path).map_err(failed)?;
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let why = "another sweep writes into this folder; wait for its end or name another folder";
+            return Err(Fail::Refused(format!("--out {}: {why}", path.parent().unwrap_or(&path).display())));
+        }
+        Ok(Self { path, _file: file })
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.path);
+    }
 }
 
 /// The plan of a file with its base scenario. The scenario of the first row is read, so that a wrong key ends the command before anything
@@ -88,7 +121,7 @@ fn compute(
     let (sender, finished) = sync_channel(threads);
     let mut written = 0;
     let result = std::thread::scope(|scope| {
-        for _ in 0..threads.min(parts.len()) {
+        for _ in 0..threads {
             let (sender, work) = (sender.clone(), &work);
             scope.spawn(move || work.carry_out(&sender));
         }

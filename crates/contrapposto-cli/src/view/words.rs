@@ -50,6 +50,12 @@ pub(crate) fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
 }
 
+/// Shares of the weight of body and loads: each share of the body's weight as a share of what all supports carry.
+pub(crate) fn shares_of_all(of_body: &[f64]) -> Vec<f64> {
+    let all: f64 = of_body.iter().sum();
+    if all > 0.0 { of_body.iter().map(|share| share / all).collect() } else { of_body.to_vec() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,10 +71,4 @@ mod tests {
     fn the_first_letter_becomes_large() {
         assert_eq!(sentence("élan"), "Élan");
     }
-}
-
-/// Shares of the weight of body and loads: each share of the body's weight as a share of what all supports carry.
-pub(crate) fn shares_of_all(of_body: &[f64]) -> Vec<f64> {
-    let all: f64 = of_body.iter().sum();
-    if all > 0.0 { of_body.iter().map(|share| share / all).collect() } else { of_body.to_vec() }
 }

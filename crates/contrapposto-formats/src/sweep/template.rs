@@ -113,7 +113,9 @@ fn find<'p>(text: &str, tree: &DeTable<'_>, path: &'p [&'p str]) -> Result<Place
         let next = match value.get_ref() {
             DeValue::Table(entries) => entries.get(*step),
             DeValue::Array(entries) => {
-                let entry = step.parse::<usize>().ok().and_then(|place| entries.get(place));
+                // One way to write a place: neither `00` nor `+0`.
+                let place = step.parse::<usize>().ok().filter(|place| place.to_string() == **step);
+                let entry = place.and_then(|place| entries.get(place));
                 let why = || format!("`{step}` of `{whole}`: there are {} entries, counted from 0", entries.len());
                 Some(entry.ok_or_else(|| (value.span(), why()))?)
             }
@@ -145,7 +147,7 @@ fn pieces(text: &str, mut changes: Vec<Change>, tables: Vec<(String, Vec<(String
     let mut pieces = vec![];
     let mut done = 0;
     for change in changes {
-        // Of a value that two parameters name, the first one counts; the plan's keys differ, so there is none.
+        // The plan's keys differ, and each has one way to be written, so that no value has two parameters.
         let start = change.at.start.max(done);
         pieces.push(Piece::Text(text[done..start].to_owned() + &change.before));
         pieces.push(Piece::Value(change.parameter));

@@ -26,6 +26,7 @@ impl Simulation<'_> {
     /// whether any relief still moves. The others have no decision; a request ends only when no group of its coordinate recovers.
     pub(super) fn decide(&mut self) -> Result<(), ScenarioError> {
         let (mut decided, mut moves) = (false, false);
+        self.record.searched_before = self.state.searched;
         for i in 0..self.state.decisions.len() {
             if !self.state.groups[i].iter().any(|group| group.recovering) {
                 self.state.requests[i].end();

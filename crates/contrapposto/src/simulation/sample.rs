@@ -61,6 +61,8 @@ pub(super) struct Record {
     pub(super) reliefs: Vec<Option<Relief>>,
     pub(super) standing: Standing,
     pub(super) settled: bool,
+    /// Work of all searches before this time step.
+    pub(super) searched_before: usize,
 }
 
 impl Record {
@@ -78,6 +80,7 @@ impl Record {
             reliefs: vec![None; n],
             standing: Standing::default(),
             settled: false,
+            searched_before: 0,
         }
     }
 }

@@ -76,7 +76,7 @@ impl Simulation<'_> {
         if self.state.step_tried[i] || self.state.path.is_some() {
             return Ok(());
         }
-        let budget = self.search_budget();
+        let Some(budget) = self.search_budget() else { return Ok(()) };
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         self.state.step_tried[i] = true;
         let tired = Tired { coordinate: i, side, load: self.record.load[i], toward };
@@ -95,11 +95,12 @@ impl Simulation<'_> {
         if !self.motion.is_at_rest() {
             return Ok(());
         }
-        let mut budget = self.search_budget();
-        let Some(body) = self.motion.body_mut() else { return Ok(()) };
-        if std::mem::replace(&mut self.state.searched_here, true) {
+        if self.state.searched_here || self.motion.body_mut().is_none() {
             return Ok(());
         }
+        let Some(mut budget) = self.search_budget() else { return Ok(()) };
+        let Some(body) = self.motion.body_mut() else { return Ok(()) };
+        self.state.searched_here = true;
         let Searched { found, work, cut } = body.easiest(&self.state.posture, budget)?;
         let all = budget;
         budget = budget.saturating_sub(work);
@@ -110,9 +111,13 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Work that the searches of this time step may do.
-    fn search_budget(&self) -> usize {
-        SEARCH_BUDGET_OF_STEP.min(SEARCH_BUDGET.saturating_sub(self.state.searched))
+    /// Work that the next search of this time step may do; `None` where the budget of the step or of the run is used up, which is noted.
+    fn search_budget(&mut self) -> Option<usize> {
+        let in_step = self.state.searched.saturating_sub(self.record.searched_before);
+        let of_step = SEARCH_BUDGET_OF_STEP.saturating_sub(in_step);
+        let budget = of_step.min(SEARCH_BUDGET.saturating_sub(self.state.searched));
+        self.state.search_cut |= budget == 0;
+        (budget > 0).then_some(budget)
     }
 
     fn count_search(&mut self, work: usize, cut: bool) {
