@@ -22,7 +22,7 @@ use crate::progress::rows_bar;
 /// The file that lists the parts of a finished sweep.
 const LIST: &str = "sweep.json";
 /// The file that is locked while a sweep writes into a folder, so that a second one is refused.
-const LOCK: &str = "sweep.lock";
+const SWEEP_LOCK: &str = "sweep.lock";
 /// Most threads.
 const MOST_THREADS: usize = 256;
 
@@ -67,7 +67,7 @@ struct Lock {
 impl Lock {
     /// Locks a folder, or refuses it while another sweep has it. Where files cannot be locked, nothing is refused.
     fn of(folder: &Folder) -> Result<Self, Fail> {
-        let path = folder.path(LOCK);
+        let path = folder.path(SWEEP_LOCK);
         let failed = |error| Fail::job(path.display().to_string(), error);
         let file = File::options().write(true).create(true).truncate(false).open(&path).map_err(failed)?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
