@@ -6,7 +6,8 @@ use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError};
-use contrapposto_formats::motion::{self, Units, postures, read_table};
+use contrapposto_formats::motion::{self, Postures, Units, postures, read_table};
+use contrapposto_formats::nearest;
 use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::{FrameArgs, LoadArgs};
@@ -135,10 +136,24 @@ pub(crate) fn read_whole_motion(
             notes.push(format!("{name}: {} {what}: {}", names.len(), first_of(names)));
         }
     }
+    misspelt(&read).iter().for_each(|warning| print_note("warning", &format!("{name}: {warning}")));
     if read.postures.is_empty() {
         return Err(Fail::Refused(format!("{name}: holds no rows")));
     }
     Ok(read.postures)
+}
+
+/// Endings of columns that tell the unit.
+const UNITS: [&str; 5] = [".angle_deg", ".position_m", ".value", "_deg", "_m"];
+
+/// A warning for each column that is ignored although its name is nearly that of a coordinate without a column.
+fn misspelt(read: &Postures) -> Vec<String> {
+    let said = |column: &String| {
+        let stem = UNITS.iter().find_map(|unit| column.strip_suffix(unit)).unwrap_or(column);
+        let meant = nearest(stem, read.missing.iter().map(String::as_str))?;
+        Some(format!("the column `{column}` is no coordinate of the model and is ignored; did you mean `{meant}`?"))
+    };
+    read.unknown.iter().filter_map(said).collect()
 }
 
 /// The frames of the file `name` from a time to another one, s.

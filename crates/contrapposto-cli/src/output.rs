@@ -37,6 +37,7 @@ const MOST_NOTES: usize = 4;
 
 static NOTES: OnceLock<Notes> = OnceLock::new();
 static WAITING: Mutex<Vec<String>> = Mutex::new(vec![]);
+static WARNINGS: Mutex<Vec<String>> = Mutex::new(vec![]);
 
 thread_local! {
     /// Kinds and texts of the notes of this thread, while they are kept.
@@ -61,29 +62,35 @@ pub(crate) fn show_notes(notes: Notes) {
     let _ = NOTES.set(notes);
 }
 
-/// Tells standard error something that is no failure: a `note` waits for [`print_waiting_notes`], everything else appears at once.
+/// Tells standard error something that is no failure. Notes and warnings wait for [`print_waiting_notes`], so that the answer comes before
+/// them; with all notes they appear at once.
 pub(crate) fn print_note(kind: &str, text: &str) {
     if keep(kind, text) {
         return;
     }
     match (kind, NOTES.get().copied().unwrap_or(Notes::All)) {
         ("note", Notes::Quiet) => {}
-        ("note", Notes::Folded) => {
-            let mut waiting = WAITING.lock().unwrap_or_else(PoisonError::into_inner);
-            if !waiting.iter().any(|printed| printed == text) {
-                waiting.push(text.to_owned());
-            }
-        }
+        ("note", Notes::Folded) => wait(&WAITING, text),
+        ("warning", Notes::Folded | Notes::Quiet) => wait(&WARNINGS, text),
         // Nothing is left to try when standard error is closed.
         _ => drop(writeln!(std::io::stderr(), "{kind}: {}", escaped_lines(text))),
     }
 }
 
-/// Tells standard error the most important of the notes that wait, in their order, and the number of the others.
+fn wait(list: &Mutex<Vec<String>>, text: &str) {
+    let mut waiting = list.lock().unwrap_or_else(PoisonError::into_inner);
+    if !waiting.iter().any(|other| other == text) {
+        waiting.push(text.to_owned());
+    }
+}
+
+/// Tells standard error the warnings that wait, and the most important of the notes that wait, in their order, and the number of the others.
 pub(crate) fn print_waiting_notes() {
-    let notes = std::mem::take(&mut *WAITING.lock().unwrap_or_else(PoisonError::into_inner));
+    let [notes, warnings] =
+        [&WAITING, &WARNINGS].map(|list| std::mem::take(&mut *list.lock().unwrap_or_else(PoisonError::into_inner)));
     let (shown, folded) = most_important(&notes);
-    let mut text: String = shown.iter().map(|note| format!("note: {note}\n")).collect();
+    let mut text: String = warnings.iter().map(|warning| format!("warning: {warning}\n")).collect();
+    text += &shown.iter().map(|note| format!("note: {note}\n")).collect::<String>();
     if folded > 0 {
         text += &format!("note: {folded} more notes; --verbose shows all of them\n");
     }

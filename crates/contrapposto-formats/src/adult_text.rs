@@ -41,6 +41,25 @@ pub fn adult_size(text: &str) -> Option<Result<Adult, AdultTextError>> {
     Some(parsed(rest).map_err(|problem| AdultTextError { text: text.to_owned(), problem, accepted: ADULT_FORM }))
 }
 
+/// Begins the `credits` of a model file of the built-in adult.
+const CREDITS: &str = "Built-in adult of contrapposto: ";
+
+/// The name of an adult of this size: `adult:female,1.65m,60kg`.
+pub(crate) fn adult_name(size: &Adult) -> String {
+    let sex = if size.sex == Sex::Female { "female" } else { "male" };
+    format!("adult:{sex},{}m,{}kg", size.stature, size.mass)
+}
+
+/// The `credits` of a model file that holds the adult of this size.
+pub(crate) fn credits(size: &Adult) -> String {
+    format!("{CREDITS}{}", adult_name(size))
+}
+
+/// The size of the adult that the `credits` of a model file name; `None` where they name none.
+pub(crate) fn credited(credits: &str) -> Option<Adult> {
+    adult_size(credits.trim().strip_prefix(CREDITS)?)?.ok()
+}
+
 /// The person that `text` describes, stature in m and mass in kg; the parts that it leaves out stay unknown.
 ///
 /// ```

@@ -70,6 +70,7 @@ fn body(text: &[u8], limits: &Limits) -> Result<ModelIr, OsimProblem> {
     let mut body = ModelIr {
         name: reader.name(model)?,
         gravity: reader.vector(model, "gravity", Some(nalgebra::Vector3::new(0.0, -9.80665, 0.0)))?,
+        credits: reader.text(model, "credits"),
         ..ModelIr::default()
     };
     let coordinates = tree::assemble(&reader, &scene, &mut body, &mut ignored)?;

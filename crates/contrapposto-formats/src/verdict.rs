@@ -4,7 +4,7 @@ use contrapposto::joint_torques::Hazard;
 use contrapposto::model::Model;
 use contrapposto::suggestions::{Advice, Suggestion};
 use contrapposto::tasks::Unit;
-use contrapposto::verdict::{Missed, Verdict};
+use contrapposto::verdict::{HandLoad, Missed, Verdict};
 use serde::Serialize;
 
 /// The answer to a job.
@@ -34,6 +34,9 @@ pub struct VerdictText {
     /// Hazards of a run that were over at its end, each at the moment when ligaments carried most.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hazards_passed: Vec<PassedHazardText>,
+    /// Weights in hands from half of the strength of the grip on, the heaviest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hands: Vec<HandText>,
     /// The same in one sentence.
     pub sentence: String,
     /// Targets that are missed, the most important first.
@@ -61,6 +64,26 @@ impl HazardText {
             carried: hazard.carried(),
             sentence: format!("ligaments hold {}; {}", hazard.in_words(model), hazard.row.finding),
         }
+    }
+}
+
+/// A weight in a hand that is much for its grip.
+#[derive(Clone, Debug, Serialize)]
+pub struct HandText {
+    /// The segment of the hand.
+    pub segment: String,
+    /// The weight, N.
+    pub weight_n: f64,
+    /// Mean strength of the grip, N: that of men where the sex of the body is not known.
+    pub grip_n: f64,
+    /// The greatest weight that a hand holds at a handle for a moment, N.
+    pub most_n: f64,
+}
+
+impl HandText {
+    fn new(model: &Model, hand: &HandLoad) -> Self {
+        let segment = model.segments()[hand.segment].name.clone();
+        Self { segment, weight_n: hand.weight, grip_n: hand.grip(), most_n: hand.most() }
     }
 }
 
@@ -185,6 +208,7 @@ impl VerdictText {
                     seconds: passed.seconds,
                 })
                 .collect(),
+            hands: verdict.hands.iter().map(|hand| HandText::new(model, hand)).collect(),
             sentence: verdict.sentence.clone(),
             missed: verdict.missed.iter().map(MissedText::from).collect(),
         }

@@ -8,7 +8,7 @@ use contrapposto::posture::Posture;
 use contrapposto::posture_solver::Engine;
 use contrapposto::simulation::Contact;
 use contrapposto::statics::{FixedIn, Load, LoadKind};
-use contrapposto::verdict::{HeldPosture, Missed, Verdict};
+use contrapposto::verdict::{HandLoad, HeldPosture, Missed, Verdict};
 use contrapposto_formats::VerdictText;
 
 use crate::body::{Body, place};
@@ -33,6 +33,7 @@ pub(crate) fn held(body: &Body, engine: &mut Engine<'_>, posture: &Posture, move
             slip: slip(body, &start, torques.kinematics()),
             missed,
             hazards: Hazard::all(&body.model, &numbers.angles, &numbers.external, &numbers.passive),
+            hands: HandLoad::all(&body.model, &body.scenario.loads),
         },
     );
     let contacts = (0..contact.supports().len()).map(|i| force(body, contact, torques.kinematics(), i)).collect();

@@ -92,7 +92,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     });
     let figures = figures.transpose()?.unwrap_or_default();
     let span = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
-    let verdict = Verdict::of_motion(model, &found, span);
+    let verdict = Verdict::of_motion_with(model, &found, span, &held);
     let advice = advice(&whole, &found, &verdict, args.suggest);
     let answer = Answer::new(verdict, advice);
     let page = assessed_frames.map(|assessed_frames| {
@@ -172,7 +172,7 @@ fn advice(given: &Motion<'_>, found: &Assessment, verdict: &Verdict, suggest: Su
         let mut loads = held.to_vec();
         change.apply_to_loads(&mut loads);
         let found = assessed(model, motion, |_, _, all| all.extend_from_slice(&loads), settings, |_| {});
-        let verdict = found.ok().map(|found| Verdict::of_motion(model, &found, end - begin));
+        let verdict = found.ok().map(|found| Verdict::of_motion_with(model, &found, end - begin, &loads));
         Trial { verdict, steps: frames }
     };
     Advice::new(verdict, &job, all, || verdict.kind.is_done().then(breaks).flatten(), budget, trial)

@@ -5,7 +5,7 @@ use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedPosture};
 use contrapposto::suggestions::{Advice, Change, Job, Trial, changes};
 use contrapposto::tasks::{PriorityLevel, Task};
-use contrapposto::verdict::{HeldPosture, Missed, Verdict};
+use contrapposto::verdict::{HandLoad, HeldPosture, Missed, Verdict};
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
@@ -232,6 +232,7 @@ pub(crate) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held
         slip: levels().filter(|(goal, _)| goal.hard).fold(Slip::default(), |slip, (_, level)| slip.with(level.slip())),
         missed: Missed::of_levels(&scenario.model, &pose.posture, targets),
         hazards: held.hazards.clone(),
+        hands: HandLoad::all(&scenario.model, &scenario.loads),
     };
     Verdict::of_posture(&scenario.model, &posture)
 }

@@ -16,7 +16,7 @@ use super::recording::Recording;
 use super::scene::ANGLES;
 use super::selection::{main_coordinate, shown};
 use super::stage::Stage;
-use super::text::simulate::strategy_and_cases;
+use super::text::simulate::strategy_in_words;
 use super::{body, words};
 use crate::fail::Fail;
 
@@ -44,7 +44,7 @@ pub(crate) fn figures_of_run(
         vec![("body".to_owned(), moments(&scenario.title, model, &Stage::of_run(scenario, things), &excerpt.frames)?)];
     for (number, i) in joints(scenario, summary).into_iter().enumerate() {
         let mut line = course(model, recording, &summary.reliefs, i);
-        line.subtitle = strategy_and_cases(scenario, &summary.coordinates[i]);
+        line.subtitle = strategy_in_words(scenario, &summary.coordinates[i]);
         line.critical_level = scenario.hysteresis.critical_level;
         line.recovery_level = scenario.hysteresis.recovery_level;
         let balance = match scenario.has_supports_or_tasks() {
@@ -184,7 +184,7 @@ pub(crate) fn pictures_of_run(
 ) -> Result<[Figure; 2], Fail> {
     let main = main_coordinate(scenario, summary);
     let coordinate = &scenario.model.coordinates()[main];
-    let subtitle = strategy_and_cases(scenario, &summary.coordinates[main]);
+    let subtitle = strategy_in_words(scenario, &summary.coordinates[main]);
     let mut line = course(&scenario.model, recording, &summary.reliefs, main);
     line.title = scenario.title.clone();
     line.subtitle.clone_from(&subtitle);

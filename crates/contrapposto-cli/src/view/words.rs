@@ -11,6 +11,12 @@ pub(crate) const MOST_ROWS: usize = 10;
 /// Most joints, muscle groups or directions of a posture that are listed.
 pub(crate) const MOST_JOINTS_SHOWN: usize = 3;
 
+/// `right hip flexion (hip_flexion_r)`: a coordinate in plain words, and its name where that is another one.
+pub(crate) fn joint(name: &str) -> String {
+    let plain = plain(name);
+    if plain == name { plain } else { format!("{plain} ({name})") }
+}
+
 /// The first letter large.
 pub(crate) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
@@ -65,6 +71,12 @@ mod tests {
         assert_eq!(metres(0.999), None);
         let shown = [1.0, 1.374, 12.34, 192.920_941].map(metres);
         assert_eq!(shown.map(Option::unwrap), ["1.00 m", "1.37 m", "12.3 m", "193 m"]);
+    }
+
+    #[test]
+    fn a_joint_has_one_plain_name_with_the_coordinate_in_brackets() {
+        assert_eq!(joint("hip_flexion_r"), "right hip flexion (hip_flexion_r)");
+        assert_eq!(joint("q1"), "q1");
     }
 
     #[test]

@@ -31,6 +31,8 @@ pub struct ModelIr {
     pub name: String,
     /// Gravity in the file's own ground axes, m/s^2.
     pub gravity: Vector3<f64>,
+    /// The words of an OpenSim file about its origin.
+    pub credits: Option<String>,
     /// Segments, parents before children.
     pub segments: Vec<SegmentIr>,
     /// All coordinates, in the file's order.

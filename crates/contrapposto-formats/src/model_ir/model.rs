@@ -23,6 +23,8 @@ pub struct Imported {
     pub muscle_tally: MuscleTally,
     /// The kinds of things in the file that the model does not have, with their numbers: [`ModelIr::ignored`].
     pub left_out: Vec<(String, usize)>,
+    /// The words of the file about its origin: [`ModelIr::credits`].
+    pub credits: Option<String>,
     /// Changes, one plain sentence each.
     pub notes: Vec<String>,
 }
@@ -63,7 +65,14 @@ impl ModelIr {
         let model = if self.strength.is_empty() { model } else { model.by_coordinates() };
         let (muscles, muscle_tally) = (self.musculature(&model), self.muscles.tally.clone());
         let model = with_soles(model, &self.solids);
-        Ok(Imported { model, muscles, muscle_tally, left_out: self.ignored.clone(), notes })
+        Ok(Imported {
+            model,
+            muscles,
+            muscle_tally,
+            left_out: self.ignored.clone(),
+            credits: self.credits.clone(),
+            notes,
+        })
     }
 
     /// The two groups of a coordinate that a motor drives; none of one that follows another coordinate.

@@ -9,6 +9,7 @@ use contrapposto::model::{Adult, Coordinate, CoordinateKind, Model, MuscleGroup,
 use contrapposto::passive::{Coupled, PassiveLaw};
 use nalgebra::Vector3;
 
+use super::built_in;
 use super::origin::{Origin, Origins};
 use crate::model_file::ModelFormat;
 
@@ -25,10 +26,11 @@ const AGREE: f64 = 0.5;
 /// Largest excess of a range over that of its curve for which no note is given, rad.
 const BEYOND: f64 = 0.1;
 
-/// Fills in unknown passive laws and strength; a note says of each joint what was done.
+/// Fills in unknown passive laws, strength and positive senses; a note says of each joint what was done. With `is_own` the body is the
+/// adult itself, whose passive laws the file could write as forces on coordinates only.
 pub(super) fn fill(
     model: Model,
-    format: ModelFormat,
+    (format, is_own): (ModelFormat, bool),
     size: &Adult,
     twin: &Model,
     origins: &mut [Origins],
@@ -48,7 +50,11 @@ pub(super) fn fill(
             continue;
         };
         let filling = Filling { signs: &signs, index, own, found, coordinate };
-        changed = if coordinate.passive.is_some() || origins.passive == Origin::Muscles {
+        if let Some(word) = filling.positive() {
+            changed = changed.with_positive(index, &word);
+        }
+        let replaced = is_own && origins.passive == Origin::File && built_in::is_own_law(coordinate, found);
+        changed = if (coordinate.passive.is_some() && !replaced) || origins.passive == Origin::Muscles {
             filling.strength(changed, origins, notes)
         } else {
             filling.tissue(changed, origins, notes)
@@ -75,6 +81,15 @@ struct Filling<'a> {
 }
 
 impl Filling<'_> {
+    /// The word for the positive sense of a coordinate that has none: that of the adult's, or its opposite.
+    fn positive(&self) -> Option<String> {
+        if !self.coordinate.positive.is_empty() {
+            return None;
+        }
+        let sign = self.signs.sign(self.index, self.own).ok()?;
+        if sign > 0.0 { Some(self.found.positive.clone()) } else { opposite(self.found) }
+    }
+
     /// Muscle groups only: the file's own tissue stays.
     fn strength(&self, model: Model, origins: &mut Origins, notes: &mut Vec<String>) -> Model {
         let of_muscles = origins.strength == Origin::Muscles;
@@ -134,6 +149,13 @@ fn known<'a>(twin: &'a Model, name: &str) -> Option<(usize, &'a Coordinate)> {
     let other = OTHER_NAMES.iter().find(|(other, _)| *other == name).map(|(_, ours)| *ours);
     let index = twin.coordinate(other.unwrap_or(name))?;
     Some((index, &twin.coordinates()[index]))
+}
+
+/// `extension` of a coordinate whose positive sense is flexion: by the names of its groups, `knee flexion` and `knee extension`.
+fn opposite(of: &Coordinate) -> Option<String> {
+    let [positive, negative] = of.groups.as_ref()?;
+    let joint = positive.name.strip_suffix(of.positive.as_str())?;
+    negative.name.strip_prefix(joint).map(str::to_owned)
 }
 
 /// The senses in which coordinates turn, against those of the built-in adult.

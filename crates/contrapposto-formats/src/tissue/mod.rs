@@ -3,6 +3,7 @@
 //! Published models hold no passive torque of most joints and no strength. [`SourcedModel`] reads a model file, lays an overlay over
 //! it ([`SourcedModel::lay_over`]) and fills in what is still missing from the built-in data ([`SourcedModel::fill`]).
 
+mod built_in;
 mod fatigue;
 mod fill;
 mod muscle_doubts;
@@ -19,6 +20,7 @@ pub use person::Person;
 use contrapposto::model::{Adult, AdultError, Model, Sex, adult};
 use contrapposto::muscle::Musculature;
 
+use crate::adult_text::credited;
 use crate::input_error::InputError;
 use crate::model_file::{ModelFileError, ModelFormat, read_model, read_model_with};
 use crate::model_ir::{Imported, MuscleTally, RootAttachment};
@@ -33,6 +35,8 @@ pub struct SourcedModel {
     pub format: ModelFormat,
     /// Sex of the body; `None` where nobody says it, and strength and passive torque of the library are a man's.
     pub sex: Option<Sex>,
+    /// The size of the built-in adult that the file says it holds.
+    pub credited: Option<Adult>,
     /// The muscles of its file.
     pub muscles: Musculature,
     /// What became of the file's muscles.
@@ -95,8 +99,9 @@ impl SourcedModel {
         let mut notes = imported.notes;
         notes.splice(0..0, left_out_note(&imported.left_out));
         notes.extend(strength_note(&imported.model, format));
-        let Imported { model, muscles, muscle_tally, left_out, .. } = imported;
-        Self { model, muscles, muscle_tally, format, sex: None, origins, left_out, notes }
+        let Imported { model, muscles, muscle_tally, left_out, credits, .. } = imported;
+        let credited = credits.as_deref().and_then(credited);
+        Self { model, muscles, muscle_tally, format, credited, sex: None, origins, left_out, notes }
     }
 
     /// The model without the strength that its file gives to motors; its notes no longer tell of it. For a model file as it was read.
@@ -129,9 +134,10 @@ impl SourcedModel {
             }
         });
         let origins = origins.collect();
-        let (sex, left_out, notes) = (Some(size.sex), vec![], vec![]);
+        let (sex, credited, left_out, notes) = (Some(size.sex), None, vec![], vec![]);
         let (muscles, muscle_tally) = (Musculature::default(), MuscleTally::default());
-        Ok(Self { origins, model, muscles, muscle_tally, format: ModelFormat::Adult, sex, left_out, notes })
+        let format = ModelFormat::Adult;
+        Ok(Self { origins, model, muscles, muscle_tally, format, credited, sex, left_out, notes })
     }
 
     /// Lays the overlay in `bytes` over the model: [`overlay`].
@@ -161,23 +167,43 @@ impl SourcedModel {
     /// Fills in passive laws and muscle groups that the model does not have, from the built-in adult, by the standard OpenSim names.
     /// A coordinate is filled where its turning axis lies along that of the adult's (or against it; its curve runs the other way
     /// then) and gravity acts along -y; a note says of each what was filled, or why not. Strength and passive torque are those of an
-    /// adult of the size of `person`. The adult itself stays as it is.
+    /// adult of the size of `person`. The adult itself stays as it is. A file of this program that holds the built-in adult, and says so in its
+    /// `credits`, is that adult again where `person` says nothing else.
     ///
     /// # Errors
     /// [`AdultError`] when `person` has no adult's size.
     pub fn fill(mut self, person: &Person) -> Result<Self, AdultError> {
-        if self.format != ModelFormat::Adult {
-            let size = person.size(&self.model);
-            let twin = adult(&size)?;
-            let said = person.said(&self.model, &size);
-            let count = self.notes.len();
-            self.model = fill::fill(self.model, self.format, &size, &twin, &mut self.origins, &mut self.notes);
-            let filled = |origins: &Origins| [origins.passive, origins.strength].contains(&Origin::Library);
-            if self.origins.iter().any(filled) {
-                self.notes.insert(count, said);
-            }
-            self.sex = self.sex.or(person.sex);
+        if self.format == ModelFormat::Adult {
+            return Ok(self);
         }
+        let own = built_in::verified(self.credited.as_ref(), &self.model).filter(|_| *person == Person::default());
+        if let Some(size) = own {
+            return self.fill_own(&size);
+        }
+        let size = person.size(&self.model);
+        let twin = adult(&size)?;
+        let said = person.said(&self.model, &size);
+        let count = self.notes.len();
+        let manner = (self.format, false);
+        self.model = fill::fill(self.model, manner, &size, &twin, &mut self.origins, &mut self.notes);
+        let filled = |origins: &Origins| [origins.passive, origins.strength].contains(&Origin::Library);
+        if self.origins.iter().any(filled) {
+            self.notes.insert(count, said);
+        }
+        self.sex = self.sex.or(person.sex);
+        Ok(self)
+    }
+
+    /// Fills in the built-in adult of this size, which the file holds.
+    fn fill_own(mut self, size: &Adult) -> Result<Self, AdultError> {
+        let (twin, mut of_joints) = (adult(size)?, vec![]);
+        self.model = fill::fill(self.model, (self.format, true), size, &twin, &mut self.origins, &mut of_joints);
+        self.model = built_in::completed(self.model, &twin);
+        let all = self.origins.iter().zip(self.model.coordinates());
+        let changed = all.filter(|(origins, c)| origins.passive == Origin::File && c.passive.is_some());
+        let changed: Vec<String> = changed.map(|(_, coordinate)| format!("`{}`", coordinate.name)).collect();
+        self.notes.push(built_in::said(size, &changed));
+        self.sex = Some(size.sex);
         Ok(self)
     }
 

@@ -4,7 +4,7 @@
 //! translations, then three rotations" is turned round, or else becomes several joints with bodies without mass between them.
 //! Passive laws that OpenSim 4.6 has no force for are written as `ExpressionBasedCoordinateForce`, with the very formula that we evaluate.
 
-use contrapposto::model::{Coordinate, CoordinateKind, Model, Placement, Segment};
+use contrapposto::model::{Adult, Coordinate, CoordinateKind, Model, Placement, Segment};
 use contrapposto::passive::CoordinateLimitForce;
 use nalgebra::Vector3;
 
@@ -14,6 +14,7 @@ use super::osim_joint::{Axis, Driver, Piece, filler, pieces};
 use super::steps::resting;
 use super::xml::{Xml, moments, number, numbers};
 use super::{WriteError, Written, common, exact, listed, osim_functions};
+use crate::adult_text::credits;
 
 /// Characters that OpenSim refuses in a name.
 fn accepts(c: char) -> bool {
@@ -22,6 +23,7 @@ fn accepts(c: char) -> bool {
 
 /// Writes the model as an `.osim` document.
 ///
+/// The `credits` of the built-in adult name its size, by which [`crate::tissue::SourcedModel::fill`] finds again what is lost.
 /// Lost: muscle groups; laws that couple several joints; quaternions of balls, which become three body-fixed x, y, z angles
 /// named `{joint}_rx`, `{joint}_ry`, `{joint}_rz`; names with blanks or slashes.
 ///
@@ -40,6 +42,9 @@ pub fn osim(model: &Model) -> Result<Written, WriteError> {
     writer.xml.open("OpenSimDocument", &[("Version", "40000")]);
     let name = Names::new(&[], accepts).keep("model", model.name(), &mut lost);
     writer.xml.open("Model", &[("name", &name)]);
+    if let Some(size) = Adult::of(model) {
+        writer.xml.value("credits", &credits(&size));
+    }
     writer.xml.value("gravity", &numbers(&model.gravity()));
     writer.xml.leaf("Ground", &[("name", "ground")]);
     writer.set("BodySet", Writer::bodies);

@@ -44,6 +44,17 @@ impl Hazard {
         .collect()
     }
 
+    /// The hazards in a posture (values of all coordinates, rad or m): the angles of a joint of three axes are those about its axes, as its
+    /// torques are.
+    pub fn of_posture(model: &Model, posture: &[f64], external: &[f64], passive: &[f64]) -> Vec<Self> {
+        let mut angles = posture.to_vec();
+        for joint in model.three_axis_joints() {
+            let about_axes = joint.orientation(posture).angles.values;
+            joint.coordinates.into_iter().zip(about_axes).for_each(|(i, angle)| angles[i] = angle);
+        }
+        Self::all(model, &angles, external, passive)
+    }
+
     /// Share of the external torque that passive tissue carries, 0..=1.
     pub fn carried(&self) -> f64 {
         carried(self.external, self.passive).unwrap_or_default()

@@ -6,6 +6,7 @@
 mod body_rows;
 mod fatigue_parameters;
 mod fatigue_rows;
+mod grip_rows;
 mod hazard_rows;
 mod passive_rows;
 mod reference;
@@ -20,6 +21,7 @@ use body_rows::{AdultFile, AnthropometryFile};
 pub(super) use body_rows::{Along, CoordinateRow, InRightArm, SegmentRow};
 pub use fatigue_parameters::FatigueSet;
 use fatigue_rows::FatigueFile;
+pub use grip_rows::GripRow;
 use hazard_rows::HazardFile;
 pub use hazard_rows::HazardRow;
 use passive_rows::PassiveFile;
@@ -41,6 +43,7 @@ pub struct Library {
     pub(super) adult: AdultFile,
     pub(super) shapes: ShapeFile,
     hazards: HazardFile,
+    grip: GripRow,
 }
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
@@ -56,6 +59,7 @@ static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
         adult: parse("adult", include_str!("../../data/adult.toml")),
         shapes: parse("shapes", include_str!("../../data/shapes.toml")),
         hazards: parse("hazards", include_str!("../../data/hazards.toml")),
+        grip: parse("grip", include_str!("../../data/grip.toml")),
     }
 });
 
@@ -91,6 +95,11 @@ impl Library {
     /// Angles at which passive tissue that carries a joint is a hazard.
     pub fn hazards(&self) -> &[HazardRow] {
         &self.hazards.hazard
+    }
+
+    /// Strength of the grip of a hand.
+    pub fn grip(&self) -> &GripRow {
+        &self.grip
     }
 
     /// Strength of a movement for an adult, with its sources; `sign` -1 where the coordinate runs against the data.

@@ -4,6 +4,7 @@
 //! with a [`ModelBuilder`] and never changes; everything computed lives elsewhere.
 
 mod adult;
+mod adult_match;
 mod adult_shapes;
 mod adult_size;
 mod builder;
@@ -208,6 +209,20 @@ impl Model {
             self.three_axis.retain(|joint| joint.place(coordinate).is_none());
             self.build_by_axes();
         }
+        self
+    }
+
+    /// The same body with its three-axis joints found anew: for a body some of whose passive laws are no longer those of a file.
+    #[must_use]
+    pub fn with_three_axis_joints(mut self) -> Self {
+        self.find_three_axis_joints();
+        self
+    }
+
+    /// The same body with another word for the positive sense of one coordinate ([`Coordinate::positive`]).
+    #[must_use]
+    pub fn with_positive(mut self, coordinate: usize, word: &str) -> Self {
+        word.clone_into(&mut self.coordinates[coordinate].positive);
         self
     }
 

@@ -50,6 +50,7 @@ impl Findings {
     pub(super) fn take_end(&mut self, groups: &[GroupAtEnd<'_>], span: (f64, f64)) {
         self.later = groups.iter().filter_map(|group| group.failure(span)).collect();
         let most = groups.iter().max_by(|a, b| a.fatigue.total_cmp(&b.fatigue));
-        self.tired = most.map(|group| Tired { who: group.who, fatigue: group.fatigue });
+        self.tired =
+            most.map(|group| Tired { who: group.who, fatigue: group.fatigue, lasts: group.seconds_left.is_none() });
     }
 }

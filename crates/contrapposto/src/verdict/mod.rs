@@ -2,7 +2,8 @@
 //!
 //! A verdict is of one kind, the first that applies:
 //!
-//! 1. [`VerdictKind::CannotBeDone`]: a muscle group would need more than its strength in a posture that is held. A posture that misses
+//! 1. [`VerdictKind::CannotBeDone`]: a muscle group would need more than its strength in a posture that is held, before another one fails; or a
+//!    weight is more than a hand can hold ([`HandLoad`]). A posture that misses
 //!    its most important target is the best of those that do not do the job, and nobody need hold it: it is judged by that;
 //! 2. [`VerdictKind::CannotStand`]: the supports do not hold the body; of a posture that misses its target, too, it is not said. Supports
 //!    that slide by more than [`Slip::GREATEST`] do not hold it, and the loads of such a posture are those of another job;
@@ -15,6 +16,7 @@
 //!
 //! A time comes with its spread ([`spread`]): over published laws of fatigue and over people of different strength.
 
+mod hands;
 mod holding;
 mod missed;
 mod motion;
@@ -23,6 +25,7 @@ mod run;
 mod spread;
 mod words;
 
+pub use hands::HandLoad;
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest};
 pub use posture::HeldPosture;
 pub use spread::spread;
@@ -105,6 +108,8 @@ pub struct Tired {
     pub who: Who,
     /// Its fatigue, 0..=1.
     pub fatigue: f64,
+    /// Under its load of the end it tires no further, or recovers.
+    pub lasts: bool,
 }
 
 /// A hazard of a run that was over at its end.
@@ -148,6 +153,8 @@ pub struct Verdict {
     pub slip: Option<(Slip, Option<f64>)>,
     /// Hazards of a run that were over at its end.
     pub passed: Vec<PassedHazard>,
+    /// Weights in hands that are much for the grip, the heaviest first.
+    pub hands: Vec<HandLoad>,
     /// The first sentence of every result.
     pub sentence: String,
     /// Targets that are missed, the most important first.
@@ -155,11 +162,11 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Nothing needs to change: the job holds, for the weaker of two of three people, too, no group is tired at its end, and no
-    /// coordinate is or was in hazard.
+    /// Nothing needs to change: the job holds, for the weaker of two of three people, too, no group is tired at its end, no
+    /// coordinate is or was in hazard, and no weight is much for a grip.
     pub fn has_reserve(&self) -> bool {
         let tired = self.tired.is_some_and(|tired| tired.fatigue > TIRED);
-        let hazard = !self.hazards.is_empty() || !self.passed.is_empty();
+        let hazard = !self.hazards.is_empty() || !self.passed.is_empty() || !self.hands.is_empty();
         self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && !hazard
     }
 }
@@ -189,6 +196,8 @@ pub(crate) struct Findings {
     pub(crate) hazards: Vec<Hazard>,
     /// Hazards of a run that were over at its end.
     pub(crate) passed: Vec<PassedHazard>,
+    /// Weights in hands that are much for the grip, the heaviest first.
+    pub(crate) hands: Vec<HandLoad>,
     /// Share of the instants of a motion whose acceleration a posture at rest leaves out, where the motion is fast.
     pub(crate) fast: Option<f64>,
     /// Inertia of the motion counts.
@@ -211,6 +220,13 @@ impl Findings {
         first.filter(|failure| self.asked.is_some_and(|asked| failure.range.0 < asked))
     }
 
+    /// Whether a group would need more than its strength. One that failed before under a load within its strength has ended the job.
+    fn is_too_weak(&self) -> bool {
+        let Some((group, time)) = self.hardest else { return false };
+        let ended = |failure: &Failure| failure.who.load <= 1.0 && time.is_some_and(|time| failure.time < time);
+        group.load > 1.0 && !self.fails.as_ref().is_some_and(ended)
+    }
+
     /// The kind, by precedence.
     fn kind(&self) -> VerdictKind {
         let misses = self.missed.iter().any(|missed| missed.decides);
@@ -219,7 +235,7 @@ impl Findings {
             VerdictKind::CannotStand
         } else if misses && !ends_in_a_fall {
             VerdictKind::NotReached
-        } else if self.hardest.is_some_and(|(group, _)| group.load > 1.0) {
+        } else if self.is_too_weak() || self.hands.first().is_some_and(HandLoad::is_too_heavy) {
             VerdictKind::CannotBeDone
         } else if self.missing.is_some() {
             VerdictKind::CannotStand

@@ -2,14 +2,20 @@
 
 use super::holding::GroupAtEnd;
 use super::spread::spread;
-use super::{Failure, Findings, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, HandLoad, Verdict, VerdictKind, Who};
 use crate::assessment::{Assessment, FAST_SHARE, GroupAssessment};
 use crate::joint_torques::GroupLoad;
 use crate::model::Model;
+use crate::statics::Load;
 
 impl Verdict {
     /// Of a motion of `seconds` that was assessed. Its times count from the start of the motion.
     pub fn of_motion(model: &Model, found: &Assessment, seconds: f64) -> Self {
+        Self::of_motion_with(model, found, seconds, &[])
+    }
+
+    /// As [`Verdict::of_motion`], with loads that the body holds all the time.
+    pub fn of_motion_with(model: &Model, found: &Assessment, seconds: f64, held: &[Load]) -> Self {
         let hardest = found.groups.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value));
         let start = found.groups.first().and_then(|group| group.loads.pieces().first()).map_or(0.0, |(time, _)| *time);
         let failed = found.groups.iter().filter_map(|group| Some((group, group.exhausted_at?)));
@@ -33,6 +39,7 @@ impl Verdict {
             dynamics: found.dynamics,
             fails,
             hazards: found.hazards.clone(),
+            hands: HandLoad::all(model, held),
             ..Findings::default()
         };
         // The posture at the end of a fast motion is not held on.

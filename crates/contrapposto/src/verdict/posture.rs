@@ -1,7 +1,7 @@
 //! Judges one posture that is held.
 
 use super::holding::failures;
-use super::{Findings, Missed, Verdict};
+use super::{Findings, HandLoad, Missed, Verdict};
 use crate::assessment::Assessment;
 use crate::contact::{Missing, Slip};
 use crate::equilibria::{Equilibria, RelaxedPosture, Search, Work};
@@ -21,6 +21,8 @@ pub struct HeldPosture {
     pub missed: Vec<Missed>,
     /// Coordinates in hazard.
     pub hazards: Vec<Hazard>,
+    /// Weights in hands that are much for the grip.
+    pub hands: Vec<HandLoad>,
 }
 
 impl HeldPosture {
@@ -82,6 +84,7 @@ impl Verdict {
             fails: first.filter(|failure| failure.time.is_finite()).copied(),
             later,
             hazards: posture.hazards.clone(),
+            hands: posture.hands.clone(),
             ..Findings::default()
         }
         .verdict(model)
@@ -92,16 +95,13 @@ impl Verdict {
         let (model, best) = (search.model, found.postures.first()?);
         let lengths = best.relaxed.levels.iter().map(|level| level.length);
         let missed = Missed::of_levels(model, &best.relaxed.posture, search.goals.iter().zip(lengths));
-        let mut angles = best.relaxed.posture.values().to_vec();
-        for joint in model.three_axis_joints() {
-            let about_axes = joint.orientation(best.relaxed.posture.values()).angles.values;
-            joint.coordinates.into_iter().zip(about_axes).for_each(|(i, angle)| angles[i] = angle);
-        }
         let of = |torques: &[f64]| -> Vec<f64> {
             model.coordinates().iter().map(|coordinate| coordinate.rate.map_or(0.0, |rate| torques[rate])).collect()
         };
-        let hazards = Hazard::all(model, &angles, &of(&best.torques[0]), &of(&best.torques[1]));
-        let posture = HeldPosture { hazards, ..HeldPosture::of_equilibrium(best, missed) };
+        let values = best.relaxed.posture.values();
+        let hazards = Hazard::of_posture(model, values, &of(&best.torques[0]), &of(&best.torques[1]));
+        let hands = HandLoad::all(model, search.loads);
+        let posture = HeldPosture { hazards, hands, ..HeldPosture::of_equilibrium(best, missed) };
         Some(Self::of_posture(model, &posture))
     }
 

@@ -2,7 +2,7 @@
 
 use super::holding::GroupAtEnd;
 use super::spread::spread;
-use super::{Failure, Findings, LEAST_HAZARD, Missed, PassedHazard, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, HandLoad, LEAST_HAZARD, Missed, PassedHazard, Verdict, VerdictKind, Who};
 use crate::joint_torques::Hazard;
 use crate::model::Side;
 use crate::posture::Posture;
@@ -13,6 +13,7 @@ impl Verdict {
     pub fn of_run(scenario: &Scenario, summary: &Summary) -> Self {
         let levels = scenario.tasks.iter().map(|task| &task.goal).zip(summary.errors.iter().copied());
         let end = Posture::new(summary.coordinates.iter().map(|coordinate| coordinate.final_value).collect());
+        let hazards = at_end(scenario, summary);
         let interrupted = summary.reason == StopReason::Interrupted;
         let mut findings = Findings {
             asked: Some(summary.end_time),
@@ -22,8 +23,9 @@ impl Verdict {
             slides: summary.sliding_since.zip(summary.standing.as_ref()).map(|(since, last)| (last.slip, Some(since))),
             missed: Missed::of_levels(&scenario.model, &end, levels),
             fails: fails(scenario, summary),
-            hazards: at_end(scenario, summary),
-            passed: passed(scenario, summary),
+            passed: passed(scenario, summary, &hazards),
+            hazards,
+            hands: hands(scenario),
             interrupted: interrupted.then_some(summary.end_time),
             ..Findings::default()
         };
@@ -38,16 +40,31 @@ impl Verdict {
 fn at_end(scenario: &Scenario, summary: &Summary) -> Vec<Hazard> {
     let of = |value: fn(&CoordinateSummary) -> f64| -> Vec<f64> { summary.coordinates.iter().map(value).collect() };
     let (external, passive) = (of(|end| end.final_torques[0]), of(|end| end.final_torques[1]));
-    Hazard::all(&scenario.model, &of(|end| end.final_value), &external, &passive)
+    Hazard::of_posture(&scenario.model, &of(|end| end.final_value), &external, &passive)
 }
 
-/// Hazards of a run that were over at its end.
-fn passed(scenario: &Scenario, summary: &Summary) -> Vec<PassedHazard> {
+/// The heaviest weights that hands hold at any time of a run.
+fn hands(scenario: &Scenario) -> Vec<HandLoad> {
+    let later = scenario.events.iter().filter_map(|event| event.loads.as_deref());
+    let all = std::iter::once(scenario.loads.as_slice()).chain(later);
+    let mut hands: Vec<HandLoad> = vec![];
+    for hand in all.flat_map(|loads| HandLoad::all(&scenario.model, loads)) {
+        match hands.iter_mut().find(|other| other.segment == hand.segment) {
+            Some(other) => other.weight = other.weight.max(hand.weight),
+            None => hands.push(hand),
+        }
+    }
+    hands.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    hands
+}
+
+/// Hazards of a run that are none of those `at_end`.
+fn passed(scenario: &Scenario, summary: &Summary, at_end: &[Hazard]) -> Vec<PassedHazard> {
     let hazard = |(i, course): (usize, &CoordinateSummary)| {
         let coordinate = &scenario.model.coordinates()[i];
         let worst = course.hazardous?;
-        let ([external, passive], [external_at_end, passive_at_end, _]) = (worst.torques, course.final_torques);
-        let is_over = Hazard::at(coordinate, course.final_value, external_at_end, passive_at_end).is_none();
+        let [external, passive] = worst.torques;
+        let is_over = at_end.iter().all(|hazard| hazard.coordinate != i);
         let row = Hazard::at(coordinate, worst.angle, external, passive)?;
         let seconds = worst.samples as f64 * scenario.run.step;
         let hazard = Hazard { coordinate: i, angle: worst.angle, external, passive, row };

@@ -1,7 +1,7 @@
 //! Says a verdict in one sentence.
 
 use super::missed::unit;
-use super::{Failure, Findings, Missed, Nearest, PassedHazard, TIRED, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, HandLoad, Missed, Nearest, PassedHazard, TIRED, Verdict, VerdictKind, Who};
 use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
 use crate::tasks::{PriorityLevel, Unit};
@@ -22,6 +22,7 @@ impl Findings {
             VerdictKind::HeldUntil => self.held_until(model),
             VerdictKind::Holds => self.holds(model),
         };
+        let sentence = if kind.is_done() { sentence + &self.hands_in_words(model) } else { sentence };
         let sentence = match self.interrupted {
             Some(time) => format!("Interrupted after {}; so far: {sentence}", how_long(time)),
             None => sentence,
@@ -39,7 +40,7 @@ impl Findings {
             _ => None,
         };
         let hardest = self.hardest.map(|(group, _)| Who::from(group));
-        let names_hardest = matches!(kind, VerdictKind::CannotBeDone | VerdictKind::Holds);
+        let names_hardest = kind == VerdictKind::Holds || kind == VerdictKind::CannotBeDone && self.is_too_weak();
         Verdict {
             kind,
             asked: self.asked,
@@ -52,12 +53,17 @@ impl Findings {
             hazards: self.hazards,
             slip: self.slip.filter(|(slip, _)| slip.exceeds(Slip::NOTICED)),
             passed: self.passed,
+            hands: self.hands,
             sentence,
             missed: self.missed,
         }
     }
 
     fn too_weak(&self, model: &Model) -> String {
+        let too_heavy = self.hands.first().filter(|hand| hand.is_too_heavy() && !self.is_too_weak());
+        if let Some(hand) = too_heavy {
+            return format!("Cannot be done: {}.", hand.too_heavy_in_words(model));
+        }
         let Some((group, time)) = self.hardest else { return String::new() };
         let when = time.filter(|time| *time > 0.0).map(|time| format!(" at {}", how_long(time)));
         format!(
@@ -98,7 +104,24 @@ impl Findings {
         }
         let hazards: Vec<String> = self.ligaments(model).into_iter().chain(self.passed(model)).collect();
         let hazards = if hazards.is_empty() { String::new() } else { format!("; but {}", listed(&hazards)) };
-        format!("Can be held {} ({range}), then {who} fails first{hazards}.", how_long(time))
+        let overload = self.overload(model).unwrap_or_default();
+        format!("Can be held {} ({range}), then {who} fails first{hazards}.{overload}", how_long(time))
+    }
+
+    /// ` Later, at 5.0 min, right hip extension would need 130 % of its strength.`, of a group that is too weak after another one has failed.
+    fn overload(&self, model: &Model) -> Option<String> {
+        let (group, time) = self.hardest.filter(|(group, _)| group.load > 1.0)?;
+        let (who, when) = (Who::from(group).name(model), how_long(time?));
+        Some(format!(" Later, at {when}, {who} would need {} of its strength.", percent(group.load)))
+    }
+
+    /// ` Fatigue of the grip is not judged: the right hand holds 245 N, 51 % of the mean strength of a man's grip.`
+    fn hands_in_words(&self, model: &Model) -> String {
+        let hands: Vec<String> = self.hands.iter().map(|hand: &HandLoad| hand.in_words(model)).collect();
+        match hands.as_slice() {
+            [] => String::new(),
+            hands => format!(" Fatigue of the grip is not judged: {}.", enumerated(hands)),
+        }
     }
 
     fn holds(&self, model: &Model) -> String {
@@ -112,7 +135,7 @@ impl Findings {
         };
         let but = listed(&self.reservations(model));
         let but = if but.is_empty() { but } else { format!(", but {but}") };
-        format!("{head}{but}.{} {}", self.held_on(model), self.hardest_worked(model))
+        format!("{head}{but}.{} {}", self.goes_on(model), self.hardest_worked(model))
     }
 
     /// `some people fail before`, `right shoulder flexion is 82 % tired at the end`.
@@ -123,8 +146,10 @@ impl Findings {
             format!("some people fail before{who}")
         });
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
-        let tired =
-            tired.map(|tired| format!("{} is {} tired at the end", tired.who.name(model), percent(tired.fatigue)));
+        let tired = tired.map(|tired| {
+            let lasts = if tired.lasts { " (but tires no further under its load there)" } else { "" };
+            format!("{} is {} tired at the end{lasts}", tired.who.name(model), percent(tired.fatigue))
+        });
         weaker.into_iter().chain(tired).chain(self.ligaments(model)).chain(self.passed(model)).collect()
     }
 
@@ -142,24 +167,22 @@ impl Findings {
         (!list.is_empty()).then(|| format!("ligaments held {}", enumerated(&list)))
     }
 
-    /// ` Held on like this: about 6.6 min in all (3.9 min to 21.4 min for two of three people), then right shoulder flexion fails first.`
-    fn held_on(&self, model: &Model) -> String {
+    /// ` If it goes on like this, right shoulder flexion fails first, after about 6.6 min in all (3.9 min to 21.4 min for two of three people).`
+    fn goes_on(&self, model: &Model) -> String {
         let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.range.0 < A_DAY) else {
-            return if self.later.is_empty() || self.asked.is_none() {
-                String::new()
-            } else {
-                " No muscle sets a limit.".to_owned()
-            };
+            let said = !self.later.is_empty() && self.asked.is_some();
+            return if said { " If it goes on like this, no muscle fails.".to_owned() } else { String::new() };
         };
-        let (who, range) = (who.name(model), in_words(*range));
-        let (on, no) = match self.asked {
-            Some(_) => ("Held on like this: about", "Held on like this: no limit in all"),
-            None => ("About", "No limit for the mean person"),
-        };
+        let (who, least) = (who.name(model), how_long(range.0));
+        let on = if self.asked.is_some() { " If it goes on like this," } else { "" };
         if *time < A_DAY {
-            return format!(" {on} {} in all ({range}), then {who} fails first.", how_long(*time));
+            let range = in_words(*range);
+            return format!("{on} {who} fails first, after about {} in all ({range}).", how_long(*time));
         }
-        format!(" {no} ({range}; {who} would fail first).")
+        let no = if on.is_empty() { "No" } else { "no" };
+        format!(
+            "{on} {no} muscle of the mean person fails; in weaker people {who} can fail, after {least} at the earliest."
+        )
     }
 
     /// `Hardest worked: right shoulder flexion at 17 % of its strength.`

@@ -1,6 +1,6 @@
 //! The name of a muscle group in JSON files and terminal tables.
 
-use contrapposto::model::{Model, Side};
+use contrapposto::model::{Model, Side, plain_group_name};
 use contrapposto_formats::tissue::FatigueParametersText;
 use serde::Serialize;
 
@@ -31,6 +31,6 @@ impl GroupName {
 
 impl std::fmt::Display for GroupName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} ({})", self.group, self.coordinate)
+        write!(f, "{} ({})", plain_group_name(&self.group, &self.coordinate), self.coordinate)
     }
 }

@@ -18,9 +18,9 @@ use super::group::GroupName;
 use super::plain_table;
 use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
-use crate::view::words::MOST_JOINTS_SHOWN;
 use crate::view::words::how_long;
 use crate::view::words::shares_of_all;
+use crate::view::words::{MOST_JOINTS_SHOWN, joint as in_words};
 
 /// Slip that a table shows, m or degrees.
 const SLIP_SHOWN: f64 = 1e-6;
@@ -290,7 +290,7 @@ impl RelaxedPostureText {
         };
         let hanging = self.hanging.iter().take(MOST_JOINTS_SHOWN).map(|joint| {
             let share = percent(joint.share);
-            let at = format!("{} at {:.1} deg", joint.coordinate, joint.value.to_degrees());
+            let at = format!("{} at {:.1} deg", in_words(&joint.coordinate), joint.value.to_degrees());
             format!("{at}, {:.1} N m, {share} of the external torque", joint.passive_nm)
         });
         line("hangs on ligaments", hanging.collect());
@@ -310,7 +310,7 @@ impl RelaxedPostureText {
         let unstable = self.unstable.iter().take(MOST_JOINTS_SHOWN).map(|direction| {
             let joints = direction.joints.iter().take(MOST_JOINTS_SHOWN);
             let joints: Vec<String> =
-                joints.map(|joint| format!("{} {}", joint.coordinate, percent(joint.share))).collect();
+                joints.map(|joint| format!("{} {}", in_words(&joint.coordinate), percent(joint.share))).collect();
             let grows = direction.growth_time_s.map(|time| format!(" (doubles in {:.2} s)", LN_2 * time));
             joints.join(", ") + grows.as_deref().unwrap_or_default()
         });

@@ -11,7 +11,7 @@ use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
-use crate::view::words::{MOST_ROWS, shares_of_all};
+use crate::view::words::{MOST_ROWS, joint, shares_of_all};
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
 const REACHED: f64 = 1e-3;
@@ -20,6 +20,19 @@ const ALIKE_ANGLES: f64 = 0.05;
 /// The note about joints with three axes.
 const ABOUT_AXES: &str = "angles and torques of a joint with three axes are those about each axis; `final_deg` in summary.json is the \
                           coordinate itself\n";
+
+/// `relief by the active strategy` of a whole body; of single joints the cases of their decisions, too.
+pub(crate) fn strategy_in_words(scenario: &Scenario, summary: &CoordinateSummary) -> String {
+    if !scenario.has_supports_or_tasks() {
+        return strategy_and_cases(scenario, summary);
+    }
+    let kind = match scenario.strategy.kind {
+        contrapposto::hybrid::Strategy::Active => "active",
+        contrapposto::hybrid::Strategy::Passive => "passive",
+    };
+    let relief = if summary.case_changes == 0 { "no relief needed" } else { "tired joints seek relief" };
+    format!("{kind} strategy: {relief}")
+}
 
 /// `active, R_min 0.2: cases 3.1 x6, 3.3 x33, 2.1 x1`.
 pub(crate) fn strategy_and_cases(scenario: &Scenario, summary: &CoordinateSummary) -> String {
@@ -51,7 +64,7 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
 /// The table of the coordinates with the greatest loads, and the notes below it.
 fn coordinates(scenario: &Scenario, summary: &Summary) -> (comfy_table::Table, String) {
     let mut table = plain_table();
-    table.set_header(["coordinate", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
+    table.set_header(["joint", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
     let last: Vec<f64> = summary.coordinates.iter().map(|coordinate| coordinate.final_value).collect();
     let angles = angles(&scenario.model, &last);
     let all = scenario.model.coordinates().iter().zip(&angles).zip(&summary.coordinates).zip(&scenario.free);
@@ -69,7 +82,7 @@ fn coordinates(scenario: &Scenario, summary: &Summary) -> (comfy_table::Table, S
         // Without a strength there is neither load nor fatigue.
         let known = coordinate.groups.is_some();
         table.add_row([
-            format!("{}{}", coordinate.name, if *free { "" } else { " (locked)" }),
+            format!("{}{}", joint(&coordinate.name), if *free { "" } else { " (locked)" }),
             match coordinate.kind {
                 CoordinateKind::Rotation => format!("{:.1} deg", angle.to_degrees()),
                 CoordinateKind::Translation => format!("{:.3} m", summary.final_value),

@@ -17,6 +17,9 @@ pub(super) struct HazardFile {
 pub struct HazardRow {
     coordinates: Vec<String>,
     positive: String,
+    /// The positive sense of a coordinate that runs against the row.
+    #[serde(default)]
+    negative: String,
     below_deg: Option<f64>,
     above_deg: Option<f64>,
     least_carried: f64,
@@ -33,9 +36,12 @@ impl HazardRow {
     /// Whether a coordinate is in this hazard: its angle, rad, and the share of its external torque that passive tissue carries.
     pub fn applies(&self, coordinate: &Coordinate, angle: f64, carried: f64) -> bool {
         let same_sense = self.positive.is_empty() || coordinate.positive == self.positive;
-        let beyond = self.below_deg.is_some_and(|limit| angle.to_degrees() <= limit)
-            || self.above_deg.is_some_and(|limit| angle.to_degrees() >= limit);
-        self.coordinates.contains(&coordinate.name) && same_sense && beyond && carried >= self.least_carried
+        let opposite = !self.negative.is_empty() && coordinate.positive == self.negative;
+        let degrees = if opposite { -angle.to_degrees() } else { angle.to_degrees() };
+        let beyond = self.below_deg.is_some_and(|limit| degrees <= limit)
+            || self.above_deg.is_some_and(|limit| degrees >= limit);
+        let senses = same_sense || opposite;
+        self.coordinates.contains(&coordinate.name) && senses && beyond && carried >= self.least_carried
     }
 
     /// How long the study kept people there at most, s.

@@ -1,0 +1,122 @@
+//! The answer names the weights that are too heavy for a hand, hips at their passive end, and a group that failed before an overload.
+
+#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+
+use contrapposto::model::{Adult, Sex, adult};
+use contrapposto::simulation::{Scenario, run as simulate};
+use contrapposto::verdict::{HandLoad, Verdict, VerdictKind};
+use contrapposto_formats::{VerdictText, read_scenario};
+
+const GRAVITY: f64 = 9.81;
+
+fn answer(text: &str) -> (Scenario, Verdict) {
+    let scenario = read_scenario("job.toml", text.as_bytes(), None).unwrap();
+    let summary = simulate(&scenario, |_| {}).unwrap();
+    let verdict = Verdict::of_run(&scenario, &summary);
+    (scenario, verdict)
+}
+
+/// An adult who stands still, arms down, with a weight in the right hand; the root is held, so that nothing but the hand is in question.
+fn carrying(sex: &str, kilograms: f64) -> (Scenario, Verdict) {
+    answer(&format!(
+        "format = 1\n[model]\nadult = {{ sex = \"{sex}\", stature_m = 1.7, mass_kg = 70 }}\n[posture]\npelvis_ty_m = 0.95\n\
+         elbow_flex_r_deg = 12\nelbow_flex_l_deg = 12\n[coordinates]\nfree = []\n[[load]]\nsegment = \"hand_r\"\n\
+         mass_kg = {kilograms}\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 0.2\nstep_s = 0.1\n"
+    ))
+}
+
+/// Mathiowetz et al. 1985, a second time, by hand: means of the nine age groups of both hands are 107.1 lb (men) and 63.1 lb (women).
+#[test]
+fn a_weight_is_judged_by_the_grip_of_the_sex_told_from_half_of_it_on_and_too_heavy_beyond_a_handle() {
+    let pound = 4.448_221_615;
+    for (sex, grip) in [("male", 107.122 * pound), ("female", 63.106 * pound)] {
+        let named = |kilograms: f64| {
+            let (scenario, verdict) = carrying(sex, kilograms);
+            let hands = verdict.hands.clone();
+            if let Some(hand) = hands.first() {
+                assert!((hand.grip() - grip).abs() < 0.1, "{} and {grip}", hand.grip());
+                assert!((hand.weight - GRAVITY * kilograms).abs() < 0.01 * hand.weight, "{hand:?}");
+                let text = VerdictText::new(&scenario.model, &verdict);
+                assert_eq!((text.hands[0].segment.as_str(), text.hands[0].weight_n), ("hand_r", hand.weight));
+                assert!(!verdict.has_reserve());
+            }
+            (verdict, hands.len())
+        };
+        assert_eq!(named(0.49 * grip / GRAVITY).1, 0);
+        let (verdict, hands) = named(0.51 * grip / GRAVITY);
+        assert_eq!(hands, 1);
+        let whose = if sex == "male" { "a man's" } else { "a woman's" };
+        let words = format!("51\u{a0}% of the mean strength of {whose} grip");
+        assert!(verdict.sentence.contains(&words), "{words}: {}", verdict.sentence);
+        let (verdict, _) = named(1.57 * grip / GRAVITY);
+        assert!(!verdict.hands[0].is_too_heavy(), "{}", verdict.sentence);
+        let (verdict, _) = named(1.6 * grip / GRAVITY);
+        assert!(verdict.hands[0].is_too_heavy());
+        assert_eq!(verdict.kind, VerdictKind::CannotBeDone, "{}", verdict.sentence);
+    }
+}
+
+#[test]
+fn a_hundred_and_fifty_kilograms_in_one_hand_cannot_be_done_and_the_hand_is_named() {
+    let (_, verdict) = carrying("male", 150.0);
+    assert_eq!(verdict.kind, VerdictKind::CannotBeDone, "{}", verdict.sentence);
+    let model = adult(&Adult { sex: Sex::Female, ..Adult::default() }).unwrap();
+    let hand = |name: &str| contrapposto::statics::Load {
+        segment: model.segment(name).unwrap(),
+        point: nalgebra::Vector3::zeros(),
+        kind: contrapposto::statics::LoadKind::Weight(20.0),
+    };
+    // Weights on one hand add up; a weight on the back needs no grip.
+    let hands = HandLoad::all(&model, &[hand("hand_r"), hand("hand_r"), hand("torso"), hand("hand_l")]);
+    let weights: Vec<f64> = hands.iter().map(|hand| (hand.weight / model.gravity().norm()).round()).collect();
+    assert_eq!(weights, [40.0, 20.0]);
+    assert_eq!(hands[0].sex, Some(Sex::Female));
+}
+
+/// A man bent double, his pelvis level and the ground pushing up under his feet: hips at 115 degrees hang on their passive tissue and are
+/// named; at 95 degrees they are not, nor where muscles carry them.
+#[test]
+fn hips_bent_beyond_a_hundred_degrees_on_passive_tissue_are_a_hazard() {
+    let bent = |degrees: f64, newtons: f64| {
+        let tilt = 25.0 - degrees;
+        let push = |side: &str| {
+            format!("[[load]]\nsegment = \"calcn_{side}\"\nforce_n = [0, {newtons}, 0]\nfixed_in = \"world\"\n")
+        };
+        answer(&format!(
+            "format = 1\n[posture]\npelvis_ty_m = 0.95\npelvis_tilt_deg = {tilt}\nhip_flexion_r_deg = {degrees}\n\
+             hip_flexion_l_deg = {degrees}\nknee_angle_r_deg = 25\nknee_angle_l_deg = 25\n[coordinates]\nfree = []\n{}{}\
+             [strategy]\nkind = \"active\"\n[run]\nduration_s = 0.2\nstep_s = 0.1\n",
+            push("r"),
+            push("l")
+        ))
+        .1
+    };
+    let verdict = bent(115.0, 300.0);
+    assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
+    for side in ["right", "left"] {
+        let words = format!("{side} hip flexion at 115.0\u{b0}");
+        assert!(verdict.sentence.contains(&words), "{words}: {}", verdict.sentence);
+    }
+    assert!(verdict.hazards.iter().all(|hazard| hazard.carried() >= 0.5 && hazard.row.finding.contains("21 people")));
+    assert!(bent(95.0, 300.0).hazards.is_empty(), "{}", bent(95.0, 300.0).sentence);
+    assert!(bent(115.0, 900.0).hazards.is_empty(), "{}", bent(115.0, 900.0).sentence);
+}
+
+/// A forearm tires under a weight until it fails; two minutes later a weight comes that is more than its strength. The job ended before.
+#[test]
+fn an_overload_after_a_failure_does_not_make_the_job_one_that_cannot_be_done() {
+    let text = |first: f64| {
+        format!(
+            "format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73 }}\n[posture]\npelvis_ty_m = 0.95\n\
+             elbow_flex_r_deg = 90\nelbow_flex_l_deg = 12\n[coordinates]\nfree = []\n[[load]]\nsegment = \"radius_r\"\nforce_n = [0, {first}, 0]\n\
+             fixed_in = \"world\"\n[[event]]\nat_s = 300\n[[event.load]]\nsegment = \"radius_r\"\nforce_n = [0, -900, 0]\n\
+             fixed_in = \"world\"\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 400\nstep_s = 0.5\n"
+        )
+    };
+    let (_, failed) = answer(&text(-200.0));
+    assert_eq!(failed.kind, VerdictKind::HeldUntil, "{}", failed.sentence);
+    assert!(failed.seconds.unwrap() < 300.0);
+    assert!(failed.sentence.contains(" Later, at 5.0"), "{}", failed.sentence);
+    let (_, rested) = answer(&text(0.0));
+    assert_eq!(rested.kind, VerdictKind::CannotBeDone, "{}", rested.sentence);
+}
