@@ -120,3 +120,25 @@ fn an_overload_after_a_failure_does_not_make_the_job_one_that_cannot_be_done() {
     let (_, rested) = answer(&text(0.0));
     assert_eq!(rested.kind, VerdictKind::CannotBeDone, "{}", rested.sentence);
 }
+
+/// An elbow that is tired from before holds so little that it tires no further: beside its fatigue stands why no muscle fails.
+#[test]
+fn a_tired_group_without_a_limit_is_told_to_tire_no_further() {
+    let arm = |kilograms: f64| {
+        let (_, verdict) = answer(&format!(
+            "format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73 }}\n[posture]\npelvis_ty_m = 0.95\n\
+             elbow_flex_r_deg = 90\nelbow_flex_l_deg = 12\n[coordinates]\nfree = []\n[fatigue.start]\n\
+             elbow_flex_r = {{ positive = 0.6 }}\n[[load]]\nsegment = \"radius_r\"\nmass_kg = {kilograms}\n[strategy]\n\
+             kind = \"active\"\n[run]\nduration_s = 2\nstep_s = 0.5\n"
+        ));
+        assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
+        let tired = verdict.tired.unwrap();
+        assert!(tired.fatigue > 0.5, "{}", verdict.sentence);
+        assert_eq!(tired.lasts, verdict.sentence.contains("(but tires no further under its load there)"));
+        (tired.lasts, verdict.sentence)
+    };
+    let (lasts, sentence) = arm(0.0);
+    assert!(lasts, "{sentence}");
+    let (lasts, sentence) = arm(12.0);
+    assert!(!lasts && sentence.contains("right elbow flexion is 6"), "{sentence}");
+}

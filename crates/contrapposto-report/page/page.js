@@ -285,10 +285,10 @@ class Page {
     });
   }
 
-  // A group that is tired although it rests, or could hold its load without limit, is tired from before.
+  // A group that is tired and could hold its load without limit recovers at rest; under the load it tires no further.
   whyTired(group, load, fatigue) {
     const easy = load < RESTING || group.left[this.frame] < 0;
-    return easy && fatigue >= TIRED ? "; tired from before" : "";
+    return !easy || fatigue < TIRED ? "" : load < RESTING ? "; recovers" : "; tires no further";
   }
 
   // Groups with load or fatigue, the greatest load first.

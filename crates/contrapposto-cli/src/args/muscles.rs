@@ -28,7 +28,7 @@ pub(crate) enum MuscleChoice {
 }
 
 impl MuscleArgs {
-    /// What is asked of muscles, and by which name; without a use the default of the model.
+    /// The use that is asked of muscles, and the name of the key that asks; without a use the default of the model.
     pub(crate) fn asked(&self) -> (Option<MuscleUse>, &'static str) {
         let uses = self.muscles.map(|choice| match choice {
             MuscleChoice::Off => MuscleUse::Off,

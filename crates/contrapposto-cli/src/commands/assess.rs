@@ -113,7 +113,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     answered(&answer.verdict)
 }
 
-/// What an assessment is about.
+/// The motion of an assessment, and its loads.
 struct Motion<'a> {
     model: &'a Model,
     motion: &'a [(f64, Posture)],

@@ -14,7 +14,7 @@ use crate::fail::Fail;
 pub(crate) struct Held {
     /// Torques, loads and contact forces. Where the supports cannot hold the posture, those of a body whose root is held too.
     pub(crate) frame: Frame,
-    /// What the supports lack; `None` where they hold it, and without supports.
+    /// The force and moment that the supports lack; `None` where they hold it, and without supports.
     pub(crate) missing: Option<Missing>,
     /// Groups at work.
     pub(crate) groups: Vec<GroupLoad>,

@@ -31,7 +31,7 @@ pub(crate) struct Row {
     pub(crate) name: String,
     /// Index of the rate.
     pub(crate) rate: usize,
-    /// It turns: N m, otherwise N.
+    /// The rate is a rotation: N m, otherwise N.
     pub(crate) turns: bool,
     /// The coordinate of the same name, if it has one.
     pub(crate) coordinate: Option<usize>,

@@ -39,7 +39,7 @@ pub struct SourcedModel {
     pub credited: Option<Adult>,
     /// The muscles of its file.
     pub muscles: Musculature,
-    /// What became of the file's muscles.
+    /// The fate of the file's muscles.
     pub muscle_tally: MuscleTally,
     /// By coordinate.
     pub origins: Vec<Origins>,

@@ -25,6 +25,9 @@ pub fn plain_name(name: &str) -> String {
         Some((stem, "l")) => (stem, "left "),
         _ => (name, ""),
     };
+    // The shoulder, as its muscle groups call it.
+    let shoulder = ["arm_flex", "arm_add", "arm_rot"].contains(&stem);
+    let stem = if shoulder { stem.replacen("arm", "shoulder", 1) } else { stem.to_owned() };
     let words: Vec<&str> = stem.trim_end_matches("_angle").split('_').map(long).collect();
     format!("{side}{}", words.join(" "))
 }
@@ -55,6 +58,8 @@ mod tests {
         assert_eq!(plain_name("calcn_r"), "right foot");
         assert_eq!(plain_name("elbow_flex_l"), "left elbow flexion");
         assert_eq!(plain_name("lumbar_extension"), "lumbar extension");
+        assert_eq!(plain_name("arm_flex_r"), "right shoulder flexion");
+        assert_eq!(plain_name("robot_arm_l"), "left robot arm");
         assert_eq!(plain_name("<b>"), "<b>");
         assert_eq!(plain_group_name("hip_abduction", "hip_adduction_r"), "right hip abduction");
     }

@@ -18,7 +18,7 @@ const STEADY: f64 = 1e-6;
 /// A time from here on, s, counts as no limit: a day.
 const LONGEST: f64 = 86_400.0;
 
-/// What a muscle group did in a job.
+/// The loads of a muscle group in a job.
 #[derive(Clone, Copy, Debug)]
 pub struct Worked<'a> {
     /// Its law of fatigue.

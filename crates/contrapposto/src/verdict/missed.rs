@@ -21,7 +21,7 @@ pub struct Missed {
     pub distance: f64,
     /// The unit; `None` where metres and radians are taken together.
     pub unit: Option<Unit>,
-    /// It is the most important target, or one that is demanded.
+    /// The target is the most important one, or one that is demanded.
     pub decides: bool,
     /// Of a single point: where it gets.
     pub nearest: Option<Nearest>,

@@ -171,14 +171,14 @@ impl Verdict {
     }
 }
 
-/// What a job has shown.
+/// The findings of a job.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
     /// The time that was asked for, s.
     pub(crate) asked: Option<f64>,
     /// The group with the greatest load; when, s, where that matters.
     pub(crate) hardest: Option<(GroupLoad, Option<f64>)>,
-    /// What the supports lack; when, s, where that matters.
+    /// The force and moment that the supports lack; when, s, where that matters.
     pub(crate) missing: Option<(Missing, Option<f64>)>,
     /// Distance of the supports from their places: the greatest of a run, when, s, where that matters.
     pub(crate) slip: Option<(Slip, Option<f64>)>,

@@ -13,7 +13,7 @@ use crate::model::Model;
 pub struct HeldPosture {
     /// Groups at work.
     pub groups: Vec<GroupLoad>,
-    /// What the supports lack; `None` in equilibrium.
+    /// The force and moment that the supports lack; `None` in equilibrium.
     pub missing: Option<Missing>,
     /// Distance of the supports from their places.
     pub slip: Slip,

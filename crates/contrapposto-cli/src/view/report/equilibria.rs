@@ -98,7 +98,7 @@ pub(crate) fn report_of_equilibria(
     Ok(contrapposto_report::write(&report))
 }
 
-/// What became of the starts.
+/// The fate of the starts.
 fn searched(found: &Equilibria) -> String {
     let mut searched = format!("{} starts were tried", found.starts);
     for (count, what) in [

@@ -92,7 +92,7 @@ fn entries(scenario: &Scenario, summary: &Summary, excerpt: &RunExcerpt, shown: 
     entries.into_iter().filter_map(entry).collect()
 }
 
-/// What an event of the scenario changes, a sentence each.
+/// The changes by an event of the scenario, a sentence each.
 fn changes(scenario: &Scenario, event: &contrapposto::simulation::Event) -> Vec<String> {
     let mut texts = vec![];
     if let Some(loads) = &event.loads {

@@ -35,7 +35,7 @@ pub(crate) struct Report<'a> {
     segments: Vec<SegmentText<'a>>,
     coordinate_order: Vec<&'a str>,
     coordinates: BTreeMap<&'a str, InspectedCoordinateText<'a>>,
-    /// What became of muscles, the points of their paths and surfaces, by kind; left out where the file has none.
+    /// The fate of muscles, the points of their paths and surfaces, by kind; left out where the file has none.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     muscles: &'a BTreeMap<String, KindTally>,
     /// Parts that were ignored, changed or filled in, one sentence each.

@@ -52,7 +52,7 @@ fn remaining(level: &PoseLevelText) -> String {
     if !level.reached && value < 5e-4 { format!("{value:.0e}{unit}") } else { format!("{value:.3}{unit}") }
 }
 
-/// What keeps a posture in balance, where nothing asks for it and the body would fall.
+/// The hint at a task of balance, where no task asks for it and the body would fall.
 fn unbalanced(scenario: &PoseScenario, verdict: &Verdict) -> String {
     let asks = |task: &Task| matches!(task, Task::CenterOfMass(_));
     let asked = scenario.goals.iter().flat_map(|goal| &goal.tasks).any(asks);

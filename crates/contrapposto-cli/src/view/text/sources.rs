@@ -119,7 +119,7 @@ pub(crate) struct StrengthAtText {
     /// Where muscles of the model give it.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<&'static str>,
-    /// It is the least share of the peak, below which the curve over the angle would fall, or the least strength of muscles.
+    /// The strength is the least share of the peak, below which the curve over the angle would fall, or the least strength of muscles.
     floor: bool,
 }
 

@@ -166,7 +166,7 @@ fn obstacle_line<'a>(name: &'a str, thing: &Thing) -> ObstacleLine<'a> {
     ObstacleLine { name, middle_m, size_m, normal: wall, offset_m }
 }
 
-/// What the task wants, in a few words.
+/// The aim of a task in a few words.
 fn target(task: &Task) -> String {
     let at = |place: &Vector3<f64>| format!("at {}", three((*place).into()));
     match task {
