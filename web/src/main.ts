@@ -33,6 +33,7 @@ class Studio {
   private shown?: Shown;
   private grabbing?: Promise<unknown>;
   private target?: Vector;
+  private dragged = false;
   /** Rises with everything that ends a settling body. */
   private settling = 0;
   private running = false;
@@ -54,8 +55,8 @@ class Studio {
       play: () => void this.guard(() => this.play()),
       endPlay: (take) => void this.guard(() => this.endPlay(take)),
       joint: () => this.chart(true),
-      undo: () => this.change({ do: "undo" }),
-      redo: () => this.change({ do: "redo" }),
+      undo: () => this.change({ do: "undo" }, false),
+      redo: () => this.change({ do: "redo" }, false),
       reset: () => this.change({ do: "reset" }),
       openFiles: (files) => void this.guard(() => this.openFiles(files)),
       save: () => void this.guard(() => this.save()),
@@ -81,9 +82,11 @@ class Studio {
       return new View(canvas, {
         grab: (segment, point) => {
           this.target = undefined;
-          this.grabbing = this.guard(() => this.dragAlong(segment, point));
+          const before = this.grabbing;
+          this.grabbing = this.guard(() => this.dragAlong(segment, point, before)).finally(() => (this.dragged = false));
+          this.dragged = true;
         },
-        drag: (target) => (this.target = target),
+        drag: (target) => this.dragged && (this.target = target),
         release: () => void this.release(),
       });
     } catch {
@@ -108,7 +111,7 @@ class Studio {
     addEventListener("keydown", (event) => {
       if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
       event.preventDefault();
-      this.change({ do: event.shiftKey ? "redo" : "undo" });
+      this.change({ do: event.shiftKey ? "redo" : "undo" }, false);
     });
   }
 
@@ -185,21 +188,27 @@ class Studio {
     });
   }
 
-  /** A change of the scenario; then the body settles. */
-  private change(request: Request): void {
+  /** Ends what moves the body: a body that settles, a drag, the clock. What follows belongs to the number that is given. */
+  private async halt(): Promise<number> {
+    const own = ++this.settling;
+    await this.pause();
+    await this.grabbing;
+    return own;
+  }
+
+  /** A change of the scenario; then the body settles, but for undo and redo, which show a posture again. */
+  private change(request: Request, settles = true): void {
     void this.guard(async () => {
       this.tell("");
-      this.settling++;
-      await this.pause();
+      const own = await this.halt();
       if (this.inRun) await this.ask({ do: "stop", take: true });
       await this.ask(request);
-      await this.settle();
+      if (settles) await this.settle(own);
     });
   }
 
-  /** The body moves toward least effort, some steps a picture. */
-  private async settle(): Promise<void> {
-    const own = ++this.settling;
+  /** The body moves toward least effort, some steps a picture, until something else begins. */
+  private async settle(own: number): Promise<void> {
     let last = performance.now();
     for (let step = 0; step < SETTLE_STEPS && own === this.settling; step++) {
       const answer = await this.ask({ do: "settle" });
@@ -211,44 +220,56 @@ class Studio {
   }
 
   /** Drags the point that was grabbed, as long as it is. */
-  private async dragAlong(segment: string, point: Vector): Promise<void> {
+  private async dragAlong(segment: string, point: Vector, before?: Promise<unknown>): Promise<void> {
     this.tell("");
     const own = ++this.settling;
     await this.pause();
+    await before;
     if (this.inRun) await this.ask({ do: "stop", take: true });
     let hold = this.scene?.held.some((held) => held.segment === segment) ?? false;
     await this.ask({ do: "grab", segment, point });
-    while (own === this.settling) {
-      if (this.target) await this.ask({ do: "drag", target: this.target });
-      hold ||= this.target !== undefined;
-      await frame();
+    try {
+      while (own === this.settling) {
+        if (this.target) await this.ask({ do: "drag", target: this.target });
+        hold ||= this.target !== undefined;
+        await frame();
+      }
+    } finally {
+      this.target = undefined;
+      await this.ask({ do: "release", hold });
     }
-    this.target = undefined;
-    await this.ask({ do: "release", hold });
-    void this.guard(() => this.settle());
   }
 
   private async release(): Promise<void> {
     // A press without a motion, or of a part that cannot be dragged, ends here, too.
-    this.settling++;
+    const own = ++this.settling;
     await this.grabbing;
+    if (!this.inRun && own === this.settling) await this.guard(() => this.settle(own));
   }
 
   private async nudge(handle: Handle, way: Vector): Promise<void> {
     if (!this.scene || !this.shown) return;
     this.tell("");
-    this.settling++;
-    await this.pause();
+    const own = await this.halt();
+    const nudging = this.step(handle, way);
+    this.grabbing = nudging.catch(() => undefined);
+    await nudging;
+    await this.settle(own);
+  }
+
+  /** Moves a part by one press of a button; the part is let go in any case. */
+  private async step(handle: Handle, way: Vector): Promise<void> {
     if (this.inRun) await this.ask({ do: "stop", take: true });
     await this.ask({ do: "grab", segment: handle.segment, point: handle.point });
-    const from = this.placeOf(handle);
-    const target = from.map((x, k) => x + way[k]) as Vector;
-    for (let step = 0; step < NUDGE_STEPS; step++) {
-      const answer = await this.ask({ do: "drag", target });
-      if (answer.is === "shown" && (answer.miss ?? 0) < 1e-4) break;
+    try {
+      const target = this.placeOf(handle).map((x, k) => x + way[k]) as Vector;
+      for (let step = 0; step < NUDGE_STEPS; step++) {
+        const answer = await this.ask({ do: "drag", target });
+        if (answer.is === "shown" && (answer.miss ?? 0) < 1e-4) break;
+      }
+    } finally {
+      await this.ask({ do: "release", hold: true });
     }
-    await this.ask({ do: "release", hold: true });
-    await this.settle();
   }
 
   /** Where a point of a segment is in ground. */
@@ -261,18 +282,25 @@ class Studio {
 
   private async play(): Promise<void> {
     if (this.running) return this.pause();
+    const own = ++this.settling;
+    // Nothing else has begun, and the clock runs.
+    const goesOn = () => this.running && own === this.settling;
+    await this.grabbing;
+    if (own !== this.settling) return;
     this.tell(this.inRun ? "" : texts.preparing);
-    this.settling++;
     this.running = true;
     this.panel.running(true);
     const first = await this.ask({ do: "play", samples: 2 });
     if (first.is !== "played") return;
     this.inRun = true;
+    this.lastTime = first.time;
+    if (own !== this.settling) return;
     this.tell("");
     let step = first.time / Math.max(1, first.samples - 1) || 1 / 30;
     let [due, most, last, ended] = [0, 200, performance.now(), first.ended];
-    while (this.running && ended === null) {
+    while (goesOn() && ended === null) {
       await frame();
+      if (!goesOn()) return;
       const now = performance.now();
       due += (this.panel.speed * Math.min(0.25, (now - last) / 1000)) / step;
       last = now;
@@ -285,6 +313,7 @@ class Studio {
       [ended, this.lastTime] = [answer.ended, answer.time];
       step = answer.time / Math.max(1, answer.samples - 1) || step;
     }
+    if (own !== this.settling) return;
     this.running = false;
     this.panel.running(false);
     if (ended !== null) this.tell(texts.ended[ended] ?? ended);
@@ -297,6 +326,7 @@ class Studio {
   }
 
   private async endPlay(take: boolean): Promise<void> {
+    this.settling++;
     await this.pause();
     if (!this.inRun) return;
     const passed = take ? this.before + this.lastTime : 0;
@@ -314,8 +344,7 @@ class Studio {
   private async setStrategy(kind: string): Promise<void> {
     const [went, passed] = [this.running, this.inRun ? this.before + this.lastTime : 0];
     const inRun = this.inRun;
-    this.settling++;
-    await this.pause();
+    await this.halt();
     if (inRun) await this.ask({ do: "stop", take: true });
     await this.ask({ do: "strategy", kind });
     this.before = passed;
@@ -334,12 +363,11 @@ class Studio {
   }
 
   private async openScenario(scenario: string, files: Record<string, string>): Promise<void> {
-    this.settling++;
-    await this.pause();
+    const own = await this.halt();
     const request: Request = { do: "open", scenario, files };
     await this.ask(request);
     this.opened = request;
-    await this.settle();
+    await this.settle(own);
   }
 
   /** Opens a scenario with the files that it names, or a model. */
@@ -354,8 +382,7 @@ class Studio {
     if (scenario) {
       await this.openScenario(read.get(scenario.name)!, Object.fromEntries(read));
     } else if (model) {
-      this.settling++;
-      await this.pause();
+      await this.halt();
       const request: Request = { do: "open_model", name: model.name, text: read.get(model.name)! };
       await this.ask(request);
       this.opened = request;

@@ -7,6 +7,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, plain_group_name, plain_name};
 use contrapposto::posture::Posture;
 use contrapposto::statics::LoadKind;
+use contrapposto::tasks::Task;
 use contrapposto_formats::animation::{joined_by, solids};
 use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use contrapposto_formats::{ModelFile, RelaxScenario, RunScenario, Thing, read_relax, read_run, scenario_model};
@@ -62,6 +63,17 @@ impl Body {
             let names: Vec<&str> = self.model.segments().iter().map(|segment| segment.name.as_str()).collect();
             Refusal(format!("there is no segment `{name}`; there are: {}", names.join(", ")))
         })
+    }
+
+    /// The thing of the scenario that a segment holds.
+    pub(crate) fn thing_in(&self, segment: usize) -> Option<&str> {
+        let levels = self.scenario.goals.iter().zip(&self.scenario.labels);
+        let mut tasks = levels.flat_map(|(level, labels)| level.tasks.iter().zip(labels));
+        let held = tasks.find(|(task, label)| {
+            matches!(task, Task::Point(point) if point.segment == segment) && **label != task.label(&self.model)
+        });
+        // The label of a hand on a thing is that of its task after the name of the thing.
+        held.map(|(_, label)| label.split_once(": ").map_or(label.as_str(), |(thing, _)| thing))
     }
 
     /// Frames in a posture.

@@ -5,9 +5,11 @@
 
 use std::collections::BTreeMap;
 
+use contrapposto::hybrid::Strategy;
 use toml::{Table, Value};
 
 use crate::error::Refusal;
+use crate::events;
 use crate::message::Handle;
 
 /// The scenario of a new page.
@@ -51,7 +53,7 @@ impl Document {
         self.written(None)
     }
 
-    /// The text of the file, whose run ends after `duration`, s.
+    /// The text of the file, whose run ends after `duration`, s. Events that would come later are left out.
     pub(crate) fn text_of_run(&self, duration: f64) -> String {
         self.written(Some(duration))
     }
@@ -64,15 +66,51 @@ impl Document {
         if !tasks.is_empty() {
             table.insert("task".to_owned(), Value::Array(tasks));
         }
+        events::count_on(&mut table, self.held.len());
         if !self.posture.is_empty() {
             let values = self.posture.iter().map(|(name, value)| (name.clone(), Value::Float(*value)));
             table.insert("start_from".to_owned(), Value::Table(values.collect()));
         }
-        if let (Some(duration), Some(Value::Table(run))) = (duration, table.get_mut("run")) {
-            run.insert("duration_s".to_owned(), Value::Float(duration));
+        if let Some(duration) = duration {
+            events::end_at(&mut table, duration);
+            if let Some(Value::Table(run)) = table.get_mut("run") {
+                run.insert("duration_s".to_owned(), Value::Float(duration));
+            }
         }
         // A table of texts and numbers can always be written.
         toml::to_string(&table).unwrap_or_default()
+    }
+
+    /// Holds a point at a place in ground, m, as the last of those that are held; it replaces that of the same segment.
+    pub(crate) fn hold(&mut self, handle: Handle, place: [f64; 3]) {
+        self.free(&handle.segment);
+        self.held.push((handle, place));
+    }
+
+    /// Frees the point of a segment.
+    pub(crate) fn free(&mut self, segment: &str) {
+        self.held.retain(|(handle, _)| handle.segment != segment);
+    }
+
+    /// Whether a point of this segment is held.
+    pub(crate) fn holds(&self, segment: &str) -> bool {
+        self.held.iter().any(|(handle, _)| handle.segment == segment)
+    }
+
+    /// The scenario from a moment of its run on, s: what its events have changed by then is so from the start. `strategies`: by
+    /// coordinate, where an event has changed them.
+    pub(crate) fn begin_at(&mut self, time: f64, strategies: Option<Vec<(String, Strategy)>>) {
+        events::begin_at(&mut self.table, time);
+        let (Some(strategies), Some(Value::Table(table))) = (strategies, self.table.get_mut("strategy")) else {
+            return;
+        };
+        let actives = strategies.iter().filter(|(_, strategy)| *strategy == Strategy::Active).count();
+        let most = if 2 * actives > strategies.len() { Strategy::Active } else { Strategy::Passive };
+        let word = |strategy| Value::String(if strategy == Strategy::Active { "active" } else { "passive" }.to_owned());
+        let others = strategies.into_iter().filter(|(_, strategy)| *strategy != most);
+        let others: Table = others.map(|(name, strategy)| (name, word(strategy))).collect();
+        table.insert("kind".to_owned(), word(most));
+        table.insert("of".to_owned(), Value::Table(others));
     }
 
     /// Sex, stature (m) and mass (kg) of the built-in adult, where the file gives them.
@@ -129,7 +167,6 @@ impl Document {
         if let Some(Value::Table(strategy)) = self.table.get_mut("strategy") {
             strategy.insert("kind".to_owned(), Value::String(kind.to_owned()));
             strategy.remove("of");
-            strategy.remove("by_region");
         }
     }
 

@@ -7,18 +7,24 @@
 //! | File | Holds |
 //! |---|---|
 //! | `message` | requests and answers |
-//! | `document` | the scenario file, its changes, the files that it names |
+//! | `document`, `events` | the scenario file, its changes, the files that it names |
+//! | `history` | all states of the document, for undo and redo |
 //! | `body` | what the readers make of the document |
 //! | `mover` | steps of a posture: dragged, or settling |
+//! | `figure` | a body in a posture, with its mover |
 //! | `shown` | everything that is shown of one posture |
 //! | `balance` | the torques of one joint over its range |
 //! | `sample`, `play` | a run over time |
-//! | `studio` | the session |
+//! | `job`, `studio` | the session |
 
 mod balance;
 mod body;
 mod document;
 mod error;
+mod events;
+mod figure;
+mod history;
+mod job;
 mod message;
 mod mover;
 mod play;

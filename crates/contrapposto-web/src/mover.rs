@@ -1,7 +1,7 @@
 //! Moves a body in balance by single steps: a point that is dragged, or toward the posture of least effort.
 //!
-//! The levels of a step, the most important first: equilibrium with friction, places of the supports, limits, points that are held, the
-//! point that is dragged, the tasks of the scenario, effort.
+//! The levels of a step, the most important first: equilibrium with friction, places of the supports, limits, hands on things of the scenario, points
+//! that are held, the point that is dragged, the tasks of the scenario, effort.
 
 use contrapposto::posture::Posture;
 use contrapposto::posture_solver::{Engine, Options};
@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 
 use crate::body::Body;
 use crate::error::Refusal;
+use crate::message::Handle;
 
 /// Largest change of a joint in one step, rad or m.
 const STEP: f64 = 0.1;
@@ -41,18 +42,14 @@ impl Mover {
         Self::new(body, posture, body.scenario.goals.clone(), true, None)
     }
 
-    /// With a point of a segment that is dragged; `held`: so many of the first levels hold points.
-    pub(crate) fn dragging(
-        body: &Body,
-        posture: &Posture,
-        (segment, point): (usize, Vector3<f64>),
-        held: usize,
-    ) -> Result<Self, Refusal> {
-        let target = body.kinematics(posture)?.station(&body.model, segment, point);
+    /// With a point that is dragged: a task of the body's scenario holds it at `place`, ground, m.
+    pub(crate) fn dragging(body: &Body, posture: &Posture, handle: &Handle, place: [f64; 3]) -> Result<Self, Refusal> {
+        let segment = body.segment(&handle.segment)?;
+        let (point, target) = (Vector3::from(handle.point), Vector3::from(place));
         let task = Task::Point(Point { segment, point, target, axes: [true; 3] });
-        let mut levels = body.scenario.goals.clone();
-        let level = held.min(levels.len());
-        levels.insert(level, task.into());
+        let levels = body.scenario.goals.clone();
+        let level = levels.iter().position(|level| level.tasks.first() == Some(&task));
+        let level = level.ok_or_else(|| Refusal(format!("the {} cannot be dragged", handle.label)))?;
         Self::new(body, posture, levels, false, Some((level, segment, point)))
     }
 

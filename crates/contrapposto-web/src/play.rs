@@ -1,7 +1,9 @@
 //! Lets time run: a run of the scenario, some samples a call, with its log and its verdict so far.
 
+use contrapposto::hybrid::Strategy;
 use contrapposto::model::plain_group_name;
-use contrapposto::simulation::{ReliefRecord, Run, Scenario, StopReason, Summary};
+use contrapposto::simulation::{Event, ReliefRecord, Run, Scenario, StopReason, Summary};
+use contrapposto::statics::Load;
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::{VerdictText, relief_sentence};
 use self_cell::self_cell;
@@ -13,6 +15,8 @@ use crate::message::{LogLine, Played};
 use crate::sample::LastSample;
 use crate::shown;
 
+/// An event happens at a sample that is earlier by less, s.
+const TIME_TOLERANCE: f64 = 1e-9;
 /// Lines of the log that are given with every answer.
 const MOST_LINES: usize = 40;
 
@@ -60,6 +64,27 @@ impl Play {
         self.played(body, ended)
     }
 
+    /// The strategy of every coordinate with muscles, where an event has changed them.
+    pub(crate) fn strategies(&self) -> Option<Vec<(String, Strategy)>> {
+        let scenario = self.course.borrow_owner();
+        let strategies = self.happened().filter_map(|event| event.strategies.as_ref()).last()?;
+        let coordinates = scenario.model.coordinates().iter().zip(strategies);
+        let with_muscles = coordinates.filter(|(coordinate, _)| coordinate.groups.is_some());
+        Some(with_muscles.map(|(coordinate, strategy)| (coordinate.name.clone(), *strategy)).collect())
+    }
+
+    /// The loads of the last sample.
+    fn loads(&self) -> &[Load] {
+        let of_start = &self.course.borrow_owner().loads;
+        self.happened().filter_map(|event| event.loads.as_ref()).last().unwrap_or(of_start)
+    }
+
+    /// The events until the last sample.
+    fn happened(&self) -> impl Iterator<Item = &Event> {
+        let time = self.last.time + TIME_TOLERANCE;
+        self.course.borrow_owner().events.iter().take_while(move |event| event.time <= time)
+    }
+
     fn played(&self, body: &Body, ended: bool) -> Result<Played, Refusal> {
         let (scenario, last) = (self.course.borrow_owner(), &self.last);
         let mut summary = self.course.borrow_dependent().summary();
@@ -82,7 +107,7 @@ impl Play {
             log: log(scenario, &summary),
             decisions: summary.reliefs.count,
             ended: reason,
-            shown: shown::sample(body, last, verdict)?,
+            shown: shown::sample(body, last, self.loads(), verdict)?,
         })
     }
 }

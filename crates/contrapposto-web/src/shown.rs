@@ -41,8 +41,8 @@ pub(crate) fn held(body: &Body, engine: &mut Engine<'_>, posture: &Posture, move
     Ok(numbers.shown(body, posture, torques.kinematics(), (contacts, &body.scenario.loads), verdict, moved))
 }
 
-/// One sample of a run.
-pub(crate) fn sample(body: &Body, sample: &LastSample, verdict: VerdictText) -> Result<Shown, Refusal> {
+/// One sample of a run, under the loads that it has then.
+pub(crate) fn sample(body: &Body, sample: &LastSample, loads: &[Load], verdict: VerdictText) -> Result<Shown, Refusal> {
     let posture = Posture::new(sample.posture.clone());
     let numbers = Numbers {
         angles: angles(body, &sample.posture),
@@ -58,7 +58,7 @@ pub(crate) fn sample(body: &Body, sample: &LastSample, verdict: VerdictText) -> 
     let contacts = sample.standing.iter().flat_map(|standing| &standing.contacts).map(contact).collect();
     let kinematics = body.kinematics(&posture)?;
     let moved = Moved { miss: None, settled: sample.settled };
-    Ok(numbers.shown(body, &posture, &kinematics, (contacts, &body.scenario.loads), verdict, moved))
+    Ok(numbers.shown(body, &posture, &kinematics, (contacts, loads), verdict, moved))
 }
 
 /// By coordinate: angle, torques and load, of three-axis joints about their axes.

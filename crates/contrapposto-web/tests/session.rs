@@ -111,7 +111,7 @@ fn an_exported_posture_is_read_as_the_one_that_was_shown() {
     for _ in 0..50 {
         shown = ask(&mut studio, json!({ "do": "settle" }));
     }
-    let text = ask(&mut studio, json!({ "do": "export" }))["text"].as_str().unwrap().to_owned();
+    let text = exported(&mut studio);
     let opened = ask(&mut Studio::new(), json!({ "do": "open", "scenario": text }));
     for key in ["q", "active"] {
         let (a, b) = (&shown[key], &opened["shown"][key]);
@@ -171,4 +171,172 @@ fn the_torques_of_a_joint_meet_at_its_posture() {
         let shown = number(&scene["shown"][shown][elbow]);
         assert!((sign * on_curve - shown).abs() < 0.05, "{key}: {on_curve} {shown}");
     }
+}
+
+/// The file of a session.
+fn exported(studio: &mut Studio) -> String {
+    ask(studio, json!({ "do": "export" }))["text"].as_str().unwrap().to_owned()
+}
+
+fn settled(studio: &mut Studio, steps: usize) -> Value {
+    (0..steps).map(|_| ask(studio, json!({ "do": "settle" }))).last().unwrap()
+}
+
+#[test]
+fn undo_brings_back_the_posture_that_was_shown_and_redo_the_next_one() {
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": "" }));
+    let before = settled(&mut studio, 20);
+    ask(&mut studio, json!({ "do": "load", "segment": "hand_r", "mass": 5.0 }));
+    let after = settled(&mut studio, 20);
+    assert_ne!(before["q"], after["q"]);
+    let undone = ask(&mut studio, json!({ "do": "undo" }));
+    assert_eq!(before["q"], undone["shown"]["q"]);
+    let redone = ask(&mut studio, json!({ "do": "redo" }));
+    assert_eq!(after["q"], redone["shown"]["q"]);
+}
+
+#[test]
+fn a_grab_without_a_motion_changes_nothing() {
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": "" }));
+    ask(&mut studio, json!({ "do": "load", "segment": "hand_r", "mass": 5.0 }));
+    ask(&mut studio, json!({ "do": "undo" }));
+    ask(&mut studio, json!({ "do": "grab", "segment": "hand_l", "point": [0, 0, 0] }));
+    let released = ask(&mut studio, json!({ "do": "release", "hold": false }));
+    assert_eq!((&released["can_undo"], &released["can_redo"]), (&json!(false), &json!(true)));
+    let redone = ask(&mut studio, json!({ "do": "redo" }));
+    assert_eq!(redone["loads"][0]["mass"], 5.0);
+}
+
+#[test]
+fn a_drag_is_one_change() {
+    let mut studio = Studio::new();
+    let (scene, last) = drag(&mut studio, "left hand", [0.1, 0.2, 0.0], 10);
+    let released = ask(&mut studio, json!({ "do": "release", "hold": true }));
+    assert_ne!(scene["shown"]["q"], last["q"]);
+    assert_eq!(released["can_undo"], true);
+    let undone = ask(&mut studio, json!({ "do": "undo" }));
+    assert_eq!((&undone["can_undo"], &undone["held"]), (&json!(false), &json!([])));
+    assert_eq!(scene["shown"]["q"], undone["shown"]["q"]);
+}
+
+#[test]
+fn refused_requests_leave_a_run_a_grab_and_the_history_as_they_are() {
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": scenario("stand-relaxed") }));
+    ask(&mut studio, json!({ "do": "load", "segment": "hand_r", "mass": 2.0 }));
+    let before = exported(&mut studio);
+    let first = ask(&mut studio, json!({ "do": "play", "samples": 30 }));
+    for request in [
+        json!({ "do": "open", "scenario": "format = 1\n[run]\nduration_s = 1\nstep_s = 0.1\n" }),
+        json!({ "do": "open_model", "name": "body.osim", "text": "<html>" }),
+        json!({ "do": "load", "segment": "hand_r", "mass": -1e300 }),
+        json!({ "do": "strategy", "kind": "lazy" }),
+        json!({ "do": "adult", "sex": "male", "stature": 9.0, "mass": 70.0 }),
+        json!({ "do": "grab", "segment": "hand_r", "point": [0, 0, 0] }),
+        json!({ "do": "settle" }),
+        json!({ "do": "redo" }),
+    ] {
+        refused(&mut studio, request);
+    }
+    let second = ask(&mut studio, json!({ "do": "play", "samples": 30 }));
+    assert!(number(&second["time"]) > number(&first["time"]), "the run began anew");
+    ask(&mut studio, json!({ "do": "stop", "take": false }));
+    assert_eq!(before, exported(&mut studio));
+
+    ask(&mut studio, json!({ "do": "grab", "segment": "hand_l", "point": [0, 0, 0] }));
+    for request in [
+        json!({ "do": "load", "segment": "hand_r", "mass": 1.0 }),
+        json!({ "do": "undo" }),
+        json!({ "do": "play", "samples": 2 }),
+        json!({ "do": "grab", "segment": "hand_r", "point": [0, 0, 0] }),
+    ] {
+        refused(&mut studio, request);
+    }
+    ask(&mut studio, json!({ "do": "drag", "target": [0.3, 1.0, -0.2] }));
+    ask(&mut studio, json!({ "do": "release", "hold": false }));
+}
+
+#[test]
+fn a_held_point_does_not_change_which_task_an_event_names() {
+    let text = format!("{}\n[[event]]\nat_s = 2\ntask = 1\ntarget_m = [0.05, 0, 0]\n", scenario_with_a_task());
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": text }));
+    ask(&mut studio, json!({ "do": "grab", "segment": "hand_l", "point": [0, 0, 0] }));
+    ask(&mut studio, json!({ "do": "release", "hold": true }));
+    let saved = saved(&mut studio);
+    let (tasks, event) = (saved["task"].as_array().unwrap(), &saved["event"][0]);
+    let named = &tasks[event["task"].as_integer().unwrap() as usize - 1];
+    assert_eq!(tasks.len(), 3);
+    assert_eq!(named["kind"].as_str(), Some("center_of_mass"));
+    ask(&mut studio, json!({ "do": "play", "samples": 30 }));
+}
+
+/// A body that keeps its centre of mass, then saves effort.
+fn scenario_with_a_task() -> String {
+    "format = 1\n[floor]\n[strategy]\nkind = \"passive\"\n[run]\nduration_s = 10\nstep_s = 0.1\n[[task]]\nkind = \"center_of_mass\"\n\
+     axes = \"xz\"\ntarget_m = [0.03, 0, 0]\n[[task]]\nkind = \"effort\"\n"
+        .to_owned()
+}
+
+fn saved(studio: &mut Studio) -> toml::Table {
+    exported(studio).parse().unwrap()
+}
+
+#[test]
+fn the_saved_scenario_of_a_run_has_no_event_after_its_end() {
+    let text = format!("{}\n[[event]]\nat_s = 5\nstrategy = \"active\"\n", scenario_with_a_task());
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": text }));
+    let played = ask(&mut studio, json!({ "do": "play", "samples": 21 }));
+    assert_eq!(number(&played["time"]), 2.0);
+    let text = exported(&mut studio);
+    let mut again = Studio::new();
+    ask(&mut again, json!({ "do": "open", "scenario": text }));
+    let replayed = ask(&mut again, json!({ "do": "play", "samples": 30 }));
+    assert_eq!(replayed["ended"], "duration");
+    assert_eq!(played["shown"]["q"], replayed["shown"]["q"]);
+}
+
+#[test]
+fn a_posture_that_is_kept_begins_after_the_events_that_have_happened() {
+    let events = "[[event]]\nat_s = 1\nstrategy = \"active\"\nload = [{ segment = \"hand_r\", mass_kg = 3 }]\n\
+                  [[event]]\nat_s = 1.5\ntask = 1\ntarget_m = [0.05, 0, 0]\n\
+                  [[event]]\nat_s = 1.5\nstrategy_of = { legs = \"passive\" }\n\
+                  [[event]]\nat_s = 5\nload = []\n";
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": format!("{}{events}", scenario_with_a_task()) }));
+    let played = ask(&mut studio, json!({ "do": "play", "samples": 21 }));
+    assert_eq!(played["shown"]["pushes"].as_array().unwrap().len(), 1);
+    let kept = ask(&mut studio, json!({ "do": "stop", "take": true }));
+    assert_eq!(kept["loads"], json!([{ "segment": "hand_r", "mass": 3.0 }]));
+    let saved = saved(&mut studio);
+    assert_eq!(saved["task"][0]["target_m"], toml::from_str::<toml::Table>("a = [0.05, 0, 0]").unwrap()["a"]);
+    let events = saved["event"].as_array().unwrap();
+    assert_eq!((events.len(), events[0]["at_s"].as_float()), (1, Some(3.0)));
+    let of = |name: &str| saved["strategy"]["of"].get(name).unwrap_or(&saved["strategy"]["kind"]).as_str().unwrap();
+    assert_eq!((of("elbow_flex_r"), of("knee_angle_r")), ("active", "passive"));
+    ask(&mut studio, json!({ "do": "play", "samples": 21 }));
+}
+
+#[test]
+fn a_hand_on_a_thing_is_not_dragged_and_a_dragged_point_comes_after_it() {
+    let text = "format = 1\n[model]\nadult = { sex = \"female\", stature_m = 1.65, mass_kg = 60 }\n[[box]]\nmass_kg = 4\n\
+                at_m = [0.35, 1.0, 0]\nsize_m = [0.3, 0.25, 0.35]\n";
+    let mut studio = Studio::new();
+    let scene = ask(&mut studio, json!({ "do": "open", "scenario": text }));
+    let sentence = refused(&mut studio, json!({ "do": "grab", "segment": "hand_r", "point": [0, 0, 0] }));
+    assert!(sentence.contains("holds the box"), "{sentence}");
+    let handle = handle(&scene, "pelvis");
+    let hand = json!({ "segment": "hand_r", "point": [0.0, -0.04 * 1.65, 0.0] });
+    let (from, before) = (place(&scene, &scene["shown"], &handle), place(&scene, &scene["shown"], &hand));
+    ask(&mut studio, json!({ "do": "grab", "segment": handle["segment"], "point": handle["point"] }));
+    let mut last = Value::Null;
+    for _ in 0..60 {
+        last = ask(&mut studio, json!({ "do": "drag", "target": [from[0] - 0.4, from[1], from[2]] }));
+    }
+    let after = place(&scene, &last, &hand);
+    let way = (0..3).map(|k| (after[k] - before[k]).powi(2)).sum::<f64>().sqrt();
+    assert!(way < 0.01, "the hand left the box by {way} m");
 }
