@@ -13,6 +13,7 @@ use super::tolerances::{
     FINAL_VIOLATION, LARGEST_RANGE, LEAST_IMPROVEMENT, PERTURBED_COORDINATES, PERTURBED_SHARE, SEARCH_VIOLATION,
 };
 use crate::joint_torques::JointTorquesError;
+use crate::math::next_number;
 use crate::model::Model;
 use crate::posture::Posture;
 
@@ -273,14 +274,4 @@ impl Hop {
         }));
         self.perturbation.resize(problem.unknowns(), 0.0);
     }
-}
-
-/// The next number from -1 to 1 (Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators").
-fn next_number(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^= z >> 31;
-    (z >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }

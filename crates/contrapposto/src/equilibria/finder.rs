@@ -2,10 +2,11 @@
 
 use super::candidate::{Candidate, places};
 use super::description::{describe, relative_torques};
-use super::hanging_limbs::hanging_limbs;
+use super::hanging_limbs::{hanging_limbs, in_mid_range};
 use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
+use super::scattered::{SCATTERED, scattered};
 use super::search::{Search, SearchError};
 use super::ways_to_stand::DifferentWays;
 use crate::contact::{Condition, Missing};
@@ -140,6 +141,7 @@ impl<'a> Finder<'a> {
             self.explore_goals(&best.relaxed.posture)?;
             explored.push(best);
         }
+        self.explore_scattered();
         let Some(mirror) = Mirror::of(self.search.model) else { return Ok(()) };
         for i in 0..self.found.len() {
             let Some(image) = self.found[i].image(self.search.model, &mirror) else { continue };
@@ -236,8 +238,16 @@ impl<'a> Finder<'a> {
                 return;
             }
             self.approach.levels_mut()[self.slot].tasks = vec![task];
-            let from = self.approached(self.search.start);
+            let (_, from) = self.approached(self.search.start);
             self.solve(Stage::Exploratory, &from, vec![label]);
+        }
+    }
+
+    /// Solves from starts that are scattered over the ranges of the joints.
+    fn explore_scattered(&mut self) {
+        for k in 0..SCATTERED {
+            let from = scattered(self.search.model, self.search.start, self.search.locked, k);
+            self.solve_from_tasks(&from, format!("scattered start {}", k + 1));
         }
     }
 
@@ -246,9 +256,18 @@ impl<'a> Finder<'a> {
         let converged = self.selected(Stage::Converged).into_iter().map(|i| &self.found[i].relaxed);
         let Some(best) = converged.min_by(|a, b| a.effort.total_cmp(&b.effort)) else { return };
         let from = best.posture.clone();
-        let Ok(tasks) = hanging_limbs(self.search.model, self.search.supports, &from) else { return };
-        self.approach.levels_mut()[self.slot].tasks = tasks;
-        let from = self.approached(&from);
+        let (model, supports) = (self.search.model, self.search.supports);
+        let Ok(tasks) = hanging_limbs(model, supports, &from) else { return };
+        // Along the shortest turn a joint may meet the end of its range: the second approach begins in the middle of the ranges.
+        let mut nearest = (f64::INFINITY, from.clone());
+        for from in [in_mid_range(model, supports, &from), from] {
+            self.approach.levels_mut()[self.slot].tasks.clone_from(&tasks);
+            let hanging = self.approached(&from);
+            if hanging.0 <= nearest.0 {
+                nearest = hanging;
+            }
+        }
+        let (_, from) = nearest;
         self.solve(Stage::Converged, &from, vec!["limbs that carry nothing hang".to_owned()]);
     }
 
@@ -257,12 +276,12 @@ impl<'a> Finder<'a> {
         if self.is_spent(Stage::Exploratory) {
             return;
         }
-        let posture = self.approached(from);
+        let (_, posture) = self.approached(from);
         self.solve(Stage::Exploratory, &posture, vec![start]);
     }
 
-    /// The posture moved to the tasks, and below them to those of the approach's last level, which are removed.
-    fn approached(&mut self, from: &Posture) -> Posture {
+    /// The posture moved to the tasks, and below them to those of the approach's last level, which are removed, and its distance from them.
+    fn approached(&mut self, from: &Posture) -> (f64, Posture) {
         let mut posture = from.clone();
         self.approach.restart();
         for _ in 0..EXPLORATORY_STEPS {
@@ -272,8 +291,9 @@ impl<'a> Finder<'a> {
                 _ => break,
             }
         }
+        let distance = self.approach.evaluate(&posture).map_or(f64::INFINITY, |()| self.approach.error(self.slot));
         self.approach.levels_mut()[self.slot].tasks.clear();
-        posture
+        (distance, posture)
     }
 
     /// The posture of least effort so far.

@@ -6,34 +6,59 @@ use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::tasks::{Point, Task};
 
-/// For the last segment of every limb that moves no support: its centre of mass straight below the joint where the limb begins, as
-/// far as it is from that joint in `posture`.
-pub(super) fn hanging_limbs(model: &Model, supports: &[Support], posture: &Posture) -> Result<Vec<Task>, PostureError> {
-    let Some(down) = model.gravity().try_normalize(0.0) else { return Ok(vec![]) };
-    let mut kinematics = Kinematics::new(model);
-    kinematics.update(model, posture)?;
+/// The limbs that move no support: each a chain of segments, from the joint where the limb begins to its last segment.
+fn free_limbs(model: &Model, supports: &[Support]) -> Vec<Vec<usize>> {
     let moves = rates_that_move(model, supports);
     let carries = |segment: usize| {
         let rates = model.segments()[segment].mobility.map(|mobility| model.rates_of(mobility));
         rates.is_none_or(|mut rates| rates.any(|rate| moves[rate]))
     };
     let children = |segment: usize| model.segments().iter().filter(move |other| other.parent == Some(segment)).count();
-    let mut tasks = vec![];
-    for (leaf, last) in model.segments().iter().enumerate() {
-        if children(leaf) > 0 || carries(leaf) || last.mass <= 0.0 {
-            continue;
-        }
-        let mut first = leaf;
-        while let Some(parent) = model.segments()[first].parent {
-            if carries(parent) || children(parent) > 1 {
-                break;
-            }
-            first = parent;
-        }
+    let ends = (0..model.segments().len()).filter(|&last| children(last) == 0 && !carries(last));
+    let limb = |last: usize| {
+        let parent = |segment: &usize| model.segments()[*segment].parent;
+        let belongs = |parent: &usize| !carries(*parent) && children(*parent) == 1;
+        let mut limb: Vec<usize> =
+            std::iter::successors(Some(last), |segment| parent(segment).filter(belongs)).collect();
+        limb.reverse();
+        limb
+    };
+    ends.map(limb).collect()
+}
+
+/// For the last segment of every limb that moves no support: its centre of mass straight below the joint where the limb begins, as
+/// far as it is from that joint in `posture`.
+pub(super) fn hanging_limbs(model: &Model, supports: &[Support], posture: &Posture) -> Result<Vec<Task>, PostureError> {
+    let Some(down) = model.gravity().try_normalize(0.0) else { return Ok(vec![]) };
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, posture)?;
+    let task = |limb: Vec<usize>| {
+        let (&first, &segment) = limb.first().zip(limb.last())?;
+        let last = &model.segments()[segment];
         let joint = kinematics.placement(model, first).translation.vector;
-        let end = kinematics.station(model, leaf, last.center_of_mass);
+        let end = kinematics.station(model, segment, last.center_of_mass);
         let target = joint + (end - joint).norm() * down;
-        tasks.push(Task::Point(Point { segment: leaf, point: last.center_of_mass, target, axes: [true; 3] }));
+        let point = Point { segment, point: last.center_of_mass, target, axes: [true; 3] };
+        (last.mass > 0.0).then_some(Task::Point(point))
+    };
+    Ok(free_limbs(model, supports).into_iter().filter_map(task).collect())
+}
+
+/// `posture` with the limbs that move no support in the middle of their finite ranges.
+pub(super) fn in_mid_range(model: &Model, supports: &[Support], posture: &Posture) -> Posture {
+    let mut step = vec![0.0; model.rates().len()];
+    for segment in free_limbs(model, supports).concat() {
+        let rates = model.segments()[segment].mobility.map(|mobility| model.rates_of(mobility));
+        for rate in rates.into_iter().flatten() {
+            let Some(coordinate) = model.rates()[rate].coordinate else { continue };
+            let (lower, upper) = model.coordinates()[coordinate].range;
+            if (upper - lower).is_finite() && !model.coordinates()[coordinate].locked && !model.is_dependent(coordinate)
+            {
+                step[rate] = 0.5 * (lower + upper) - posture.values()[coordinate];
+            }
+        }
     }
-    Ok(tasks)
+    let mut middle = posture.clone();
+    middle.displace(model, &step);
+    middle
 }

@@ -1,7 +1,7 @@
 //! Searches for the different postures of least effort under supports and tasks, and computes their stability.
 //!
 //! Effort has many local minima; the one that [`Engine`](crate::posture_solver::Engine) finds depends on its start. The starts are
-//! given by the body and the tables of the paper (`finder.rs`), none by chance:
+//! given by the body, the tables of the paper, and a fixed sequence of numbers (`finder.rs`):
 //!
 //! 1. the start of the scenario, moved to its tasks first,
 //!    the same with the limbs that carry nothing hanging, and with each free support put elsewhere in its region;
@@ -11,7 +11,8 @@
 //!    effort; exploratory steps follow with and then without them. Active goals lie where passive curves are flat, passive ones
 //!    near the ends of ranges, where ligaments carry;
 //! 3. the same from the posture of least effort so far, if that is a new one;
-//! 4. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise.
+//! 4. postures scattered over the ranges of the joints (`scattered.rs`), moved to the tasks likewise;
+//! 5. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise.
 //!
 //! From every different posture the engine then converges. Two postures count as one if at no joint the torque of loads or of
 //! passive tissue differs by more than a twentieth of the strength there and no segment is elsewhere: minima can be flat, a forearm
@@ -26,6 +27,7 @@ mod hanging_limbs;
 mod mirror;
 mod other_places;
 mod outcome;
+mod scattered;
 mod search;
 mod stability;
 mod ways_to_stand;

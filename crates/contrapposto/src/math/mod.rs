@@ -1,5 +1,6 @@
 //! Numerical ground floor: root finding, monotone curves, functions of one variable, filters and splines of samples,
-//! angles of a rotation, closest points, linear programs. Knows nothing of bodies.
+//! angles of a rotation, closest points, linear programs, a sequence of
+//! random numbers. Knows nothing of bodies.
 
 mod closest_points;
 mod dichotomy;
@@ -10,6 +11,7 @@ mod linear_program;
 mod lowpass;
 mod monotone_cubic;
 mod quintic_spline;
+mod random;
 mod swing_twist;
 
 pub use closest_points::{closest_on_segments, closest_to_block};
@@ -19,4 +21,5 @@ pub(crate) use linear_program::{LinearProgram, Optimum};
 pub use lowpass::{Lowpass, reflected};
 pub use monotone_cubic::{MonotoneCubic, Piece};
 pub use quintic_spline::{LEAST_POINTS, QuinticBasis, QuinticSpline};
+pub(crate) use random::next_number;
 pub use swing_twist::{Angles, SwingTwist};
