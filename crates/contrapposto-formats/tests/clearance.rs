@@ -143,6 +143,7 @@ fn postures_of_least_effort_have_no_part_in_another_or_in_the_floor() {
             loads: &scenario.loads,
             locked: &scenario.locked,
             most_work: usize::MAX,
+            scattered: contrapposto::equilibria::SCATTERED_STARTS,
         };
         let found = equilibria(&search, Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() }).unwrap();
         let carrying: Vec<usize> = scenario.supports.iter().map(|support| support.segment).collect();

@@ -78,7 +78,17 @@ impl Kept {
 
     fn search(&self) -> Search<'_> {
         let RelaxScenario { model, start, supports, limits, goals, loads, locked, .. } = &self.scenario;
-        Search { model, start, supports, limits, goals, loads, locked, most_work: usize::MAX }
+        Search {
+            model,
+            start,
+            supports,
+            limits,
+            goals,
+            loads,
+            locked,
+            most_work: usize::MAX,
+            scattered: contrapposto::equilibria::SCATTERED_STARTS,
+        }
     }
 
     /// The share by which `relax` may need more.

@@ -75,6 +75,7 @@ fn most_tired(text: &str, model: Option<Model>) -> Tired {
         loads: &scenario.loads,
         locked: &scenario.locked,
         most_work: usize::MAX,
+        scattered: contrapposto::equilibria::SCATTERED_STARTS,
     };
     let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
     let found = equilibria(&search, options).unwrap();

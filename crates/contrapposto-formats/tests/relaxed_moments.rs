@@ -83,7 +83,17 @@ fn load_of_the_shoulders_is_that_of_their_moment_in_every_posture_found() {
     ] {
         let scenario = scenario(name);
         let RelaxScenario { model, start, supports, limits, goals, loads, locked, .. } = &scenario;
-        let search = Search { model, start, supports, limits, goals, loads, locked, most_work: usize::MAX };
+        let search = Search {
+            model,
+            start,
+            supports,
+            limits,
+            goals,
+            loads,
+            locked,
+            most_work: usize::MAX,
+            scattered: contrapposto::equilibria::SCATTERED_STARTS,
+        };
         let options = Options { max_step: 0.1, max_steps: 40, ..Options::least_effort() };
         let found = equilibria(&search, options).unwrap();
         let mut body = JointTorques::new(model);

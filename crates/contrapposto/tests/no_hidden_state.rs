@@ -207,6 +207,7 @@ impl Setting {
                 loads,
                 locked: &[],
                 most_work: usize::MAX,
+                scattered: contrapposto::equilibria::SCATTERED_STARTS,
             };
             format!(
                 "{:?}",

@@ -91,6 +91,7 @@ impl Standing {
             loads: &self.loads,
             locked: &[],
             most_work: usize::MAX,
+            scattered: contrapposto::equilibria::SCATTERED_STARTS,
         }
     }
 

@@ -185,6 +185,7 @@ fn least_effort_in_balance(scenario: &PoseScenario, goals: &[PriorityLevel]) -> 
         loads: &scenario.loads,
         locked: &scenario.locked,
         most_work: MOST_BALANCE_WORK,
+        scattered: contrapposto::equilibria::SCATTERED_STARTS,
     };
     let found = equilibria(&search, Options { local_minima: 0, ..Options::least_effort() }).ok()?;
     found.postures.into_iter().next().map(|best| best.relaxed)

@@ -101,6 +101,7 @@ fn search(scenario: &RelaxScenario) -> Search<'_> {
         loads: &scenario.loads,
         locked: &scenario.locked,
         most_work: usize::MAX,
+        scattered: contrapposto::equilibria::SCATTERED_STARTS,
     }
 }
 

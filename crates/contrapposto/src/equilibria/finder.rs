@@ -6,7 +6,7 @@ use super::hanging_limbs::{hanging_limbs, in_mid_range};
 use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
-use super::scattered::{SCATTERED, scattered};
+use super::scattered::scattered;
 use super::search::{Search, SearchError};
 use super::ways_to_stand::DifferentWays;
 use crate::contact::{Condition, Missing};
@@ -245,7 +245,7 @@ impl<'a> Finder<'a> {
 
     /// Solves from starts that are scattered over the ranges of the joints.
     fn explore_scattered(&mut self) {
-        for k in 0..SCATTERED {
+        for k in 0..self.search.scattered {
             let from = scattered(self.search.model, self.search.start, self.search.locked, k);
             self.solve_from_tasks(&from, format!("scattered start {}", k + 1));
         }

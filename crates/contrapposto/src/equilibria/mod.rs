@@ -35,5 +35,6 @@ mod ways_to_stand;
 pub use finder::equilibria;
 pub use mirror::Mirror;
 pub use outcome::{Carried, Equilibria, Hanging, RelaxedPosture, Work};
+pub use scattered::SCATTERED_STARTS;
 pub use search::{Search, SearchError};
 pub use stability::{Direction, LEAST_MASS, Stability, stability, stiffness};

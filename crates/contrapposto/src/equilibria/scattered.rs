@@ -7,9 +7,9 @@ use crate::math::next_number;
 use crate::model::Model;
 use crate::posture::Posture;
 
-/// Number of scattered starts: with so many, four of four scenarios reach the least effort that 50 runs of SLSQP reach, with twelve two do
+/// Usual number of scattered starts: with so many, four of four scenarios reach the least effort that 50 runs of SLSQP reach, with twelve two do
 /// (docs/benchmarks.md).
-pub(super) const SCATTERED: usize = 16;
+pub const SCATTERED_STARTS: usize = 16;
 
 /// Start number `k`: every coordinate that may move lies a third (even `k`) or two thirds of the way from its value in `start` to a random
 /// place of its range; from farther, SLSQP reaches low minima more seldom. Coordinates without a finite range, such as those of the root, stay.

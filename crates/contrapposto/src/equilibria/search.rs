@@ -27,6 +27,9 @@ pub struct Search<'a> {
     /// Greatest work ([`Equilibria::work`](super::Equilibria::work)): no start is begun after so much, nor after three quarters while starts
     /// are explored, so that a search ends at the same start on every machine.
     pub most_work: usize,
+    /// Number of starts that are scattered over the ranges of the joints ([`SCATTERED_STARTS`](super::SCATTERED_STARTS) finds what random starts
+    /// of another method find); 0 where the posture is known to be near, as in a run.
+    pub scattered: usize,
 }
 
 /// Why no posture was found.

@@ -85,6 +85,7 @@ pub(super) fn search(
         loads: now.loads,
         locked,
         most_work: budget,
+        scattered: 0,
     };
     let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };
     let found = equilibria(&search, options)?;

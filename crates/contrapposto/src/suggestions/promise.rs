@@ -30,6 +30,7 @@ pub fn by_promise(scenario: &Scenario, summary: &Summary, changes: Vec<Change>) 
             loads: &end.loads,
             locked: &locked,
             most_work: usize::MAX,
+            scattered: crate::equilibria::SCATTERED_STARTS,
         },
         changes,
     )
