@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, places};
 use super::description::{describe, relative_torques};
-use super::hanging_limbs::{hanging_limbs, in_mid_range};
+use super::hanging_limbs::{hanging_limbs, idle_segments, in_mid_range};
 use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
@@ -338,7 +338,8 @@ impl<'a> Finder<'a> {
         }
         selected.sort_by(|&a, &b| self.found[a].relaxed.effort.total_cmp(&self.found[b].relaxed.effort));
         let yielded = self.found.len() - selected.len();
-        let (mut answers, engine) = (DifferentWays::default(), &mut self.engines[Stage::Converged as usize]);
+        let (mut answers, engine) =
+            (DifferentWays::new(idle_segments(self.search)), &mut self.engines[Stage::Converged as usize]);
         for i in selected {
             let Candidate { relaxed, starts, .. } = self.found[i].clone();
             let posture = describe(self.search, engine, relaxed, starts)?;

@@ -1,10 +1,12 @@
-//! States the tasks by which limbs that carry nothing hang: a start of a search.
+//! Finds the limbs that carry nothing, and states the tasks by which they hang: a start of a search.
 
 use crate::contact::{Support, rates_that_move};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
 use crate::tasks::{Point, Task};
+
+use super::search::Search;
 
 /// The limbs that move no support: each a chain of segments, from the joint where the limb begins to its last segment.
 fn free_limbs(model: &Model, supports: &[Support]) -> Vec<Vec<usize>> {
@@ -24,6 +26,23 @@ fn free_limbs(model: &Model, supports: &[Support]) -> Vec<Vec<usize>> {
         limb
     };
     ends.map(limb).collect()
+}
+
+/// Whether each segment belongs to a limb that moves no support, bears no load and has no task: the posture of such a limb is no other way to
+/// stand. Without supports there is none.
+pub(super) fn idle_segments(search: &Search<'_>) -> Vec<bool> {
+    let mut idle = vec![false; search.model.segments().len()];
+    if search.supports.is_empty() {
+        return idle;
+    }
+    for limb in free_limbs(search.model, search.supports) {
+        let is_loaded = limb.iter().any(|segment| search.loads.iter().any(|load| load.segment == *segment));
+        let tasks = || search.goals.iter().flat_map(|level| &level.tasks);
+        let has_task = limb.iter().any(|&segment| tasks().any(|task| task.concerns(search.model, segment)));
+        // The joint where the limb begins belongs to the body.
+        limb.iter().skip(1).for_each(|&segment| idle[segment] = !is_loaded && !has_task);
+    }
+    idle
 }
 
 /// For the last segment of every limb that moves no support: its centre of mass straight below the joint where the limb begins, as

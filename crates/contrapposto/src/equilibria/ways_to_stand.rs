@@ -1,7 +1,8 @@
 //! Decides which postures are different ways to stand.
 //!
 //! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than 5 cm,
-//! and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. A posture in
+//! and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. Limbs that carry
+//! nothing and have no task do not count: an arm up and an arm down are one way to stand, and that of less effort is the answer. A posture in
 //! which a group would need more than its strength is no way to stand where another posture needs less.
 
 use nalgebra::Vector3;
@@ -19,8 +20,10 @@ const SAME_SHARE: f64 = 0.1;
 const MOST_POSTURES: usize = 5;
 
 /// The first of the postures of each way to stand.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct DifferentWays {
+    /// By segment: its joint does not count.
+    idle: Vec<bool>,
     pub(super) postures: Vec<RelaxedPosture>,
     /// Postures left out.
     pub(super) alike: usize,
@@ -28,9 +31,14 @@ pub(super) struct DifferentWays {
 }
 
 impl DifferentWays {
+    /// `idle`: by segment, whether the place of its joint does not count.
+    pub(super) fn new(idle: Vec<bool>) -> Self {
+        Self { idle, postures: vec![], alike: 0, ways: vec![] }
+    }
+
     /// Takes the next posture, of more effort than those before; `kinematics` are those of the posture.
     pub(super) fn take(&mut self, model: &Model, kinematics: &Kinematics, posture: RelaxedPosture) {
-        let way = WayToStand::of(model, kinematics, &posture.supports);
+        let way = WayToStand::of(model, kinematics, &posture.supports, &self.idle);
         let held = posture.work.iter().all(|work: &Work| work.relative_load() <= 1.0);
         let new = self.postures.len() < MOST_POSTURES && held && !self.ways.iter().any(|known| known.is_like(&way));
         if self.postures.is_empty() || new {
@@ -42,7 +50,7 @@ impl DifferentWays {
     }
 }
 
-/// The places of all joints, and the shares of all supports.
+/// The places of the joints that count, and the shares of all supports.
 #[derive(Clone, Debug)]
 struct WayToStand {
     joints: Vec<Vector3<f64>>,
@@ -50,8 +58,8 @@ struct WayToStand {
 }
 
 impl WayToStand {
-    fn of(model: &Model, kinematics: &Kinematics, supports: &[Carried]) -> Self {
-        let segments = 0..model.segments().len();
+    fn of(model: &Model, kinematics: &Kinematics, supports: &[Carried], idle: &[bool]) -> Self {
+        let segments = (0..model.segments().len()).filter(|&segment| !idle[segment]);
         Self {
             joints: segments.map(|segment| kinematics.placement(model, segment).translation.vector).collect(),
             shares: supports.iter().map(|support| support.share).collect(),

@@ -121,6 +121,23 @@ impl Task {
         }
     }
 
+    /// Whether the task asks something of a segment by itself: of its place, its turn, or of a coordinate of its joint.
+    pub(crate) fn concerns(&self, model: &Model, segment: usize) -> bool {
+        match self {
+            Self::Point(Point { segment: of, .. })
+            | Self::Orientation(Orientation { segment: of, .. })
+            | Self::Placement(Placement { segment: of, .. })
+            | Self::LookAt(LookAt { segment: of, .. })
+            | Self::Bounds(Bounds { segment: of, .. }) => *of == segment,
+            Self::Distance(task) => [task.a.0, task.b.0].contains(&segment),
+            Self::Posture(task) => {
+                let rates = model.segments()[segment].mobility.map(|mobility| model.rates_of(mobility));
+                rates.into_iter().flatten().any(|rate| task.weights[rate] > 0.0)
+            }
+            Self::Clearance(_) | Self::CenterOfMass(_) | Self::Effort(_) => false,
+        }
+    }
+
     /// Unit of the error of a row.
     ///
     /// # Panics

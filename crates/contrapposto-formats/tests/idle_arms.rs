@@ -1,0 +1,96 @@
+//! Arms that carry nothing and have no task hang: at the start of every run of `scenarios/`, and in the posture of least effort that `relax` finds.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
+
+use std::path::{Path, PathBuf};
+
+use contrapposto::contact::Support;
+use contrapposto::equilibria::{SCATTERED_STARTS, Search, equilibria};
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto::posture_solver::Options;
+use contrapposto::simulation::run;
+use contrapposto::statics::Load;
+use contrapposto::tasks::Task;
+use contrapposto_formats::{RelaxScenario, read_relax, read_scenario};
+
+/// The scenarios of the adult.
+fn files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.is_file() && !std::fs::read_to_string(file).unwrap().contains("file ="));
+    files.sort();
+    files
+}
+
+/// How far the hand is above the shoulder of its side, m, for the arms without support, load and task of their own.
+fn idle_arms<'a>(
+    model: &Model,
+    posture: &Posture,
+    (supports, loads): (&[Support], &[Load]),
+    tasks: impl Iterator<Item = &'a Task> + Clone,
+) -> Vec<(&'static str, f64)> {
+    let mut kinematics = Kinematics::new(model);
+    kinematics.update(model, posture).unwrap();
+    let height = |name: &str| kinematics.placement(model, model.segment(name).unwrap()).translation.vector.y;
+    let mut found = vec![];
+    for (arm, segments) in [
+        ("right", ["hand_r", "radius_r", "ulna_r", "humerus_r"]),
+        ("left", ["hand_l", "radius_l", "ulna_l", "humerus_l"]),
+    ] {
+        let is_of_arm = |segment: usize| segments.contains(&&*model.segments()[segment].name);
+        let tasked = tasks.clone().any(|task| segments.iter().any(|name| task.label(model).contains(name)));
+        let carries = supports.iter().any(|support| is_of_arm(support.segment));
+        if !tasked && !carries && !loads.iter().any(|load| is_of_arm(load.segment)) {
+            found.push((arm, height(segments[0]) - height(segments[3])));
+        }
+    }
+    found
+}
+
+#[test]
+fn idle_arms_hang_at_the_start_of_every_run() {
+    let mut arms = 0;
+    for file in files() {
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        let mut scenario = read_scenario(&name, &std::fs::read(&file).unwrap(), None).unwrap();
+        if scenario.supports.is_empty() {
+            continue;
+        }
+        scenario.run.duration = 0.05;
+        scenario.events.clear();
+        let tasks: Vec<Task> = scenario.tasks.iter().flat_map(|task| task.goal.tasks.clone()).collect();
+        let mut first = None;
+        run(&scenario, |sample| {
+            first.get_or_insert_with(|| Posture::new(sample.posture.to_vec()));
+        })
+        .unwrap();
+        let held = (&scenario.supports[..], &scenario.loads[..]);
+        for (arm, above) in idle_arms(&scenario.model, &first.unwrap(), held, tasks.iter()) {
+            println!("{name}: {arm} hand {above:+.2} m above the shoulder");
+            assert!(above < 0.0, "{name}: the {arm} hand is {above} m above the shoulder");
+            arms += 1;
+        }
+    }
+    assert!(arms >= 8, "{arms}");
+}
+
+#[test]
+fn idle_arms_hang_where_relax_finds_the_least_effort() {
+    for name in ["reach-floor", "screw-overhead", "stand-relaxed"] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/{name}.toml"));
+        let scenario = read_relax(name, &std::fs::read(file).unwrap(), None).unwrap();
+        let RelaxScenario { model, start, supports, limits, goals, loads, locked, .. } = &scenario;
+        let (most_work, scattered) = (usize::MAX, SCATTERED_STARTS);
+        let search = Search { model, start, supports, limits, goals, loads, locked, most_work, scattered };
+        let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
+        let tasks: Vec<Task> = goals.iter().flat_map(|level| level.tasks.clone()).collect();
+        let found = equilibria(&search, options).unwrap();
+        let arms = idle_arms(model, &found.postures[0].relaxed.posture, (supports, loads), tasks.iter());
+        assert!(!arms.is_empty(), "{name}");
+        for (arm, above) in arms {
+            assert!(above < 0.0, "{name}: the {arm} hand is {above} m above the shoulder");
+        }
+    }
+}
