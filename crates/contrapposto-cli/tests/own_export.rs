@@ -61,7 +61,7 @@ fn a_run_and_the_assessment_of_its_export_give_the_same_verdict_and_the_same_haz
 fn a_changed_force_of_an_export_stays_and_a_given_person_counts() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("body.osim");
-    let written = contrapposto(&["convert", "adult:female,1.65m,62kg", "body.osim"]).folder(folder.path()).run();
+    let written = contrapposto(["convert", "adult:female,1.65m,62kg", "body.osim"]).folder(folder.path()).run();
     assert_eq!(written.code, 0, "{}", written.stderr);
     let text = std::fs::read_to_string(&file).unwrap();
     assert!(text.contains("<credits>Built-in adult of contrapposto: adult:female,1.65m,62kg</credits>"), "{text}");

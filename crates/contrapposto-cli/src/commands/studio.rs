@@ -23,7 +23,7 @@ const MOST_HEAD: u64 = 16 << 10;
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Longest scenario that an address can hold in every browser, and an argument on Linux, bytes.
 const MOST_IN_ADDRESS: usize = 64 << 10;
-/// What the page and its workers may load; a worker takes the policy of its own answer, not that of the page.
+/// Content policy: lists all that the page and its workers may load. A worker takes the policy of its own answer, not that of the page.
 const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; \
      img-src 'self' blob: data:; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 

@@ -29,6 +29,8 @@ const ALLOWED_ERROR: [f64; 3] = [0.02, 1e-5, 1e-5];
 const ALLOWED_MISSING: [f64; 3] = [1e-3, 1e-8, 1e-8];
 /// Change of every rate below which the approach to the tasks ends, rad or m.
 const APPROACH_TOLERANCE: f64 = 1e-6;
+/// Distance of the ends of limbs from hanging up to which an approach is not tried in another way, m.
+const HANGING: f64 = 0.01;
 /// Missing forces of a posture whose numbers are not finite.
 const EVERYTHING: Missing = Missing { force: f64::INFINITY, moment: f64::INFINITY, condition: Condition::Other };
 
@@ -258,16 +260,16 @@ impl<'a> Finder<'a> {
         let from = best.posture.clone();
         let (model, supports) = (self.search.model, self.search.supports);
         let Ok(tasks) = hanging_limbs(model, supports, &from) else { return };
-        // Along the shortest turn a joint may meet the end of its range: the second approach begins in the middle of the ranges.
-        let mut nearest = (f64::INFINITY, from.clone());
-        for from in [in_mid_range(model, supports, &from), from] {
-            self.approach.levels_mut()[self.slot].tasks.clone_from(&tasks);
-            let hanging = self.approached(&from);
-            if hanging.0 <= nearest.0 {
-                nearest = hanging;
+        let mut from = self.approached_with(&tasks, &from);
+        if from.0 > HANGING {
+            // Along the shortest turn a joint may meet the end of its range: the other way begins in the middle of the ranges.
+            let middle = in_mid_range(model, supports, &from.1);
+            let other = self.approached_with(&tasks, &middle);
+            if other.0 < from.0 - HANGING {
+                from = other;
             }
         }
-        let (_, from) = nearest;
+        let (_, from) = from;
         self.solve(Stage::Converged, &from, vec!["limbs that carry nothing hang".to_owned()]);
     }
 
@@ -278,6 +280,12 @@ impl<'a> Finder<'a> {
         }
         let (_, posture) = self.approached(from);
         self.solve(Stage::Exploratory, &posture, vec![start]);
+    }
+
+    /// [`Self::approached`], with these tasks in the last level.
+    fn approached_with(&mut self, tasks: &[Task], from: &Posture) -> (f64, Posture) {
+        self.approach.levels_mut()[self.slot].tasks = tasks.to_vec();
+        self.approached(from)
     }
 
     /// The posture moved to the tasks, and below them to those of the approach's last level, which are removed, and its distance from them.
