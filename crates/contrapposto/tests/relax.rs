@@ -185,7 +185,7 @@ fn the_other_leg_gives_the_mirror_image() {
     let a = resting_left();
     let b = equilibria(&right.search(), OPTIONS).unwrap();
     assert_eq!(a.postures.len(), b.postures.len());
-    for (a, b) in a.postures.iter().zip(&b.postures) {
+    for (rank, (a, b)) in a.postures.iter().zip(&b.postures).enumerate() {
         let image = mirror.posture(&a.relaxed.posture);
         // Forearms weigh on no muscle however they are turned: of arms only what muscles feel is compared.
         let body = |name: &str| {
@@ -210,8 +210,12 @@ fn the_other_leg_gives_the_mirror_image() {
             "mirror image: effort {:.9} differs by {effort:.1e}, `{}` by {:.1e} rad, loads by {:.1e}, {:?} {:?}",
             a.relaxed.effort, worst.1, worst.0, worst.2, a.relaxed.reason, b.relaxed.reason
         );
-        assert!(effort < 1e-6, "{effort}");
-        assert!(worst.2 < 1e-3);
+        if rank == 0 {
+            assert!(effort < 1e-12, "{effort}");
+            assert!(worst.2 < 1e-9);
+        }
+        // Of local minima so near that they count as one, the order of the starts decides which one is the answer.
+        assert!(effort < 1e-3 * a.relaxed.effort, "{effort}");
         for (a, b) in a.supports.iter().zip(b.supports.iter().rev()) {
             assert!((a.share - b.share).abs() < 1e-6);
         }

@@ -245,8 +245,12 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// Solves from starts that are scattered over the ranges of the joints.
+    /// Solves from starts that are scattered over the ranges of the joints, where the body stands in some posture: of a body that falls, the
+    /// missing force of an ordinary posture is told.
     fn explore_scattered(&mut self) {
+        if self.found.is_empty() {
+            return;
+        }
         for k in 0..self.search.scattered {
             let from = scattered(self.search.model, self.search.start, self.search.locked, k);
             self.solve_from_tasks(&from, format!("scattered start {}", k + 1));
