@@ -66,18 +66,21 @@ test("200 drags, torques of a joint, a load: the module agrees with the native p
 
 // Probably the libraries of the two differ in the last digit of sines and exponentials. Where a body descends to its posture of least effort, a search
 // passes through postures that depend on that digit; the posture that it comes to does not.
-test("ten minutes of stand-relaxed: the same decisions; numbers to 1e-9 but within one second of descent", (t) => {
+test("ten minutes of stand-relaxed: the same decisions; postures to 1e-9, torques to 1e-8, but within one second of descent", (t) => {
   const [ours, theirs] = both(run("stand-relaxed", 600));
   const told = (answers) => answers.map(({ asking, decisions, ended }) => ({ asking, decisions, ended }));
   assert.deepEqual(told(ours), told(theirs));
   const sentences = (answers) => answers.at(-1).log.map(({ time, sentence }) => [time, sentence]);
   assert.deepEqual(sentences(ours), sentences(theirs));
   assert.deepEqual(ours.at(-1).shown.verdict.sentence, theirs.at(-1).shown.verdict.sentence);
-  const numbers = ({ shown: { q, external, passive, active } }) => [q, external, passive, active];
-  const differences = ours.slice(1).map((answer, i) => difference(numbers(answer), numbers(theirs[i + 1]), String(i)));
-  const apart = differences.filter((one) => one > 1e-9);
-  t.diagnostic(`answers that differ by more than 1e-9: ${apart.length} of ${differences.length}; of the others ${Math.max(...differences.filter((one) => one <= 1e-9))}`);
-  assert.ok(apart.length <= 1, `${apart.length} seconds differ: ${apart}`);
+  // Sine and cosine of the two differ in last digits, so descents end at the same minimum, not at the same digits of it. Tissue and weight make
+  // torques of a difference of posture: up to about 100 N m of a radian.
+  const apart = ({ shown: a }, { shown: b }) =>
+    Math.max(difference(a.q, b.q, "q"), ...["external", "passive", "active"].map((key) => 0.1 * difference(a[key], b[key], key)));
+  const differences = ours.slice(1).map((answer, i) => apart(answer, theirs[i + 1]));
+  const far = differences.filter((one) => one > 1e-9);
+  t.diagnostic(`answers that differ by more: ${far.length} of ${differences.length}; of the others ${Math.max(...differences.filter((one) => one <= 1e-9))}`);
+  assert.ok(far.length <= 1, `${far.length} seconds differ, by ${Math.max(...far)} at most`);
   assert.ok(differences.at(-1) < 1e-9);
 });
 
