@@ -1,6 +1,6 @@
 //! Holds a job under way: the states of its document, the body, a point that is grabbed, and a run.
 //!
-//! Whatever a request replaces is built whole before it is put in place, so a request that is refused changes nothing.
+//! Figure, scene and history of a request are built whole before they are put in place, so a request that is refused changes nothing.
 
 use contrapposto::model::plain_name;
 use contrapposto::posture::Posture;
