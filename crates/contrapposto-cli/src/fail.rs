@@ -5,7 +5,7 @@ use std::io::Write;
 
 use contrapposto_formats::{InputError, escaped_lines};
 
-/// Why the program stops.
+/// The reason for which the program stops.
 pub(crate) enum Fail {
     /// The input is at fault: exit code 2, with file, line and column.
     Input(Box<InputError>),

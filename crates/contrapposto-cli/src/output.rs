@@ -21,7 +21,7 @@ pub(crate) fn print(text: &str) -> Result<(), Fail> {
     out.write_all(escaped_lines(text).as_bytes()).and_then(|()| out.flush()).map_err(stdout_failed)
 }
 
-/// How many notes standard error gets.
+/// Amount of notes on standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Notes {
     /// None.

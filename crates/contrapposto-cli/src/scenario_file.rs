@@ -115,7 +115,7 @@ fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<(Model, 
     Ok(Some((opened.model, muscles)))
 }
 
-/// How the scenario's model file is opened: its paths are seen from the scenario's folder.
+/// Arguments that open the scenario's model file: the file's paths are seen from the scenario's folder.
 fn model_args(scenario: &Path, shown: &str, file: &ModelFile) -> Result<ModelArgs, Fail> {
     let folder = scenario.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let path = |key: &str, name: &String| {

@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 use support::{contrapposto, scenarios};
 
-/// Its answer for every file: a report each.
+/// Script that prints the validator's reports, one for every file.
 const ASK: &str = "
 const validator = require('gltf-validator'), fs = require('fs');
 Promise.all(process.argv.slice(1).map((file) => validator.validateBytes(new Uint8Array(fs.readFileSync(file)))))

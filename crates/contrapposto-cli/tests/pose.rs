@@ -73,7 +73,7 @@ fn shown_as_found(page: &Value, found: &Value) {
     assert_eq!(page["list"]["entries"], serde_json::json!([]));
 }
 
-/// What is under the pelvis is drawn, level and where the patch of the seat is; the feet stand on the ground.
+/// The seat under the pelvis is drawn, level and at the place of the patch; the feet stand on the ground.
 #[test]
 fn a_seat_is_under_who_sits() {
     const SITS: &str = "format = 1\n[model]\nadult = { sex = \"female\", stature_m = 1.65, mass_kg = 60 }\n\

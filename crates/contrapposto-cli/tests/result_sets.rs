@@ -407,7 +407,7 @@ fn interrupted_at_once_it_shows_the_start() {
     assert!(heard > 0);
 }
 
-/// How many runs must have been killed: a few, or as many as `CONTRAPPOSTO_KILLS` says. Five hundred of each kind:
+/// Number of runs that must have been killed: a few, or as many as `CONTRAPPOSTO_KILLS` says. Five hundred of each kind:
 ///
 /// ```text
 /// CONTRAPPOSTO_KILLS=500 cargo test -p contrapposto-cli --test result_sets kill -- --nocapture

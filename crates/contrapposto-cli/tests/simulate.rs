@@ -12,7 +12,7 @@ use std::time::Instant;
 use serde_json::Value;
 use support::{Run, assert_numbers, contents, contrapposto, results, scenarios};
 
-/// What a run of one joint writes, in order of names.
+/// Files that a run of one joint writes, in order of names.
 const FILES: [&str; 14] = [
     "decisions.csv",
     "fatigue.sto",
@@ -30,7 +30,7 @@ const FILES: [&str; 14] = [
     "trajectory.csv",
 ];
 
-/// What a run of a body on its supports writes.
+/// Files that a run of a body on its supports writes.
 const FILES_OF_A_BODY: [&str; 15] = [
     "decisions.csv",
     "fatigue.sto",
@@ -561,7 +561,7 @@ fn no_colour_and_no_progress_where_none_is_wanted() {
     assert!(!plain.contains("\u{1b}[3") && plain.contains("stratgy"), "{plain:?}");
 }
 
-/// Who is pushed over ends the job, and everything says when and why; what came before is there.
+/// A body that is pushed over ends the job, and every output says when and why; the samples before the fall are there.
 #[test]
 fn a_fall_ends_the_job_and_is_told() {
     let folder = tempfile::tempdir().unwrap();

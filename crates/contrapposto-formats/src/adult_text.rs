@@ -9,7 +9,7 @@ const ADULT_FORM: &str = "accepted: `adult` (de Leva's reference man), or `adult
 
 const PERSON_FORM: &str = "accepted: sex, stature and mass, or some of them: `female,1.65m,60kg`, `female`";
 
-/// Why a text is no size of a body.
+/// The reason for which a text is no size of a body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("`{text}`: {problem}\n  {accepted}")]
 pub struct AdultTextError {

@@ -22,9 +22,9 @@ pub struct CapacityText {
     pub verdict: VerdictText,
     /// The finding in one sentence.
     pub sentence: String,
-    /// Where the force is exerted.
+    /// Segment and point that exert the force.
     pub at: AtText,
-    /// How long it is held, s; `null` for an instant.
+    /// Time for which the force is held, s; `null` for an instant.
     pub hold_s: Option<f64>,
     /// The direction with the least force; `null` where the posture cannot be held.
     pub weakest: Option<ForceText>,
@@ -79,7 +79,7 @@ pub struct LimitText {
     pub kind: &'static str,
     /// The muscle group in words, of a strength.
     pub group: Option<String>,
-    /// Its coordinate.
+    /// Coordinate of the limit.
     pub coordinate: Option<String>,
     /// `positive` or `negative`.
     pub side: Option<&'static str>,

@@ -54,7 +54,7 @@ impl ModelFormat {
     }
 }
 
-/// Why a file is no model.
+/// The reason for which a file is no model.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelFileError {

@@ -2,14 +2,14 @@
 
 use crate::xml::{Place, shorten};
 
-/// Why a text is not the numbers that are needed.
+/// The reason for which a text does not hold the numbers that are needed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NumberError {
     /// Not a number at all.
     #[error("{place}: `{value}` is not a number")]
     NotANumber {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// As written, shortened.
         value: String,
@@ -17,7 +17,7 @@ pub enum NumberError {
     /// NaN, infinite, or too large for a double.
     #[error("{place}: `{value}` is not a finite number")]
     NotFinite {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// As written, shortened.
         value: String,
@@ -25,9 +25,9 @@ pub enum NumberError {
     /// Too many or too few.
     #[error("{place}: {found} numbers; {} accepted", between(*least, *most))]
     Count {
-        /// Where.
+        /// Place in the file.
         place: Place,
-        /// How many there are; one more than `most` if there are more.
+        /// Number of numbers found; one more than `most` if there are more.
         found: usize,
         /// Fewest accepted.
         least: usize,

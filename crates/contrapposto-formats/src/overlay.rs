@@ -71,9 +71,9 @@ pub struct Overlaid {
 pub struct OverlayChange {
     /// Index of the coordinate.
     pub coordinate: usize,
-    /// Its range.
+    /// Whether the range is changed.
     pub range: bool,
-    /// Its passive law.
+    /// Whether the passive law is changed.
     pub passive: bool,
     /// The strength of its groups.
     pub strength: bool,

@@ -36,7 +36,7 @@ pub(crate) struct DoubleExponentialText {
     /// Mid-range stiffness, N m/rad; 0 when left out.
     #[serde(default)]
     pub(crate) stiffness_nm_per_rad: f64,
-    /// Where the linear term is zero, deg; 0 when left out.
+    /// Angle at which the linear term is zero, deg; 0 when left out.
     #[serde(default)]
     pub(crate) neutral_deg: f64,
 }
@@ -49,7 +49,7 @@ pub(crate) struct EndText {
     pub(crate) torque_nm: f64,
     /// Growth toward the end, 1/rad, positive.
     pub(crate) rate_per_rad: f64,
-    /// Where the torque has this size, deg.
+    /// Angle at which the torque has this size, deg.
     pub(crate) angle_deg: f64,
 }
 

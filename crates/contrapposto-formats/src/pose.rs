@@ -32,7 +32,7 @@ pub struct PoseText {
     pub supports_hold: bool,
     /// The order of coordinates in tables.
     pub coordinate_order: Vec<String>,
-    /// Their values: rad, m, components of quaternions.
+    /// Values of the coordinates: rad, m, components of quaternions.
     pub coordinates: BTreeMap<String, f64>,
     /// Centre of mass in ground, m; `null` for a body without mass.
     pub center_of_mass_m: Option<[f64; 3]>,

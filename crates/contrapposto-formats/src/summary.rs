@@ -36,7 +36,7 @@ pub struct SummaryText {
     pub end_s: f64,
     /// Number of samples.
     pub samples: u64,
-    /// How a body with supports or tasks stood at the end.
+    /// Balance of a body with supports or tasks at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standing: Option<StandingText>,
     /// A search for an easier posture ended at its budget of solver steps, so that there may be an easier one.
@@ -47,7 +47,7 @@ pub struct SummaryText {
     pub steps: Vec<StepText>,
     /// The muscle group that first could no longer hold its load; `null`: none gave up.
     pub failed_first: Option<FailureText>,
-    /// How many reliefs there were; `decisions.csv` lists the first ten thousand.
+    /// Number of reliefs; `decisions.csv` lists the first ten thousand.
     pub reliefs: u64,
     /// The order of coordinates in tables.
     pub coordinate_order: Vec<String>,
@@ -60,7 +60,7 @@ pub struct SummaryText {
 /// The end of a body that nothing holds any more.
 #[derive(Clone, Debug, Serialize)]
 pub struct FallText {
-    /// When, s.
+    /// Time of the fall, s.
     pub at_s: f64,
     /// The force that supports do not give, N.
     pub missing_n: f64,
@@ -73,15 +73,15 @@ pub struct FallText {
 /// A muscle group that gave up.
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureText {
-    /// Its coordinate.
+    /// Coordinate of the group.
     pub coordinate: String,
-    /// Its movement.
+    /// Movement of the group.
     pub group: Option<String>,
-    /// When, s.
+    /// Time of the failure, s.
     pub at_s: f64,
 }
 
-/// How a body stood.
+/// Effort, centre of mass, supports and tasks of a body.
 #[derive(Clone, Debug, Serialize)]
 pub struct StandingText {
     /// `sum (active torque / strength)^2` in the first sample.
@@ -96,14 +96,14 @@ pub struct StandingText {
     pub tasks: Vec<String>,
     /// Length of the error of each of `tasks`, in its units.
     pub task_errors: Vec<f64>,
-    /// How far supports are off their places.
+    /// Distance of the supports from their places.
     pub slip: SlipText,
     /// The greatest slip of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub greatest_slip: Option<GreatestSlipText>,
 }
 
-/// How far supports are off their places: errors of all supports together.
+/// Distance of the supports from their places: errors of all supports together.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct SlipText {
     /// Distance, m.
@@ -121,10 +121,10 @@ impl From<Slip> for SlipText {
 /// The greatest slip of a run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct GreatestSlipText {
-    /// Its size.
+    /// Size of the slip.
     #[serde(flatten)]
     pub slip: SlipText,
-    /// When, s.
+    /// Time of the slip, s.
     pub at_s: f64,
 }
 
@@ -135,9 +135,9 @@ pub struct StepText {
     pub segment: String,
     /// The coordinate whose tired group asked for relief.
     pub relieves: String,
-    /// When the body began to shift its weight, s.
+    /// Time at which the body began to shift its weight, s.
     pub begin_s: f64,
-    /// When the body had taken the new posture, s.
+    /// Time at which the body had taken the new posture, s.
     pub end_s: f64,
     /// Middle of the patch before, ground, m.
     pub from_m: [f64; 3],
@@ -156,9 +156,9 @@ pub struct SupportText {
     pub segment: String,
     /// Force on the body, ground, N.
     pub force_n: [f64; 3],
-    /// Its normal part as a share of body weight.
+    /// Normal part of the contact force as a share of body weight.
     pub share: f64,
-    /// Where it acts, ground, m.
+    /// Point at which the contact force acts, ground, m.
     pub center_of_pressure_m: Option<[f64; 3]>,
 }
 
@@ -169,7 +169,7 @@ pub struct CoordinateText {
     pub free: bool,
     /// Cases in the order they came, repetitions left out; the first two hundred.
     pub cases: Vec<&'static str>,
-    /// How often the case changed.
+    /// Number of changes of the case.
     pub case_changes: u64,
     /// Decisions of each case.
     pub iterations: BTreeMap<&'static str, u64>,
@@ -194,14 +194,14 @@ pub struct CoordinateText {
 /// One muscle group.
 #[derive(Clone, Debug, Serialize)]
 pub struct GroupText {
-    /// Its movement.
+    /// Movement of the group.
     pub name: Option<String>,
     /// The parameters of its fatigue law.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fatigue: Option<FatigueParametersText>,
     /// Greatest fatigue while no support was put elsewhere, 0 to 1.
     pub peak_fatigue: f64,
-    /// When it could no longer hold its load, s.
+    /// Time at which the group could no longer hold its load, s.
     pub exhausted_s: Option<f64>,
 }
 

@@ -5,11 +5,11 @@ use nalgebra::{Isometry3, Vector3};
 /// A box that stands in ground, or that a segment carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thing {
-    /// Its name.
+    /// Name of the thing.
     pub name: String,
     /// Full lengths along its own axes, m.
     pub size: Vector3<f64>,
-    /// Its middle and its axes, in ground or in the frame of the segment.
+    /// Middle and axes of the thing, in ground or in the frame of the segment.
     pub place: Isometry3<f64>,
     /// Index of the segment that carries it; `None` for a thing in ground.
     pub segment: Option<usize>,

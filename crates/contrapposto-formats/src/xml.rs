@@ -64,7 +64,7 @@ impl std::fmt::Display for Position {
     }
 }
 
-/// Where in a model file something stands, for messages: `<joint range> at line 3, column 9`.
+/// Place of an element or attribute in a model file, for messages: `<joint range> at line 3, column 9`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     /// Included file, as the include names it; empty for the file itself.
@@ -135,7 +135,7 @@ impl Document {
         Node { document: self, index: 0 }
     }
 
-    /// How many elements the file has.
+    /// Number of elements of the file.
     #[must_use]
     pub fn elements(&self) -> usize {
         self.elements.len()
@@ -181,7 +181,7 @@ impl<'a> Node<'a> {
         self.document.slice(self.element().name)
     }
 
-    /// Where `<` of its start tag stands.
+    /// Position of the `<` of the start tag.
     #[must_use]
     pub fn position(self) -> Position {
         self.element().position
@@ -199,7 +199,7 @@ impl<'a> Node<'a> {
         self.find(name).map(|a| self.document.slice(a.value))
     }
 
-    /// Where the attribute's name stands.
+    /// Position of the attribute's name.
     #[must_use]
     pub fn attribute_position(self, name: &str) -> Option<Position> {
         self.find(name).map(|a| a.position)

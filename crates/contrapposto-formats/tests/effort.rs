@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 use contrapposto::posture_solver::{Options, Reason};
 
-/// How many of the stored targets are no worse.
+/// Number of the stored targets at which the effort is no worse.
 fn no_worse(name: &str, standing: bool) -> usize {
     let problem = problem::Problem::read(standing);
     let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/effort_peer.json");

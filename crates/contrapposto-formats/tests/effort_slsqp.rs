@@ -17,7 +17,7 @@ use contrapposto::tasks::{Task, free_place, held_place};
 use contrapposto_formats::{RelaxScenario, read_relax};
 use serde_json::Value;
 
-/// Those of the program's `relax`.
+/// The options of the program's `relax`.
 const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
 /// Share by which the effort of `relax` may lie above the best of SLSQP.
 const MORE: f64 = 0.02;

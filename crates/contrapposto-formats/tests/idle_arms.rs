@@ -24,7 +24,7 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-/// How far the hand is above the shoulder of its side, m, for the arms without support, load and task of their own.
+/// Height of the hand above the shoulder of its side, m, for the arms without support, load and task of their own.
 fn idle_arms<'a>(
     model: &Model,
     posture: &Posture,

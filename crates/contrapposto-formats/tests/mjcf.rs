@@ -205,7 +205,7 @@ fn in_body(inside: &str) -> String {
     world(&format!("<body name='b'>{inside}{G}</body>"))
 }
 
-/// What MuJoCo refuses, we refuse; what matters at rest and is not represented, too.
+/// Files that MuJoCo refuses are refused; files with parts that matter at rest and are not represented, too.
 #[test]
 fn refusals_say_where() {
     let with = |head: &str, inside: &str| {

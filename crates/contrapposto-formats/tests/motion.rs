@@ -18,12 +18,12 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use CoordinateKind::{Quaternion, Rotation, Translation};
 
-/// What OpenSim 4.6's `STOFileAdapter` writes: no name line, state paths.
+/// A table of OpenSim 4.6's `STOFileAdapter`: no name line, state paths.
 const STATES: &str = "inDegrees=no\nDataType=double\nversion=3\nOpenSimVersion=4.6-2026-06-22-85aaf64\nendheader\n\
     time\t/jointset/hip_r/hip_flexion_r/value\t/jointset/hip_r/hip_flexion_r/speed\n\
     0\t0.1\t0.3333333333333333\n0.01\t9.999999999999999e-21\t2e+17\n";
 
-/// What its `Storage` writes: fixed digits, blanks before numbers, a description in the header.
+/// A table of OpenSim's `Storage`: fixed digits, blanks before numbers, a description in the header.
 const STORAGE: &str = "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\n\nUnits are S.I. units (second, meters, \
     Newtons, ...)\nIf the header above contains a line with 'inDegrees', this indicates whether rotational values are in \
     degrees (yes) or radians (no).\n\nendheader\ntime\thip_flexion_r\tpelvis_ty\n      0.00000000\t     30.00000000\t      \

@@ -200,7 +200,7 @@ fn tables_of_motion() {
     }
 }
 
-/// What may stand in a pose, and in a search for postures of least effort.
+/// Keys that may stand in a pose, and in a search for postures of least effort.
 const POSE: &str = r#"format = 1
 [model]
 adult = { sex = "female", stature_m = 1.65, mass_kg = 60, lengths_m = { humerus = 0.31 } }

@@ -470,7 +470,7 @@ fn mistakes_are_refused_where_they_stand() {
     println!("{} mistakes", cases.len());
 }
 
-/// What only a pose takes is refused in a simulation, and a model file that nobody opened in both.
+/// Keys that only a pose takes are refused in a simulation, and a model file that nobody opened in both.
 #[test]
 fn a_simulation_is_no_pose() {
     let run = "[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n";

@@ -248,7 +248,7 @@ fn truncated_scenarios_never_panic() {
     }
 }
 
-/// What the keys of supports, tasks and events mean.
+/// The keys of supports, tasks and events have the meanings that docs/scenario.md gives them.
 #[test]
 fn a_whole_body_is_read() {
     let scenario = read_whole(WHOLE).unwrap_or_else(|error| panic!("{}", complaint(&error)));
@@ -325,7 +325,7 @@ fn an_event_is_not_passed_over() {
     assert!(text.contains("it is at 9.99 s, the last step of the run at 9.9 s"), "{text}");
 }
 
-/// What replaces a line of the whole body's scenario; where the complaint points, and a part of it.
+/// Replacement of a line of the whole body's scenario; the place that the message names, and a part of the message.
 #[test]
 fn mistakes_are_refused_where_they_stand() {
     let cases: &[(&str, &str, &str, &str)] = &[

@@ -57,7 +57,7 @@ impl Ended {
         self.summary.standing.as_ref().unwrap().effort
     }
 
-    /// How much higher the right hip stands than the left one, m.
+    /// Height of the right hip above the left one, m.
     fn right_hip_above_left(&self) -> f64 {
         let model: &Model = &self.scenario.model;
         let mut kinematics = Kinematics::new(model);
@@ -211,7 +211,7 @@ duration_s = 300
     }
 }
 
-/// Whoever holds a heavy tool gives up where the load leaves the least time.
+/// A body that holds a heavy tool gives up where the load leaves the least time.
 #[test]
 fn a_heavy_tool_is_put_down_for_the_group_that_is_weakest_for_it() {
     let text = text("hold-tool.toml")
@@ -301,7 +301,7 @@ fn a_free_resting_foot_is_put_elsewhere_when_the_hip_that_carries_is_tired() {
     assert!(end.effort < 0.01 && end.contacts[1].share > 0.0 && end.contacts[1].share <= 0.15 + 1e-9);
 }
 
-/// Who stands on one support cannot lift it: the run goes on.
+/// A body on one support cannot lift that support: the run goes on.
 #[test]
 fn the_only_support_stays_though_its_place_is_free() {
     let text = text("stand-relaxed.toml");

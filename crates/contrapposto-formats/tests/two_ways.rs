@@ -82,7 +82,7 @@ fn loads(body: &ModelIr, rng: &mut Pcg64) -> Vec<Load> {
         .collect()
 }
 
-/// What pulls on each segment: point, force and couple in ground.
+/// Forces on each segment: point, force and couple in ground.
 fn pulls(body: &ModelIr, frames: &[Isometry3<f64>], loads: &[Load]) -> Vec<(usize, V, V, V)> {
     let own = body
         .segments

@@ -129,7 +129,7 @@ fn other_published_models_are_read() {
     assert_eq!(body.segments.len(), 37);
 }
 
-/// What Pinocchio reads and published robots hold: mimics that mean nothing, and moments that rounding left below zero.
+/// Mistakes that Pinocchio accepts and published robots hold are read past: mimics that mean nothing, moments that rounding left below zero.
 #[test]
 fn small_mistakes_are_read_past_and_counted() {
     let body = file(&here().join("tests/models/humanoid.urdf"), RootAttachment::Fixed);

@@ -63,9 +63,9 @@ pub struct BodyPart {
 /// A thing, drawn as a box.
 #[derive(Clone, Debug, Default)]
 pub struct BodyThing {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub label: String,
-    /// Its corners; the bits of the index say at which end along its axes x (1), y (2) and z (4).
+    /// Corners of the thing; the bits of the index say at which end along its axes x (1), y (2) and z (4).
     pub corners: Corners,
 }
 

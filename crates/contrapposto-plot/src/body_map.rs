@@ -47,9 +47,9 @@ pub struct BodyMap {
 /// A joint and what is written about it.
 #[derive(Clone, Debug, Default)]
 pub struct MapJoint {
-    /// Its place.
+    /// Place of the joint.
     pub at: [f64; 3],
-    /// Its name.
+    /// Name of the joint.
     pub name: String,
     /// A line for each coordinate.
     pub lines: Vec<String>,
@@ -60,7 +60,7 @@ pub struct MapJoint {
 pub struct MapFrame {
     /// Name of the segment.
     pub name: String,
-    /// Its origin.
+    /// Origin of the frame.
     pub at: [f64; 3],
     /// Directions of its axes x, y and z.
     pub axes: [[f64; 3]; 3],

@@ -7,7 +7,7 @@ use crate::svg::svg;
 /// Greatest height of a PNG in SVG units; beyond it the pixels would fill too much memory.
 const MAX_PNG_HEIGHT: f64 = 8_000.0;
 
-/// Why a picture could not be made.
+/// The reason for which a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlotError {

@@ -34,9 +34,9 @@ pub struct PassiveChart {
     pub slope_nm_per_rad: Vec<f64>,
     /// Lower and upper limit of the coordinate, degrees.
     pub range_deg: (f64, f64),
-    /// Where the curve is flattest, degrees, from and to; both equal if it is a single angle.
+    /// Angles between which the curve is flattest, degrees, from and to; both equal if there is a single one.
     pub flattest_deg: Option<(f64, f64)>,
-    /// Where the curve comes from, as a caption below the chart; at most three lines are shown.
+    /// Source of the curve, as a caption below the chart; at most three lines are shown.
     pub source: String,
 }
 

@@ -6,7 +6,7 @@ use crate::geometry::{Point, Rect};
 use crate::path::Path;
 use crate::style::Ink;
 
-/// Where a text stands relative to its point.
+/// Position of a text relative to its point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Align {
     Left,

@@ -97,7 +97,7 @@ pub(crate) const MARGIN: f64 = 16.0;
 /// A load so little below a bound, as a share of strength, is in the band above it.
 const SHARE_TOLERANCE: f64 = 1e-9;
 
-/// How a line is drawn.
+/// Colour, width and dashes of a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pen {
     pub(crate) ink: Ink,

@@ -58,7 +58,7 @@ pub(crate) fn strength<'py>(
     })
 }
 
-/// How long (s) a rested muscle group holds relative loads; infinite where for ever.
+/// Time (s) for which a rested muscle group holds relative loads; infinite where for ever.
 #[pyfunction]
 pub(crate) fn endurance_time<'py>(
     py: Python<'py>,

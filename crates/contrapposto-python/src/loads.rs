@@ -18,7 +18,7 @@ type Given<'py> = (String, String, PyReadonlyArray2<'py, f64>, Option<[f64; 3]>,
 /// A load on all postures, or one of its own on each.
 pub(crate) struct Loading {
     first: Load,
-    /// Its numbers, row after row.
+    /// Numbers of the forces, row after row.
     rows: Vec<Vector3<f64>>,
 }
 

@@ -32,7 +32,7 @@ const SLIDE: &str = "(async () => {
   return took.sort((a, b) => a - b);
 })()";
 
-/// How often each page is opened.
+/// Number of times that each page is opened.
 const OPENINGS: usize = 5;
 
 fn main() {

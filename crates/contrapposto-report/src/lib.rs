@@ -102,7 +102,7 @@ pub type Ball = [f64; 4];
 /// A solid part of the body: the hull of a few balls.
 #[derive(Clone, Debug, Default)]
 pub struct Segment {
-    /// Its name.
+    /// Name of the segment.
     pub name: String,
     /// At least one.
     pub balls: Vec<Ball>,
@@ -117,9 +117,9 @@ pub struct Segment {
 /// One coordinate over time.
 #[derive(Clone, Debug, Default)]
 pub struct Joint {
-    /// Its name in the model.
+    /// Name of the joint in the model.
     pub name: String,
-    /// Its name in words.
+    /// Name of the joint in words.
     pub label: String,
     /// The positive direction in words; may be empty.
     pub positive: String,
@@ -127,7 +127,7 @@ pub struct Joint {
     pub slides: bool,
     /// Whether angle and torques are those about an axis of a joint with three, not those of the coordinate.
     pub about_axis: bool,
-    /// Its two muscle groups, positive torque first.
+    /// The two muscle groups of the joint, positive torque first.
     pub groups: Option<[Group; 2]>,
     /// Value in every frame, degrees (m for slides).
     pub angle: Vec<f64>,
@@ -141,7 +141,7 @@ pub struct Joint {
     pub load: Vec<f64>,
     /// Whether ligaments carry it in every frame where that is a hazard; empty for never.
     pub hazard: Vec<bool>,
-    /// Its torques over its range: one for all frames, one for each, or none.
+    /// Torques of the joint over its range: one for all frames, one for each, or none.
     pub balance: Vec<Balance>,
 }
 
@@ -165,14 +165,14 @@ pub struct Group {
     pub fatigue: Vec<f64>,
     /// Time for which the present load can still be held, s, in every frame; may be infinite.
     pub left: Vec<f64>,
-    /// When its fatigue first reaches 1, s, which may be between two frames.
+    /// Time at which the fatigue of the group first reaches 1, s, which may be between two frames.
     pub fails: Option<f64>,
 }
 
 /// One support of the body over time.
 #[derive(Clone, Debug, Default)]
 pub struct Support {
-    /// Its name.
+    /// Name of the support.
     pub label: String,
     /// Force on the body in every frame, N.
     pub force: Vec<[f64; 3]>,
@@ -185,9 +185,9 @@ pub struct Support {
 /// A flat piece that carries the body.
 #[derive(Clone, Debug, Default)]
 pub struct Surface {
-    /// Its name.
+    /// Name of the surface.
     pub label: String,
-    /// Its four corners in order, m.
+    /// The four corners of the surface in order, m.
     pub corners: [[f64; 3]; 4],
 }
 
@@ -205,7 +205,7 @@ pub struct Target {
 /// A thing, drawn as a box.
 #[derive(Clone, Debug, Default)]
 pub struct Thing {
-    /// Its name.
+    /// Name of the thing.
     pub label: String,
     /// Full lengths along its own axes x, y and z, m.
     pub size: [f64; 3],
@@ -216,7 +216,7 @@ pub struct Thing {
 /// A load over time: a held weight, a tool, a push at a handle.
 #[derive(Clone, Debug, Default)]
 pub struct Push {
-    /// Its name.
+    /// Name of the force.
     pub label: String,
     /// Point where it acts in every frame, m.
     pub at: Vec<[f64; 3]>,
@@ -272,6 +272,6 @@ pub struct Table {
     pub heading: String,
     /// Names of its columns.
     pub columns: Vec<String>,
-    /// Its rows.
+    /// Rows of the table.
     pub rows: Vec<Vec<String>>,
 }

@@ -135,7 +135,7 @@ fn open_page(name: &str, report: &Report) -> Chromium {
 
 const FRAME: &str = "Number(document.getElementById('slider').value)";
 const PICTURE: &str = "document.getElementById('body').toDataURL()";
-/// Where the present point and the cursor stand, read back from the charts' axes.
+/// Scripts that read the values at the present point and at the cursor back from the charts' axes.
 const POINT: &str = "(() => { const x = document.getElementById('balance')._fullLayout.xaxis;
   return x.p2l(Number(document.querySelector('#balance-now circle').getAttribute('cx')) - x._offset); })()";
 const CURSOR: &str = "(() => { const x = document.getElementById('course')._fullLayout.xaxis;

@@ -11,19 +11,19 @@ use contrapposto_formats::read_run;
 pub struct Outcome {
     /// Kind of the verdict; `refused` where the reader refuses the scenario with these values.
     pub kind: &'static str,
-    /// How long the job can be done, min; `None` where muscles set no limit, and where the job cannot be done.
+    /// Time for which the job can be done, min; `None` where muscles set no limit, and where the job cannot be done.
     pub minutes: Option<f64>,
     /// The muscle group that is too weak or fails first; where none does, the one with the greatest load.
     pub who: Option<String>,
     /// The muscle group with the greatest load.
     pub hardest: Option<String>,
-    /// Its active torque over its strength.
+    /// Active torque of that group over its strength.
     pub load: Option<f64>,
     /// Sum of (active torque / strength)^2 at the end.
     pub effort: Option<f64>,
     /// Simulated time, s.
     pub seconds: Option<f64>,
-    /// Why the scenario is refused.
+    /// The reason for which the scenario is refused.
     pub note: Option<String>,
 }
 

@@ -11,7 +11,7 @@ pub struct Posture {
     values: Vec<f64>,
 }
 
-/// Why a posture does not fit a model.
+/// The reason for which a posture does not fit a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PostureError {
@@ -36,7 +36,7 @@ pub enum PostureError {
     Quaternion {
         /// Name of its first component.
         coordinate: String,
-        /// Its length.
+        /// Length of the quaternion.
         length: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! What is called for every frame and step allocates nothing once its workspace is as large as the problem asks. Allocations of
+//! Functions that are called for every frame and step allocate nothing once their workspace is as large as the problem asks. Allocations of
 //! this thread are counted.
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
@@ -56,7 +56,7 @@ fn body() -> (Model, Vec<posture::Posture>) {
     (model, postures)
 }
 
-/// What the hands hold: a weight, and a force that turns with the segment.
+/// Loads of the hands: a weight, and a force that turns with the segment.
 fn loads(model: &Model) -> [Load; 2] {
     let hand = |name| model.segment(name).unwrap();
     [

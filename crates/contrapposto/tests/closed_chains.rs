@@ -42,7 +42,7 @@ impl Scale<'_> {
     }
 }
 
-/// What must not move: both feet, and the hand where it ranks above.
+/// Jacobian of the parts that must not move: both feet, and the hand where it ranks above.
 fn rows(model: &Model, kinematics: &Kinematics, feet: &[Support], hand: Option<&Point>) -> DMatrix<f64> {
     let n = model.rates().len();
     let mut all: Vec<f64> = vec![];

@@ -74,7 +74,7 @@ impl Stand {
         -(self.body.external_about_axes()[rate] + passive + self.contact.torques()[rate])
     }
 
-    /// Why the supports do not hold.
+    /// The reason for which the supports do not hold.
     fn condition(&self) -> Condition {
         self.contact.missing(&self.model, self.body.kinematics()).unwrap().condition
     }

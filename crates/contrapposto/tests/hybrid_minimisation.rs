@@ -141,7 +141,7 @@ fn check_against_scan(problem: &Problem, decision: &Decision) {
     assert!(left <= least * (1.0 + 1e-9) + 1e-9, "{left} is more than {least}: {decision:?}\n{problem:?}");
 }
 
-/// Where the printed tables have an answer.
+/// Compares a decision with the printed tables where these have an answer.
 fn check_against_literal(problem: &Problem, decision: &Decision) {
     let literal = minimise_literal(problem).unwrap();
     assert_eq!(literal.goal.is_none(), literal.outcome == Outcome::None);

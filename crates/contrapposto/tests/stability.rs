@@ -232,7 +232,7 @@ fn standing(model: &Model, posture: &Posture, supports: &[Support]) -> (JointTor
     (body, active)
 }
 
-/// How far the supports' segments have moved (m) and turned (rad), and the derivative of that.
+/// Distance (m) and rotation (rad) of the supports' segments from their places, and the derivative of both.
 fn off(
     model: &Model,
     supports: &[Support],

@@ -50,7 +50,7 @@ fn place(rng: &mut Pcg64) -> Placement {
     }
 }
 
-/// Which joints and loads a tree may have.
+/// Joints and loads that a tree may have.
 #[derive(Clone, Copy, PartialEq)]
 enum Kinds {
     All,
@@ -277,7 +277,7 @@ fn moved(tree: &Tree, posture: &Posture, rate: usize, h: f64) -> Posture {
     Posture::new(values)
 }
 
-/// What the crate says.
+/// Results of the crate.
 struct Statics {
     kinematics: Kinematics,
     external: ExternalTorque,

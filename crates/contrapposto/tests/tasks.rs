@@ -473,7 +473,7 @@ fn inequalities_hold_where_they_should() {
     assert!(over(0.15).2.iter().all(|&r| (r - 0.05).abs() < 1e-12));
 }
 
-/// Is `x` inside all half-planes, to within `slack`?
+/// Whether `x` is inside all half-planes, to within `slack`.
 fn within(planes: &[HalfPlane], x: &V, slack: f64) -> bool {
     planes.iter().all(|plane| plane.excess(x) <= slack)
 }

@@ -67,7 +67,7 @@ struct Chain {
     to: usize,
 }
 
-/// How much of `Q^T` a vector was multiplied by.
+/// Reflections and rotations of `Q^T` that a vector was multiplied by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Position {
     reset: usize,

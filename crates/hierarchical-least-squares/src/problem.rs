@@ -78,16 +78,16 @@ impl Problem {
     }
 }
 
-/// Why a problem was refused.
+/// The reason for which a problem was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProblemError {
     /// A list has another length than it must have.
     #[error("{what} has {given} numbers; it must have {needed}")]
     Length {
-        /// Which list.
+        /// Name of the list.
         what: String,
-        /// Its length.
+        /// Length of the list.
         given: usize,
         /// The length it must have.
         needed: usize,
@@ -95,7 +95,7 @@ pub enum ProblemError {
     /// A number that is not accepted.
     #[error("{what} is {value:e}; it must be {accepted}")]
     Number {
-        /// Which number.
+        /// Name of the number.
         what: String,
         /// The number.
         value: f64,

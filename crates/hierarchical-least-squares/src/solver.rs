@@ -7,7 +7,7 @@ use crate::linalg::norm;
 use crate::multipliers::Multipliers;
 use crate::problem::{Problem, ProblemError};
 
-/// How a solution ended.
+/// End of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Every level is as small as the levels above allow, and every hard level is satisfied.

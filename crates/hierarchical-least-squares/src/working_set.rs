@@ -22,7 +22,7 @@ pub(crate) enum Side {
 }
 
 impl Side {
-    /// This side, where its limit still exists.
+    /// This side where its limit is finite, else inactive.
     pub(crate) fn where_finite(self, lower: f64, upper: f64) -> Self {
         match self {
             Side::Lower if lower.is_finite() => Side::Lower,

@@ -20,10 +20,10 @@ pub(crate) struct CapacityArgs {
     /// The segment that exerts the force, such as hand_r; `contrapposto inspect SCENARIO` lists all.
     #[arg(long, value_name = "SEGMENT")]
     pub(crate) at: String,
-    /// Where it does so, in the segment's frame, m; without it in the middle of the segment's patch (palm, sole), else at its centre of mass.
+    /// Point of the force in the segment's frame, m; when left out the middle of the segment's patch (palm, sole), else its centre of mass.
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) point: Option<[f64; 3]>,
-    /// How long the force is held: 30s, 2min, 1.5h. Without it a force of an instant.
+    /// Time for which the force is held: 30s, 2min, 1.5h. Without it a force of an instant.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub(crate) hold: Option<f64>,
     /// Folder for the results; made if it is not there. Nothing is written without it.

@@ -20,7 +20,7 @@ pub(crate) struct ModelArgs {
     /// Ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the model.
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) overlay: Option<PathBuf>,
-    /// How a URDF or MJCF model's root is attached; as the file says when left out.
+    /// Attachment of a URDF or MJCF model's root; as the file says when left out.
     #[arg(long, value_enum)]
     pub(crate) root: Option<RootChoice>,
     /// Passive torque and strength that the file does not have: from the built-in library by name, or none.
@@ -35,7 +35,7 @@ pub(crate) struct ModelArgs {
     pub(crate) person: Option<Person>,
 }
 
-/// How a root is attached.
+/// Attachment of a root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RootChoice {
     /// Fixed to ground.
@@ -53,7 +53,7 @@ impl RootChoice {
     }
 }
 
-/// Where passive torque comes from.
+/// Source of passive torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum PassiveFrom {
     /// From the built-in data, by standard names, where the file (and overlay) have none.
@@ -188,7 +188,7 @@ pub(crate) struct AssessArgs {
     /// Nothing carries the body, and its root is held as if by hand: only the muscles are judged.
     #[arg(long, conflicts_with_all = ["grf", "support"])]
     pub(crate) fixed_root: bool,
-    /// Where a supporting segment touches, corners in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
+    /// Corners of the patch on which a supporting segment rests, in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
     #[arg(long, value_name = "PATCH", requires = "support")]
     pub(crate) patch: Vec<String>,
     /// Folder for the results; made if it is not there.

@@ -61,7 +61,7 @@ struct Given {
     said: Option<String>,
     /// Reasons to doubt the motion.
     warnings: Vec<String>,
-    /// Where the results go.
+    /// Folder that takes the results.
     folder: Option<ResultSet>,
 }
 

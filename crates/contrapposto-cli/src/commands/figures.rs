@@ -246,7 +246,7 @@ fn carry_out(
     Ok((text, panel))
 }
 
-/// How a run differs from the printed figure.
+/// Differences of a run from the printed figure.
 fn differences(figure: &Published, summary: &CoordinateSummary, kink: Option<f64>) -> Vec<&'static str> {
     let without_12: Vec<Case> = summary.cases.iter().copied().filter(|case| *case != Case::C12).collect();
     let cases = if summary.cases == figure.printed {

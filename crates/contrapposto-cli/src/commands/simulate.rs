@@ -88,7 +88,7 @@ pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     ))
 }
 
-/// How a scenario is carried out.
+/// Choices of the command line for carrying out a scenario.
 #[derive(Clone, Copy)]
 struct How {
     resume: bool,

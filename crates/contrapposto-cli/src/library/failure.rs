@@ -17,7 +17,7 @@ pub struct Place {
     pub column: usize,
 }
 
-/// Why a job has no result.
+/// The reason for which a job has no result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
     /// The reason, with the thing, its value, unit and limit.

@@ -142,7 +142,7 @@ impl Folder {
         }
     }
 
-    /// Where a file of that name stands.
+    /// Path of the file of that name.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }

@@ -6,9 +6,9 @@ use std::path::{Component, Path};
 
 use sha2::{Digest, Sha256};
 
-/// Its name.
+/// Name of the manifest's file.
 pub(super) const MANIFEST: &str = "manifest.sha256";
-/// Its first line, by which it is known as ours.
+/// First line of the manifest, by which the program knows its own manifests.
 const HEAD: &str = "# The files of one run of contrapposto. `sha256sum --check` tells whether the set is whole.";
 /// Largest manifest that is read, bytes.
 const MOST_MANIFEST_BYTES: u64 = 1 << 20;

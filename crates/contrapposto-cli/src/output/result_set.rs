@@ -64,7 +64,7 @@ impl ResultSet {
         self.folder.remove(name)
     }
 
-    /// Where a file of that name stands.
+    /// Path of the file of that name.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path(name)
     }

@@ -13,7 +13,7 @@ pub(crate) fn directions(model: &Model) -> [Vector3<f64>; 3] {
     [ahead.cross(&up), ahead, up]
 }
 
-/// How ground axes are turned so that x is forward, y up and z right.
+/// Rotation of ground axes after which x is forward, y up and z right.
 pub(crate) struct Turn(pub(crate) Rotation3<f64>);
 
 impl Turn {
@@ -38,7 +38,7 @@ pub(crate) fn visible(coordinate: &Coordinate, value: f64) -> f64 {
     if coordinate.kind == CoordinateKind::Rotation { value.to_degrees() } else { value }
 }
 
-/// How far the pelvis hangs to its right, degrees.
+/// Angle by which the pelvis hangs to its right, degrees.
 pub(crate) fn pelvis_list(model: &Model, posture: &[f64]) -> Option<f64> {
     let pelvis = model.segment("pelvis")?;
     let mut kinematics = Kinematics::new(model);

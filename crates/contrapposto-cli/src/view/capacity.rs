@@ -17,12 +17,12 @@ const WHOLE: f64 = 9.95;
 pub(crate) struct Forces {
     /// The mean person's.
     pub(crate) solid: Solid,
-    /// Those of the mean person, of weaker and of stronger people; `None` where these cannot hold the posture.
+    /// Capacity of the mean person, of weaker and of stronger people; `None` where these cannot hold the posture.
     programs: [Option<Capacity>; 3],
     /// Least force in any direction of weaker and stronger people, and greatest, N.
     pub(crate) least: [f64; 2],
     pub(crate) greatest: [f64; 2],
-    /// Where the force acts, ground, m.
+    /// Point at which the force acts, ground, m.
     pub(crate) place: Vector3<f64>,
 }
 

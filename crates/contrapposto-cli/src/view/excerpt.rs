@@ -34,7 +34,7 @@ pub(crate) enum EventKind {
 /// A run, as far as a page shows it.
 #[derive(Debug)]
 pub(crate) struct RunExcerpt {
-    /// Its moments, the first and the last among them.
+    /// Moments of the run, the first and the last among them.
     pub(crate) frames: Vec<Frame>,
     /// Events in the order of time; the first ones of a long list.
     pub(crate) events: Vec<Event>,

@@ -28,7 +28,7 @@ pub(crate) struct Frame {
     pub(crate) external: Vec<f64>,
     pub(crate) passive: Vec<f64>,
     pub(crate) load: Vec<f64>,
-    /// Where it is known.
+    /// Fatigue of both groups of each coordinate, where the source of the frame knows fatigue.
     pub(crate) fatigue: Option<Vec<[f64; 2]>>,
     pub(crate) standing: Option<Standing>,
 }

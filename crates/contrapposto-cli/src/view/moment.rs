@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 /// A joint whose torques are components of its moment.
 pub(crate) struct MomentJoint {
-    /// Its name in the model.
+    /// Name of the joint in the model.
     pub(crate) name: String,
     /// The distal segment.
     pub(crate) segment: usize,
@@ -72,7 +72,7 @@ impl MomentJoint {
         self.rates.map(|rate| model.rates()[rate].coordinate)
     }
 
-    /// Its torques in the posture of `body`.
+    /// Torques of the joint in the posture of `body`.
     pub(crate) fn moment(&self, model: &Model, body: &JointTorques) -> Moment {
         // Adding 0 turns -0, the active torque of no torques, into 0.
         let of = |torques: &[f64]| self.rates.map(|rate| torques[rate] + 0.0);

@@ -26,7 +26,7 @@ pub(crate) const ANGLES: usize = 121;
 pub(crate) struct Scene<'a> {
     pub(crate) title: &'a str,
     pub(crate) model: &'a Model,
-    /// Its posture before anything happened.
+    /// Posture before anything happened.
     pub(crate) start: &'a [f64],
     pub(crate) frames: &'a [Frame],
     /// Supports, things and loads.
@@ -194,7 +194,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Where a coordinate is in hazard; empty for nowhere.
+    /// By frame: the coordinate is in hazard. Empty for a coordinate that never is.
     fn hazard(&self, i: usize) -> Vec<bool> {
         let all: Vec<bool> = self.frames.iter().map(|frame| hazard(self.model, frame, i).is_some()).collect();
         if all.contains(&true) { all } else { vec![] }

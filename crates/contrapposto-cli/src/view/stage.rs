@@ -123,7 +123,7 @@ pub(crate) fn load_in_words(model: &Model, load: &Load) -> String {
     format!("{amount} on {}", plain(&model.segments()[load.segment].name))
 }
 
-/// Where a thing is, in ground.
+/// Placement of a thing in ground.
 pub(crate) fn place(model: &Model, kinematics: &Kinematics, thing: &Thing) -> Isometry3<f64> {
     match thing.segment {
         Some(segment) => kinematics.placement(model, segment) * thing.place,

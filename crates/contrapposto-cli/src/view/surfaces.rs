@@ -85,7 +85,7 @@ impl Plane {
     }
 }
 
-/// Where supports are at the start. Pieces that the body moves about with are none.
+/// Surfaces under the supports at the start. Pieces that the body moves about with are none.
 pub(super) fn surroundings(
     model: &Model,
     stage: &Stage<'_>,
@@ -138,7 +138,7 @@ pub(super) fn surroundings(
     Ok(Surroundings { ground: ground.or_else(|| pushed_from(supports, frames, turn)), surfaces })
 }
 
-/// Where forces that were measured come from: the height of the lowest one.
+/// Height of the floor of measured forces: that of the lowest point at which one acts.
 fn pushed_from(supports: &[Support], frames: &[Frame], turn: &Turn) -> Option<f64> {
     if !supports.is_empty() {
         return None;

@@ -71,7 +71,7 @@ pub struct Problem {
     pub eps: f64,
 }
 
-/// What Tables 1 and 2 say.
+/// The answer of Tables 1 and 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
     /// Printed case, such as `"3.2"`.
@@ -127,7 +127,7 @@ pub fn active_torque(problem: &Problem, q: f64) -> f64 {
     -(problem.curve.torque(q) + problem.tau_e + problem.d_tau_e * (q - problem.q_c))
 }
 
-/// How far [`active_torque`] at `q` has to be from a threshold for the comparison to be beyond doubt.
+/// Distance of [`active_torque`] at `q` from a threshold beyond which the comparison is free of doubt.
 fn torque_doubt(problem: &Problem, q: f64) -> f64 {
     let (lower, upper) = problem.curve.exponentials(q);
     let straight = (problem.curve.k * (q - problem.curve.q_mid)).abs();

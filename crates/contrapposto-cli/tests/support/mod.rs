@@ -24,7 +24,7 @@ pub struct Call {
     input: Option<Vec<u8>>,
 }
 
-/// What a finished call left.
+/// Outputs of a finished call.
 pub struct Run {
     pub code: i32,
     pub stdout: String,
@@ -152,7 +152,7 @@ pub fn write(folder: &Path, name: &str, text: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-/// What the script of a `report.html` reads.
+/// Data that the script of a `report.html` reads.
 pub fn page(folder: &Path) -> Value {
     let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
     let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();

@@ -12,7 +12,7 @@ use crate::write::Names;
 
 /// Animation programs count in centimetres.
 const CENTIMETRES: f64 = 100.0;
-/// How far steps of time may differ from each other, as a part of one.
+/// Greatest difference between steps of time, as a part of one step.
 const UNEVEN: f64 = 1e-3;
 /// Time of one frame where there is only one, s.
 const ONE_FRAME: f64 = 1.0 / 30.0;

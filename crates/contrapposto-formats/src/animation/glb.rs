@@ -10,7 +10,7 @@ use super::buffer::Buffer;
 use super::track::Track;
 use super::{AnimationError, Clip, Solid, hull};
 
-/// Where a node stands in its parent, over time.
+/// Placement of a node in its parent, over time.
 struct Course {
     place: Track<3>,
     /// x, y, z, w.

@@ -38,7 +38,7 @@ pub struct Clip<'a> {
     pub postures: &'a [&'a [f64]],
 }
 
-/// Why a motion was not written.
+/// The reason for which a motion was not written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AnimationError {
@@ -58,7 +58,7 @@ pub enum AnimationError {
     Time {
         /// The posture, counted from 0.
         index: usize,
-        /// Its time, s.
+        /// Time of the posture, s.
         time: f64,
         /// The reason.
         problem: &'static str,
@@ -71,7 +71,7 @@ pub enum AnimationError {
     Posture {
         /// The posture, counted from 0.
         index: usize,
-        /// Why.
+        /// The reason.
         source: PostureError,
     },
 }

@@ -7,7 +7,7 @@ use crate::xml::{self, Limits, Node, XmlError};
 pub struct ExternalLoads {
     /// The table, as seen from the file's folder.
     pub table: String,
-    /// Its forces.
+    /// Forces of the file.
     pub forces: Vec<ExternalForce>,
 }
 
@@ -28,7 +28,7 @@ pub struct ExternalForce {
     pub point_in: Option<String>,
 }
 
-/// Why a file is no ExternalLoads file that can be used.
+/// The reason for which a file is no ExternalLoads file that can be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExternalLoadsError {

@@ -17,7 +17,7 @@ use crate::motion::{Table, read_table};
 /// Time beyond the table's ends that rounding may give, s.
 const SLACK: f64 = 1e-6;
 
-/// Why a table holds no ground reactions of the model.
+/// The reason for which a table holds no ground reactions of the model.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GroundReactionError {
@@ -87,7 +87,7 @@ pub enum GroundReactionError {
         table: String,
         /// Number of the frame, counted from 0.
         frame: usize,
-        /// Its time, s.
+        /// Time of the row, s.
         time: f64,
         /// First time of the table, s.
         first: f64,
@@ -221,7 +221,7 @@ impl GroundReaction {
         Ok(Self { name: name.to_owned(), table, plates, guessed: vec![] })
     }
 
-    /// What is wrong with the table, though it can be read.
+    /// Faults of a table that can be read nevertheless.
     pub fn warnings(&self) -> &[String] {
         &self.table.warnings
     }

@@ -12,7 +12,7 @@ const LOAD_FORM: &str = "\"SEGMENT MASSkg\" or \"SEGMENT MASSkg at X,Y,Z\" (m, t
 const FORCE_FORM: &str = "\"SEGMENT FX,FY,FZ\" (N), then if wanted \"at X,Y,Z\" (m, the segment's axes), then if wanted \
     \"world\" or \"segment\" (the force's axes): \"hand_r 0,-20,0 at 0,-0.08,0 world\"";
 
-/// Why a text is no load or patch of the model.
+/// The reason for which a text is no load or patch of the model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{problem}\n  accepted: {accepted}")]
 pub struct LoadTextError {

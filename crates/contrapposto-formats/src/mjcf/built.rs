@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Results of the walk that later steps need.
 #[derive(Default)]
 pub(super) struct Built<'a> {
-    /// Where each segment stands in the file.
+    /// Place of each segment in the file.
     pub(super) places: Vec<Place>,
     /// Hinges and slides by name: coordinate and reference value.
     pub(super) joints: BTreeMap<&'a str, (usize, f64)>,
@@ -62,7 +62,7 @@ pub(super) struct Freedom {
     pub(super) armature: f64,
 }
 
-/// How it moves.
+/// Motion of a degree of freedom.
 pub(super) enum Motion {
     /// About an axis through a point.
     Turn(Vector3<f64>, Vector3<f64>),

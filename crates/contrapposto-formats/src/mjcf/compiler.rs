@@ -6,7 +6,7 @@ use super::schema;
 use super::value::{Value, check};
 use nalgebra::Vector3;
 
-/// Where a body's mass comes from.
+/// Source of a body's mass.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum MassFrom {
     Inertial,

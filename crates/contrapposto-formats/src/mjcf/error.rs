@@ -6,7 +6,7 @@ use crate::numbers::NumberError;
 use crate::xml::{Place, XmlError, shorten};
 use contrapposto::muscle::MuscleError;
 
-/// Why an MJCF file is refused.
+/// The reason for which an MJCF file is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MjcfError {
@@ -36,7 +36,7 @@ pub enum MjcfError {
     /// An element that the format does not know at this place.
     #[error("{place}: unknown element{}", did_you_mean(nearest))]
     UnknownElement {
-        /// Where.
+        /// Of the element.
         place: Place,
         /// The nearest that is known.
         nearest: Option<String>,
@@ -44,7 +44,7 @@ pub enum MjcfError {
     /// An attribute that the format does not know on this element.
     #[error("{place}: unknown attribute{}", did_you_mean(nearest))]
     UnknownAttribute {
-        /// Where.
+        /// Of the attribute.
         place: Place,
         /// The nearest that is known.
         nearest: Option<String>,
@@ -52,7 +52,7 @@ pub enum MjcfError {
     /// A value that is none of the keywords.
     #[error("{place}: `{value}` is not accepted; there are {}", accepted.join(", "))]
     Keyword {
-        /// Where.
+        /// Of the attribute.
         place: Place,
         /// As written.
         value: String,
@@ -70,7 +70,7 @@ pub enum MjcfError {
     /// A name that nothing has.
     #[error("{place}: there is no {kind} `{value}`{}", did_you_mean(nearest))]
     UnknownName {
-        /// Where.
+        /// Of the attribute.
         place: Place,
         /// "class" or "hinge or slide joint".
         kind: &'static str,
@@ -82,17 +82,17 @@ pub enum MjcfError {
     /// An include that is not followed.
     #[error("{place}: `{value}`: {why}")]
     Include {
-        /// Where.
+        /// Of the attribute with the file's name.
         place: Place,
         /// The file as named.
         value: String,
-        /// Why not.
+        /// The rule that the include breaks.
         why: IncludeRule,
     },
     /// Something that matters at rest and is not represented.
     #[error("{place}: `{value}`: {what}")]
     Unsupported {
-        /// Where.
+        /// Of the element or attribute.
         place: Place,
         /// As written, or the element's name.
         value: String,
@@ -102,7 +102,7 @@ pub enum MjcfError {
     /// A rule of the format is broken.
     #[error("{place}: `{value}`: {needs}")]
     Invalid {
-        /// Where.
+        /// Of the element or attribute.
         place: Place,
         /// As written, or the name of the part.
         value: String,
@@ -154,7 +154,7 @@ impl MjcfError {
     }
 }
 
-/// Why an include is not followed.
+/// The rule by which an include is not followed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IncludeRule {

@@ -13,7 +13,7 @@ pub(super) struct File {
     /// As the include names it; empty for the main file.
     pub(super) name: String,
     pub(super) document: Document,
-    /// Which file takes the place of an `<include>`, by its element's index.
+    /// Number of the file that takes the place of an `<include>`, by its element's index.
     pub(super) includes: BTreeMap<usize, usize>,
 }
 

@@ -21,7 +21,7 @@ const GAINS: &[&str] = &["fixed", "affine", "muscle", "user", "dcmotor"];
 const BIASES: &[&str] = &["none", "affine", "muscle", "user", "dcmotor"];
 /// Numbers of a muscle in `gainprm` and `biasprm`.
 const COUNT: usize = 10;
-/// Where `<muscle>` puts its attributes among them.
+/// Position of each attribute of `<muscle>` among these numbers.
 const ATTRIBUTES: [(&str, usize); 8] =
     [("range", 0), ("force", 2), ("scale", 3), ("lmin", 4), ("lmax", 5), ("vmax", 6), ("fpmax", 7), ("fvmax", 8)];
 /// MuJoCo's numbers of an actuator, and those with which `<muscle>` replaces them where they are still the same.

@@ -6,7 +6,7 @@ use crate::xml::Limits;
 /// Options of the reader that the file does not give.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// How the outermost body is attached to the ground; `None`: as the file says. `Free` adds `root_tx` ... `root_qz`.
+    /// Attachment of the outermost body to the ground; `None`: as the file says. `Free` adds `root_tx` ... `root_qz`.
     pub root: Option<RootAttachment>,
     /// Bodies whose mass comes from a mesh have none, and are counted: for questions in which mass has no part. Else they are refused.
     pub omit_mesh_mass: bool,

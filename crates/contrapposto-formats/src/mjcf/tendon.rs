@@ -17,7 +17,7 @@ use crate::xml::shorten;
 pub(super) struct Read<'a> {
     /// "spatial" or "fixed".
     pub(super) kind: &'a str,
-    /// Its path, or why it has none.
+    /// Path of the tendon, or the reason for which there is none.
     pub(super) path: Result<Path, MjcfError>,
     /// The kinds of its elements.
     pub(super) parts: Vec<&'static str>,

@@ -29,7 +29,7 @@ pub(super) struct Walk<'a, 'w> {
     built: Built<'a>,
 }
 
-/// Where an element hangs.
+/// Parent, frame and defaults of an element.
 #[derive(Clone, Copy)]
 struct Context {
     parent: Option<usize>,

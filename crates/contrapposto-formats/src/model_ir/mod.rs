@@ -122,9 +122,9 @@ pub struct CoordinateIr {
 pub struct SolidIr {
     /// Index of the segment.
     pub segment: usize,
-    /// Its middle and axes in the segment's frame.
+    /// Middle and axes in the segment's frame.
     pub pose: Isometry3<f64>,
-    /// Its shape about its middle.
+    /// Shape about the middle.
     pub shape: SolidShape,
 }
 
@@ -137,7 +137,7 @@ pub enum SolidShape {
     Ellipsoid([f64; 3]),
     /// A cylinder along z.
     Cylinder {
-        /// Its radius.
+        /// Radius.
         radius: f64,
         /// Half its length.
         half: f64,

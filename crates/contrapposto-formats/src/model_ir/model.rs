@@ -17,9 +17,9 @@ use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, MuscleTally,
 pub struct Imported {
     /// The model.
     pub model: Model,
-    /// Its muscles.
+    /// Muscles of the model.
     pub muscles: Musculature,
-    /// What became of the file's muscles.
+    /// Numbers of the file's muscles that were read, left out and refused.
     pub muscle_tally: MuscleTally,
     /// The kinds of things in the file that the model does not have, with their numbers: [`ModelIr::ignored`].
     pub left_out: Vec<(String, usize)>,
@@ -29,7 +29,7 @@ pub struct Imported {
     pub notes: Vec<String>,
 }
 
-/// Why an intermediate representation is no model.
+/// The reason for which an intermediate representation is no model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelIrError {

@@ -10,26 +10,26 @@ use super::ModelIr;
 /// Muscles of a file, with the indices of [`ModelIr::coordinates`] and [`ModelIr::segments`].
 #[derive(Clone, Debug, Default)]
 pub struct MusclesIr {
-    /// Those that were read.
+    /// Muscles that were read.
     pub musculature: Musculature,
-    /// What became of each, by kind.
+    /// Numbers of things that were read, left out and refused, by kind.
     pub tally: MuscleTally,
 }
 
-/// What became of the muscles, path points, surfaces and springs of a file, by kind.
+/// Numbers of the muscles, path points, surfaces and springs of a file that were read, left out and refused, by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MuscleTally(pub BTreeMap<String, KindTally>);
 
-/// What became of the things of one kind.
+/// Numbers of the things of one kind that were read, left out and refused.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct KindTally {
-    /// They are part of the musculature.
+    /// Things that are part of the musculature.
     pub read: usize,
     /// The file switches them off, or nothing uses them.
     pub left_out: usize,
-    /// They are not supported, or have no meaning.
+    /// Things that are not supported, or have no meaning.
     pub refused: usize,
-    /// Why they were left out or refused, each reason once, with the number of things.
+    /// Reasons for which things were left out or refused, each once, with the number of things.
     pub reasons: BTreeMap<String, usize>,
 }
 

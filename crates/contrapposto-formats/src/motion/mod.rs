@@ -34,7 +34,7 @@ pub struct Table {
     pub in_degrees: Option<bool>,
     /// Labels, without time.
     pub columns: Vec<String>,
-    /// What is wrong with the file, though it can be read, a sentence each.
+    /// Faults of a file that can be read nevertheless, a sentence each.
     pub warnings: Vec<String>,
     /// Times, s: one a row, never falling. Row numbers where the file has no times.
     pub times: Vec<f64>,

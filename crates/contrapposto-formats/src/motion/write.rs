@@ -7,7 +7,7 @@ use contrapposto::model::CoordinateKind;
 
 use super::MOST_NAME_BYTES;
 
-/// Why a motion was not written: a file that [`super::read_table`] would refuse helps nobody.
+/// The reason for which a motion was not written: a file that [`super::read_table`] would refuse helps nobody.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UnwritableTable {

@@ -15,7 +15,7 @@ pub struct OsimError {
     pub problem: Box<OsimProblem>,
 }
 
-/// Why a file was refused.
+/// The reason for which a file was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OsimProblem {
@@ -28,15 +28,15 @@ pub enum OsimProblem {
     /// Something is not there.
     #[error("{place}: {what} is missing")]
     Missing {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// The kind.
         what: String,
     },
-    /// It matters to torque, and is not supported.
+    /// A part of the file matters to torque, and is not supported.
     #[error("{place}: {what} is not supported; accepted: {accepted}")]
     Unsupported {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// The kind.
         what: String,
@@ -46,7 +46,7 @@ pub enum OsimProblem {
     /// A value that has no meaning.
     #[error("{place}: `{value}`: {problem}")]
     Invalid {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// As written, shortened.
         value: String,
@@ -56,7 +56,7 @@ pub enum OsimProblem {
     /// A name of something that is not there.
     #[error("{place}: there is no {what} `{name}`{}", did_you_mean(near))]
     Unknown {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// Kind of thing.
         what: &'static str,
@@ -68,7 +68,7 @@ pub enum OsimProblem {
     /// Two things of one name.
     #[error("{place}: a second {what} `{name}`; names must be unique")]
     Twice {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// Kind of thing.
         what: &'static str,
@@ -78,7 +78,7 @@ pub enum OsimProblem {
     /// Points of a function.
     #[error("{place}: {problem}")]
     Spline {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// The reason.
         problem: SplineError,
@@ -86,7 +86,7 @@ pub enum OsimProblem {
     /// A formula; its columns count inside the formula.
     #[error("{place}, in the expression, {problem}")]
     Expression {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// The reason.
         problem: ExpressionError,
@@ -94,7 +94,7 @@ pub enum OsimProblem {
     /// Too many of something.
     #[error("{place}: more than {cap} {what}")]
     TooMany {
-        /// Where.
+        /// Place in the file.
         place: Place,
         /// Kind of thing.
         what: &'static str,

@@ -154,7 +154,7 @@ fn tokens(glyphs: &[Glyph]) -> Result<Vec<(Token, usize)>, ExpressionError> {
     Ok(list)
 }
 
-/// How many characters OpenSim takes for one number. More than one decimal point or an exponent with one end up in an error.
+/// Number of characters that OpenSim takes for one number. A second decimal point, or an exponent with a decimal point, ends up in an error.
 fn number_length(rest: &[Glyph]) -> usize {
     let (mut point, mut exponent, mut at) = (false, false, 0);
     while let Some(&(c, _)) = rest.get(at) {

@@ -14,7 +14,7 @@ const MOST_NESTED: usize = 64;
 /// Components inside components of which the frames are registered.
 const MOST_LEVELS: usize = 8;
 
-/// Where a frame is fixed: a body's index (`None` is ground) and its pose there.
+/// Place at which a frame is fixed: a body's index (`None` is ground) and the pose there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Attachment {
     pub(super) body: Option<usize>,

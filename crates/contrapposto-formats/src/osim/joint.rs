@@ -129,7 +129,7 @@ struct Part {
     kind: CoordinateKind,
     axis: Vector3<f64>,
     function: Function,
-    /// Which of the joint's coordinates drives it.
+    /// The coordinate of the joint that drives the motion, by index.
     coordinate: Option<usize>,
     /// OpenSim takes the coordinate's kind from this axis: its function is linear and begins with the slope 1.
     gives_kind: bool,

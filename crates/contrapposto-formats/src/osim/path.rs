@@ -18,7 +18,7 @@ use crate::xml::Node;
 const POINTS: &str = "PathPoint, ConditionalPathPoint, MovingPathPoint";
 const PATHS: &str = "GeometryPath";
 
-/// What paths refer to.
+/// The parts of the file that paths refer to.
 pub(super) struct Surroundings<'s, 'a> {
     pub(super) reader: &'s Reader<'a>,
     pub(super) scene: &'s Scene<'a>,

@@ -15,11 +15,11 @@ use crate::toml_file::{Located, read_toml};
 /// A scenario as it was understood.
 #[derive(Clone, Debug)]
 pub struct ScenarioContents {
-    /// Its name.
+    /// Name of the scenario.
     pub title: String,
     /// The body.
     pub model: Model,
-    /// How it starts: patches lie on their surfaces.
+    /// Posture at the start: patches lie on their surfaces.
     pub start: Posture,
     /// Kinematics of the start.
     pub kinematics: Kinematics,
@@ -31,7 +31,7 @@ pub struct ScenarioContents {
     pub tasks: Vec<ContentsTask>,
     /// Things that no part of the body passes through, by name.
     pub obstacles: Vec<(String, Thing)>,
-    /// What was changed or added, a sentence each.
+    /// Changes and additions of the reader, a sentence each.
     pub notes: Vec<String>,
 }
 

@@ -17,17 +17,17 @@ use crate::toml_file::{Located, read_toml, shown};
 /// A model file that a scenario names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelFile {
-    /// Its path, as seen from the scenario's folder.
+    /// Path of the file, as seen from the scenario's folder.
     pub file: String,
     /// The overlay's path, as seen from the scenario's folder.
     pub overlay: Option<String>,
-    /// How its root is attached, if that is said.
+    /// Attachment of the root, if the scenario gives one.
     pub root: Option<RootAttachment>,
     /// Whether its joints have the strength that the file gives to their motors.
     pub strength: bool,
     /// Fatigue law of its muscle groups, for [`SourcedModel::with_fatigue`].
     pub fatigue: FatigueChoice,
-    /// What its muscles give: strength or nothing.
+    /// Use of the file's muscles: strength or nothing.
     pub muscles: MuscleUse,
     /// The person whom it stands for.
     pub person: Person,

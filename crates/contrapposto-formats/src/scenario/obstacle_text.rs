@@ -9,7 +9,7 @@ use crate::toml_file::numbers;
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ObstacleText {
-    /// Its name.
+    /// Name of the thing.
     pub(crate) name: String,
     /// Middle of a block, ground, m.
     #[serde(default, deserialize_with = "numbers")]
@@ -17,7 +17,7 @@ pub(crate) struct ObstacleText {
     /// Lengths of a block along x, y and z, m.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) size_m: Option<[f64; 3]>,
-    /// How far a block is turned to the left about its vertical axis, deg.
+    /// Angle by which a block is turned to the left about its vertical axis, deg.
     pub(crate) turn_deg: Option<f64>,
     /// Direction out of a wall, ground.
     #[serde(default, deserialize_with = "numbers")]

@@ -12,13 +12,13 @@ use super::task_text::{NamedPlaceText, PlaceText, RegionText, SupportText};
 use crate::input_error::InputError;
 use crate::toml_file::{Located, shown};
 
-/// How far a patch may go ahead of the other one or behind it, or farther aside than need be, in lengths of the patch.
+/// Greatest distance of a patch ahead of the other one or behind it, or sideways beyond the least gap, in lengths of the patch.
 const REACH_IN_LENGTHS: f64 = 2.0;
 /// Least gap between two patches side by side, m.
 const LEAST_GAP: f64 = 0.02;
-/// How far a patch without another one beside it may go, m.
+/// Greatest distance that a patch without another one beside it may be moved, m.
 const ALONE_REACH: f64 = 0.15;
-/// How far a patch may turn inward and outward, and one without another one beside it either way, deg.
+/// Greatest angle of a patch inward and outward, and of one without another one beside it either way, deg.
 const INWARD_DEG: f64 = 10.0;
 const OUTWARD_DEG: f64 = 40.0;
 /// Normals count as parallel if the cosine between them is greater.

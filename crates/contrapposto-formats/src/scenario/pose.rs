@@ -19,13 +19,13 @@ use crate::toml_file::{Located, read_toml, shown};
 /// A posture to be solved for.
 #[derive(Clone, Debug)]
 pub struct PoseScenario {
-    /// Its name.
+    /// Name of the scenario.
     pub title: String,
     /// The body.
     pub model: Model,
     /// Muscles of its file that give its groups strength: [`PoseScenario::take_muscles`].
     pub muscles: Option<JointMuscles>,
-    /// Where it starts: inside all ranges, quaternions of length 1, coordinates that follow others where they must be.
+    /// Posture at the start: inside all ranges, quaternions of length 1, dependent coordinates at the values that their couplings give.
     pub start: Posture,
     /// Rates that do not move, besides those of coordinates that the model itself locks.
     pub locked: Vec<usize>,
@@ -41,11 +41,11 @@ pub struct PoseScenario {
     pub supports: Vec<Support>,
     /// Things around the body and in its hands, for drawings.
     pub things: Vec<Thing>,
-    /// How it is solved.
+    /// Settings of the solver.
     pub options: Options,
     /// Tables of the file that have no part in a pose.
     pub unused: Vec<&'static str>,
-    /// What was changed or added, a sentence each.
+    /// Changes and additions of the reader, a sentence each.
     pub notes: Vec<String>,
 }
 

@@ -17,13 +17,13 @@ use crate::toml_file::{Located, read_toml};
 /// A body whose postures of least effort are sought.
 #[derive(Clone, Debug)]
 pub struct RelaxScenario {
-    /// Its name.
+    /// Name of the scenario.
     pub title: String,
     /// The body.
     pub model: Model,
     /// Muscles of its file that give its groups strength: [`RelaxScenario::take_muscles`].
     pub muscles: Option<JointMuscles>,
-    /// Where it starts, inside all ranges.
+    /// Posture at the start, inside all ranges.
     pub start: Posture,
     /// Rates that do not move, besides those of coordinates that the model itself locks.
     pub locked: Vec<usize>,
@@ -43,7 +43,7 @@ pub struct RelaxScenario {
     pub effort_added: bool,
     /// Tables of the file that have no part in it.
     pub unused: Vec<&'static str>,
-    /// What was changed or added, a sentence each.
+    /// Changes and additions of the reader, a sentence each.
     pub notes: Vec<String>,
 }
 

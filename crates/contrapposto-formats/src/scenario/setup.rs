@@ -46,7 +46,7 @@ pub(super) struct Setup {
     pub(super) levels: Vec<Level>,
     /// Things around the body and in its hands, for drawings.
     pub(super) things: Vec<Thing>,
-    /// What was changed or added, a sentence each, for the reader of the results.
+    /// Changes and additions of the scenario's reader, a sentence each, for the reader of the results.
     pub(super) notes: Vec<String>,
 }
 
@@ -94,7 +94,7 @@ impl Setup {
         Ok(Self { obstacles, loads, standing, supports, limits, levels, things, notes, kinematics, start, model })
     }
 
-    /// Where each task of the file stands: its level, and its place within the level.
+    /// Level of each task of the file, and its place within the level.
     pub(super) fn places(&self) -> Vec<(usize, usize)> {
         let of_file = self.levels.iter().enumerate().filter(|(_, level)| !level.added);
         of_file.flat_map(|(i, level)| (0..level.tasks.tasks.len()).map(move |place| (i, place))).collect()

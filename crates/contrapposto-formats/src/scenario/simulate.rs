@@ -24,7 +24,7 @@ pub struct RunScenario {
     pub scenario: Scenario,
     /// Things around the body and in its hands, for drawings.
     pub things: Vec<Thing>,
-    /// What was changed or added, a sentence each.
+    /// Changes and additions of the reader, a sentence each.
     pub notes: Vec<String>,
 }
 

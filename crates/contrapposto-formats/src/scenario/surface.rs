@@ -27,7 +27,7 @@ pub(super) enum Shape {
     Flat(UnitVector3<f64>),
 }
 
-/// How a patch lies on its surface.
+/// Position of a patch relative to its surface.
 pub(super) struct Fit {
     /// Distance of the middle above the plane, m.
     pub(super) gap: f64,
@@ -47,7 +47,7 @@ impl Resting {
         kinematics.station(model, self.support.segment, self.support.middle())
     }
 
-    /// How the patch lies in the posture of `kinematics`.
+    /// Position of the patch relative to its surface in the posture of `kinematics`.
     pub(super) fn fit(&self, model: &Model, kinematics: &Kinematics) -> Fit {
         let (normal, segment) = (self.support.normal, self.support.segment);
         let gap = self.height.map_or(0.0, |height| normal.dot(&self.middle(model, kinematics)) - height);

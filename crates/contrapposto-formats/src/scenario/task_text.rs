@@ -12,7 +12,7 @@ use crate::toml_file::{numbers, rows};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SupportText {
-    /// Which segment.
+    /// The segment that carries weight.
     pub(crate) segment: String,
     /// The surface that it stands on. When left out: the floor for feet of the built-in adult and with `step_m`, else `ground`.
     pub(crate) on: Option<OnText>,
@@ -32,7 +32,7 @@ pub(crate) struct SupportText {
     pub(crate) place: PlaceText,
 }
 
-/// Where a support may be.
+/// Place of a support, or a region for it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(
     untagged,
@@ -55,7 +55,7 @@ impl Default for PlaceText {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum NamedPlaceText {
-    /// Where it is at the start.
+    /// The place at the start.
     Start,
     /// On its plane, where least effort puts it.
     Free,
@@ -217,14 +217,14 @@ pub(crate) enum TargetText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PointText {
-    /// Which segment.
+    /// The segment of the point.
     pub(crate) segment: String,
-    /// Which point, in the segment's frame, m; its origin when left out.
+    /// The point in the segment's frame, m; the frame's origin when left out.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) at_m: Option<[f64; 3]>,
 }
 
-/// How a pose is solved.
+/// Settings of the solver of a pose.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct SolverText {

@@ -38,7 +38,7 @@ pub(crate) struct ScenarioText {
     /// Start as a result has it, over `[posture]`: the `coordinates` of `pose.json`, rad or m. `--start-from pose.json` gives it.
     #[serde(default)]
     pub(crate) start_from: BTreeMap<String, f64>,
-    /// Which coordinates may move; all when left out.
+    /// Coordinates that may move; all when left out.
     #[serde(default)]
     pub(crate) coordinates: CoordinatesText,
     /// Held weights and forces.
@@ -84,20 +84,20 @@ pub(crate) struct ScenarioText {
     /// The head's up axis points up, just above effort. When left out: `true` for the built-in adult on supports, where no task names
     /// head or trunk.
     pub(crate) upright: Option<bool>,
-    /// How a pose is solved (`pose`).
+    /// Settings of the solver (`pose`).
     pub(crate) solver: Option<SolverText>,
     /// The kind of relief that is wanted; `simulate` needs it.
     pub(crate) strategy: Option<StrategyText>,
-    /// How relief is carried out (`simulate`).
+    /// Settings of relief (`simulate`).
     #[serde(default)]
     pub(crate) relief: ReliefText,
-    /// How muscle groups tire (`simulate`).
+    /// Law of fatigue of muscle groups (`simulate`).
     #[serde(default)]
     pub(crate) fatigue: FatigueText,
     /// Changes during a run (`simulate`).
     #[serde(default)]
     pub(crate) event: Vec<EventText>,
-    /// How long; `simulate` needs it.
+    /// Duration and time step; `simulate` needs them.
     pub(crate) run: Option<RunText>,
 }
 
@@ -112,7 +112,7 @@ impl ScenarioText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EventText {
-    /// When, s; by the last step of the run.
+    /// Time of the event, s; by the last step of the run.
     pub(crate) at_s: f64,
     /// Strategy of the whole body from then on.
     pub(crate) strategy: Option<StrategyKindText>,
@@ -121,14 +121,14 @@ pub(crate) struct EventText {
     pub(crate) strategy_of: BTreeMap<String, StrategyKindText>,
     /// Loads from then on, in place of those before; empty to put everything down.
     pub(crate) load: Option<Vec<LoadText>>,
-    /// Which `[[task]]` of the file (1 is the first) gets a new target.
+    /// Number of the `[[task]]` of the file (1 is the first) that gets a new target.
     pub(crate) task: Option<usize>,
     /// The new target, ground, m.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) target_m: Option<[f64; 3]>,
 }
 
-/// Which body: a file, or the built-in adult.
+/// The body: a file, or the built-in adult.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModelText {
@@ -140,7 +140,7 @@ pub(crate) struct ModelText {
     pub(crate) file: Option<String>,
     /// Ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the file; its path as that of `file`.
     pub(crate) overlay: Option<String>,
-    /// How the root of a URDF or MJCF file is attached; as the file says when left out.
+    /// Attachment of the root of a URDF or MJCF file; as the file says when left out.
     pub(crate) root: Option<RootText>,
     /// Whether the joints of a URDF or MJCF file have the strength that it gives to their motors; true when left out.
     pub(crate) file_strength: Option<bool>,
@@ -176,7 +176,7 @@ pub(crate) enum MusclesText {
     Both,
 }
 
-/// How a root is attached.
+/// Attachment of a root.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum RootText {
@@ -204,7 +204,7 @@ pub(crate) struct AdultText {
     pub(crate) lengths_m: BTreeMap<String, f64>,
 }
 
-/// How much of the body.
+/// Part of the body that is modelled.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PartText {
@@ -247,7 +247,7 @@ impl SexText {
     }
 }
 
-/// Which coordinates may move: one of the two lists.
+/// Coordinates that may move: one of the two lists.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CoordinatesText {
@@ -261,14 +261,14 @@ pub(crate) struct CoordinatesText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LoadText {
-    /// Which segment.
+    /// The segment that the load acts on.
     pub(crate) segment: String,
     /// A weight, kg.
     pub(crate) mass_kg: Option<f64>,
     /// A force, N.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) force_n: Option<[f64; 3]>,
-    /// Where, in the segment's frame, m; its centre of mass when left out.
+    /// The point in the segment's frame, m; the segment's centre of mass when left out.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) at_m: Option<[f64; 3]>,
     /// Whether the force keeps its direction in the world or in the segment; world when left out.
@@ -330,7 +330,7 @@ impl From<StrategyKindText> for Strategy {
     }
 }
 
-/// How relief is carried out.
+/// Settings of relief.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct ReliefText {
@@ -369,7 +369,7 @@ pub(crate) enum TablesText {
     Literal,
 }
 
-/// How long, and how finely.
+/// Duration and time step of a run.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RunText {

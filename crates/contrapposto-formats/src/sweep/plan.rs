@@ -24,7 +24,7 @@ pub struct Plan {
     pub base: String,
     /// Seed of the designs `latin_hypercube` and `random`.
     pub seed: u32,
-    /// How rows are chosen.
+    /// Choice of the rows.
     pub design: Design,
     /// Number of rows.
     pub rows: usize,
@@ -49,7 +49,7 @@ impl Plan {
     }
 }
 
-/// How rows are chosen.
+/// Choice of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Design {
     /// The unscrambled Sobol sequence, without its first point, the origin.
@@ -67,7 +67,7 @@ pub enum Design {
 pub struct Parameter {
     /// Path of the key in the scenario file: `model.adult.stature_m`, `load.0.mass_kg`.
     pub key: String,
-    /// Its values.
+    /// Values of the parameter.
     pub distribution: Distribution,
     /// Number of values in the design `grid`.
     pub levels: usize,

@@ -86,7 +86,7 @@ impl Template {
     }
 }
 
-/// Where a key is, or where it can be added.
+/// Place of a key, or the place at which a key can be added.
 enum Place<'p> {
     /// The bytes of its value.
     Value(Range<usize>),

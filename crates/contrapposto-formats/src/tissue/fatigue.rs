@@ -15,7 +15,7 @@ use crate::overlay::GENERAL;
 /// Sex whose parameters are taken, where a set distinguishes the sexes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FatigueSex {
-    /// That of the body; both together where the body has none, as models of other programs.
+    /// The sex of the body; both together where the body has none, as models of other programs.
     #[default]
     OfBody,
     /// Women's.

@@ -220,10 +220,10 @@ impl SourcedModel {
     }
 }
 
-/// How the note about strength from the file begins.
+/// First words of the note about strength from the file.
 const STRENGTH_NOTE: &str = "strength of ";
 
-/// How many joints have the strength that the file gives to their motors.
+/// Note with the number of joints that have the strength that the file gives to their motors; `None` without such joints.
 fn strength_note(model: &Model, format: ModelFormat) -> Option<String> {
     let known = model.coordinates().iter().filter(|coordinate| coordinate.groups.is_some()).count();
     let from = match format {

@@ -1,6 +1,6 @@
 //! The origin of the numbers of a coordinate: model file, overlay or built-in data.
 
-/// Where a number of a coordinate comes from.
+/// Origin of a number of a coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Origin {
     /// The model file.
@@ -14,7 +14,7 @@ pub enum Origin {
     Muscles,
 }
 
-/// Where the numbers of one coordinate come from.
+/// Origin of every number of one coordinate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Origins {
     /// The coordinate of the built-in adult whose data are used.

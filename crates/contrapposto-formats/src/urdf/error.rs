@@ -3,7 +3,7 @@
 use crate::numbers::NumberError;
 use crate::xml::{Place, XmlError};
 
-/// Why a URDF file is refused.
+/// The reason for which a URDF file is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UrdfError {
@@ -36,7 +36,7 @@ pub enum UrdfError {
     /// A joint's type is unknown.
     #[error("{place}: `{value}` is no joint type; there are revolute, continuous, prismatic, fixed, floating, planar")]
     JointType {
-        /// Where.
+        /// Of the attribute.
         place: Place,
         /// As written.
         value: String,
@@ -52,7 +52,7 @@ pub enum UrdfError {
     /// A joint names a link that is not there.
     #[error("{place}: there is no link `{value}`{}", nearest.as_ref().map(|n| format!("; did you mean `{n}`?")).unwrap_or_default())]
     UnknownName {
-        /// Where.
+        /// Of the attribute.
         place: Place,
         /// The name.
         value: String,
@@ -62,7 +62,7 @@ pub enum UrdfError {
     /// A rule of the format is broken.
     #[error("{place}: `{value}`: {needs}")]
     Invalid {
-        /// Where.
+        /// Of the element or attribute.
         place: Place,
         /// As written, or the name of the part.
         value: String,

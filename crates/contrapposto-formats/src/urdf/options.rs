@@ -6,7 +6,7 @@ use crate::xml::Limits;
 /// Options of the reader that the file does not give.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
-    /// How the root link is attached to the ground. `Free` adds `root_tx` ... `root_qz`.
+    /// Attachment of the root link to the ground. `Free` adds `root_tx` ... `root_qz`.
     pub root: RootAttachment,
     /// Caps.
     pub limits: Limits,

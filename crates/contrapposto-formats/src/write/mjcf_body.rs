@@ -24,7 +24,7 @@ pub(super) struct Group {
     pub(super) first: usize,
     /// The one whose body it is.
     pub(super) segment: usize,
-    /// Those without mass before it.
+    /// Segments without mass before that one.
     pub(super) merged: Vec<usize>,
     /// The segment moves, has no mass, and does not carry exactly one segment that could have its motions.
     pub(super) feather: bool,

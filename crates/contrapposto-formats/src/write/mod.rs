@@ -38,7 +38,7 @@ pub struct Written {
     pub lost: Vec<String>,
 }
 
-/// Why a model cannot be written in a format.
+/// The reason for which a model cannot be written in a format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {

@@ -27,7 +27,7 @@ pub(super) struct Axis<'m> {
 pub(super) struct Piece<'m> {
     pub(super) slides: Vec<Axis<'m>>,
     pub(super) hinges: Vec<Axis<'m>>,
-    /// Its hinges are the angles of the ball with this first coordinate.
+    /// The piece's hinges are the angles of the ball with this first coordinate.
     pub(super) ball: Option<usize>,
     /// The joint is written from the segment to its parent: all of its motions in reverse.
     pub(super) turned: bool,
@@ -101,7 +101,7 @@ impl<'m> Piece<'m> {
         self.slides.iter().chain(&self.hinges)
     }
 
-    /// Its coordinates, in the model's order.
+    /// Coordinates of the piece, in the model's order.
     pub(super) fn coordinates(&self) -> Vec<usize> {
         let mut all: Vec<usize> = self.axes().flat_map(|axis| axis.driver.coordinates()).collect();
         all.sort_unstable();

@@ -14,7 +14,7 @@ struct Column {
     from: From,
 }
 
-/// Where its numbers come from.
+/// Source of a column's numbers.
 #[derive(Clone, Copy)]
 enum From {
     Coordinate(usize),

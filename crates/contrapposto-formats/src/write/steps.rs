@@ -32,13 +32,13 @@ pub(super) fn steps(segment: &Segment) -> Vec<(Motion, By<'_>)> {
     numbered.collect()
 }
 
-/// How a ball with these four coordinates stands at their defaults.
+/// Orientation of a ball with these four coordinates at their defaults.
 pub(super) fn resting(ball: &[Coordinate]) -> UnitQuaternion<f64> {
     let [w, i, j, k] = [0, 1, 2, 3].map(|part| ball[part].default);
     UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k))
 }
 
-/// Where a motion of this size leads.
+/// Placement after a motion of this size.
 pub(super) fn moved(motion: Motion, value: f64) -> Placement {
     match motion {
         Motion::Hinge(axis) => {

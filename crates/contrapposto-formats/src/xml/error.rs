@@ -2,14 +2,14 @@
 
 use super::Position;
 
-/// Why a text is not accepted as XML.
+/// The reason for which a text is not accepted as XML.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum XmlError {
     /// The file is larger than accepted.
     #[error("the file has {bytes} bytes; at most {cap} are read")]
     FileTooLarge {
-        /// Its size.
+        /// Size of the file.
         bytes: usize,
         /// The cap.
         cap: usize,
@@ -17,7 +17,7 @@ pub enum XmlError {
     /// A byte that does not belong to UTF-8.
     #[error("{position}: byte {byte:#04x} is not UTF-8; save the file as UTF-8")]
     NotUtf8 {
-        /// Where.
+        /// Place in the text.
         position: Position,
         /// The first wrong byte.
         byte: u8,
@@ -33,21 +33,21 @@ pub enum XmlError {
     /// A control character.
     #[error("{position}: character U+{code:04X} is not allowed in XML")]
     Character {
-        /// Where.
+        /// Place in the text.
         position: Position,
-        /// Its code.
+        /// Code of the character.
         code: u32,
     },
     /// A DOCTYPE, with which a small file can grow without bound.
     #[error("{position}: <!DOCTYPE> is not accepted; delete it (nothing of it is needed)")]
     Doctype {
-        /// Where.
+        /// Place in the text.
         position: Position,
     },
     /// An entity that is not `lt`, `gt`, `amp`, `quot`, `apos` or a character reference.
     #[error("{position}: `&{entity};` is unknown; accepted are &lt; &gt; &amp; &quot; &apos; and &#...;")]
     Entity {
-        /// Where.
+        /// Place in the text.
         position: Position,
         /// Without `&` and `;`, shortened.
         entity: String,
@@ -57,9 +57,9 @@ pub enum XmlError {
     TooDeep {
         /// Of the first element too deep.
         position: Position,
-        /// Its name.
+        /// Name of the element.
         tag: String,
-        /// Its depth.
+        /// Depth of the element.
         depth: usize,
         /// The cap.
         cap: usize,
@@ -69,7 +69,7 @@ pub enum XmlError {
     TooManyElements {
         /// Of the first element too many.
         position: Position,
-        /// Its name.
+        /// Name of the element.
         tag: String,
         /// The cap.
         cap: usize,
@@ -79,7 +79,7 @@ pub enum XmlError {
     TooManyAttributes {
         /// Of the element.
         position: Position,
-        /// Its name.
+        /// Name of the element.
         tag: String,
         /// The cap.
         cap: usize,
@@ -87,9 +87,9 @@ pub enum XmlError {
     /// A name longer than the cap.
     #[error("{position}: a name of {bytes} bytes; at most {cap} are read")]
     NameTooLong {
-        /// Where.
+        /// Place in the text.
         position: Position,
-        /// Its length.
+        /// Length of the name.
         bytes: usize,
         /// The cap.
         cap: usize,
@@ -97,7 +97,7 @@ pub enum XmlError {
     /// A name that XML does not allow.
     #[error("{position}: `{name}` is not a name; a letter or `_`, then letters, digits, `_`, `-`, `.`, `:`")]
     Name {
-        /// Where.
+        /// Place in the text.
         position: Position,
         /// As written, shortened.
         name: String,
@@ -117,7 +117,7 @@ pub enum XmlError {
     Unclosed {
         /// Of the start tag.
         position: Position,
-        /// Its name.
+        /// Name of the element.
         tag: String,
     },
     /// An end tag that does not belong to the open element.
@@ -136,9 +136,9 @@ pub enum XmlError {
     /// Another breach of XML's grammar.
     #[error("{position}: {what}")]
     Malformed {
-        /// Where.
+        /// Place in the text.
         position: Position,
-        /// Which.
+        /// The breach.
         what: Malformed,
     },
 }

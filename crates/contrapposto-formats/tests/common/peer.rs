@@ -95,13 +95,13 @@ impl Peer {
         ]
     }
 
-    /// How far any joint is out of its range, rad.
+    /// Greatest distance of a joint from its range, rad.
     pub fn excess(&self, posture: &Posture) -> f64 {
         let out = |(c, v): (&contrapposto::model::Coordinate, &f64)| (c.range.0 - v).max(v - c.range.1);
         self.model.coordinates().iter().zip(posture.values()).map(out).fold(0.0, f64::max)
     }
 
-    /// How much nearer the hand comes to first order, m, by the best step of at most `room` that keeps feet, centre of mass
+    /// Distance by which the hand comes nearer to first order, m, by the best step of at most `room` that keeps feet, centre of mass
     /// and ranges.
     pub fn gain(&self, posture: &Posture, target: Vector3<f64>, room: f64) -> f64 {
         let model = &self.model;

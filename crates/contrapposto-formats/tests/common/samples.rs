@@ -61,7 +61,7 @@ impl Worst {
     }
 }
 
-/// How far the centre of pressure of a support lies outside of its patch, m: in sixteen directions along its plane no corner may
+/// Distance of the centre of pressure of a support outside of its patch, m: in sixteen directions along its plane no corner may
 /// lie behind it.
 fn outside_the_patch(model: &Model, posture: &[f64], support: &Support, contact: &Contact) -> f64 {
     let Some(center) = contact.center_of_pressure else { return 0.0 };

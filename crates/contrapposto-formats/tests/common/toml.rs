@@ -2,7 +2,7 @@
 
 use super::{hammer_mutants, next};
 
-/// What strangers write instead of a number.
+/// Texts that strangers write instead of a number.
 pub const ODD: [&str; 22] = [
     "nan",
     "-inf",

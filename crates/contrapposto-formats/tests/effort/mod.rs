@@ -137,7 +137,7 @@ pub(crate) fn targets(file: &Path, problem: &str) -> Vec<Target> {
     file[problem]["rows"].as_array().unwrap().iter().map(row).collect()
 }
 
-/// Hand, feet and root where they should be?
+/// Whether hand, feet and root are at their places.
 pub(crate) fn holds(pose: &SolvedPosture) -> bool {
     pose.levels[0].length < 1e-6 && pose.slip.length() < 1e-6 && pose.balance == Balance::Held
 }

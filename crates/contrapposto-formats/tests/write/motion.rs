@@ -15,7 +15,7 @@ use super::common::here;
 use super::players::{Bvh, Glb};
 use super::{Osim, axis, build, hinges_and_slides, named, read, segment};
 
-/// What the issue of agreement is, m.
+/// Greatest distance of places that agree, m.
 const AGREEMENT: f64 = 1e-5;
 /// Postures of a motion, and every so many of them OpenSim is asked about.
 const ROWS: usize = 61;

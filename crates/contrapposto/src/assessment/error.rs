@@ -4,7 +4,7 @@ use crate::contact::SupportError;
 use crate::dynamics::InertiaError;
 use crate::joint_torques::JointTorquesError;
 
-/// Why a motion was not assessed.
+/// The reason for which a motion was not assessed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AssessError {
@@ -14,17 +14,17 @@ pub enum AssessError {
     /// A posture or a load does not fit the model, or a passive law gives no torque.
     #[error("instant {index}: {error}")]
     Torques {
-        /// Its number, counted from 0.
+        /// Number of the instant, counted from 0.
         index: usize,
-        /// Why.
+        /// The reason.
         error: JointTorquesError,
     },
     /// Speeds or accelerations do not fit the model.
     #[error("instant {index}: {error}")]
     Inertia {
-        /// Its number, counted from 0.
+        /// Number of the instant, counted from 0.
         index: usize,
-        /// Why.
+        /// The reason.
         error: InertiaError,
     },
     /// There are not as many rates as postures.
@@ -40,10 +40,10 @@ pub enum AssessError {
     Order {
         /// Number of the instant.
         index: usize,
-        /// Its time, s.
+        /// Time of the instant, s.
         time: f64,
     },
-    /// It lasts for days.
+    /// The motion lasts for days.
     #[error("the motion lasts {0} s; 1e5 s at most")]
     TooLong(f64),
 }

@@ -108,7 +108,7 @@ impl<'a> Evaluation<'a> {
         self.contact.as_ref().is_some_and(|contact| contact.balance() != Balance::Held)
     }
 
-    /// What the supports lack in the posture of the last update.
+    /// Force and torque that the supports lack in the posture of the last update.
     pub(super) fn missing(&self) -> Option<Missing> {
         self.contact.as_ref()?.missing(&self.model, self.torques.kinematics())
     }

@@ -10,7 +10,7 @@ use crate::model::{Model, Side};
 /// One instant of the motion.
 #[derive(Debug)]
 pub struct Instant<'a> {
-    /// Its number, counted from 0.
+    /// Number of the instant, counted from 0.
     pub index: usize,
     /// Time, s.
     pub time: f64,
@@ -35,7 +35,7 @@ pub struct Peak {
     pub value: f64,
     /// Number of the instant.
     pub index: usize,
-    /// Its time, s.
+    /// Time of the peak, s.
     pub time: f64,
 }
 
@@ -52,7 +52,7 @@ impl Peak {
 pub struct GroupAssessment {
     /// Index of its coordinate.
     pub coordinate: usize,
-    /// Which of its two groups.
+    /// The group of the coordinate, by the sign of its torque.
     pub side: Side,
     /// Greatest active torque over strength.
     pub peak_load: Peak,
@@ -68,9 +68,9 @@ pub struct GroupAssessment {
     pub fatigue: f64,
     /// Relative load at the end.
     pub load: f64,
-    /// When its fatigue first reached 1, s.
+    /// Time at which the fatigue of the group first reached 1, s.
     pub exhausted_at: Option<f64>,
-    /// Where relief would lie at both peaks, by both strategies; where the group rested or has no falling passive curve, none.
+    /// Reliefs at both peaks, by both strategies; none where the group rested or has no falling passive curve.
     pub proposals: Vec<Proposal>,
 }
 
@@ -101,7 +101,7 @@ impl PeakTorques {
     }
 }
 
-/// Which peak a relief is proposed at.
+/// The peak at which a relief is proposed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PeakKind {
     /// Greatest load.
@@ -115,7 +115,7 @@ pub enum PeakKind {
 pub struct Proposal {
     /// At which peak.
     pub at: PeakKind,
-    /// Its time, s.
+    /// Time of the peak, s.
     pub time: f64,
     /// Value of the coordinate there, rad.
     pub angle: f64,
@@ -140,11 +140,11 @@ pub struct Assessment {
     pub residual_moment: Peak,
     /// Number of instants in which the supports could not hold the root.
     pub unheld: usize,
-    /// What the supports lack in the first of them, and its time, s.
+    /// Force and torque that the supports lack in the first of these instants, and its time, s.
     pub missing: Option<(Missing, f64)>,
     /// Inertia counts in all torques.
     pub dynamics: bool,
-    /// What a body without supports lacks, where the loads leave it more than half of its weight in every instant: nothing carries it.
+    /// Force and torque that a body without supports lacks, where in every instant more than half of its weight is carried by no load.
     pub uncarried: Option<Missing>,
     /// Greatest acceleration of the centre of mass, m/s^2.
     pub acceleration: Peak,

@@ -3,7 +3,7 @@
 use crate::joint_torques::JointTorquesError;
 use crate::statics::LoadError;
 
-/// Why a batch was refused.
+/// The reason for which a batch was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BatchError {
@@ -29,7 +29,7 @@ pub enum BatchError {
     /// A posture does not fit the model, or a passive law gives no torque in it.
     #[error("posture number {posture}: {problem}")]
     Posture {
-        /// Its number, counted from 0.
+        /// Number of the posture, counted from 0.
         posture: usize,
         /// The problem.
         problem: JointTorquesError,

@@ -50,7 +50,7 @@ impl Frames {
     }
 }
 
-/// Where the results of a block go.
+/// Memory for the results of a block.
 pub(super) struct Results<'a> {
     /// By elementary rate.
     pub(super) torques: &'a mut [Lanes],

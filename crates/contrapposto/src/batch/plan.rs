@@ -11,7 +11,7 @@ pub(super) struct Node {
     pub(super) parent: Option<usize>,
     /// The point in the parent's frame, m; `None` for its origin.
     pub(super) translation: Option<[f64; 3]>,
-    /// Its motions, which are the mobilities of the model.
+    /// Motions of the node, which are the mobilities of the model.
     pub(super) motions: std::ops::Range<usize>,
     /// Mass fixed to it, and mass times its centre.
     pub(super) mass: f64,
@@ -58,9 +58,9 @@ pub(super) struct Step {
 #[derive(Clone, Debug)]
 pub(super) struct Attached {
     pub(super) node: Option<usize>,
-    /// Its rotation against the frame of the node, unless it is none.
+    /// Rotation of the frame against the frame of the node, unless there is none.
     pub(super) turned: Option<Columns>,
-    /// Its origin in the frame of the node, m.
+    /// Origin of the frame in the frame of the node, m.
     pub(super) origin: [f64; 3],
 }
 

@@ -17,9 +17,9 @@ use crate::model::Side;
 pub enum Limiter {
     /// The strength of a muscle group.
     Strength {
-        /// Its coordinate.
+        /// Coordinate of the group.
         coordinate: usize,
-        /// Which of the two groups of the coordinate.
+        /// The group of the coordinate, by the sign of its torque.
         side: Side,
     },
     /// Balance: the body would tip over an edge of its supports, or leave them.

@@ -52,7 +52,7 @@ impl Capacity {
         Ok(program.map(|program| Self { at_rest: program.clone(), program }))
     }
 
-    /// Where the force acts, ground, m.
+    /// Point at which the force acts, ground, m.
     pub fn place(&self) -> Vector3<f64> {
         self.program.place
     }

@@ -65,7 +65,7 @@ pub(super) struct Program {
     pub(super) axes: Vec<[Vector3<f64>; PARTS]>,
     /// Unit of forces, N.
     pub(super) weight: f64,
-    /// Where the force acts, ground, m.
+    /// Point at which the force acts, ground, m.
     pub(super) place: Vector3<f64>,
 }
 

@@ -13,11 +13,11 @@ use crate::statics::Load;
 pub struct Situation<'a> {
     /// The body.
     pub model: &'a Model,
-    /// Its posture.
+    /// Posture of the body.
     pub posture: &'a Posture,
-    /// Its loads besides weight.
+    /// Loads of the body besides weight.
     pub loads: &'a [Load],
-    /// Its supports.
+    /// Supports of the body.
     pub supports: &'a [Support],
 }
 
@@ -30,7 +30,7 @@ pub struct Station {
     pub point: Vector3<f64>,
 }
 
-/// Why a capacity was refused.
+/// The reason for which a capacity was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CapacityError {

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::tolerances::{STRONGEST_STEPS, WEAKER, WEAKEST_ROUNDS};
 use super::{Capacity, Reach};
 
-/// How often faces are divided.
+/// Number of times that faces are divided.
 const DIVISIONS: usize = 3;
 /// Bands of height of a sweep.
 const BANDS: f64 = 16.0;

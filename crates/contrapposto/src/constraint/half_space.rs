@@ -39,7 +39,7 @@ impl HalfSpace {
         self.offset += self.violation(posture);
     }
 
-    /// How far `posture` lies outside; not positive inside.
+    /// Distance by which `posture` lies outside; not positive inside.
     pub(crate) fn violation(&self, posture: &[f64]) -> f64 {
         self.normal.iter().zip(posture).map(|(a, q)| a * q).sum::<f64>() - self.offset
     }

@@ -32,7 +32,7 @@ pub enum Balance {
 
 /// Greatest residual of the root's equations in equilibrium, in body weights (times 1 m).
 pub(super) const HELD: f64 = 1e-9;
-/// How often signs of active torque are put right.
+/// Greatest number of times that signs of active torque are put right.
 const SIGNS: usize = 12;
 
 /// Contact forces in a posture. Depends on posture, loads and passive torque; filled by [`ContactForces::update`].
@@ -340,7 +340,7 @@ impl ContactForces {
         self.corners(support).map(|corner| self.forces[FORCES_PER_CORNER * corner]).sum()
     }
 
-    /// Where the normal force of a support acts, ground, m; `None` where it carries nothing.
+    /// Point at which the normal force of a support acts, ground, m; `None` where the support carries nothing.
     pub fn center_of_pressure(&self, model: &Model, kinematics: &Kinematics, support: usize) -> Option<Vector3<f64>> {
         let share = self.share(support);
         let sum: Vector3<f64> = self

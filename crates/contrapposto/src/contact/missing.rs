@@ -31,7 +31,7 @@ pub struct Missing {
     pub force: f64,
     /// Missing torque about the root's hinges, N m.
     pub moment: f64,
-    /// Why.
+    /// The reason.
     pub condition: Condition,
 }
 
@@ -84,7 +84,8 @@ impl ContactForces {
         Some(Missing { force, moment, condition })
     }
 
-    /// How far weight and loads act outside of the supports.
+    /// Distance and direction by which weight and loads act outside of the supports, ground axes, m; `None` where this is not the
+    /// fault, or the supports do not share a plane.
     fn beyond(&self, model: &Model, kinematics: &Kinematics) -> Option<Vector3<f64>> {
         let axes = *self.axes().first()?;
         let one_way = self.supports().iter().all(|support| support.normal.dot(&axes[0]) >= 1.0 - PARALLEL);
@@ -118,7 +119,7 @@ impl ContactForces {
         (normal > HELD && lean.norm() > LEAST_LEAN).then_some(lean)
     }
 
-    /// How each of the root's rates turns the supports, ground; `None` if it does not turn all alike.
+    /// Angular velocity of the supports by each of the root's rates, ground; `None` if the supports do not turn all alike.
     fn turns(&self, model: &Model, kinematics: &Kinematics) -> Option<Vec<Vector3<f64>>> {
         let n = model.rates().len();
         let mut rows = vec![0.0; 3 * n];

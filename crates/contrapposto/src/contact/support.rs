@@ -30,9 +30,9 @@ pub struct Support {
 /// Whether a patch stays where it is at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// It stays.
+    /// The support stays.
     Fixed,
-    /// It lies flat on the plane of its start, and may shift and turn on it.
+    /// The support lies flat on the plane of its start, and may shift and turn on this plane.
     Free(Region),
 }
 
@@ -45,7 +45,7 @@ pub struct Region {
     pub turn: (f64, f64),
 }
 
-/// Why a support was refused.
+/// The reason for which a support was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SupportError {

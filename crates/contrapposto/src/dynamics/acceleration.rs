@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 use crate::kinematics::Kinematics;
 use crate::model::{LARGEST, Model, Motion};
 
-/// Why speeds or accelerations do not fit a model.
+/// The reason for which speeds or accelerations do not fit a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpeedError {

@@ -3,16 +3,16 @@
 use crate::math::SplineError;
 use crate::posture::PostureError;
 
-/// Why speeds and accelerations of a motion are not known.
+/// The reason for which speeds and accelerations of a motion are not known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
     /// Too few postures.
     #[error("{found} frames; accelerations need at least {needed}")]
     TooFew {
-        /// How many there are.
+        /// Number of frames.
         found: usize,
-        /// How many there must be.
+        /// Least number of frames.
         needed: usize,
     },
     /// Times do not rise.
@@ -20,7 +20,7 @@ pub enum MotionError {
     Order {
         /// Number of the frame, counted from 0.
         index: usize,
-        /// Its time, s.
+        /// Time of the frame, s.
         time: f64,
     },
     /// Two frames are much nearer than the others.
@@ -54,7 +54,7 @@ pub enum MotionError {
     Posture {
         /// Number of the frame, counted from 0.
         index: usize,
-        /// Why.
+        /// The reason.
         error: PostureError,
     },
     /// No spline.

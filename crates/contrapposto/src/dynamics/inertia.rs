@@ -7,7 +7,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::statics::{ExternalTorque, FixedIn, Load, LoadError, LoadKind};
 
-/// Why the inertia of a body is not known.
+/// The reason for which the inertia of a body is not known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InertiaError {

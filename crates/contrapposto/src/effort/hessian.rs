@@ -40,7 +40,7 @@ pub(crate) struct FirstOrder<'a> {
     pub(crate) support_rows: &'a [f64],
 }
 
-/// Which terms of the second derivative count.
+/// Terms of the second derivative that count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HessianModel {
     /// All; only the passive laws of dependent coordinates are left out.

@@ -39,7 +39,7 @@ pub(crate) struct SqpOptions {
     pub(crate) least_gain: f64,
 }
 
-/// Where a descent ended.
+/// End of a descent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalMinimum {
     /// Half the effort.

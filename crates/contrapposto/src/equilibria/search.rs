@@ -32,7 +32,7 @@ pub struct Search<'a> {
     pub scattered: usize,
 }
 
-/// Why no posture was found.
+/// The reason for which no posture was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SearchError {

@@ -66,14 +66,14 @@ pub enum EnduranceForm {
 pub struct EnduranceCurve {
     /// Name in the data files, e.g. `freylaw_avin_2010_elbow`.
     pub name: String,
-    /// Its shape.
+    /// Shape of the curve.
     pub form: EnduranceForm,
 }
 
 /// Endurance-time integral with a recovery law of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Endurance {
-    /// Which curve.
+    /// The curve.
     pub curve: EnduranceCurve,
     /// Recovery rate at rest, 1/s.
     pub recovery_rate: f64,

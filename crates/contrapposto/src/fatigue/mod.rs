@@ -19,7 +19,7 @@ pub use three_compartment::{Compartments, ThreeCompartment};
 /// Relative load at or below which a group counts as resting (3CC-r: Looft et al. 2018; the same for the integral).
 pub const REST_LOAD: f64 = 0.01;
 
-/// How a muscle group tires and recovers.
+/// Law by which a muscle group tires and recovers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FatigueLaw {
     /// Three-compartment controller with rest recovery (3CC-r).
@@ -30,7 +30,7 @@ pub enum FatigueLaw {
     Tireless,
 }
 
-/// How tired a group is now. Depends on the history of its load; filled by [`FatigueLaw::advance`].
+/// Fatigue of a group at a time. Depends on the history of its load; filled by [`FatigueLaw::advance`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FatigueState {
     /// State of 3CC-r.

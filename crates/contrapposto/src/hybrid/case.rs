@@ -3,7 +3,7 @@
 use crate::passive::SlopeAngles;
 use serde::{Deserialize, Serialize};
 
-/// Which solution is sought (Rodriguez & Boulic 2007, section 2.1).
+/// The kind of solution that is sought (Rodriguez & Boulic 2007, section 2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Strategy {
     /// Mid-range, where muscles work well: a reactive posture.

@@ -31,7 +31,7 @@ enum Goal {
     Least(f64),
 }
 
-/// How the printed conditions are read.
+/// Reading of the printed conditions.
 #[derive(Clone, Copy, PartialEq)]
 enum Reading {
     Literal,
@@ -238,7 +238,7 @@ fn nearest_root(problem: &Problem, active: &Extrapolation, decision: &mut Decisi
     nearest
 }
 
-/// Where no balance exists: the angle of least torque, which is a limit or one of the slope angles. Ties go to the
+/// The angle of least torque where no balance exists: a limit or one of the slope angles. Ties go to the
 /// present angle.
 fn least_torque(problem: &Problem, active: &Extrapolation, present: f64) -> Goal {
     let mut best = (present.abs(), Goal::Stay);

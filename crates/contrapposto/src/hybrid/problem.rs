@@ -12,9 +12,9 @@ pub struct Problem<'a> {
     pub angle: f64,
     /// Present external torque `tau_e`, N m.
     pub external_torque: f64,
-    /// Its present slope `d tau_e`, N m/rad (Eq. 7, the entry of the coordinate itself).
+    /// Present slope `d tau_e` of the external torque, N m/rad (Eq. 7, the entry of the coordinate itself).
     pub external_slope: f64,
-    /// Which kind of solution is sought.
+    /// The kind of solution that is sought.
     pub strategy: Strategy,
     /// `R_min`, 0..=1: least share of the torque that the active solution of case 3.1 must remove.
     pub minimum_decrease_ratio: f64,
@@ -25,7 +25,7 @@ pub struct Problem<'a> {
     pub accepted: Option<Strategy>,
 }
 
-/// Why a problem was refused.
+/// The reason for which a problem was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProblemError {

@@ -88,7 +88,7 @@ impl AboutAxes {
         &self.external
     }
 
-    /// Its gradient by rotations about axes, N m/rad.
+    /// Gradient of the external torque by rotations about axes, N m/rad.
     pub(crate) fn gradient(&self) -> &Gradient {
         &self.gradient
     }

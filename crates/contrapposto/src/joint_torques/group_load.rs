@@ -7,9 +7,9 @@ use crate::model::{Coordinate, MuscleGroup, Side};
 /// A muscle group at work.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroupLoad {
-    /// Its coordinate.
+    /// Coordinate of the group.
     pub coordinate: usize,
-    /// Which of the two groups of the coordinate.
+    /// The group of the coordinate, by the sign of its torque.
     pub side: Side,
     /// Active torque, N m, about the axis of the coordinate.
     pub torque: f64,

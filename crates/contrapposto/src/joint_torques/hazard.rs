@@ -11,7 +11,7 @@ const SMALL_TORQUE: f64 = 0.5;
 pub struct Hazard {
     /// The coordinate.
     pub coordinate: usize,
-    /// Its angle, rad.
+    /// Angle of the coordinate, rad.
     pub angle: f64,
     /// External torque, N m.
     pub external: f64,

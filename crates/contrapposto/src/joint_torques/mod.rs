@@ -63,7 +63,7 @@ impl Quantities {
     /// External, passive and active torque, without the gradient.
     pub const TORQUES: Self = Self { center_of_mass: false, gradient: false, ..Self::ALL };
 
-    /// Those of either.
+    /// The quantities of both selections together.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         Self {
@@ -83,7 +83,7 @@ impl Quantities {
     }
 }
 
-/// Why a posture or a load was refused.
+/// The reason for which a posture or a load was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum JointTorquesError {
@@ -335,7 +335,7 @@ impl JointTorques {
         self.axes.as_ref().map_or(of_coordinates, |axes| axes.external().torques())
     }
 
-    /// Its derivatives, N m/rad, by rotations about the axes of three-axis joints and by the rates of all other coordinates.
+    /// Derivatives of the external torque, N m/rad, by rotations about the axes of three-axis joints and by the rates of all other coordinates.
     ///
     /// # Panics
     /// When the last update did not compute it.

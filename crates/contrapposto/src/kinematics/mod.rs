@@ -16,7 +16,7 @@ use crate::posture::{Posture, PostureError};
 pub struct Kinematics {
     /// Rotation of each mobility's moved frame in ground.
     pub(crate) rotations: Vec<Matrix3<f64>>,
-    /// Its origin in ground, m: the point hinges and balls turn about.
+    /// Origin of each mobility's moved frame in ground, m: the point that hinges and balls turn about.
     pub(crate) origins: Vec<Vector3<f64>>,
     /// Unit axis of each elementary rate in ground.
     pub(crate) axes: Vec<Vector3<f64>>,
@@ -26,7 +26,7 @@ pub struct Kinematics {
     pub(crate) drives: Vec<(f64, f64)>,
     /// First and second derivative of each coupling.
     pub(crate) couplings: Vec<(f64, f64)>,
-    /// How far each ball that coordinates turn is turned beyond them.
+    /// Rotation of each ball beyond the orientation that its coordinates give.
     turns: Vec<UnitQuaternion<f64>>,
 }
 

@@ -46,16 +46,16 @@ pub struct Spline {
     pieces: Vec<[f64; 4]>,
 }
 
-/// Why points make no spline.
+/// The reason for which points make no spline.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplineError {
     /// Too few points.
     #[error("{found} points; at least {needed} are needed")]
     TooFew {
-        /// How many there are.
+        /// Number of points.
         found: usize,
-        /// How many there must be.
+        /// Least number of points.
         needed: usize,
     },
     /// As many x as y are needed.

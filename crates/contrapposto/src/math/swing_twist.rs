@@ -30,7 +30,7 @@ const SERIES_COSINE: f64 = 0.999;
 pub struct SwingTwist {
     /// Orthonormal axes in the distal frame.
     axes: [Vector3<f64>; 3],
-    /// Which of them is the long axis.
+    /// Index of the long axis.
     twist: usize,
     /// Inverse of the reference orientation.
     back: UnitQuaternion<f64>,
@@ -63,7 +63,7 @@ impl SwingTwist {
         Self { axes, twist, back: UnitQuaternion::from_scaled_axis(turn).inverse(), reference }
     }
 
-    /// Which of the axes is the long one.
+    /// Index of the long axis.
     pub fn twist(&self) -> usize {
         self.twist
     }

@@ -36,7 +36,7 @@ impl std::fmt::Display for AdultMeasure {
     }
 }
 
-/// Why an adult was refused.
+/// The reason for which an adult was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdultError {
@@ -328,7 +328,7 @@ impl<'a> CoordinateSources<'a> {
 }
 
 impl Library {
-    /// Where the numbers of one of the adult's coordinates come from.
+    /// Sources of the numbers of one of the adult's coordinates.
     pub fn sources(&self, coordinate: &str) -> Option<CoordinateSources<'_>> {
         let left = coordinate.ends_with("_l");
         let row = self.adult.coordinate.iter().find(|row| sided(&row.name, left && row.mirrored) == coordinate)?;

@@ -14,7 +14,7 @@ pub enum Sex {
     Male,
 }
 
-/// How much of the body.
+/// Part of the body that is modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// All of it.
@@ -32,7 +32,7 @@ pub struct Adult {
     pub stature: f64,
     /// Mass, kg, one of [`Adult::MASSES`].
     pub mass: f64,
-    /// How much of the body.
+    /// Part of the body that is modelled.
     pub part: Part,
     /// Measured segment lengths, m, by segment name without side (`femur`, `tibia`, `humerus`, `radius`, `hand`, ...); the
     /// others follow stature. Masses stay shares of body mass.

@@ -270,7 +270,7 @@ impl Model {
     }
 }
 
-/// Which axis of its own frame a hinge turns about, if it is one of the three, and in which sense.
+/// Axis of its own frame that a hinge turns about, if it is one of the three, and the sense.
 fn principal(motion: Motion) -> Option<(usize, f64)> {
     let Motion::Hinge(axis) = motion else { return None };
     (0..3).find(|&k| axis[k].abs() == 1.0).map(|k| (k, axis[k]))

@@ -19,9 +19,9 @@ pub enum CoordinateKind {
 /// The two senses of a coordinate: the sign of the active torque that the group gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Side {
-    /// Its torque increases the coordinate.
+    /// Torque of the group increases the coordinate.
     Positive,
-    /// Its torque decreases the coordinate.
+    /// Torque of the group decreases the coordinate.
     Negative,
 }
 
@@ -48,11 +48,11 @@ impl Side {
 /// One sense of one coordinate (the paper's half-joint).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MuscleGroup {
-    /// Its movement in clinical words, e.g. `elbow flexion`.
+    /// Movement of the group in clinical words, e.g. `elbow flexion`.
     pub name: String,
     /// Greatest voluntary torque against angle.
     pub strength: Strength,
-    /// How it tires and recovers.
+    /// Law by which the group tires and recovers.
     pub fatigue: FatigueLaw,
 }
 
@@ -73,7 +73,7 @@ pub struct Coordinate {
     pub passive: Option<PassiveLaw>,
     /// The muscle groups of the positive and negative sense, if known.
     pub groups: Option<[MuscleGroup; 2]>,
-    /// Its rate, for angles and distances.
+    /// Rate of the coordinate, for angles and distances.
     pub rate: Option<usize>,
     /// The file that described it locks it: it is not meant to move.
     pub locked: bool,

@@ -5,7 +5,7 @@ use super::coordinate::CoordinateSpec;
 use super::joint::{Drive, Motion};
 use super::segment_spec::SegmentSpec;
 
-/// Why a model was refused.
+/// The reason for which a model was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
@@ -44,7 +44,7 @@ pub enum ModelError {
         dependent: String,
         /// The one that should lead.
         independent: String,
-        /// Why not.
+        /// The reason.
         problem: &'static str,
     },
     /// The joint has another number of hinges and slides.

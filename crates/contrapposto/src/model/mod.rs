@@ -93,7 +93,7 @@ pub(crate) struct Mobility {
     pub(crate) drive: Drive,
     /// The three-axis joint whose three coordinates, not a quaternion, turn a ball.
     pub(crate) angles: Option<usize>,
-    /// Its first elementary rate: one for a hinge or slide, three for a ball.
+    /// First elementary rate: one for a hinge or slide, three for a ball.
     pub(crate) rate: usize,
     /// Mass of the segments fixed to it, and mass times their centre in the mobility's frame.
     pub(crate) mass: f64,
@@ -128,7 +128,7 @@ pub struct Model {
     pub(crate) balls: Vec<usize>,
     /// Elementary rates of the hinges and balls nearer the root, for every mobility, one list after the other.
     pub(crate) ancestors: Vec<usize>,
-    /// Where the list of each mobility begins; one more at the end.
+    /// Index at which the list of each mobility begins; one more at the end.
     pub(crate) ancestor_starts: Vec<usize>,
     /// Mass fixed in ground, and mass times position.
     pub(crate) fixed: (f64, Vector3<f64>),
@@ -152,7 +152,7 @@ pub struct Coupling {
     pub dependent: usize,
     /// The coordinate that leads.
     pub independent: usize,
-    /// How.
+    /// The function.
     pub function: Function,
 }
 

@@ -21,7 +21,7 @@ pub struct SegmentSpec {
     pub inertia: Matrix3<f64>,
     /// Name of the joint.
     pub joint: String,
-    /// Its kind.
+    /// Kind of the joint.
     pub kind: JointKind,
     /// The joint's resting frame in the parent's frame.
     pub in_parent: Placement,

@@ -18,8 +18,8 @@ pub struct Capsule {
 pub struct Shape {
     /// Unique name, e.g. `thigh_lower_r`.
     pub name: String,
-    /// Where it is, and how large.
+    /// Place and size of the part.
     pub capsule: Capsule,
-    /// Its sole stands on things.
+    /// Whether the part has a sole, which stands on things.
     pub sole: bool,
 }

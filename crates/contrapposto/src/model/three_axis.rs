@@ -24,7 +24,7 @@ const ONE_POINT: f64 = 1e-9;
 /// A joint of three hinges through one point. Where arrays have three entries, they are in the order of its hinges.
 #[derive(Clone, Debug)]
 pub struct ThreeAxisJoint {
-    /// Its name in the model.
+    /// Name of the joint in the model.
     pub name: String,
     /// The distal segment.
     pub segment: usize,
@@ -187,7 +187,7 @@ impl Model {
         (!coupled && !by_coordinate && !coordinate.locked && coordinate.rate.is_some()).then_some(*c)
     }
 
-    /// Which axis is nearest to the line from the joint's centre to the centre of mass of the segment, or of all that the segment
+    /// Axis nearest to the line from the joint's centre to the centre of mass of the segment, or of all that the segment
     /// carries at the values zero if it has no mass; the last one where there is no mass.
     fn long_axis(&self, segment: usize, mobility: usize, axes: &[Vector3<f64>; 3]) -> usize {
         let own = &self.segments[segment];

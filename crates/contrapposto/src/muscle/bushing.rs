@@ -12,7 +12,7 @@ use crate::model::{Model, Motion, Placement};
 /// A linear spring between two frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bushing {
-    /// Its name.
+    /// Name of the bushing.
     pub name: String,
     /// Indices of the segments that carry its frames; `None` for ground.
     pub segments: [Option<usize>; 2],
@@ -52,7 +52,7 @@ impl Bushing {
         Deflection { angles, offset: axes.transpose() * (at - first.translation.vector), axes, at }
     }
 
-    /// Its energy, J.
+    /// Energy of the bushing, J.
     pub fn energy(&self, model: &Model, kinematics: &Kinematics) -> f64 {
         let Deflection { angles, offset, .. } = self.deflection(model, kinematics);
         0.5 * (self.rotational_stiffness.dot(&angles.component_mul(&angles))

@@ -43,7 +43,7 @@ pub struct PathGeometry {
 /// The line of a path in a posture.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Line {
-    /// Its corners.
+    /// Corners of the line.
     pub(crate) nodes: Vec<Node>,
     /// Length on the surface, by wrap of the path, m.
     pub(crate) on_surface: Vec<f64>,

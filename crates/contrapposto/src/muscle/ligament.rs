@@ -5,11 +5,11 @@ use crate::math::Function;
 /// A ligament or spring that pulls along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ligament {
-    /// Its name.
+    /// Name of the ligament.
     pub name: String,
     /// Index of its path in [`super::Paths::paths`].
     pub path: usize,
-    /// Its tension as a function of the path's length.
+    /// Tension of the ligament as a function of the path's length.
     pub law: LigamentLaw,
 }
 

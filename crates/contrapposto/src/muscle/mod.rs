@@ -40,7 +40,7 @@ pub use wrap::{Quadrant, WrapObject, WrapShape};
 /// The muscles of a body, with its ligaments and springs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Musculature {
-    /// Their paths and the surfaces that they wrap over.
+    /// Paths of muscles and ligaments, and the surfaces that the paths wrap over.
     pub paths: Paths,
     /// The muscles, in the file's order.
     pub muscles: Vec<Muscle>,

@@ -13,11 +13,11 @@ use crate::model::Placement;
 pub struct PathPoint {
     /// Index of the segment that carries it; `None` for ground.
     pub segment: Option<usize>,
-    /// Its location in the segment's frame.
+    /// Location in the segment's frame.
     pub location: Location,
 }
 
-/// Where a point of a path is, in the frame of its segment.
+/// Location of a point of a path in the frame of its segment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Location {
     /// Always at the same place, m.

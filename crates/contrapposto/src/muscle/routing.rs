@@ -13,27 +13,27 @@ pub(crate) type FrameInGround = (Matrix3<f64>, Vector3<f64>);
 /// A corner of a path's line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
-    /// Its place in ground, m.
+    /// Place of the corner in ground, m.
     pub(crate) place: Vector3<f64>,
     /// The place from which lengths and directions are taken. By OpenSim's rule that is the first place of this corner in the posture: OpenSim
     /// keeps a point's place in ground when surfaces move the point on their surface again.
     pub(super) seen: Vector3<f64>,
     /// The segment that carries it.
     pub(crate) segment: Option<usize>,
-    /// Its origin.
+    /// Origin of the corner.
     pub(crate) kind: NodeKind,
     /// Factor of tension and length of the line behind it: below 1 behind a pulley, 0 between its branches.
     pub(crate) weight: f64,
 }
 
-/// Where a corner comes from.
+/// Origin of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NodeKind {
     /// The path's point of this number.
     Point(usize),
     /// The line touches the surface of the path's wrap, or of the tendon's part, of this number.
     On(usize),
-    /// It leaves that surface.
+    /// The line leaves that surface.
     Off(usize),
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Routing {
     before: Vec<Vector3<f64>>,
 }
 
-/// What a path's line depends on.
+/// Coordinates, frames and rule that a path's line depends on.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     pub(super) paths: &'a Paths,

@@ -1,6 +1,6 @@
 //! Names the rules by which paths lie on surfaces.
 
-/// How OpenSim chooses the plane of a path over an ellipsoid.
+/// Rule by which OpenSim chooses the plane of a path over an ellipsoid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WrapMethod {
     /// A blend of the two others.

@@ -26,23 +26,23 @@ pub(super) const ELLIPSOID_PIECE: f64 = 0.001;
 pub(super) const ELLIPSOID_PIECES: u32 = 499;
 /// Residual at which OpenSim's search of the nearest point of an ellipsoid ends; the mean half axis is 1.
 pub(super) const NEAREST_RESIDUAL: f64 = 1e-9;
-/// Its greatest number of steps.
+/// Greatest number of steps of OpenSim's search of the nearest point of an ellipsoid.
 pub(super) const NEAREST_STEPS: usize = 64;
 /// Sum of squares of residuals at which OpenSim's search of a point of tangency ends; the mean half axis is 1.
 pub(super) const TANGENCY_RESIDUAL: f64 = 1e-8;
-/// Its greatest number of steps.
+/// Greatest number of steps of OpenSim's search of a point of tangency.
 pub(super) const TANGENCY_STEPS: usize = 50;
-/// Its greatest number of repetitions of a step.
+/// Greatest number of repetitions of a step of OpenSim's search of a point of tangency.
 pub(super) const TANGENCY_REPEATS: usize = 1000;
 /// Length of the tube that OpenSim takes for a torus, m.
 pub(super) const TORUS_TUBE: f64 = 10_000.0;
 /// Relative accuracy of OpenSim's search of the point of a torus's circle nearest to a line.
 pub(super) const TORUS_ACCURACY: f64 = 1e-4;
-/// Its first trust radius, m.
+/// First trust radius of OpenSim's search on a torus's circle, m.
 pub(super) const TORUS_FIRST_STEP: f64 = 0.2;
-/// Its step of a difference, m.
+/// Step of a difference in OpenSim's search on a torus's circle, m.
 pub(super) const TORUS_NUDGE: f64 = 1e-5;
-/// Its greatest number of steps.
+/// Greatest number of steps of OpenSim's search on a torus's circle.
 pub(super) const TORUS_STEPS: usize = 500;
 /// Greatest section of a geodesic that is extrapolated from [`GEODESIC_PARTS`], rad.
 pub(super) const GEODESIC_SECTION: f64 = 0.75;

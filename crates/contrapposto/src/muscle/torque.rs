@@ -9,7 +9,7 @@ use super::geometry::PathGeometry;
 pub struct Tension {
     /// N.
     pub force: f64,
-    /// Its derivative by the path's length, N/m.
+    /// Derivative of the tension by the path's length, N/m.
     pub stiffness: f64,
 }
 

@@ -42,7 +42,7 @@ pub enum PassiveParameter {
 }
 
 impl PassiveParameter {
-    /// Its name and its unit; the unit of a number that counts is empty.
+    /// Name and unit of the parameter; the unit of a number that counts is empty.
     pub fn name_and_unit(self) -> (&'static str, &'static str) {
         match self {
             Self::UpperLimit => ("upper limit", "rad"),
@@ -76,7 +76,7 @@ impl std::fmt::Display for PassiveParameter {
     }
 }
 
-/// Why a curve was refused.
+/// The reason for which a curve was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PassiveError {

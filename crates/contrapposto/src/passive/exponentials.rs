@@ -36,7 +36,7 @@ pub struct Exponentials {
 pub struct End {
     /// Size of the torque at `angle`, N m, not negative.
     pub torque: f64,
-    /// How fast it grows toward the end, 1/rad, positive.
+    /// Rate of growth toward the end, 1/rad, positive.
     pub rate: f64,
     /// Angle at which the torque has this size, rad.
     pub angle: f64,

@@ -82,7 +82,7 @@ struct Zone {
     added_slope: f64,
     /// The form's slope at both ends, without what is added.
     form_slopes: (f64, f64),
-    /// Where the form is least steep in it, rad.
+    /// Angles between which the form is least steep in the zone, rad.
     flattest: (f64, f64),
 }
 

@@ -1,11 +1,11 @@
-//! Why the posture solver refuses its input.
+//! Names the reasons for which the posture solver refuses its input.
 
 use crate::contact::SupportError;
 use crate::joint_torques::JointTorquesError;
 use crate::tasks::TaskError;
 use hierarchical_least_squares::ProblemError;
 
-/// Why levels, supports, options, posture or loads were refused.
+/// The reason for which levels, supports, options, posture or loads were refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EngineError {
@@ -14,7 +14,7 @@ pub enum EngineError {
     Task {
         /// Level, the first is 0.
         level: usize,
-        /// Why.
+        /// The reason.
         error: TaskError,
     },
     /// A limit does not fit the model.
@@ -25,15 +25,15 @@ pub enum EngineError {
     HalfSpace {
         /// Level, the first is 0.
         level: usize,
-        /// Why.
+        /// The reason.
         problem: String,
     },
     /// An option without meaning.
     #[error("{what} is {value}; it must be {accepted}")]
     Option {
-        /// Which.
+        /// Name of the option.
         what: &'static str,
-        /// Its value.
+        /// Value of the option.
         value: f64,
         /// The accepted values.
         accepted: &'static str,

@@ -66,7 +66,7 @@ impl Step {
     }
 }
 
-/// Why a solve ended.
+/// The reason for which a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
     /// Every level is reached.

@@ -21,7 +21,7 @@ pub struct SolvedPosture {
     pub slip: Slip,
     /// Equilibrium of the root; [`Balance::Held`] without supports.
     pub balance: Balance,
-    /// Why the steps ended.
+    /// The reason for which the steps ended.
     pub reason: Reason,
     /// Number of steps of all starts.
     pub steps: usize,

@@ -218,7 +218,7 @@ impl<'a> Settings<'a> {
 pub(super) enum Rates {
     /// All of them; bounds keep the locked ones.
     All,
-    /// Those that are not locked.
+    /// Rates that are not locked.
     Free,
 }
 

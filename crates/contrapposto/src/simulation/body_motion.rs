@@ -41,7 +41,7 @@ const HALF_SPACE_TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(super) struct BodyMotion<'a> {
     pub(super) scenario: &'a Scenario,
-    /// Where the body stands: no support is free.
+    /// Supports at the places where the body stands: none is free.
     pub(super) supports: Vec<Support>,
     pub(super) engine: Engine<'a>,
     /// The support that is in the air, and an engine without it.

@@ -27,7 +27,7 @@ const WORTH_A_MOTION: f64 = 0.98;
 /// A posture whose supports are farther off their places is none, m and rad together.
 const MOST_SLIP: f64 = 1e-5;
 
-/// What a search during a run begins from.
+/// State of the body at which a search during a run begins.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now<'a> {
     pub(super) posture: &'a Posture,
@@ -39,12 +39,12 @@ pub(super) struct Now<'a> {
     pub(super) effort: f64,
 }
 
-/// What a search came to.
+/// Result of a search, with its work.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Searched<T> {
     pub(super) found: T,
     pub(super) work: usize,
-    /// It ended at its budget.
+    /// The search ended at its budget.
     pub(super) cut: bool,
 }
 

@@ -16,7 +16,7 @@ pub(super) struct GroupState {
     pub(super) load_at_start: f64,
     /// The strategy its present recovery ended up with (docs/deviations.md, D4).
     pub(super) accepted: Option<Strategy>,
-    /// How its relief is sought, how often a motion of that attempt was taken back, and decisions in a row without progress.
+    /// The attempt at relief, how often a motion of that attempt was taken back, and decisions in a row without progress.
     pub(super) attempt: Attempt,
     pub(super) rejections: u32,
     pub(super) stalled: u32,

@@ -7,7 +7,7 @@ use crate::joint_torques::JointTorques;
 use crate::model::SharedModel;
 use crate::posture::Posture;
 
-/// How reliefs move the body.
+/// Motion of the body by reliefs.
 #[derive(Debug)]
 pub(super) enum Motion<'a> {
     /// Without supports and tasks.

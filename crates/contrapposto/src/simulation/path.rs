@@ -163,7 +163,7 @@ impl Planner<'_> {
         others.map(|(_, support)| support.clone()).collect()
     }
 
-    /// Where the segment of a support is in a posture.
+    /// Placement of the segment of a support in a posture.
     fn placement(&self, posture: &Posture, support: usize) -> Result<Placement, EngineError> {
         let model = self.model;
         let mut kinematics = Kinematics::new(model);

@@ -16,11 +16,11 @@ pub struct ReliefRecord {
     pub coordinate: usize,
     /// The muscle group that requested relief.
     pub side: Side,
-    /// Its fatigue at the first request, 0..=1.
+    /// Fatigue of the group at the first request, 0..=1.
     pub fatigue: f64,
     /// The strategy of its coordinate.
     pub strategy: Strategy,
-    /// How its relief was sought.
+    /// The attempt by which relief was sought.
     pub attempt: Attempt,
     /// The first decision; `None` where the joint could not move, another joint moved or nothing was left to try.
     pub decision: Option<Decision>,
@@ -49,7 +49,7 @@ pub struct ReliefRecord {
 pub struct ReliefLog {
     /// The first ten thousand.
     pub records: Vec<ReliefRecord>,
-    /// How many there were in all.
+    /// Number of all reliefs.
     pub count: u64,
     /// By coordinate: the record that continues.
     open: Vec<Option<usize>>,

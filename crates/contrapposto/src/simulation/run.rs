@@ -78,7 +78,7 @@ pub struct Run<'a> {
     /// In the last sample.
     standing: Option<Standing>,
     stop_when_settled: bool,
-    /// When the last event happens, s.
+    /// Time of the last event, s.
     last_event: f64,
 }
 

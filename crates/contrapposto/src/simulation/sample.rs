@@ -35,7 +35,7 @@ pub struct Sample<'a> {
     pub decisions: &'a [Option<Decision>],
     /// The muscle group of every coordinate that requests relief.
     pub asking: &'a [Option<Side>],
-    /// How relief is sought for these groups.
+    /// The attempts by which relief is sought for these groups.
     pub attempts: &'a [Option<Attempt>],
     /// The outcome of the relief of every coordinate, in the step that led here.
     pub reliefs: &'a [Option<Relief>],
@@ -101,13 +101,13 @@ pub enum Relief {
     TakenBack,
 }
 
-/// How relief is sought for a tired muscle group. Each attempt follows on the one above it.
+/// Way in which relief is sought for a tired muscle group. Each attempt follows on the one above it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Attempt {
-    /// Its joint moves to a goal of the strategy that the scenario gives.
+    /// The group's joint moves to a goal of the strategy that the scenario gives.
     #[default]
     Strategy,
-    /// Its joint moves to a goal of the other strategy.
+    /// The group's joint moves to a goal of the other strategy.
     OtherStrategy,
     /// Another joint moves, by which the torque of its joint falls.
     OtherJoint {
@@ -140,9 +140,9 @@ pub struct Standing {
 pub struct Contact {
     /// Force on the body, ground axes, N.
     pub force: Vector3<f64>,
-    /// Its normal part as a share of body weight.
+    /// Normal part of the force as a share of body weight.
     pub share: f64,
-    /// Where it acts, ground, m; `None` where nothing is carried.
+    /// Point at which the force acts, ground, m; `None` where nothing is carried.
     pub center_of_pressure: Option<Vector3<f64>>,
     /// The couple about that point (about the ground's origin where nothing is carried), ground axes, N m.
     pub couple: Vector3<f64>,
@@ -157,7 +157,7 @@ pub struct FootStep {
     pub coordinate: usize,
     /// See `coordinate`.
     pub side: Side,
-    /// When the body began to shift its weight, and when it had taken the new posture, s.
+    /// Times at which the body began to shift its weight, and at which it had taken the new posture, s.
     pub time: (f64, f64),
     /// Middle of the patch before and after, ground, m.
     pub place: ([f64; 3], [f64; 3]),

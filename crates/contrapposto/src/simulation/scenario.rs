@@ -12,7 +12,7 @@ use crate::statics::{Load, LoadError};
 use crate::tasks::PriorityLevel;
 use crate::tasks::{Task, TaskError};
 
-/// Which reading of Tables 1 and 2 decides.
+/// Reading of Tables 1 and 2 that decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tables {
     /// [`crate::hybrid::minimise`]: gaps closed, an accepted strategy kept.
@@ -41,7 +41,7 @@ pub struct ReliefSettings {
     pub torque_tolerance: f64,
     /// Relief of a body may raise its effort to so many times the effort before all present reliefs, at least 1.
     pub effort_factor: f64,
-    /// Which reading of the tables.
+    /// Reading of Tables 1 and 2 that decides.
     pub tables: Tables,
 }
 
@@ -210,9 +210,9 @@ pub enum ScenarioError {
     /// A task does not fit the model.
     #[error("task {}: {error}", task + 1)]
     Task {
-        /// Its place in the list.
+        /// Place of the task in the list.
         task: usize,
-        /// Why.
+        /// The reason.
         error: TaskError,
     },
     /// No posture was found near the start in which the supports hold the body.
@@ -235,9 +235,9 @@ pub enum ScenarioError {
     OutsideRange {
         /// Name of the coordinate.
         coordinate: String,
-        /// Its value, rad or m.
+        /// Value of the coordinate, rad or m.
         value: f64,
-        /// Its range.
+        /// Range of the coordinate.
         range: (f64, f64),
     },
     /// A setting is outside the values that it may have.

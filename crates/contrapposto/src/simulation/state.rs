@@ -35,7 +35,7 @@ pub(super) struct State {
     pub(super) requests: Vec<Request>,
     /// Some relief asks for motion, not only for a half-space to be kept.
     pub(super) reliefs_move: bool,
-    /// Where the supports stand, once one of them has been put elsewhere.
+    /// Posture in which the supports are at their places, once one of them has been put elsewhere.
     pub(super) placed_at: Option<Posture>,
     /// The way that the body follows.
     pub(super) path: Option<Path>,
@@ -72,7 +72,7 @@ pub(super) struct Request {
     pub(super) predicted_peak: f64,
 }
 
-/// How a new decision is followed.
+/// Rules by which a new decision is followed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Following {
     /// A goal that is no farther away counts as reached, rad.

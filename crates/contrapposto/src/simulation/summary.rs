@@ -14,14 +14,14 @@ use crate::model::{Coordinate, Side};
 /// Most changes of case that are recorded in order; a run whose cases alternate has thousands.
 const MOST_CHANGES: usize = 200;
 
-/// Why a run stopped.
+/// The reason for which a run stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopReason {
     /// The whole duration was simulated.
     Duration,
     /// Relief no longer moved anything.
     Settled,
-    /// It was left before its end.
+    /// The run was left before its end.
     Interrupted,
     /// An event has thrown the body off balance: [`Summary::fall`].
     Fell,
@@ -32,7 +32,7 @@ pub enum StopReason {
 /// The end of a body that an event has thrown off balance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fall {
-    /// When, s.
+    /// Time of the event, s.
     pub time: f64,
     /// Force and moment that the supports lacked, in the posture in which the event met the body.
     pub missing: Missing,
@@ -72,7 +72,7 @@ pub struct GroupAtEnd {
     pub seconds_left: Option<f64>,
 }
 
-/// How long ligaments carried a coordinate at an angle where that is a hazard, and the moment when they carried most.
+/// Time for which ligaments carried a coordinate at an angle where that is a hazard, and the moment when they carried most.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hazardous {
     /// Number of samples.
@@ -90,7 +90,7 @@ pub struct Hazardous {
 pub struct CoordinateSummary {
     /// Cases in the order they came, repetitions left out; the first two hundred changes.
     pub cases: Vec<Case>,
-    /// How often the case changed in all.
+    /// Number of all changes of the case.
     pub case_changes: u64,
     /// Number of decisions of each case, in the order of [`Case::ALL`].
     pub iterations: [u64; 10],
@@ -104,7 +104,7 @@ pub struct CoordinateSummary {
     pub peak_fatigue: [f64; 2],
     /// The positive and negative group in the last sample in which no support was put elsewhere.
     pub final_groups: [GroupAtEnd; 2],
-    /// When each group could first no longer hold its load, s; while a support is put elsewhere nobody is judged.
+    /// Time at which each group could first no longer hold its load, s; while a support is put elsewhere nobody is judged.
     pub exhausted_at: [Option<f64>; 2],
     /// The last decision.
     pub last_decision: Option<Decision>,
@@ -117,9 +117,9 @@ pub struct CoordinateSummary {
 /// Results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Why it stopped.
+    /// The reason for which the run stopped.
     pub reason: StopReason,
-    /// Why nothing holds the body any more, if that is so.
+    /// The fall, if nothing holds the body any more.
     pub fall: Option<Fall>,
     /// Time of the last sample, s.
     pub end_time: f64,
@@ -144,7 +144,7 @@ pub struct Summary {
     pub slip: Option<(Slip, f64)>,
     /// Since when the supports of the last sample have been farther away than [`Slip::GREATEST`], s.
     pub sliding_since: Option<f64>,
-    /// How it stood in the last sample.
+    /// Balance, tasks and effort of the body in the last sample.
     pub standing: Option<Standing>,
 }
 

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::model::{LARGEST, Model};
 
-/// Which axes a force or couple keeps when the body moves.
+/// Axes that a force or couple keeps when the body moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FixedIn {
     /// Ground axes: a held weight, a rope to a far point.
@@ -29,7 +29,7 @@ pub enum LoadKind {
 pub struct Load {
     /// Index of the segment.
     pub segment: usize,
-    /// Where, in the segment's frame, m.
+    /// Point at which the load acts, in the segment's frame, m.
     pub point: Vector3<f64>,
     /// Force, couple or weight.
     pub kind: LoadKind,
@@ -59,7 +59,7 @@ impl std::fmt::Display for LoadQuantity {
     }
 }
 
-/// Why a load was refused.
+/// The reason for which a load was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {

@@ -16,7 +16,7 @@ const PASSIVE_TORQUE_LIMIT: f64 = 1e50;
 pub struct PassiveTorqueError {
     /// Name of the coordinate.
     pub coordinate: String,
-    /// Where it stands, rad or m.
+    /// Value of the coordinate, rad or m.
     pub value: f64,
     /// Torque by its law, N m or N.
     pub torque: f64,
@@ -159,7 +159,7 @@ impl PassiveTorque {
         })
     }
 
-    /// How far the law of a coordinate goes on along its tangent from `value`, the end of its range, to `angle`, rad.
+    /// Distance over which the law of a coordinate goes on along its tangent from `value`, the end of its range, to `angle`, rad.
     pub(super) fn beyond(&self, coordinate: usize, angle: f64, value: f64) -> f64 {
         // A law that keeps its torque beyond its range does not go on.
         if self.is_held(coordinate) { 0.0 } else { angle - value }

@@ -274,7 +274,7 @@ impl PathCurvature {
         }
     }
 
-    /// How a corner moves in its segment.
+    /// Motion of a corner in its segment; `None` for a fixed one.
     fn slide(&self, at: &Posed<'_>, node: &Node) -> Option<Slide> {
         let NodeKind::Point(index) = node.kind else { return None };
         let Location::Moving(point) = &at.path.points[index].location else { return None };

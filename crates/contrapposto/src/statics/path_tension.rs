@@ -16,7 +16,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::muscle::{PathGeometry, PathRule, Paths, Tension};
 
-/// Why tensions have no torque here.
+/// The reason for which tensions have no torque, or no gradient.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathTensionError {

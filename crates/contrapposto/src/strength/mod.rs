@@ -12,7 +12,7 @@ pub struct Strength {
     pub peak: f64,
     /// Angle of greatest torque, rad.
     pub best: f64,
-    /// How fast it falls off, 1/rad, not negative.
+    /// Rate at which the torque falls off from the best angle, 1/rad, not negative.
     pub narrowness: f64,
     /// Least share of the peak, in 0..=1, positive.
     pub floor: f64,

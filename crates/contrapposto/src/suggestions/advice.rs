@@ -8,9 +8,9 @@ use crate::verdict::Verdict;
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Advice {
-    /// Those that help, the one that helps most first.
+    /// Suggestions that help, the one that helps most first.
     pub helping: Vec<Suggestion>,
-    /// Those that were not tried because the budget was used up, in words.
+    /// Suggestions that were not tried because the budget was used up, in words.
     pub not_tried: Vec<String>,
     /// `What would help most: ...`; `None` where there is nothing to say.
     pub sentence: Option<String>,

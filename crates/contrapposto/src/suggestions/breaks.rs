@@ -21,13 +21,13 @@ const LONGEST: f64 = 86_400.0;
 /// The loads of a muscle group in a job.
 #[derive(Clone, Copy, Debug)]
 pub struct Worked<'a> {
-    /// Its law of fatigue.
+    /// Law of the group's fatigue.
     pub law: &'a FatigueLaw,
-    /// Its relative load.
+    /// Relative load of the group.
     pub loads: &'a LoadHistory,
-    /// Its relative load at the end.
+    /// Relative load of the group at the end.
     pub end: f64,
-    /// Its fatigue at the start, 0..=1.
+    /// Fatigue of the group at the start, 0..=1.
     pub start: f64,
 }
 
@@ -91,7 +91,7 @@ pub fn with_breaks(
     })
 }
 
-/// When a group fails, s of work and breaks; infinite if not until `longest`. Loads stay the same after `end` s of work.
+/// Time at which a group fails, s of work and breaks; infinite if not until `longest`. Loads stay the same after `end` s of work.
 fn failure(law: &FatigueLaw, load_at: impl Fn(f64) -> f64, start: f64, (end, longest): (f64, f64)) -> f64 {
     let (mut state, mut time, mut work) = (law.start(start, load_at(0.0)), 0.0, 0.0);
     let (mut until_break, mut before_break) = (BREAK_EVERY, f64::NEG_INFINITY);

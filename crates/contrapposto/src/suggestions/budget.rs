@@ -62,7 +62,7 @@ pub(super) fn within(budget: Budget, changes: &[Change], trial: impl Fn(&Change)
 mod tests {
     use super::*;
 
-    /// How many of six changes of 10, 20, ... steps are tried.
+    /// Number of six changes of 10, 20, ... steps that are tried.
     fn tried(steps: usize, threads: usize) -> usize {
         let changes: Vec<Change> = (1..=6).map(|i| Change::Loads(f64::from(i))).collect();
         let trial = |change: &Change| match change {

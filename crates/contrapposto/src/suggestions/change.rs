@@ -37,7 +37,7 @@ pub enum Change {
 pub struct Job<'a> {
     /// The body.
     pub model: &'a Model,
-    /// Its posture at the start.
+    /// Posture of the body at the start.
     pub start: &'a Posture,
     /// The supports that carry it, as far as they are known.
     pub supports: &'a [Support],

@@ -19,7 +19,7 @@ pub struct Suggestion {
     pub kind: VerdictKind,
     /// The time that was asked for, s; `None` where none was.
     pub asked: Option<f64>,
-    /// How long the job can be done with it, s: until a group fails; of a job that holds, with the posture of its end held on. `None`
+    /// Time for which the job can be done with the change, s: until a group fails; of a job that holds, with the posture of its end held on. `None`
     /// where no muscle sets a limit, or where it cannot be done.
     pub seconds: Option<f64>,
     /// Least of that time for two of three people, s.

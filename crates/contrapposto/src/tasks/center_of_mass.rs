@@ -15,25 +15,25 @@ use hierarchical_least_squares::Level;
 /// The centre of mass at a place, or over a polygon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CenterOfMass {
-    /// Where.
+    /// Goal of the centre of mass.
     pub goal: CenterOfMassGoal,
 }
 
-/// Where the centre of mass should be.
+/// Goal of the centre of mass: a place, or an area.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CenterOfMassGoal {
     /// At one place.
     At {
         /// In ground, m.
         target: Vector3<f64>,
-        /// Which ground axes are asked for; one at least.
+        /// Ground axes that are asked for; one at least.
         axes: [bool; 3],
     },
     /// Inside all of some half-planes.
     Inside {
         /// In ground; see [`super::half_planes`].
         polygon: Vec<HalfPlane>,
-        /// How far from every edge it should stay, m; negative allows to leave by as much.
+        /// Least distance from every edge, m; negative allows to leave by as much.
         margin: f64,
     },
 }

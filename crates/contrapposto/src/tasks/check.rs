@@ -18,7 +18,7 @@ pub enum TaskPart {
     Target,
     /// Length of a vector or quaternion; must be 1.
     TargetQuaternion,
-    /// Where the gaze begins.
+    /// Origin of the gaze.
     Eye,
     /// Length of a vector or quaternion; must be 1.
     Direction,
@@ -99,7 +99,7 @@ impl std::fmt::Display for TaskPart {
     }
 }
 
-/// Why a task was refused.
+/// The reason for which a task was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TaskError {
@@ -112,7 +112,7 @@ pub enum TaskError {
         what: &'static str,
         /// The index given.
         index: usize,
-        /// How many there are.
+        /// Number of segments or coordinates of the model.
         count: usize,
     },
     /// A number without meaning.
@@ -142,7 +142,7 @@ pub enum TaskError {
         task: &'static str,
         /// The contents of the list.
         what: &'static str,
-        /// Its length.
+        /// Length of the list.
         given: usize,
         /// The length it must have.
         needed: usize,
@@ -157,7 +157,7 @@ pub enum TaskError {
         task: &'static str,
         /// Coordinate, rate or model.
         name: String,
-        /// Why not.
+        /// The reason.
         problem: &'static str,
     },
 }

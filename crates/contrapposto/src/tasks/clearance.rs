@@ -36,7 +36,7 @@ pub struct ClearancePair {
     pub other: Obstacle,
 }
 
-/// What a part of the body does not pass through.
+/// Thing or part that a part of the body does not pass through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Obstacle {
     /// Another part of the body.
@@ -45,7 +45,7 @@ pub enum Obstacle {
     Thing(Thing),
 }
 
-/// Where a pair is closest, in a posture.
+/// Closest points of a pair, in a posture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     /// Distance of the surfaces, m; negative where the parts overlap.
@@ -137,7 +137,7 @@ fn square_to(u: &Vector3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
     square(u.cross(v)).or_else(beside).unwrap_or_else(Vector3::x)
 }
 
-/// Where a line segment is closest to the block `|x_k| <= half_k`: its parameter there, the distance, and the direction away from
+/// Point of a line segment that is closest to the block `|x_k| <= half_k`: its parameter, the distance, and the direction away from
 /// the block. A line that enters the block has the negative distance by which it must move through the nearest face.
 fn from_block(p: [Vector3<f64>; 2], half: &Vector3<f64>) -> (f64, f64, Vector3<f64>) {
     let t = closest_to_block(p, half);

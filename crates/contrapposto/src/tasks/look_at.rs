@@ -31,11 +31,11 @@ pub enum LookAtGoal {
 pub struct LookAt {
     /// Index of the segment.
     pub segment: usize,
-    /// Where the gaze starts, in the segment's frame, m; for a direction any point.
+    /// Origin of the gaze, in the segment's frame, m; for a direction any point.
     pub eye: Vector3<f64>,
     /// The gaze, in the segment's frame.
     pub direction: UnitVector3<f64>,
-    /// Where the gaze should end.
+    /// Goal of the gaze.
     pub goal: LookAtGoal,
 }
 

@@ -19,7 +19,7 @@ use hierarchical_least_squares::Level;
 pub struct Orientation {
     /// Index of the segment.
     pub segment: usize,
-    /// How it should be turned: from the segment's frame to ground.
+    /// Wanted rotation from the segment's frame to ground.
     pub target: UnitQuaternion<f64>,
 }
 

@@ -16,9 +16,9 @@ use hierarchical_least_squares::Level;
 pub struct Placement {
     /// Index of the segment.
     pub segment: usize,
-    /// Which point, in the segment's frame, m.
+    /// The point in the segment's frame, m.
     pub point: Vector3<f64>,
-    /// Where it should be in ground, m, and the rotation from the segment's frame to ground.
+    /// Wanted place of the point in ground, m, and wanted rotation from the segment's frame to ground.
     pub target: crate::model::Placement,
 }
 

@@ -15,11 +15,11 @@ use hierarchical_least_squares::Level;
 pub struct Point {
     /// Index of the segment.
     pub segment: usize,
-    /// Which point, in the segment's frame, m.
+    /// The point in the segment's frame, m.
     pub point: Vector3<f64>,
-    /// Where it should be, in ground, m.
+    /// Wanted place of the point, in ground, m.
     pub target: Vector3<f64>,
-    /// Which ground axes are asked for; one at least.
+    /// Ground axes that are asked for; one at least.
     pub axes: [bool; 3],
 }
 

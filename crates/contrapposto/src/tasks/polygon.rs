@@ -11,12 +11,12 @@ use nalgebra::{Vector2, Vector3};
 pub struct HalfPlane {
     /// Outward normal, of unit length.
     pub normal: Vector3<f64>,
-    /// Where the edge lies along the normal, m.
+    /// Coordinate of the edge along the normal, m.
     pub offset: f64,
 }
 
 impl HalfPlane {
-    /// How far `point` (m) lies outside, m; not positive inside.
+    /// Distance by which `point` (m) lies outside, m; not positive inside.
     pub fn excess(&self, point: &Vector3<f64>) -> f64 {
         self.normal.dot(point) - self.offset
     }

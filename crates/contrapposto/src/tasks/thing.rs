@@ -12,12 +12,12 @@ pub enum Thing {
     HalfSpace {
         /// Unit normal, out of the thing.
         normal: Vector3<f64>,
-        /// Where its surface lies along the normal, m.
+        /// Coordinate of the surface along the normal, m.
         offset: f64,
     },
     /// A block with flat faces.
     Block {
-        /// Its middle and its axes in ground.
+        /// Middle and axes of the block in ground.
         placement: Isometry3<f64>,
         /// Half its lengths along its axes, m.
         half: Vector3<f64>,

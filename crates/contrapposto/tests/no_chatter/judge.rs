@@ -55,7 +55,7 @@ type Goal = (bool, bool);
 /// One coordinate in its present recovery.
 #[derive(Clone, Default)]
 struct Course {
-    /// Which of its groups recover.
+    /// By group: the group recovers.
     recovering: [bool; 2],
     /// The last goal, and the group that followed it last.
     last: Option<(Goal, Side)>,
@@ -222,7 +222,7 @@ impl<'a> Judge<'a> {
 }
 
 impl Course {
-    /// What was left may be taken up again.
+    /// Goals that were left may be taken up again.
     fn free(&mut self) {
         (self.last, self.changes, self.attempts, self.asked) = (None, 0, [None; 2], false);
         self.left.clear();

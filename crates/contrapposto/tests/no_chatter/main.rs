@@ -13,7 +13,7 @@ use rand_pcg::Pcg64Mcg;
 /// Seed of the first scenario; each scenario has a seed of its own.
 const FIRST_SEED: u64 = 1_600;
 
-/// What the judge finds in one run; `None` for a scenario whose supports cannot hold its body.
+/// Findings of the judge in one run; `None` for a scenario whose supports cannot hold its body.
 fn judged(scenario: &Scenario) -> Option<Findings> {
     let mut judge = Judge::new(scenario);
     match run(scenario, |sample| judge.take(sample)) {

@@ -10,13 +10,13 @@ use crate::input::read;
 use crate::output::ResultSet;
 use crate::view::recording::Recording;
 
-/// Its name.
+/// Name of the snapshot's file.
 pub(super) const SNAPSHOT: &str = "snapshot.json";
 
 /// Largest snapshot that is read, bytes; a run writes far smaller ones.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// This program, whose next version may compute other bytes.
+/// The program with its version: the next version may compute other bytes.
 const PROGRAM: &str = concat!("contrapposto ", env!("CARGO_PKG_VERSION"));
 
 /// The state from which a run continues.

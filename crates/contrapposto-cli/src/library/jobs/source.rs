@@ -15,7 +15,7 @@ pub enum ScenarioSource {
 }
 
 impl ScenarioSource {
-    /// Its bytes, and the model that it names.
+    /// The bytes of the scenario, and the model that the scenario names.
     pub(crate) fn open(&self) -> Result<ScenarioFile, Fail> {
         match self {
             Self::File(path) => ScenarioFile::read(path),

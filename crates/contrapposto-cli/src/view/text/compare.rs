@@ -25,7 +25,7 @@ pub(crate) struct ComparedPosture {
     pub(crate) letter: char,
     pub(crate) file: String,
     pub(crate) title: String,
-    /// How it came about: `simulated, 120 s`, `posed`.
+    /// Origin of the posture: `simulated, 120 s`, `posed`.
     pub(crate) how: String,
     pub(crate) verdict: Verdict,
     pub(crate) model: Model,
@@ -66,7 +66,7 @@ struct ComparedPostureText {
     /// Sum of (active torque / strength)^2; `null` where the supports cannot hold it.
     effort: Option<f64>,
     supports: Vec<SupportShareText>,
-    /// How far the pelvis hangs down to its right.
+    /// Angle by which the pelvis hangs down to its right.
     pelvis_list_deg: Option<f64>,
     /// rad, m, components of quaternions.
     coordinates: BTreeMap<String, f64>,

@@ -109,7 +109,7 @@ pub(super) fn three_rotations(model: &Model) -> String {
     if lines.is_empty() { lines } else { format!("{heading}{lines}") }
 }
 
-/// Why a joint with three rotations is judged by its coordinates; `None` for other joints.
+/// The reason for which a joint with three rotations is judged by its coordinates; `None` for other joints.
 fn by_coordinates(model: &Model, s: usize) -> Option<String> {
     let chain = chain(model, s);
     let of_kind = |kind: CoordinateKind| {

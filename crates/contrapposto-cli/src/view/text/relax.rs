@@ -130,7 +130,7 @@ struct WorkText {
     strength_nm: f64,
     /// The strength is the least share of its peak.
     strength_is_floor: bool,
-    /// How long it can hold this from a rested start; `null`: for ever.
+    /// Time for which the group can hold this load from a rested start; `null`: for ever.
     endurance_s: Option<f64>,
 }
 

@@ -116,7 +116,7 @@ pub(crate) struct StrengthAtText {
     strength_nm: f64,
     /// `measured`, `derived`, `extrapolated`, ...; `from the file`, `from the overlay`.
     status: String,
-    /// Where muscles of the model give it.
+    /// Name of the source, if muscles of the model give the strength.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<&'static str>,
     /// The strength is the least share of the peak, below which the curve over the angle would fall, or the least strength of muscles.

@@ -40,7 +40,7 @@ struct TorquesText {
     external: f64,
     passive: f64,
     active: f64,
-    /// Where the muscles of the model give the passive torque.
+    /// The source, if muscles of the model give the passive torque.
     #[serde(skip_serializing_if = "Option::is_none")]
     passive_source: Option<Source>,
     /// The part of the external torque that inertia gives; left out of a posture at rest.
@@ -59,7 +59,7 @@ struct MomentText<'a> {
     external_nm: [f64; 3],
     passive_nm: [f64; 3],
     active_nm: [f64; 3],
-    /// Where the muscles of the model give the passive torque.
+    /// The source, if muscles of the model give the passive torque.
     #[serde(skip_serializing_if = "Option::is_none")]
     passive_source: Option<Source>,
     /// Of the positive and the negative group about each axis, where all are known.

@@ -7,20 +7,20 @@ pub const MOST_EXPRESSION_BYTES: usize = 16 << 10;
 /// Most operations that may wait inside each other: brackets, signs, powers.
 pub const MOST_DEPTH: usize = 64;
 
-/// Why a formula was refused. Columns count characters of the formula from 1.
+/// The reason for which a formula was refused. Columns count characters of the formula from 1.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExpressionError {
     /// More bytes than accepted.
     #[error("the expression has {bytes} bytes; at most {MOST_EXPRESSION_BYTES} are accepted")]
     TooLong {
-        /// Its length.
+        /// Length of the expression.
         bytes: usize,
     },
     /// Brackets, signs or powers inside each other.
     #[error("column {column}: more than {MOST_DEPTH} brackets, signs or powers inside each other")]
     TooDeep {
-        /// Where the first one too many stands.
+        /// Column of the first one too many.
         column: usize,
     },
     /// The text ends, or a definition is empty.
@@ -32,7 +32,7 @@ pub enum ExpressionError {
     /// Something else should stand there.
     #[error("column {column}: found `{found}`; expected {expected}")]
     Unexpected {
-        /// Where.
+        /// Column of the text.
         column: usize,
         /// The text that stands there.
         found: String,
@@ -44,7 +44,7 @@ pub enum ExpressionError {
         "column {column}: unknown name `{name}`; names are `q`, `qdot` and what is defined after a `;` to the right"
     )]
     UnknownName {
-        /// Where.
+        /// Column of the name.
         column: usize,
         /// The name.
         name: String,
@@ -52,7 +52,7 @@ pub enum ExpressionError {
     /// No such function.
     #[error("column {column}: unknown function `{name}`; there are {FUNCTIONS}")]
     UnknownFunction {
-        /// Where.
+        /// Column of the name.
         column: usize,
         /// The name.
         name: String,
@@ -60,19 +60,19 @@ pub enum ExpressionError {
     /// Too many or too few operands in brackets.
     #[error("column {column}: `{name}` takes {expected} argument(s), found {found}")]
     Arguments {
-        /// Where.
+        /// Column of the function.
         column: usize,
         /// The function.
         name: String,
-        /// How many it takes.
+        /// Number of operands that the function takes.
         expected: usize,
-        /// How many there are.
+        /// Number of operands in the brackets.
         found: usize,
     },
     /// Digits that are no finite number.
     #[error("column {column}: `{text}` is not a finite decimal number")]
     Number {
-        /// Where.
+        /// Column of the digits.
         column: usize,
         /// The digits.
         text: String,
@@ -83,7 +83,7 @@ pub enum ExpressionError {
     /// A piece after `;` without `name =`.
     #[error("column {column}: a definition has the form `name = expression`")]
     Definition {
-        /// Where the piece begins.
+        /// Column at which the piece begins.
         column: usize,
     },
 }

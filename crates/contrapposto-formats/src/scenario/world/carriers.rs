@@ -31,9 +31,9 @@ const TABLE: [f64; 3] = [0.7, 0.03, 1.4];
 const COUNTER: [f64; 3] = [0.6, 0.04, 1.6];
 /// Lengths of a seat forward and up, m (assumed; office chairs: 0.38 to 0.44 deep, recalled).
 const SEAT: [f64; 2] = [0.40, 0.05];
-/// Its width in distances of a shoulder joint from the midline (assumed: arms that hang beside it are clear of it).
+/// Width of a seat in distances of a shoulder joint from the midline (assumed: arms that hang beside the seat are clear of it).
 const SEAT_WIDTH: f64 = 1.5;
-/// Its width for a body without shoulders, m (assumed).
+/// Width of a seat for a body without shoulders, m (assumed).
 const SEAT_WIDTH_ALONE: f64 = 0.32;
 /// Distance of a hand or the middle of a forearm behind the near edge of a table, m (assumed).
 const BEHIND_EDGE: f64 = 0.12;
@@ -138,7 +138,7 @@ fn read_seat(world: &mut World, word: &Word<'_>, text: &SeatText, model: &Model)
     Ok(())
 }
 
-/// How far the bone of a forearm is above the armrest under it, m: the radius of the forearm's shape.
+/// Height of the bone of a forearm above the armrest under it, m: the radius of the forearm's shape.
 pub(super) fn forearm(model: &Model) -> f64 {
     let segment = model.segment("radius_r");
     let shape = model.shapes().iter().find(|shape| Some(shape.capsule.segment) == segment);

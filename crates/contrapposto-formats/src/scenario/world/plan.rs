@@ -29,9 +29,9 @@ pub(in crate::scenario) struct World {
     pub(super) tasks: Vec<HandTask>,
     /// Values of coordinates by name, rad or m, for what `[posture]` leaves out.
     pub(super) seeds: BTreeMap<String, f64>,
-    /// Where the middle of a patch is wanted at the start, by segment: forward and sideways, ground, m.
+    /// Wanted place of the middle of a patch at the start, by segment: forward and sideways, ground, m.
     pub(super) places: Vec<(&'static str, [f64; 2])>,
-    /// How far a foot is ahead of where it is at the start, m.
+    /// Distance of a foot's wanted place ahead of its place at the start, m.
     pub(super) strides: Vec<(&'static str, f64)>,
     /// Whether the body sits.
     pub(super) sits: bool,
@@ -50,11 +50,11 @@ pub(super) struct HandTask {
     pub(super) hands: Vec<(usize, HandTarget)>,
 }
 
-/// Where a hand must be.
+/// Place that a hand must have.
 pub(super) enum HandTarget {
     /// At a place of ground, m.
     At(Vector3<f64>),
-    /// Where it is at the start but for the height, which is the mean of both hands, and sideways by this, m, from the mean.
+    /// The hand's place at the start but for the height, which is the mean of both hands, and sideways by this, m, from the mean.
     Beside(f64),
 }
 

@@ -71,7 +71,7 @@ fn levels(model: &Model, start: &Start, resting: &[Resting], world: &World) -> V
     levels
 }
 
-/// Where the middle of a patch is wanted, ground, m; its height has no part in it.
+/// Wanted place of the middle of a patch, ground, m; its height has no part in it.
 fn wanted(model: &Model, start: &Start, resting: &Resting, world: &World) -> Vector3<f64> {
     let name = model.segments()[resting.support.segment].name.as_str();
     let middle = resting.middle(model, &start.kinematics);

@@ -23,7 +23,7 @@ pub(crate) struct BoxText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ToolText {
-    /// Which hand.
+    /// The hand that holds the tool.
     pub(crate) hand: SideText,
     /// Mass, kg; 0 when left out.
     #[serde(default)]
@@ -31,7 +31,7 @@ pub(crate) struct ToolText {
     /// The force of the tool on the hand besides its weight, ground axes, N: `[0, -20, 0]` for a screw driven upward with 20 N.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) force_n: Option<[f64; 3]>,
-    /// Where the hand must be, ground, m; anywhere when left out: the tool is only carried.
+    /// Place of the hand, ground, m; anywhere when left out: the tool is only carried.
     #[serde(default, deserialize_with = "numbers")]
     pub(crate) at_m: Option<[f64; 3]>,
 }
@@ -42,7 +42,7 @@ pub(crate) struct ToolText {
 pub(crate) struct BagText {
     /// Mass, kg.
     pub(crate) mass_kg: f64,
-    /// What carries it.
+    /// Part of the body that carries the bag.
     pub(crate) on: BagOnText,
 }
 
@@ -50,10 +50,10 @@ pub(crate) struct BagText {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HandleText {
-    /// Its middle, ground, m.
+    /// Middle of the handle, ground, m.
     #[serde(deserialize_with = "exactly")]
     pub(crate) at_m: [f64; 3],
-    /// Which hands hold it; both when left out.
+    /// Hands that hold the handle; both when left out.
     #[serde(default)]
     pub(crate) hands: HandsText,
     /// Distance of the two hands, m; 0.4 when left out.
@@ -73,7 +73,7 @@ pub(crate) struct FloorText {
     /// Whether the feet on it may be put elsewhere.
     #[serde(default)]
     pub(crate) may_step: bool,
-    /// How far one foot is ahead of the other at the start, m, 0 to 1.2; 0 when left out.
+    /// Distance of one foot ahead of the other at the start, m, 0 to 1.2; 0 when left out.
     #[serde(default)]
     pub(crate) stride_m: f64,
     /// The foot ahead; the right one when left out.
@@ -97,7 +97,7 @@ pub(crate) struct StepText {
 pub(crate) struct TableText {
     /// Height of its top above the floor, m.
     pub(crate) height_m: f64,
-    /// How far ahead its near edge is, m: x of ground, 0 at the hips of the standing body.
+    /// Distance of the near edge ahead, m: x of ground, 0 at the hips of the standing body.
     pub(crate) edge_m: f64,
     /// Lengths forward, up and sideways, m; 0.7, 0.03 and 1.4 for a table when left out, 0.6, 0.04 and 1.6 for a counter.
     #[serde(default, deserialize_with = "numbers")]
@@ -187,7 +187,7 @@ pub(crate) enum FootText {
     LeftFoot,
 }
 
-/// What carries a bag.
+/// Part of the body that carries a bag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum BagOnText {

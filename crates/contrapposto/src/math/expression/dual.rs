@@ -78,7 +78,7 @@ pub(super) fn binary(operation: Binary, a: Dual, b: Dual) -> Dual {
     }
 }
 
-/// Where the series hands over to the continued fraction.
+/// Argument at which the series hands over to the continued fraction.
 const SERIES_END: f64 = 2.5;
 
 /// `erf(x) = 2/sqrt(pi) exp(-x^2) (x + 2 x^3/3 + 4 x^5/15 + ...)`: all terms of one sign (Abramowitz & Stegun 7.1.6).

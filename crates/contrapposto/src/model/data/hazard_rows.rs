@@ -24,7 +24,7 @@ pub struct HazardRow {
     above_deg: Option<f64>,
     least_carried: f64,
     seconds: Option<f64>,
-    /// What a study found, as the second half of a sentence.
+    /// Finding of a study, as the second half of a sentence.
     pub finding: String,
     /// Source of the angles.
     pub angle_reference: Reference,
@@ -44,7 +44,7 @@ impl HazardRow {
         self.coordinates.contains(&coordinate.name) && senses && beyond && carried >= self.least_carried
     }
 
-    /// How long the study kept people there at most, s.
+    /// Longest time for which the study kept people there, s.
     pub fn seconds(&self) -> Option<f64> {
         self.seconds
     }

@@ -11,7 +11,7 @@ use crate::passive::{
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CurveRow {
-    /// Its name.
+    /// Name of the curve.
     pub name: String,
     /// The positive direction in clinical words.
     pub positive: String,
@@ -21,7 +21,7 @@ pub struct CurveRow {
     pub(super) mass_kg: Option<f64>,
     double_exponential: Option<DoubleExponentialRow>,
     riener_edrich1999: Option<RienerEdrichRow>,
-    /// Where it comes from.
+    /// Source of the curve.
     pub reference: Reference,
 }
 
@@ -82,7 +82,7 @@ pub(crate) struct PassiveFile {
     pub(super) curve: Vec<CurveRow>,
 }
 
-/// How torque follows the size of the body.
+/// Law by which torque follows the size of the body.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ScaleRow {

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// How far a number can be trusted, the best first: the greater of two is the weaker.
+/// Trust in a number, the best first: the greater of two is the weaker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 pub enum Status {
     /// Somebody measured it, in the named source.
@@ -46,11 +46,11 @@ impl std::fmt::Display for Status {
     }
 }
 
-/// Where a number comes from.
+/// Source of a number.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
-    /// How far it can be trusted.
+    /// Trust in the number.
     pub status: Status,
     /// Author, year, place; or the reason of an assumption.
     pub source: String,

@@ -98,7 +98,7 @@ pub struct StrengthSources<'a> {
 }
 
 impl StrengthSources<'_> {
-    /// How far the strength at `angle` (rad) can be trusted: `extrapolated` outside the tested angles, and no better than its shape.
+    /// Trust in the strength at `angle` (rad): `extrapolated` outside the tested angles, and no better than that in the shape.
     pub fn status_at(&self, strength: &Strength, angle: f64) -> Status {
         match (self.size.status, self.shape.status) {
             _ if strength.is_extrapolated(angle) => Status::Extrapolated,

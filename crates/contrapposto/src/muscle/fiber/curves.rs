@@ -7,13 +7,13 @@ pub(super) trait Curves {
     fn tendon(&self, length: f64) -> (f64, f64);
 }
 
-/// Why numbers make no muscle.
+/// The reason for which numbers make no muscle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{what} is {value}; accepted: {accepted}")]
 pub struct MuscleError {
     /// The number's name.
     pub what: &'static str,
-    /// It.
+    /// The number.
     pub value: f64,
     /// The values that have a meaning.
     pub accepted: &'static str,

@@ -43,7 +43,7 @@ pub struct PassiveFiberCurve {
     pub zero_strain: f64,
     /// Strain at the greatest isometric force.
     pub strain: f64,
-    /// Its shape, where it is not the default.
+    /// Shape of the curve, where that is not the default.
     pub shape: Option<PassiveShape>,
 }
 
@@ -69,7 +69,7 @@ pub struct TendonShape {
 pub struct TendonCurve {
     /// Strain at the greatest isometric force.
     pub strain: f64,
-    /// Its shape, where it is not the default.
+    /// Shape of the curve, where that is not the default.
     pub shape: Option<TendonShape>,
 }
 

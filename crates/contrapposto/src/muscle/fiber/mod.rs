@@ -44,7 +44,7 @@ pub enum FiberLaw {
 /// The numbers of a muscle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MuscleSpec {
-    /// Its name.
+    /// Name of the muscle.
     pub name: String,
     /// Index of its path.
     pub path: usize,
@@ -139,7 +139,7 @@ impl Muscle {
         Ok(Self { spec, curves, fibers })
     }
 
-    /// Its numbers.
+    /// Numbers of the muscle.
     pub fn spec(&self) -> &MuscleSpec {
         &self.spec
     }

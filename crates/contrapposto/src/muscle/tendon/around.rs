@@ -9,7 +9,7 @@ use super::parts::{RoundShape, TendonGeom};
 use crate::muscle::tolerances::MUJOCO_LEAST;
 use crate::muscle::wrap::Contact;
 
-/// Where the line touches; `None` where it is straight. All points in the frame of the surface.
+/// Points at which the line touches the surface, and the length between them; `None` where the line is straight. All in the surface's frame.
 pub(super) fn around(
     geom: &TendonGeom,
     from: &Vector3<f64>,

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::muscle::tolerances::{FULL_TURN, MUJOCO_LEAST};
 
-/// Where a line touches a circle, and the length of its arc, m.
+/// Points at which a line touches a circle, and the length of the arc, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
     pub(super) first: Vector2<f64>,

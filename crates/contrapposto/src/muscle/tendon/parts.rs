@@ -7,15 +7,15 @@ use crate::model::Placement;
 /// A sphere or cylinder that tendons pass round.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TendonGeom {
-    /// Its name.
+    /// Name of the geom.
     pub name: String,
     /// Index of the segment that carries it; `None` for ground.
     pub segment: Option<usize>,
-    /// Its axes in the segment's frame.
+    /// Axes of the geom in the segment's frame.
     pub pose: Placement,
-    /// Its shape.
+    /// Shape of the geom.
     pub shape: RoundShape,
-    /// Its radius, m.
+    /// Radius of the geom, m.
     pub radius: f64,
 }
 

@@ -12,7 +12,7 @@ pub enum Quadrant {
     Half {
         /// 0 for x, 1 for y, 2 for z.
         axis: usize,
-        /// Its positive side.
+        /// Whether the half is that on the positive side.
         positive: bool,
     },
 }
@@ -50,17 +50,17 @@ impl Contact {
     }
 }
 
-/// What a surface does to a straight part of a path.
+/// Relation of a surface to a straight part of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::muscle) enum Wrapping {
     /// An end of the part is inside.
     Inside,
     /// OpenSim counts it as touching, but has no line over it.
     WithoutLine,
-    /// It does not touch.
+    /// The part does not touch the surface.
     Free,
-    /// It may lie on it: the part that it makes longer by the least counts.
+    /// The part may lie on the surface: of all such parts of the path, the one that becomes longer by the least does.
     Touches(Contact),
-    /// It would pass through.
+    /// The part would pass through the surface.
     Crosses(Contact),
 }

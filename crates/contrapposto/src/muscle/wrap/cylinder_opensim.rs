@@ -68,7 +68,7 @@ struct Helix {
 }
 
 impl Helix {
-    /// Its length, and its ends, moved until it is tangent to both straight parts unless it is the path's only surface.
+    /// Length and ends of the helix, moved until it is tangent to both straight parts unless this is the path's only surface.
     fn contact(mut self, from: &Vector3<f64>, to: &Vector3<f64>, single: bool) -> Contact {
         for _ in 0..OPENSIM_TANGENCY_TRIES {
             let length = self.length();

@@ -89,9 +89,9 @@ impl Surface for Ellipsoid {
 struct Section {
     first: V,
     second: V,
-    /// Its extent in the coordinates of the sphere.
+    /// Extent of the section in the coordinates of the sphere.
     angle: f64,
-    /// Its length, m, and that with both tangents.
+    /// Length of the section, m, and that with both tangents.
     length: f64,
     total: f64,
 }

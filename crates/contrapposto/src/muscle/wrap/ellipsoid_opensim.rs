@@ -145,7 +145,7 @@ struct Section {
 }
 
 impl Section {
-    /// Its length as that of its pieces, on the near or on the far side; the points next to both ends, where there are any.
+    /// Length of the section as that of its pieces, on the near or on the far side; the points next to both ends, where there are any.
     fn length(&self, far: bool) -> (f64, Option<[V; 2]>) {
         let chord = (self.first - self.second).norm();
         let straight = chord / self.factor;

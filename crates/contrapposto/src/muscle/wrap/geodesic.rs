@@ -46,7 +46,7 @@ impl State {
 
 /// A smooth surface with its geodesics, in coordinates in which straight lines are straight.
 pub(super) trait Surface {
-    /// Where the line from a point outside touches the surface at a number that tells these places apart, and its direction.
+    /// State where the line from a point outside touches the surface; a number tells these places apart.
     fn tangent(&self, from: &V, number: f64) -> Option<State>;
     /// Rates of the state by the extent.
     fn rates(&self, state: &State) -> State;

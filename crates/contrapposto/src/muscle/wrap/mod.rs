@@ -25,17 +25,17 @@ use crate::model::Placement;
 /// A surface fixed in a segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrapObject {
-    /// Its name.
+    /// Name of the surface.
     pub name: String,
     /// Index of the segment that carries it; `None` for ground.
     pub segment: Option<usize>,
-    /// Its axes in the segment's frame.
+    /// Axes of the surface in the segment's frame.
     pub pose: Placement,
     /// The half of it that paths may touch.
     pub quadrant: Quadrant,
     /// Whether paths wrap over it at all.
     pub active: bool,
-    /// Its shape, about its own axes.
+    /// Shape of the surface, about its own axes.
     pub shape: WrapShape,
 }
 
@@ -44,19 +44,19 @@ pub struct WrapObject {
 pub enum WrapShape {
     /// A cylinder along z about the origin.
     Cylinder {
-        /// Its radius.
+        /// Radius.
         radius: f64,
-        /// Its length.
+        /// Length.
         length: f64,
     },
     /// A sphere about the origin.
     Sphere {
-        /// Its radius.
+        /// Radius.
         radius: f64,
     },
     /// An ellipsoid about the origin.
     Ellipsoid {
-        /// Its half axes along x, y and z.
+        /// Half axes along x, y and z.
         half_axes: Vector3<f64>,
     },
     /// A torus about z: a tube along a circle about the origin. Paths pass through it.
@@ -83,7 +83,7 @@ impl WrapObject {
         self.shape.normal(place)
     }
 
-    /// How shortest lines on the surface spread along the one that starts at a place in a direction, over a length, m.
+    /// Spread of shortest lines on the surface beside the one that starts at a place in a direction, over a length, m.
     pub(crate) fn spread(&self, place: &Vector3<f64>, direction: &Vector3<f64>, length: f64) -> Spread {
         self.shape.spread(place, direction, length)
     }

@@ -32,7 +32,7 @@ impl WrapShape {
         }
     }
 
-    /// How shortest lines spread along the one that starts at a place in a direction, over a length, m.
+    /// Spread of shortest lines beside the one that starts at a place in a direction, over a length, m.
     pub(super) fn spread(&self, place: &V, direction: &V, length: f64) -> Spread {
         match self {
             Self::Cylinder { .. } => [[1.0, length], [0.0, 1.0]],
