@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The exported adult in Pinocchio, MuJoCo and OpenSim: do they give the external torque that we give?
+"""Compares the external torque of the exported adult with that of Pinocchio, MuJoCo and OpenSim.
 
     python3 -m venv peervenv && peervenv/bin/pip install opensim==4.6 pin mujoco==4.0.0 numpy
     peervenv/bin/python scripts/compare_adult.py [FOLDER]

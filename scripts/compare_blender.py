@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Blender plays `motion.glb` and `motion.bvh`: are joint centres where our kinematics has them?
+"""Compares joint centres of `motion.glb` and `motion.bvh` in Blender with those of our kinematics.
 
     python3.11 -m venv blendervenv && blendervenv/bin/pip install bpy==4.5.15
     blendervenv/bin/python scripts/compare_blender.py

@@ -111,7 +111,7 @@ PEERS = {
 
 
 def agrees(problem, x):
-    """Is every level as short as ours? Shorter or longer ones are told from rounding by their length."""
+    """Whether every level is as short as ours. The length separates shorter and longer ones from rounding."""
     outside = np.maximum(problem["lower"] - x, x - problem["upper"]).max()
     off = [np.linalg.norm(l["matrix"] @ x - l["right"]) - l["residual"] for l in problem["levels"]]
     size = [max(1.0, level["residual"]) for level in problem["levels"]]

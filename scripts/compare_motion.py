@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""OpenSim plays our `.mot` on our `.osim`: are joint centres and centres of mass where our kinematics has them?
+"""Compares joint centres and centres of mass of our `.mot` on our `.osim` in OpenSim with those of our kinematics.
 
     python3 -m venv peervenv && peervenv/bin/pip install opensim==4.6 numpy
     peervenv/bin/python scripts/compare_motion.py

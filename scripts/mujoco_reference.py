@@ -121,8 +121,8 @@ def pose(model, data, random):
             follower = model.jnt_qposadr[model.eq_obj1id[k]]
             offset = 0.0
             if model.eq_obj2id[k] >= 0:
-                leader = model.jnt_qposadr[model.eq_obj2id[k]]
-                offset = data.qpos[leader] - model.qpos0[leader]
+                independent = model.jnt_qposadr[model.eq_obj2id[k]]
+                offset = data.qpos[independent] - model.qpos0[independent]
             data.qpos[follower] = model.qpos0[follower] + np.polyval(model.eq_data[k][4::-1], offset)
     mujoco.mj_forward(model, data)
 

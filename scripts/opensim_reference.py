@@ -191,16 +191,16 @@ def torque_reference(path):
     constraints = [model.getConstraintSet().get(i) for i in range(model.getConstraintSet().getSize())]
     couplers = [opensim.CoordinateCouplerConstraint.safeDownCast(c) for c in constraints]
     scale = lambda c: opensim.PropertyHelper.getValueDouble(c.getPropertyByName("scale_factor"))
-    leader = {}
+    couplings = {}
     for c in couplers:
-        leader[c.getDependentCoordinateName()] = (c.getIndependentCoordinateNames().get(0), c.getFunction(), scale(c))
+        couplings[c.getDependentCoordinateName()] = (c.getIndependentCoordinateNames().get(0), c.getFunction(), scale(c))
     mass = model.getTotalMass(state)
 
     def place(q):
         def value(name):
-            if name not in leader:
+            if name not in couplings:
                 return q[name]
-            independent, function, factor = leader[name]
+            independent, function, factor = couplings[name]
             return factor * function.calcValue(opensim.Vector(1, value(independent)))
 
         values = {c.getName(): value(c.getName()) for c in every}
@@ -231,10 +231,10 @@ def torque_reference(path):
         torques = solver.solve(state)
         raw = {name: torques.get(i) for name, i in row.items()}
         center = vector(model.calcMassCenterPosition(state))
-        folded = {name: 0.0 for name in q if name not in leader}
+        folded = {name: 0.0 for name in q if name not in couplings}
         for name, torque in raw.items():
-            while name in leader:
-                independent, function, factor = leader[name]
+            while name in couplings:
+                independent, function, factor = couplings[name]
                 torque *= factor * function.calcDerivative(first, opensim.Vector(1, values[independent]))
                 name = independent
             folded[name] += torque

@@ -88,18 +88,18 @@ def case(model, data, joints, follow, random, links):
     def value(name):
         if name not in follow:
             return values[name]
-        leader, multiplier, offset = follow[name]
-        return multiplier * value(leader) + offset
+        independent, multiplier, offset = follow[name]
+        return multiplier * value(independent) + offset
 
     fold = numpy.eye(model.nv)
     for name in follow:
         place(joints[name], name, value(name), q, values)
-        leader, factor = name, 1.0
-        while leader in follow:
-            factor *= follow[leader][1]
-            leader = follow[leader][0]
+        independent, factor = name, 1.0
+        while independent in follow:
+            factor *= follow[independent][1]
+            independent = follow[independent][0]
         fold[joints[name].idx_v, :] = 0
-        fold[joints[name].idx_v, joints[leader].idx_v] = factor
+        fold[joints[name].idx_v, joints[independent].idx_v] = factor
     gravity = pinocchio.computeGeneralizedGravity(model, data, q).copy()
     slope = pinocchio.computeGeneralizedGravityDerivatives(model, data, q).copy()
     speeds, turning = numpy.eye(model.nv), numpy.zeros((model.nv, model.nv))
@@ -150,7 +150,7 @@ def rooted(path, root, postures):
 
 
 def check_folding(path, free, joints, follow, cases):
-    """Pinocchio's own mimic joints give the torques that we have folded. It builds them where followers come after leaders only."""
+    """Pinocchio's own mimic joints give the torques that we have folded. It builds them where dependent joints come after independent ones only."""
     try:
         model = pinocchio.buildModelFromUrdf(str(path), *free, mimic=True)
     except ValueError as refusal:

@@ -1,4 +1,4 @@
-"""How much of contrapposto hangs on a curve that nobody has measured?
+"""Varies the passive curve of hip adduction, which nobody has measured, and records how contrapposto depends on it.
 
 Runs scenarios/stand-relaxed.toml (the resting foot may be put elsewhere) and scenarios/stand-relaxed-feet-fixed.toml with the passive
 curve of hip adduction made softer and stiffer, steeper and flatter, for both strategies, and prints the tables of

@@ -1,4 +1,4 @@
-"""How long can a standing posture be held, given where the hands are?
+"""Computes the time for which a standing posture can be held, by height and reach of the hands.
 
 For hands at 25 to 150 % of shoulder height and 25 to 100 % of arm reach (the 19 postures of Miedema et al. 1997 are among these 24),
 nothing in them and nothing else asked: finds the postures of least effort, holds two of them (the most upright and the easiest)
@@ -58,7 +58,7 @@ def scenario(height, reach, more="", law="endurance"):
 
 
 def run(program, command, text):
-    """What the program prints as JSON; None where the job cannot be done."""
+    """The JSON that the program prints; None where the job cannot be done."""
     with tempfile.TemporaryDirectory() as out:
         folder = ["--out", out] if command == "simulate" else []
         done = subprocess.run([program, command, "-", "--json", *folder], input=text, capture_output=True, text=True)
@@ -68,7 +68,7 @@ def run(program, command, text):
 
 
 def lean(posture):
-    """How far the chest leans forward, degrees."""
+    """Angle by which the chest leans forward, degrees."""
     values = posture["coordinates"]
     return -math.degrees(sum(values[name] for name in ["pelvis_tilt", "lumbar_extension", "thoracic_extension"]))
 

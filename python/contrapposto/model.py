@@ -188,7 +188,7 @@ class Model:
         return (positive, negative)
 
     def endurance_time(self, coordinate: str, loads: npt.ArrayLike, sense: Sense = "positive") -> Array:
-        """How long (s) a rested muscle group holds relative loads (torque over strength), shape (N,); inf where for ever."""
+        """Time (s) for which a rested muscle group holds relative loads (torque over strength), shape (N,); inf where for ever."""
         return _native.endurance_time(self._native, coordinate, _positive(sense), _loads(loads))
 
     def fatigue(

@@ -233,8 +233,8 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     assert_eq!(report["files"], serde_json::json!(["assess.json", "torques.sto", "fatigue.sto", "report.html"]));
     let warnings = report["warnings"].as_array().unwrap();
     let begin = ["nothing holds the body up", "muscles work against the ligaments"];
-    let told = |(warning, begin): (&Value, &str)| warning.as_str().unwrap().starts_with(begin);
-    assert!(warnings.len() == 2 && warnings.iter().zip(begin).all(told), "{warnings:?}");
+    let message = |(warning, begin): (&Value, &str)| warning.as_str().unwrap().starts_with(begin);
+    assert!(warnings.len() == 2 && warnings.iter().zip(begin).all(message), "{warnings:?}");
     let plain = folder.path().join("plain.sto");
     let arguments = ["torques", "adult", &motion, "--load", "hand_r 3kg", "--out", plain.to_str().unwrap()];
     assert_eq!(run(&arguments).code, 0);
@@ -257,11 +257,11 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     let reason = |i: usize| page["reasons"][i].as_str().unwrap();
     assert!(page["levels"].is_null() && reason(1).starts_with("Nothing holds the body up"), "{}", reason(1));
     assert!(reason(0).starts_with("To say who carries it, give --support SEG,SEG or --grf FILE.mot;"), "{}", reason(0));
-    // What would relieve the elbow is told, with the angle of assess.json.
+    // The relief of the elbow is on the page, with the angle of assess.json.
     let goal = elbow["proposals"][0]["goal_deg"].as_f64().unwrap();
-    let told = page["list"]["entries"].as_array().unwrap().iter().map(|entry| entry["text"].as_str().unwrap());
-    let told: Vec<&str> = told.filter(|text| text.starts_with("Right elbow flexion: greatest load")).collect();
-    assert!(told.len() == 1 && told[0].contains(&format!("to {goal:.1}°")), "{told:?} {goal}");
+    let message = page["list"]["entries"].as_array().unwrap().iter().map(|entry| entry["text"].as_str().unwrap());
+    let message: Vec<&str> = message.filter(|text| text.starts_with("Right elbow flexion: greatest load")).collect();
+    assert!(message.len() == 1 && message[0].contains(&format!("to {goal:.1}°")), "{message:?} {goal}");
 }
 
 /// A whole adult that nothing carries falls, whatever its muscles can hold; with its root held only they are judged.
@@ -302,11 +302,11 @@ fn a_swing_is_no_posture() {
         writeln!(text, "{time},{}", 40.0 * (10.0 * time).sin()).unwrap();
     }
     let swing = write(folder.path(), "swing.csv", &text);
-    let told = run(&["assess", "adult", &swing, "--static"]).stderr;
-    assert!(told.contains("warning: the centre of mass accelerates by more than 1 m/s2 in "), "{told}");
+    let message = run(&["assess", "adult", &swing, "--static"]).stderr;
+    assert!(message.contains("warning: the centre of mass accelerates by more than 1 m/s2 in "), "{message}");
     let slow = write(folder.path(), "slow.csv", &text.replace("time,hip_flexion_r", "time,wrist_flex_r"));
-    let told = run(&["assess", "adult", &slow]).stderr;
-    assert!(!told.contains("accelerates"), "{told}");
+    let message = run(&["assess", "adult", &slow]).stderr;
+    assert!(!message.contains("accelerates"), "{message}");
 }
 
 #[test]
@@ -348,8 +348,8 @@ fn what_makes_no_sense_is_refused_in_words() {
         (&[&robot, &bent, "--passive", "file"], "no strength of this model is known"),
     ] {
         let arguments: Vec<&str> = ["assess"].iter().chain(arguments).copied().chain(["--out", target]).collect();
-        let told = refused(&arguments);
-        assert!(told.contains(part), "`{part}` is not in\n{told}");
+        let message = refused(&arguments);
+        assert!(message.contains(part), "`{part}` is not in\n{message}");
         assert!(!out.exists(), "{arguments:?}");
     }
 }

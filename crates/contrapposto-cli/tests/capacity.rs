@@ -133,7 +133,7 @@ fn the_verdict_comes_first_where_the_posture_cannot_be_held() {
 #[test]
 fn wrong_arguments_are_refused_by_what_would_be_accepted() {
     let file = scenarios().join("poses/reach-shelf.toml");
-    for (more, told) in [
+    for (more, message) in [
         (vec!["--at", "hnd_r"], "`hand_r` is one"),
         (vec!["--at", "hand_r", "--hold", "2"], "such as 30s, 2min or 1.5h"),
         (vec!["--at", "hand_r", "--hold", "0s"], "a time above 0"),
@@ -142,6 +142,6 @@ fn wrong_arguments_are_refused_by_what_would_be_accepted() {
     ] {
         let run = capacity(&file, &more);
         assert_eq!(run.code, 2, "{more:?}");
-        assert!(run.stderr.contains(told), "{more:?}: {}", run.stderr);
+        assert!(run.stderr.contains(message), "{more:?}: {}", run.stderr);
     }
 }

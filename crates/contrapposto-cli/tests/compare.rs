@@ -1,4 +1,4 @@
-//! `contrapposto compare` and `--figures`: what they say is what the other commands find, and wrong files are told apart.
+//! `contrapposto compare` and `--figures`: they say the same as the other commands, and name which file is wrong.
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 

@@ -152,8 +152,8 @@ fn a_file_with_tissue_of_its_own_gets_strength() {
         report["coordinates"]["hip_adduction_r"]["strength"]["positive"]["peak_nm"].as_f64()
     };
     assert!((peak(&report).unwrap() / peak(&man).unwrap() - 1.0).abs() < 0.001);
-    let told = refused(&["inspect", "adult", "--person", "female"]);
-    assert!(told.contains("the built-in adult has a size of its own"), "{told}");
+    let message = refused(&["inspect", "adult", "--person", "female"]);
+    assert!(message.contains("the built-in adult has a size of its own"), "{message}");
 }
 
 #[test]
@@ -170,10 +170,10 @@ fn convert_writes_what_reads_back() {
         assert_eq!(answer.code, 0, "{}", answer.stderr);
         assert!((external(out.to_str().unwrap()) - external(&model)).abs() < 1e-9, "{name}");
     }
-    let told = refused(&["convert", &model, &model]);
-    assert!(told.contains("is the model file itself"), "{told}");
-    let told = refused(&["convert", &model, folder.path().join("out.fbx").to_str().unwrap()]);
-    assert!(told.contains(".osim, .urdf"), "{told}");
+    let message = refused(&["convert", &model, &model]);
+    assert!(message.contains("is the model file itself"), "{message}");
+    let message = refused(&["convert", &model, folder.path().join("out.fbx").to_str().unwrap()]);
+    assert!(message.contains(".osim, .urdf"), "{message}");
     assert!(!folder.path().join("out.fbx").exists());
 }
 
@@ -237,8 +237,8 @@ fn includes_stay_in_the_models_folder_or_are_an_xml_in_the_folder_above() {
     }
     for name in attempts {
         let begun = Instant::now();
-        let told = refused(&["inspect", &attempt(&name)]);
-        assert!(!told.contains("secret_part") && !told.contains("root:"), "{name}: {told}");
+        let message = refused(&["inspect", &attempt(&name)]);
+        assert!(!message.contains("secret_part") && !message.contains("root:"), "{name}: {message}");
         assert!(begun.elapsed().as_secs() < 5, "{name}");
     }
 }
@@ -303,12 +303,12 @@ fn inspect_gives_the_axes_of_a_joint_judged_by_its_moment_and_the_reason_of_one_
         let found = muscles(&json(&["inspect", &file, "--json"]), "arm");
         assert_eq!(found["because"].as_str(), because, "{name}: {found}");
         assert_eq!(found["judged_by"], if because.is_some() { "coordinates" } else { "moment" }, "{name}");
-        let told = run(&["inspect", &file]).stdout;
+        let message = run(&["inspect", &file]).stdout;
         let sentence = because.map_or(
             "judged by its moment about flex (0 0 1), add (1 0 0), rot (0 1 0); long axis rot".to_owned(),
             |why| format!("judged by its coordinates, because {why}"),
         );
-        assert!(told.contains(&sentence), "{told}");
+        assert!(message.contains(&sentence), "{message}");
         // `torques` agrees: by its moment or not at all.
         let frames = json(&["torques", &file, "default", "--json"]);
         assert_eq!(frames[0]["joints"].as_object().unwrap().is_empty(), because.is_some(), "{name}");
@@ -386,13 +386,17 @@ fn a_model_where_a_scenario_is_due_and_a_file_where_a_folder_is_due_are_named_as
     let folder = tempfile::tempdir().unwrap();
     let model = write(folder.path(), "subject.osim", "<?xml version=\"1.0\"?>\n");
     let out = folder.path().join("out");
-    let told = run(&["simulate", &model, "--out", out.to_str().unwrap()]);
-    assert_eq!(told.code, 2);
-    assert!(told.stderr.contains("is a model, not a scenario") && told.stderr.contains("torques"), "{}", told.stderr);
+    let message = run(&["simulate", &model, "--out", out.to_str().unwrap()]);
+    assert_eq!(message.code, 2);
+    assert!(
+        message.stderr.contains("is a model, not a scenario") && message.stderr.contains("torques"),
+        "{}",
+        message.stderr
+    );
     let scenario = support::scenarios().join("figure-08.toml");
-    let told = run(&["simulate", scenario.to_str().unwrap(), "--out", &model]);
-    assert_eq!(told.code, 2);
-    assert!(told.stderr.contains("is a file; give the name of a folder"), "{}", told.stderr);
+    let message = run(&["simulate", scenario.to_str().unwrap(), "--out", &model]);
+    assert_eq!(message.code, 2);
+    assert!(message.stderr.contains("is a file; give the name of a folder"), "{}", message.stderr);
 }
 
 #[test]

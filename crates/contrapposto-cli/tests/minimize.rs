@@ -220,37 +220,37 @@ fn literal_minimize_agrees_with_the_oracle() {
             ties += 1;
             continue;
         }
-        let told = || format!("line {}: {}\n{answer}\n{expected:?}", i + 1, line.text);
-        assert_eq!(answer["case"], expected.case, "{}", told());
+        let message = || format!("line {}: {}\n{answer}\n{expected:?}", i + 1, line.text);
+        assert_eq!(answer["case"], expected.case, "{}", message());
         *counts.entry(expected.case).or_default() += 1;
         match (answer["goal_deg"].as_f64(), expected.goal) {
             (None, None) => {
-                assert_eq!(answer["outcome"], "none", "{}", told());
-                assert!(answer["goal_deg"].is_null() && answer["active_at_goal_nm"].is_null(), "{}", told());
+                assert_eq!(answer["outcome"], "none", "{}", message());
+                assert!(answer["goal_deg"].is_null() && answer["active_at_goal_nm"].is_null(), "{}", message());
                 nones += 1;
             }
             (Some(goal), Some(wanted)) => {
-                assert_ne!(answer["outcome"], "none", "{}", told());
+                assert_ne!(answer["outcome"], "none", "{}", message());
                 let difference = (goal - wanted.to_degrees()).abs();
                 if difference > GOAL_DEG {
                     let off = oracle::active_torque(&line.problem, goal.to_radians()).abs();
-                    assert!(off <= rounding_of(&line.problem, wanted), "{difference} deg, {off} N m; {}", told());
+                    assert!(off <= rounding_of(&line.problem, wanted), "{difference} deg, {off} N m; {}", message());
                     level += 1;
                 } else {
                     worst = worst.max(difference);
                 }
             }
-            _ => panic!("{}", told()),
+            _ => panic!("{}", message()),
         }
         if let (Some(ratio), Some(wanted)) = (answer["decrease_ratio"].as_f64(), expected.decrease_ratio) {
             let torque = oracle::active_torque(&line.problem, line.problem.q_c).abs();
             let rounding = 1e-6 + 2.0 * rounding_of(&line.problem, line.problem.q_c) / torque;
-            assert!((ratio - wanted).abs() <= rounding * wanted.abs().max(1.0), "{}", told());
+            assert!((ratio - wanted).abs() <= rounding * wanted.abs().max(1.0), "{}", message());
         }
         if let Some((from, to)) = expected.interval {
             for (end, wanted) in [from, to].into_iter().enumerate() {
                 let end = answer["interval_deg"][end].as_f64().unwrap();
-                assert!((end - wanted.to_degrees()).abs() <= 1e-5, "{}", told());
+                assert!((end - wanted.to_degrees()).abs() <= 1e-5, "{}", message());
             }
         }
     }
@@ -272,34 +272,34 @@ fn total_minimize_always_has_a_sound_answer() {
     let mut counts: BTreeMap<String, u64> = BTreeMap::new();
     let (mut same, mut roots, mut worst) = (0, 0, 0.0f64);
     for (i, (line, (total, literal))) in lines.iter().zip(total.iter().zip(&literal)).enumerate() {
-        let told = || format!("line {}: {}\ntotal   {total}\nliteral {literal}", i + 1, line.text);
-        let number = |key: &str| total[key].as_f64().unwrap_or_else(|| panic!("no {key}: {}", told()));
+        let message = || format!("line {}: {}\ntotal   {total}\nliteral {literal}", i + 1, line.text);
+        let number = |key: &str| total[key].as_f64().unwrap_or_else(|| panic!("no {key}: {}", message()));
         let outcome = total["outcome"].as_str().unwrap();
-        assert!(["stay", "active", "passive", "least_torque", "at_limit"].contains(&outcome), "{}", told());
+        assert!(["stay", "active", "passive", "least_torque", "at_limit"].contains(&outcome), "{}", message());
         *counts.entry(outcome.to_owned()).or_default() += 1;
         let goal = number("goal_deg");
         // One unit in the last place: see `numbers_come_back_to_the_digit`.
         let off = (line.range_deg[0] - goal).max(goal - line.range_deg[1]);
-        assert!(off <= 4.0 * f64::EPSILON * goal.abs(), "{}", told());
+        assert!(off <= 4.0 * f64::EPSILON * goal.abs(), "{}", message());
         let (now, then) = (number("active_nm"), number("active_at_goal_nm"));
-        assert!(now.is_finite() && then.is_finite() && then.abs() <= now.abs(), "{}", told());
+        assert!(now.is_finite() && then.is_finite() && then.abs() <= now.abs(), "{}", message());
         if outcome == "stay" {
             let rounding = 4.0 * f64::EPSILON * line.angle_deg.abs();
-            assert!((goal - line.angle_deg).abs() <= rounding, "a stay is the angle that was given: {}", told());
+            assert!((goal - line.angle_deg).abs() <= rounding, "a stay is the angle that was given: {}", message());
         }
         let expected = oracle::minimize(&line.problem);
         let Some(wanted) = expected.goal.filter(|_| !expected.near_tie && !is_level(&line.problem)) else { continue };
         let wanted = literal["goal_deg"].as_f64().unwrap_or(wanted.to_degrees());
         if let (Some(_), Some(_)) = expected.slopes {
             let difference = (goal - wanted).abs();
-            assert!(difference <= GOAL_DEG, "{difference} deg: {}", told());
-            assert_eq!(total["case"], literal["case"], "{}", told());
+            assert!(difference <= GOAL_DEG, "{difference} deg: {}", message());
+            assert_eq!(total["case"], literal["case"], "{}", message());
             worst = worst.max(difference);
             same += 1;
         }
         if expected.interval.is_some() {
             let rounding = rounding_of(&line.problem, goal.to_radians()) + 1e-9;
-            assert!(then.abs() <= rounding, "no root where the tables have one: {}", told());
+            assert!(then.abs() <= rounding, "no root where the tables have one: {}", message());
             roots += 1;
         }
     }
@@ -354,19 +354,19 @@ fn goals_are_labelled_active_or_passive_only_where_a_balance_exists() {
             for (line, answer) in lines.iter().zip(answers(&lines, arguments)) {
                 let outcome = answer["outcome"].as_str().unwrap().to_owned();
                 let Some(goal) = answer["goal_deg"].as_f64().map(f64::to_radians) else { continue };
-                let (sampled, told) = (Sampled(line), format!("{answer} {}", line.text));
+                let (sampled, message) = (Sampled(line), format!("{answer} {}", line.text));
                 let stable = match outcome.as_str() {
                     "active" => Some(false),
                     "passive" => Some(true),
                     _ => None,
                 };
                 if stable.is_some() && (sampled.balance_at(goal) != stable || answer["stable"] != json!(stable)) {
-                    without_balance.push(told);
+                    without_balance.push(message);
                 } else if ["least_torque", "at_limit"].contains(&outcome.as_str()) {
                     if !answer["stable"].is_null() {
-                        stable_of_none.push(told);
+                        stable_of_none.push(message);
                     } else if answer["case"] != "3.1" && sampled.has_balance() {
-                        overlooked.push(told);
+                        overlooked.push(message);
                     }
                 }
                 *counts.entry(outcome).or_default() += 1;

@@ -122,8 +122,8 @@ fn a_muscle_of_an_mjcf_file_has_mujocos_forces_even_where_the_mass_of_a_mesh_is_
     let kinds = &json(&["inspect", &file, "--json"])["muscles"];
     assert_eq!((&kinds["muscle"]["read"], &kinds["muscle"]["refused"]), (&1.into(), &1.into()), "{kinds}");
     assert_eq!(kinds["spatial"]["read"], 1);
-    let told = run(&["inspect", &file]);
-    assert!(told.stdout.contains("no lengthrange is given"), "{}", told.stdout);
+    let message = run(&["inspect", &file]);
+    assert!(message.stdout.contains("no lengthrange is given"), "{}", message.stdout);
     // Torques need the mass.
     assert!(refused(&["torques", &file, "default"]).contains("comes from a mesh"));
 }
@@ -210,10 +210,10 @@ fn passive_torque_and_strength_of_a_crossed_joint_are_the_muscles_and_others_kee
         json(&["torques", &file, &motion, "--json"]),
         json(&["torques", &file, &motion, "--json", "--muscles", "both"])
     );
-    let told = run(&["torques", &file, &motion, "--verbose"]).stderr;
-    assert!(told.contains("cross are theirs in each posture (derived; strength is a plain sum)"), "{told}");
-    assert!(told.contains("built-in data; `elbow_flex_l` keep what they have without muscles"), "{told}");
-    assert!(!told.contains("not used"), "{told}");
+    let message = run(&["torques", &file, &motion, "--verbose"]).stderr;
+    assert!(message.contains("cross are theirs in each posture (derived; strength is a plain sum)"), "{message}");
+    assert!(message.contains("built-in data; `elbow_flex_l` keep what they have without muscles"), "{message}");
+    assert!(!message.contains("not used"), "{message}");
     assert!(
         refused(&["torques", "adult", "default", "--muscles", "both"]).contains("--muscles: no muscle could be read")
     );
@@ -259,10 +259,10 @@ fn a_passive_law_and_a_strength_of_an_overlay_are_whole_joints_to_which_no_muscl
     let with =
         |uses: &'static str| json(&["torques", &file, &motion, "--json", "--overlay", &overlay, "--muscles", uses]);
     assert_eq!(with("both"), with("off"));
-    let told = run(&["torques", &file, &motion, "--overlay", &overlay, "--verbose"]).stderr;
+    let message = run(&["torques", &file, &motion, "--overlay", &overlay, "--verbose"]).stderr;
     assert!(
-        told.contains("muscles cross `elbow_flex_r`, whose joints have a passive law or strength of their own"),
-        "{told}"
+        message.contains("muscles cross `elbow_flex_r`, whose joints have a passive law or strength of their own"),
+        "{message}"
     );
 }
 
@@ -271,13 +271,13 @@ fn a_joint_whose_muscles_are_far_weaker_than_people_keeps_the_built_in_strength_
     let folder = tempfile::tempdir().unwrap();
     let (file, motion) = elbows(folder.path());
     let text = std::fs::read_to_string(&file).unwrap();
-    let told = |file: &str, more: &[&str]| run(&[&["torques", file, &motion], more].concat()).stderr;
-    assert!(!told(&file, &[]).contains("far weaker"), "{}", told(&file, &[]));
+    let message = |file: &str, more: &[&str]| run(&[&["torques", file, &motion], more].concat()).stderr;
+    assert!(!message(&file, &[]).contains("far weaker"), "{}", message(&file, &[]));
     let force = |newtons: u32| format!("<max_isometric_force>{newtons}</max_isometric_force>");
     let weak = write(folder.path(), "weak.osim", &text.replace(&force(500), &force(50)));
     let said = "the model's muscles are far weaker than people in the default posture: right elbow ";
-    assert!(told(&weak, &["--quiet"]).contains(&format!("warning: {said}")), "{}", told(&weak, &["--quiet"]));
-    assert!(!told(&weak, &["--muscles", "off"]).contains("far weaker"));
+    assert!(message(&weak, &["--quiet"]).contains(&format!("warning: {said}")), "{}", message(&weak, &["--quiet"]));
+    assert!(!message(&weak, &["--muscles", "off"]).contains("far weaker"));
     let warnings = json(&["assess", &weak, &motion, "--json"])["warnings"].clone();
     assert!(
         warnings.as_array().unwrap().iter().any(|warning| warning.as_str().unwrap().starts_with(said)),
@@ -309,13 +309,13 @@ fn muscles_that_could_not_be_read_are_warned_of() {
     let folder = tempfile::tempdir().unwrap();
     let (file, motion) = elbows(folder.path());
     let text = std::fs::read_to_string(&file).unwrap();
-    let told = |file: &str| run(&["torques", file, &motion, "--quiet"]).stderr;
+    let message = |file: &str| run(&["torques", file, &motion, "--quiet"]).stderr;
     let unread = text.replace("<Thelen2003Muscle name=\"back\">", "<RigidTendonMuscle name=\"back\">");
     assert_ne!(unread, text);
     let end = unread.rfind("</Thelen2003Muscle>").unwrap();
     let unread = format!("{}</RigidTendonMuscle>{}", &unread[..end], &unread[end + "</Thelen2003Muscle>".len()..]);
     let unread = write(folder.path(), "unread.osim", &unread);
-    assert!(told(&unread).contains("warning: 1 of 3 muscles could not be read"), "{}", told(&unread));
+    assert!(message(&unread).contains("warning: 1 of 3 muscles could not be read"), "{}", message(&unread));
 }
 
 /// The arm of `elbows` with a hand at 60 degrees of flexion and a weight in it.
@@ -358,17 +358,17 @@ fn the_posture_of_a_scenario_has_the_strength_of_the_muscles_in_it() {
 fn a_scenario_refuses_muscles_that_it_cannot_use_by_name() {
     let folder = tempfile::tempdir().unwrap();
     elbows(folder.path());
-    let told = |model: &str| refused(&["relax", &weight_in_hand(folder.path(), "refused.toml", model)]);
+    let message = |model: &str| refused(&["relax", &weight_in_hand(folder.path(), "refused.toml", model)]);
     for word in ["passive", "both"] {
-        let text = told(&format!("file = \"elbows.osim\"\nmuscles = \"{word}\""));
+        let text = message(&format!("file = \"elbows.osim\"\nmuscles = \"{word}\""));
         assert!(text.contains(&format!("muscles is \"{word}\"")) && text.contains("refused.toml:4:"), "{text}");
         assert!(text.contains("write \"strength\" or \"off\""), "{text}");
     }
-    let text = told("muscles = \"strength\"\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75 }");
+    let text = message("muscles = \"strength\"\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75 }");
     assert!(text.contains("`muscles` goes with a model file"), "{text}");
     write(folder.path(), "bare.osim", &model(""));
-    let text = told("file = \"bare.osim\"\nmuscles = \"strength\"");
+    let text = message("file = \"bare.osim\"\nmuscles = \"strength\"");
     assert!(text.contains("refused.toml: [model] muscles: no muscle could be read from the model"), "{text}");
-    let text = told("file = \"elbows.osim\"\nmuscles = \"all\"");
+    let text = message("file = \"elbows.osim\"\nmuscles = \"all\"");
     assert!(text.contains("there are: off, strength, passive, both"), "{text}");
 }

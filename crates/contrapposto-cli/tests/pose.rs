@@ -75,7 +75,7 @@ fn shown_as_found(page: &Value, found: &Value) {
 
 /// The seat under the pelvis is drawn, level and at the place of the patch; the feet stand on the ground.
 #[test]
-fn a_seat_is_under_who_sits() {
+fn a_seat_is_drawn_under_a_body_that_sits() {
     const SITS: &str = "format = 1\n[model]\nadult = { sex = \"female\", stature_m = 1.65, mass_kg = 60 }\n\
         [posture]\npelvis_ty_m = 0.512\nhip_flexion_r_deg = 85\nhip_flexion_l_deg = 85\nknee_angle_r_deg = 85\n\
         knee_angle_l_deg = 85\n[[support]]\nsegment = \"pelvis\"\n[[support]]\nsegment = \"calcn_r\"\n\

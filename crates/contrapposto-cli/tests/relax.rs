@@ -60,10 +60,10 @@ fn one_leg_rests_by_a_slouch_or_level() {
     assert_eq!(hip["balance"].as_array().unwrap().len(), 2, "a curve for each");
     let share = column(&page["supports"][0]["share"], 2)[0];
     assert!((share - postures[0]["supports"][0]["share"].as_f64().unwrap()).abs() < 6e-4);
-    let told = page["list"]["entries"].as_array().unwrap();
-    assert!(told[0]["text"].as_str().unwrap().contains("right hip adduction at 23.3°"), "{}", told[0]);
-    assert_eq!((told.len(), &told[1]["frame"]), (2, &serde_json::json!(1)));
-    for (entry, posture) in told.iter().zip(postures) {
+    let page_entries = page["list"]["entries"].as_array().unwrap();
+    assert!(page_entries[0]["text"].as_str().unwrap().contains("right hip adduction at 23.3°"), "{}", page_entries[0]);
+    assert_eq!((page_entries.len(), &page_entries[1]["frame"]), (2, &serde_json::json!(1)));
+    for (entry, posture) in page_entries.iter().zip(postures) {
         let ends = if posture["fails_first"].is_null() { "no limit by muscles." } else { "fails." };
         assert!(entry["text"].as_str().unwrap().ends_with(ends), "{entry}");
     }
@@ -164,7 +164,7 @@ fn a_posture_says_how_long_it_can_be_held() {
     let out = folder.path().join("out");
     let summary = json(&["simulate", scenario.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()]);
     let failed = &summary["failed_first"];
-    println!("foretold {least:.2} s, {first}; held {failed}");
+    println!("predicted {least:.2} s, {first}; held {failed}");
     assert_eq!((&failed["coordinate"], &failed["group"]), (&first["coordinate"], &first["group"]));
     assert!((failed["at_s"].as_f64().unwrap() - least).abs() < 0.51);
 }

@@ -74,9 +74,9 @@ fn the_page_of_a_target_out_of_reach_says_nowhere_that_anything_holds() {
         let at = |place: &Value, k: usize| column(&place[k], frames)[frame];
         (0..3).map(|k| (at(&target["at"], k) - at(&target["from"], k)).powi(2)).sum::<f64>().sqrt()
     };
-    let told = headline.split("missed by ").nth(1).and_then(|rest| rest.split_once(" cm")).unwrap().0;
-    let (told, drawn) = (told.parse::<f64>().unwrap(), 100.0 * miss(0).max(miss(frames - 1)));
-    assert!((told - drawn).abs() < 0.1, "{told} {drawn}");
+    let message = headline.split("missed by ").nth(1).and_then(|rest| rest.split_once(" cm")).unwrap().0;
+    let (message, drawn) = (message.parse::<f64>().unwrap(), 100.0 * miss(0).max(miss(frames - 1)));
+    assert!((message - drawn).abs() < 0.1, "{message} {drawn}");
 }
 
 /// A foot is in the air for two seconds; the other knee is not said to be exhausted for it.

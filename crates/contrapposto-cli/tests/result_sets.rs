@@ -301,7 +301,7 @@ fn an_output_folder_that_is_none_is_refused() {
         }
     }
     assert_eq!(std::fs::read_to_string(file).unwrap(), "mine");
-    // A folder that bears the name of a result: told, and no other file appears.
+    // A folder that bears the name of a result is named in the message, and no other file appears.
     let out = folder.path().join("out");
     std::fs::create_dir_all(out.join("summary.json/inside")).unwrap();
     let run = contrapposto(["demo", "--figure-8", "--out"]).arg(&out).run();

@@ -563,7 +563,7 @@ fn no_colour_and_no_progress_where_none_is_wanted() {
 
 /// A body that is pushed over ends the job, and every output says when and why; the samples before the fall are there.
 #[test]
-fn a_fall_ends_the_job_and_is_told() {
+fn a_fall_ends_the_job_and_every_output_reports_it() {
     let folder = tempfile::tempdir().unwrap();
     let push = "[[event]]\nat_s = 1\nload = [{ segment = \"torso\", force_n = [300, 0, 0] }]\n";
     let text = shortened(&scenarios().join("stand-ready.toml")) + push;

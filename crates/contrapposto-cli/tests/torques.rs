@@ -279,14 +279,14 @@ fn the_ground_holds_a_free_body() {
     assert!((external(1, "root_mz") - 5.886).abs() < 1e-9, "{}", external(1, "root_mz"));
     assert!((external(1, "shin") - 5.886).abs() < 1e-9);
     let late = write(folder.path(), "late.csv", "time,shin_deg\n0,0\n3,0\n");
-    let told = run(&["torques", &model, &late, "--grf", &forces, "--grf-on", "shank"]).stderr;
-    assert!(told.contains("1 of 2 frames are left out") && told.contains("from 0 s to 2 s"), "{told}");
-    let told = refused(&["torques", &model, &still, "--grf", &forces]);
-    assert!(told.contains("--grf-on"), "{told}");
-    let told = refused(&["torques", &model, &still, "--grf", &forces, "--grf-on", "shanc"]);
-    assert!(told.contains("did you mean `shank`"), "{told}");
-    let told = refused(&["torques", &model, &still, "--grf", &still, "--grf-on", "shank"]);
-    assert!(told.contains("ground_force_vx"), "{told}");
+    let message = run(&["torques", &model, &late, "--grf", &forces, "--grf-on", "shank"]).stderr;
+    assert!(message.contains("1 of 2 frames are left out") && message.contains("from 0 s to 2 s"), "{message}");
+    let message = refused(&["torques", &model, &still, "--grf", &forces]);
+    assert!(message.contains("--grf-on"), "{message}");
+    let message = refused(&["torques", &model, &still, "--grf", &forces, "--grf-on", "shanc"]);
+    assert!(message.contains("did you mean `shank`"), "{message}");
+    let message = refused(&["torques", &model, &still, "--grf", &still, "--grf-on", "shank"]);
+    assert!(message.contains("ground_force_vx"), "{message}");
 }
 
 #[test]
@@ -304,12 +304,12 @@ fn an_overlay_is_laid_over_and_library_signs_are_verified() {
     // The adult's elbow turns about +z; a model's that turns about -z has its curve the other way round.
     let same = write(folder.path(), "same.xml", &leg(1, "elbow_flex_r"));
     let against = write(folder.path(), "against.xml", &leg(-1, "elbow_flex_r"));
-    let (forward, told) = passive(&same, &[]);
-    assert!(told.contains("`elbow_flex_r`: passive torque and strength from the built-in data"), "{told}");
+    let (forward, message) = passive(&same, &[]);
+    assert!(message.contains("`elbow_flex_r`: passive torque and strength from the built-in data"), "{message}");
     assert!(forward < 0.0);
-    let (backward, told) = passive_at(-100, &against, &[]);
+    let (backward, message) = passive_at(-100, &against, &[]);
     assert!((backward + forward).abs() < 1e-12);
-    assert!(told.contains("turned round: flexion is negative here"), "{told}");
+    assert!(message.contains("turned round: flexion is negative here"), "{message}");
     assert_eq!(passive(&same, &["--passive", "file"]).0, 0.0);
     // Across the expected axis, or with gravity along z: not applied, and said.
     let across = write(
@@ -317,17 +317,17 @@ fn an_overlay_is_laid_over_and_library_signs_are_verified() {
         "across.xml",
         &leg(1, "elbow_flex_r").replace(r#"axis="0 0 1" range="-2"#, r#"axis="1 0 0" range="-2"#),
     );
-    let (none, told) = passive(&across, &[]);
-    assert!(none == 0.0 && told.contains("stands at 90 deg to the expected one"), "{told}");
+    let (none, message) = passive(&across, &[]);
+    assert!(none == 0.0 && message.contains("stands at 90 deg to the expected one"), "{message}");
     let z_up = write(folder.path(), "z_up.xml", &leg(1, "elbow_flex_r").replace("0 -9.81 0", "0 0 -9.81"));
-    let (none, told) = passive(&z_up, &[]);
-    assert!(none == 0.0 && told.contains("gravity does not act along -y"), "{told}");
+    let (none, message) = passive(&z_up, &[]);
+    assert!(none == 0.0 && message.contains("gravity does not act along -y"), "{message}");
 
     let text = "[coordinates.elbow_flex_r]\nrange_deg = [-140, 10]\nstrength = { positive_nm = 70, negative_nm = 50 }\n\
                 fatigue = \"elbow\"\npassive = { curve = \"elbow_flexion\", sign = -1 }\n";
     let overlay = write(folder.path(), "overlay.toml", text);
-    let (laid, told) = passive_at(-100, &same, &["--overlay", &overlay]);
-    assert!(told.contains("range -140 .. 10 deg") && told.contains("with flexion negative"), "{told}");
+    let (laid, message) = passive_at(-100, &same, &["--overlay", &overlay]);
+    assert!(message.contains("range -140 .. 10 deg") && message.contains("with flexion negative"), "{message}");
     assert!((laid + forward).abs() < 1e-12, "{laid}");
     for (text, part) in [
         ("[coordinates.elbow_flex_l]\nrange_deg = [0, 1]\n", "did you mean `elbow_flex_r`"),
@@ -341,8 +341,8 @@ fn an_overlay_is_laid_over_and_library_signs_are_verified() {
         ("[coordinates.elbow_flex_r]\n", "nothing is laid over"),
     ] {
         let file = write(folder.path(), "bad.toml", text);
-        let told = refused(&["inspect", &same, "--overlay", &file]);
-        assert!(told.contains(part) && told.contains("bad.toml:"), "{text}: {told}");
+        let message = refused(&["inspect", &same, "--overlay", &file]);
+        assert!(message.contains(part) && message.contains("bad.toml:"), "{text}: {message}");
     }
 }
 
@@ -368,8 +368,8 @@ fn arguments_without_sense_are_refused() {
         (vec!["torques", &model, "default", "--degrees", "--radians"], "--radians"),
         (vec!["torques", &unnamed, "default"], "unnamed.csv"),
     ] {
-        let told = refused(&arguments);
-        assert!(told.contains(part), "{arguments:?}: {told}");
+        let message = refused(&arguments);
+        assert!(message.contains(part), "{arguments:?}: {message}");
     }
     assert!(!folder.path().join("out.txt").exists());
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use contrapposto::capacity::{Limit, Limiter, Reach};
+use contrapposto::capacity::{GreatestForce, Limit, Limiter};
 use contrapposto::model::{Model, Side};
 use contrapposto::verdict::Who;
 use serde::Serialize;
@@ -112,16 +112,16 @@ impl LimitText {
 
 impl ForceText {
     /// Of the mean person's force in a direction, with those of weaker and stronger people, N.
-    pub fn new(model: &Model, reach: &Reach, toward: String, [weaker, stronger]: [f64; 2]) -> Self {
+    pub fn new(model: &Model, greatest: &GreatestForce, toward: String, [weaker, stronger]: [f64; 2]) -> Self {
         let finite = |force: f64| force.is_finite().then_some(force);
         Self {
             toward,
-            direction: reach.direction.into(),
-            force_n: finite(reach.force),
+            direction: greatest.direction.into(),
+            force_n: finite(greatest.force),
             weaker_n: finite(weaker),
             stronger_n: finite(stronger),
-            limits: reach.limits.iter().map(|limit| LimitText::new(model, limit)).collect(),
-            normal: reach.normal.into(),
+            limits: greatest.limits.iter().map(|limit| LimitText::new(model, limit)).collect(),
+            normal: greatest.normal.into(),
         }
     }
 }

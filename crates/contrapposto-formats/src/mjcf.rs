@@ -1,7 +1,7 @@
 //! Reads MJCF, MuJoCo's model files, as a [`ModelIr`].
 //!
 //! Defaults and classes, includes, frames, degrees, Euler sequences, orientations of five kinds and masses from geoms are
-//! resolved as MuJoCo 4.0 resolves them. What matters to quasi-static torque and is not supported is refused with its place;
+//! resolved as MuJoCo 4.0 resolves them. Parts that matter to quasi-static torque and are not supported are refused with their place;
 //! the rest is counted in [`ModelIr::ignored`].
 
 mod actuator;

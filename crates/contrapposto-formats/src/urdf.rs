@@ -1,7 +1,7 @@
 //! Reads URDF, a robot description's links and joints, as a [`ModelIr`].
 //!
 //! Links become segments, also those without mass; joints are walked depth first, children of a link by the name of their
-//! joint (the order that the reference parser and Pinocchio use). What does not matter at rest is counted in
+//! joint (the order that the reference parser and Pinocchio use). Parts that do not matter at rest are counted in
 //! [`ModelIr::ignored`].
 
 mod attributes;

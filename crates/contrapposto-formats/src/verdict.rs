@@ -14,14 +14,14 @@ pub struct VerdictText {
     pub kind: &'static str,
     /// The time of the run or motion, min; less than a file asks where its run settled or was interrupted before.
     pub asked_minutes: Option<f64>,
-    /// How long the job can be done, min, one that holds with the posture of its end held on; `null`: muscles set no limit, or it
-    /// cannot be done.
+    /// Time for which the job can be done, min, one that holds with the posture of its end held on; `null`: muscles set no limit, or
+    /// the job cannot be done.
     pub minutes: Option<f64>,
     /// Least and greatest time until `who` fails, min, over published laws of fatigue and two of three people; `null` in it: never.
     pub minutes_range: Option<[Option<f64>; 2]>,
     /// The muscle group that is too weak or fails first; where none does, the one with the greatest load.
     pub who: Option<String>,
-    /// Its active torque over strength.
+    /// Active torque of that group over its strength.
     pub load: Option<f64>,
     /// The group with the greatest load.
     pub hardest: Option<LoadText>,
@@ -48,7 +48,7 @@ pub struct VerdictText {
 pub struct HazardText {
     /// The coordinate.
     pub coordinate: String,
-    /// Its angle, deg.
+    /// Angle of the coordinate, deg.
     pub angle_deg: f64,
     /// Share of the external torque that passive tissue carries, 0 to 1.
     pub carried: f64,
@@ -93,16 +93,16 @@ pub struct PassedHazardText {
     /// The hazard at the moment when ligaments carried most.
     #[serde(flatten)]
     pub hazard: HazardText,
-    /// That moment, s.
+    /// Time of that moment, s.
     pub at_s: f64,
-    /// How long there was a hazard in all, s.
+    /// Time for which there was a hazard in all, s.
     pub seconds: f64,
 }
 
 /// A muscle group with its load.
 #[derive(Clone, Debug, Serialize)]
 pub struct LoadText {
-    /// Its name.
+    /// Name of the group.
     pub who: String,
     /// Active torque over strength.
     pub load: f64,
@@ -111,7 +111,7 @@ pub struct LoadText {
 /// A muscle group with its fatigue.
 #[derive(Clone, Debug, Serialize)]
 pub struct TiredText {
-    /// Its name.
+    /// Name of the group.
     pub who: String,
     /// Fatigue, 0 rested to 1 exhausted.
     pub fatigue: f64,
@@ -124,7 +124,7 @@ pub struct SuggestionText {
     pub change: String,
     /// The kind of verdict with it.
     pub kind: &'static str,
-    /// How long the job can be done with it, min, one that holds with the posture of its end held on; `null`: muscles set no limit.
+    /// Time for which the job can be done with the change, min, one that holds with the posture of its end held on; `null`: muscles set no limit.
     pub minutes: Option<f64>,
     /// Least of that time for two of three people, min; `null`: not known, or no limit.
     pub least_minutes: Option<f64>,
@@ -150,10 +150,10 @@ impl From<&Suggestion> for SuggestionText {
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct AdviceText {
-    /// Those that help, the one that helps most first.
+    /// Changes that help, the one that helps most first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub suggestions: Vec<SuggestionText>,
-    /// Those that were not tried because the budget of solver steps was used up, in words.
+    /// Changes that were not tried because the budget of solver steps was used up, in words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_tried: Vec<String>,
 }

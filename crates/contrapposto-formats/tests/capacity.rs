@@ -31,12 +31,12 @@ fn every_vertex_of_pycapacity_is_the_greatest_force_in_its_direction() {
             let found = capacity.in_direction(vertex);
             worst = worst.max((found.force - vertex.norm()).abs() / vertex.norm());
             vertices += 1;
-            for plane in &solid.reaches {
+            for plane in &solid.forces {
                 beyond = beyond.max((plane.normal.dot(vertex) - plane.force) / plane.force);
             }
         }
         // Each plane of ours touches a vertex of theirs, so that their polytope is not smaller either.
-        for plane in &solid.reaches {
+        for plane in &solid.forces {
             let most = theirs.iter().map(|vertex| plane.normal.dot(vertex)).fold(f64::NEG_INFINITY, f64::max);
             worst = worst.max((most - plane.force).abs() / plane.force);
         }

@@ -1,7 +1,7 @@
 //! Compares postures of least effort with those that SLSQP on Pinocchio's derivatives finds from the same start.
 //!
 //! `data/effort_peer.json`: every fifth target of the peer's two lists with its sums of squared active torques (tool and script
-//! are named in the file). Effort has many valleys, so on some targets the peer's is lower: at least so many must be no worse,
+//! are named in the file). Effort has many local minima, so on some targets the peer's is lower: at least so many must be no worse,
 //! and no hand may be off its target, no foot off its place, no root out of balance.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]

@@ -52,13 +52,13 @@ fn imbalance(model: &Model, sample: &Sample) -> f64 {
 /// Ready until the fifth second, then relaxed, in all of the body, a part of it, or one joint.
 #[test]
 fn a_strategy_that_changes_leads_elsewhere_from_then_on() {
-    for (wish, slouches) in [
+    for (change, slouches) in [
         ("strategy = \"passive\"", true),
         ("strategy_of = { legs = \"passive\" }", true),
         ("strategy_of = { hip_adduction_r = \"passive\" }", true),
         ("strategy_of = { arms = \"passive\", spine = \"passive\", hip_adduction_l = \"passive\" }", false),
     ] {
-        let text = with("stand-relaxed.toml", 15.0, &format!("[[event]]\nat_s = 5\n{wish}\n"));
+        let text = with("stand-relaxed.toml", 15.0, &format!("[[event]]\nat_s = 5\n{change}\n"));
         let scenario = scenario(&text.replace("kind = \"passive\"", "kind = \"active\""));
         let list = at(&scenario.model, "pelvis_list");
         let (mut before, mut after) = (0.0_f64, 0.0);
@@ -68,9 +68,9 @@ fn a_strategy_that_changes_leads_elsewhere_from_then_on() {
             }
             after = sample.posture[list].to_degrees();
         });
-        println!("{wish}: pelvis list {before:.1} deg at most before, {after:.1} deg at the end");
-        assert!(before < 10.0, "{wish}");
-        assert_eq!(after < -10.0, slouches, "{wish}");
+        println!("{change}: pelvis list {before:.1} deg at most before, {after:.1} deg at the end");
+        assert!(before < 10.0, "{change}");
+        assert_eq!(after < -10.0, slouches, "{change}");
     }
 }
 

@@ -337,7 +337,7 @@ fn count_of(i: usize) -> usize {
 
 #[test]
 fn scenarios_and_overlays_of_1_mib_need_at_most_64_mib_and_1_s() {
-    let told = |kind: &str, error: &dyn std::fmt::Display| println!("  {kind} refused: {error}");
+    let message = |kind: &str, error: &dyn std::fmt::Display| println!("  {kind} refused: {error}");
     let events =
         |i: usize| if i % 5 == 4 { "[run]\nduration_s = 2000\nstep_s = 1\n" } else { "[run]\nduration_s = 1\n" };
     let run = |i: usize| {
@@ -345,18 +345,20 @@ fn scenarios_and_overlays_of_1_mib_need_at_most_64_mib_and_1_s() {
         toml(i, &head, count_of(i), |k| tables_of_a_job(i, k))
     };
     is_modest("scenario", run, |bytes| {
-        read_scenario("s.toml", bytes, None).inspect_err(|error| told("scenario", error)).is_ok()
+        read_scenario("s.toml", bytes, None).inspect_err(|error| message("scenario", error)).is_ok()
     });
     let no_events = |i: usize| if i % 5 == 4 { 0 } else { i };
     let asked = "format = 1\n[[task]]\nkind = \"point\"\nsegment = \"hand_r\"\ntarget_m = [0.5, 0.2, 0.1]\n";
     let posed = |i: usize| toml(i, asked, count_of(no_events(i)), |k| tables_of_a_job(no_events(i), k));
-    is_modest("pose", posed, |bytes| read_pose("s.toml", bytes, None).inspect_err(|error| told("pose", error)).is_ok());
+    is_modest("pose", posed, |bytes| {
+        read_pose("s.toml", bytes, None).inspect_err(|error| message("pose", error)).is_ok()
+    });
     let relaxed = |i: usize| {
         let head = "format = 1\n[[support]]\nsegment = \"calcn_r\"\n[[support]]\nsegment = \"calcn_l\"\n";
         toml(i, head, count_of(no_events(i)) - 2, |k| tables_of_a_job(no_events(i), k))
     };
     is_modest("relax", relaxed, |bytes| {
-        read_relax("s.toml", bytes, None).inspect_err(|error| told("relax", error)).is_ok()
+        read_relax("s.toml", bytes, None).inspect_err(|error| message("relax", error)).is_ok()
     });
     let body = adult(&Adult::default()).unwrap();
     let laid = |i: usize| {
@@ -376,7 +378,7 @@ fn scenarios_and_overlays_of_1_mib_need_at_most_64_mib_and_1_s() {
         toml(i, &head, 0, |_| String::new())
     };
     is_modest("overlay", laid, |bytes| {
-        overlay("o.toml", bytes, body.clone()).inspect_err(|error| told("overlay", error)).is_ok()
+        overlay("o.toml", bytes, body.clone()).inspect_err(|error| message("overlay", error)).is_ok()
     });
 }
 

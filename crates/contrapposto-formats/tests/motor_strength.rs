@@ -149,7 +149,7 @@ fn strength_of_motors_survives_urdf_and_mjcf() {
     let written = write::urdf(&file.model).unwrap();
     assert_eq!(strength(&read("r.urdf", &written.text).model, "b"), Some([3.0, 3.0]));
     let lost = "Strength and fatigue of the muscle groups of 1 coordinates are not written.";
-    assert!(written.lost.iter().any(|told| told == lost), "{:?}", written.lost);
+    assert!(written.lost.iter().any(|message| message == lost), "{:?}", written.lost);
 }
 
 #[test]

@@ -35,9 +35,9 @@ fn numbers(text: &str) -> Vec<(usize, usize)> {
     found
 }
 
-/// Puts every odd number in every place. `read` gives what a text means, or the complaint; `sound`: is all finite that can be
-/// computed from it? What is not finite is refused with its line, or means nothing more than before; lines that hold one of
-/// `without_end` may say for ever.
+/// Puts every odd number in every place. `read` gives the contents of a text, or the message; `sound`: whether everything is finite
+/// that can be computed from the contents. A number that is not finite is refused with its line, or changes nothing; lines that hold
+/// one of `without_end` may say for ever.
 fn odd_in_every_place<T: Debug>(
     name: &str,
     text: &str,
@@ -55,21 +55,21 @@ fn odd_in_every_place<T: Debug>(
         for odd in ODD {
             let changed = format!("{}{odd}{}", &text[..from], &text[to..]);
             let line = changed.lines().nth(number).unwrap();
-            let told = || format!("{name}: {odd} for {} in line {}: {line}", &text[from..to], number + 1);
+            let message = || format!("{name}: {odd} for {} in line {}: {line}", &text[from..to], number + 1);
             let finite = !["nan", "inf", "-inf", "1e999"].contains(&odd);
             match read(&changed) {
                 Err(error) => {
                     refused += 1;
-                    assert!(finite || error.contains(&format!("line {}", number + 1)), "{}: {error}", told());
+                    assert!(finite || error.contains(&format!("line {}", number + 1)), "{}: {error}", message());
                 }
                 Ok(read) if finite => {
                     accepted += 1;
-                    assert!(sound(&read), "{}: something is not finite", told());
+                    assert!(sound(&read), "{}: something is not finite", message());
                 }
                 Ok(read) => {
                     past += 1;
                     let may = without_end.iter().any(|word| line.contains(word)) || format!("{read:?}") == meant;
-                    assert!(may && sound(&read), "{}: accepted", told());
+                    assert!(may && sound(&read), "{}: accepted", message());
                 }
             }
         }
@@ -113,7 +113,7 @@ fn sound(imported: &Imported) -> bool {
     computable(&imported.model) && !muscles.contains("NaN") && !muscles.contains("inf")
 }
 
-/// Ranges may be open; inertias that are not finite are told and left out, as OpenSim itself makes such files; wrap objects
+/// Ranges may be open; inertias that are not finite are listed and left out, as OpenSim itself makes such files; wrap objects
 /// and muscles are refused by name and counted.
 const OPENSIM_WITHOUT_END: &[&str] = &["<range>", "inertia", "<WrapCylinder", "<PathPoint", "max_isometric_force"];
 

@@ -35,16 +35,16 @@ fn mutated_overlays_never_panic() {
         panic!("{error:?}");
     }
     hammer_toml("overlay", 20_070_904, 5_000, &[FULL.to_owned()], |bytes| {
-        let told = || String::from_utf8_lossy(bytes).into_owned();
+        let message = || String::from_utf8_lossy(bytes).into_owned();
         match overlay("mutant.toml", bytes, model.clone()) {
             Ok(laid) => {
-                assert!(!laid.changes.is_empty() && sound(&laid.model), "{}", told());
+                assert!(!laid.changes.is_empty() && sound(&laid.model), "{}", message());
                 true
             }
             Err(error) => {
                 let mut text = String::new();
                 miette::NarratableReportHandler::new().render_report(&mut text, &error).unwrap();
-                assert!(text.contains("mutant.toml") && !text.contains('\u{1b}'), "{text:?}\n{}", told());
+                assert!(text.contains("mutant.toml") && !text.contains('\u{1b}'), "{text:?}\n{}", message());
                 false
             }
         }

@@ -487,7 +487,7 @@ fn a_simulation_is_no_pose() {
         );
     }
     assert!(complaint(&read(file).unwrap_err()).contains("the model file was not opened"));
-    // A pose takes the scenario of a run, and tells what it has no use for.
+    // A pose takes the scenario of a run, and lists the tables that it does not use.
     let scenario = good(&format!("[[task]]\nkind = \"posture\"\n{run}"));
     assert_eq!(scenario.unused, ["strategy", "run"]);
 }
@@ -544,20 +544,20 @@ fn mutated_poses_never_panic() {
     let mut texts = vec![format!("{HEAD}{FULL}")];
     texts.extend(published.map(|path| std::fs::read_to_string(path).unwrap()));
     hammer_toml("pose", 20_070_903, 3_000, &texts, |bytes| {
-        let told = || String::from_utf8_lossy(bytes).into_owned();
+        let message = || String::from_utf8_lossy(bytes).into_owned();
         match read_pose("mutant.toml", bytes, None) {
             Ok(scenario) => {
                 let options = Options { max_steps: 3, ..scenario.options };
                 let engine = Engine::new(&scenario.model, scenario.goals.clone(), &scenario.loads, options);
-                let mut engine = engine.unwrap_or_else(|error| panic!("{error}\n{}", told()));
+                let mut engine = engine.unwrap_or_else(|error| panic!("{error}\n{}", message()));
                 // Goals a galaxy away may be refused; no number may come out that is not finite.
                 if let Ok(pose) = engine.solve(&scenario.start) {
-                    assert!(pose.posture.values().iter().all(|value| value.is_finite()), "{}", told());
+                    assert!(pose.posture.values().iter().all(|value| value.is_finite()), "{}", message());
                 }
                 true
             }
             Err(error) => {
-                assert!(complaint(&error).contains("mutant.toml"), "{}", told());
+                assert!(complaint(&error).contains("mutant.toml"), "{}", message());
                 false
             }
         }

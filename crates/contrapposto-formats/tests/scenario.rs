@@ -121,7 +121,7 @@ step_s = 0.05
 "#;
 
 /// Runs at most a second of it, of a whole body at most four steps; every number of every sample must be finite, in memory and as written.
-fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
+fn assert_sound(mut scenario: Scenario, message: &dyn Fn() -> String) {
     scenario.run.duration = scenario.run.duration.min(1.0);
     let steps = if scenario.has_supports_or_tasks() { 4.0 } else { 40.0 };
     scenario.run.step = scenario.run.step.max(scenario.run.duration / steps);
@@ -136,14 +136,14 @@ fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
         assert_eq!(row.trim_end().split(',').count(), columns);
         for (at, cell) in row.trim_end().split(',').enumerate() {
             let number: f64 = if cell.is_empty() { 0.0 } else { cell.parse().unwrap() };
-            assert!(number.is_finite(), "column {at}: {cell}\n{}", told());
+            assert!(number.is_finite(), "column {at}: {cell}\n{}", message());
         }
-        assert!(sample.load.iter().all(|load| load.is_finite()), "load\n{}", told());
+        assert!(sample.load.iter().all(|load| load.is_finite()), "load\n{}", message());
         for (&value, coordinate) in sample.posture.iter().zip(scenario.model.coordinates()) {
-            assert!(value >= coordinate.range.0 && value <= coordinate.range.1, "{}\n{}", coordinate.name, told());
+            assert!(value >= coordinate.range.0 && value <= coordinate.range.1, "{}\n{}", coordinate.name, message());
         }
         for (&level, torques) in sample.fatigue.iter().flatten().zip(sample.active.iter().flat_map(|t| [t, t])) {
-            assert!((0.0..=1.0).contains(&level) && torques.is_finite(), "fatigue {level}\n{}", told());
+            assert!((0.0..=1.0).contains(&level) && torques.is_finite(), "fatigue {level}\n{}", message());
         }
     });
     // That a body cannot stand is found out by trying.
@@ -152,7 +152,7 @@ fn assert_sound(mut scenario: Scenario, told: &dyn Fn() -> String) {
     {
         return;
     }
-    let summary = summary.unwrap_or_else(|error| panic!("{error}\n{}", told()));
+    let summary = summary.unwrap_or_else(|error| panic!("{error}\n{}", message()));
     assert!(summary.end_time.is_finite() && summary.samples > 0);
 }
 
@@ -173,15 +173,15 @@ fn mutated_whole_bodies_never_panic() {
 
 fn hammer(name: &str, usual: usize, texts: &[String]) {
     hammer_toml(name, 20_070_902, usual, texts, |bytes| {
-        let told = || String::from_utf8_lossy(bytes).into_owned();
+        let message = || String::from_utf8_lossy(bytes).into_owned();
         match read_scenario("mutant.toml", bytes, None) {
             Ok(scenario) => {
-                assert_sound(scenario, &told);
+                assert_sound(scenario, &message);
                 true
             }
             Err(error) => {
                 let text = complaint(&error);
-                assert!(text.contains("mutant.toml"), "no place: {text}\n{}", told());
+                assert!(text.contains("mutant.toml"), "no place: {text}\n{}", message());
                 assert!(!text.contains('\u{1b}'), "{text:?}");
                 false
             }
@@ -203,20 +203,20 @@ fn odd_numbers(full: &str, expected: usize) {
     for &(from, to) in &places {
         for odd in ODD {
             let text = format!("{}{odd}{}", &full[..from], &full[to..]);
-            let told = || format!("{odd} for {} in\n{text}", &full[from..to]);
+            let message = || format!("{odd} for {} in\n{text}", &full[from..to]);
             match read_scenario("odd.toml", text.as_bytes(), None) {
                 Ok(scenario) => {
                     let finite = odd.parse::<f64>().map_or(true, f64::is_finite);
-                    assert!(finite, "accepted {}", told());
+                    assert!(finite, "accepted {}", message());
                     accepted += 1;
-                    assert_sound(scenario, &told);
+                    assert_sound(scenario, &message);
                 }
                 Err(error) => {
                     let text = complaint(&error);
                     let line = full[..from].matches('\n').count() + 1;
                     let near = text.contains(&format!("line {line}, column"))
                         || !matches!(odd, "nan" | "inf" | "-inf" | "1e999");
-                    assert!(near, "points elsewhere: {text}\n{}", told());
+                    assert!(near, "points elsewhere: {text}\n{}", message());
                     refused += 1;
                 }
             }
@@ -397,7 +397,7 @@ fn mistakes_are_refused_where_they_stand() {
         let changed = WHOLE.replacen(old, new, 1);
         let text = read_whole(&changed).map_or_else(|error| complaint(&error), |_| "accepted".to_owned());
         let text = text.replace(", columns ", ", column ");
-        // What is missing, and what two lines say together, is told a line away.
+        // Messages on missing keys, and on contradictions of two lines, name a neighbouring line.
         let line = WHOLE[..WHOLE.find(old).unwrap()].matches('\n').count() + 1;
         let here = |line: usize| text.contains(&format!("label at line {line}, {column}"));
         if !(line - 1..=line + 1).any(here) || !part.split('|').any(|part| text.contains(part)) {

@@ -245,9 +245,9 @@ fn a_heavy_tool_is_put_down_for_the_group_that_is_weakest_for_it() {
     assert_eq!(failed[0].1, weakest.unwrap().1);
 }
 
-/// A wish that leads over the edge of the feet: the body leans as far as they hold it, to the last digit, and is not refused.
+/// A target beyond the edge of the feet: the body leans as far as they hold it, to the last digit, and is not refused.
 #[test]
-fn who_would_lean_too_far_stands_at_the_edge() {
+fn a_target_beyond_the_feet_is_approached_as_far_as_they_hold_the_body() {
     for target in ["-1", "-0.3", "1"] {
         let scenario = scenario(&format!(
             "format = 1\n[model]\nadult = {{ sex = \"female\", stature_m = 1.65, mass_kg = 60 }}\n[[support]]\nsegment = \

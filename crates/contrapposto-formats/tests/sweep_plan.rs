@@ -19,7 +19,7 @@ rows_per_part = 7
 "#;
 
 /// Line, column, and message with help.
-fn told(error: &InputError) -> (usize, usize, String) {
+fn message(error: &InputError) -> (usize, usize, String) {
     let span = error.labels().into_iter().flatten().next().unwrap();
     let found = error.source_code().unwrap().read_span(span.inner(), 0, 0).unwrap();
     let help = error.help().map_or(String::new(), |help| help.to_string());
@@ -66,7 +66,7 @@ fn a_refused_plan_names_the_key_with_line_and_column_and_the_accepted_alternativ
     ] {
         let text = PLAN.replacen(from, to, 1);
         assert_ne!(text, PLAN, "{from}");
-        let error = told(&read_plan("plan.toml", text.as_bytes()).unwrap_err());
+        let error = message(&read_plan("plan.toml", text.as_bytes()).unwrap_err());
         assert_eq!((error.0, error.1), (line, column), "{to}: {}", error.2);
         assert!(error.2.contains(words), "{to}: {}", error.2);
     }
@@ -76,21 +76,21 @@ fn a_refused_plan_names_the_key_with_line_and_column_and_the_accepted_alternativ
 fn correlations_that_no_parameters_can_have_at_once_are_refused() {
     let text = "base = \"a.toml\"\ndesign = \"random\"\nrows = 2\n[parameters]\na = { range = [0, 1], correlate = { b = 0.9, c = 0.9 } }\n\
         b = { range = [0, 1], correlate = { c = -0.9 } }\nc = { range = [0, 1] }\n";
-    let error = told(&read_plan("plan.toml", text.as_bytes()).unwrap_err());
+    let error = message(&read_plan("plan.toml", text.as_bytes()).unwrap_err());
     assert!(error.0 == 6 && error.2.contains("not positive definite"), "{error:?}");
     assert!(read_plan("plan.toml", text.replace("-0.9", "0.9").as_bytes()).is_ok());
     let twice = text.replace("{ c = -0.9 }", "{ a = 0.1 }");
-    assert!(told(&read_plan("plan.toml", twice.as_bytes()).unwrap_err()).2.contains("correlated already"));
+    assert!(message(&read_plan("plan.toml", twice.as_bytes()).unwrap_err()).2.contains("correlated already"));
 }
 
 #[test]
 fn a_grid_has_as_many_rows_as_combinations() {
     let text = "base = \"a.toml\"\ndesign = \"grid\"\n[parameters]\na = { range = [0, 1], levels = 4 }\nb = { list = [1, 2, 3] }\n";
     assert_eq!(read_plan("plan.toml", text.as_bytes()).unwrap().rows, 12);
-    let error = told(&read_plan("plan.toml", format!("rows = 5\n{text}").as_bytes()).unwrap_err());
+    let error = message(&read_plan("plan.toml", format!("rows = 5\n{text}").as_bytes()).unwrap_err());
     assert!(error.0 == 1 && error.2.contains("the grid has 12 combinations"), "{error:?}");
     let huge = text.replace("levels = 4", "levels = 4000000");
-    assert!(told(&read_plan("plan.toml", huge.as_bytes()).unwrap_err()).2.contains("more than 10000000"));
+    assert!(message(&read_plan("plan.toml", huge.as_bytes()).unwrap_err()).2.contains("more than 10000000"));
 }
 
 const BASE: &str = "format = 1\ntitle = \"A\"\n[model]\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 73, part = \"right_arm\" } # a man\n\
@@ -137,7 +137,7 @@ fn paths_that_lead_nowhere_are_refused_and_misspelled_keys_are_refused_by_the_re
         ("load.0.at_m", 12, "`load.0.at_m.0` is its first entry"),
         ("load.0.at_m.3", 12, "there are 3 entries"),
     ] {
-        let error = told(&Template::new("a.toml", BASE.as_bytes(), [key]).unwrap_err());
+        let error = message(&Template::new("a.toml", BASE.as_bytes(), [key]).unwrap_err());
         assert!(error.0 == line && error.2.contains(words), "{error:?}");
     }
     for (key, words) in [
@@ -146,7 +146,7 @@ fn paths_that_lead_nowhere_are_refused_and_misspelled_keys_are_refused_by_the_re
         ("strength.spred", "did you mean `spread`?"),
     ] {
         let text = Template::new("a.toml", BASE.as_bytes(), [key]).unwrap().text(&[number(1.5)]);
-        let error = told(&read_run("a.toml", text.as_bytes(), None).unwrap_err());
+        let error = message(&read_run("a.toml", text.as_bytes(), None).unwrap_err());
         assert!(error.2.contains(words), "{error:?}");
     }
 }
@@ -182,19 +182,19 @@ fn spreads_beyond_people_are_refused_with_their_limits() {
         ("passive", "spread", "-1", "0.05..5"),
     ] {
         let text = format!("{BASE}\n[{table}]\n{key} = {value}\n");
-        let error = told(&read_run("a.toml", text.as_bytes(), None).unwrap_err());
+        let error = message(&read_run("a.toml", text.as_bytes(), None).unwrap_err());
         assert_eq!((error.0, error.1), (16, key.len() + 4), "{error:?}");
         assert!(error.2.contains(&format!("`{table}.{key}` is {value}; it must lie in {limits}")), "{error:?}");
     }
     let text = format!("{BASE}\n[passive]\nelbow_flx_r = {{ curve = \"elbow_neutral\" }}\n");
-    let error = told(&read_run("a.toml", text.as_bytes(), None).unwrap_err());
+    let error = message(&read_run("a.toml", text.as_bytes(), None).unwrap_err());
     assert!(error.0 == 16 && error.2.contains("did you mean `elbow_flex_r`?"), "{error:?}");
 }
 
 #[test]
 fn a_spread_of_strength_beside_the_strength_of_muscles_is_refused() {
     let text = "format = 1\n[model]\nfile = \"a.osim\"\nmuscles = \"strength\"\n[strength]\nspread = 2\n";
-    let error = told(&scenario_model("a.toml", text.as_bytes()).unwrap_err());
+    let error = message(&scenario_model("a.toml", text.as_bytes()).unwrap_err());
     assert!(error.0 == 5 && error.2.contains("not that of muscles; leave [strength] out"), "{error:?}");
     assert!(scenario_model("a.toml", text.replace("\"strength\"", "\"off\"").as_bytes()).is_ok());
 }

@@ -57,7 +57,7 @@ fn posture(model: &Model, rng: &mut Pcg64) -> Posture {
     Posture::new(model.coordinates().iter().map(value).collect())
 }
 
-/// Followers where their leaders ask for.
+/// Values of dependent coordinates, by their couplings.
 fn lead(body: &ModelIr, values: &mut [f64]) {
     // As often as a chain of followers can be long.
     for _ in &body.couplings {
@@ -162,7 +162,7 @@ fn screws(body: &ModelIr, model: &Model, frames: &[Isometry3<f64>], q: &[f64]) -
     body.segments.iter().map(joint).collect()
 }
 
-/// Sum over forces of Jacobian columns, what followers give folded into their leaders.
+/// Sum over forces of Jacobian columns, the torques of dependent coordinates folded into the independent ones.
 fn virtual_work(body: &ModelIr, model: &Model, q: &[f64], loads: &[Load]) -> Vec<f64> {
     let frames = frames(body, q);
     let screws = screws(body, model, &frames, q);

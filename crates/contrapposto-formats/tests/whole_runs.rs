@@ -14,7 +14,7 @@ use samples::{Worst, digest};
 #[path = "common/samples.rs"]
 mod samples;
 
-/// Tired muscles, a load, a new wish and a new target; taken up again between any of them.
+/// Tired muscles, a load, a new strategy and a new target; taken up again between any of them.
 const MUCH: &str = "[[event]]\nat_s = 10\nload = [{ segment = \"hand_r\", mass_kg = 6 }]\n\
     [[event]]\nat_s = 32\nstrategy = \"passive\"\n[[event]]\nat_s = 50\ntask = 1\ntarget_m = [0.35, 1.15, 0.1]\n\
     [[event]]\nat_s = 58\nstrategy_of = { spine = \"active\" }\nload = []\n\

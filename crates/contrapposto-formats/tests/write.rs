@@ -387,7 +387,7 @@ fn odd_names_and_what_programs_refuse() {
         "{:?}",
         written.lost
     );
-    // The comment that tells it stays one.
+    // The comment with the lost parts stays one comment.
     let arrow = build(vec![segment("s", None, JointKind::Hinge(axis(1.0, 0.0, 0.0)), named(&["a --> b"]))]);
     let written = write::osim(&arrow).unwrap();
     assert!(written.text.contains("<!-- Lost: The coordinate \"a \u{2010}\u{2010}> b\" is named"), "{}", written.text);

@@ -69,7 +69,7 @@ impl Study {
         bytes.map(|byte| format!("{byte:02x}")).collect()
     }
 
-    /// The text of a part, while `go_on` says yes; `None` where it says no. `done` is told of every row.
+    /// The text of a part, while `go_on` says yes; `None` where it says no. `done` is called after every row.
     pub fn part(&self, part: usize, go_on: impl Fn() -> bool, done: impl Fn()) -> Option<String> {
         let mut text = self.header();
         for row in self.plan().rows_of(part) {

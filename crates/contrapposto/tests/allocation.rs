@@ -207,8 +207,8 @@ fn goals(model: &Model, start: &posture::Posture, there: &posture::Posture) -> V
     ]
 }
 
-/// Steps from afresh, over and over, of which only the very first may allocate. What is left of the hand's error, and how far
-/// the body has moved.
+/// Steps from afresh, over and over, of which only the very first may allocate. Gives the rest of the hand's error, and the
+/// distance that the body has moved.
 fn steps(what: &str, model: &Model, goals: Vec<PriorityLevel>, steps: usize) -> (f64, f64) {
     let start = model.default_posture();
     let mut engine = Engine::new(model, goals, &loads(model), Options::inverse_kinematics()).unwrap();

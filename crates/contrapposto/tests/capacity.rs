@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
-use contrapposto::capacity::{Capacity, Demand, Limiter, People, Reach, Situation, Solid, Station, directions};
+use contrapposto::capacity::{Capacity, Demand, GreatestForce, Limiter, People, Situation, Solid, Station, directions};
 use contrapposto::contact::{ContactForces, FACES, Place, Support, root_rates};
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::joint_torques::{JointTorques, Quantities};
@@ -216,9 +216,9 @@ fn arms_with_a_fixed_shoulder_exert_what_their_weakest_joint_allows() {
 }
 
 /// Checks a force by the statics: greatest excess of a strength (as a share), of friction and of pull (N), and what the root lacks.
-fn excess(body: &Body, reach: &Reach) -> [f64; 4] {
-    let mut loads = body.pushed(reach.force * reach.direction);
-    let mut forces = reach.contact.iter();
+fn excess(body: &Body, greatest: &GreatestForce) -> [f64; 4] {
+    let mut loads = body.pushed(greatest.force * greatest.direction);
+    let mut forces = greatest.contact.iter();
     let (mut friction, mut pull) = (0f64, 0f64);
     for support in &body.supports {
         for &point in &support.corners {
@@ -244,15 +244,15 @@ fn every_force_of_a_standing_adult_is_held_by_the_statics_and_none_is_beyond_a_p
     for friction in [0.6, 0.2, 0.0] {
         let body = Body::standing(friction, "hand_r");
         let solid = body.solid();
-        assert_eq!(solid.reaches.len(), 642);
+        assert_eq!(solid.forces.len(), 642);
         let mut worst = [0f64; 5];
-        let found = || solid.reaches.iter().chain([&solid.weakest, &solid.strongest]);
-        for reach in found() {
-            for (worst, excess) in worst.iter_mut().zip(excess(&body, reach)) {
+        let found = || solid.forces.iter().chain([&solid.weakest, &solid.strongest]);
+        for greatest in found() {
+            for (worst, excess) in worst.iter_mut().zip(excess(&body, greatest)) {
                 *worst = worst.max(excess);
             }
-            worst[4] = worst[4].max(reach.gap.abs());
-            assert!((reach.normal.dot(&reach.direction) - 1.0).abs() < 1e-9);
+            worst[4] = worst[4].max(greatest.gap.abs());
+            assert!((greatest.normal.dot(&greatest.direction) - 1.0).abs() < 1e-9);
         }
         println!(
             "friction {friction}: strength {:.1e}, friction {:.1e} N, pull {:.1e} N, root {:.1e} N, gap {:.1e}",
@@ -261,15 +261,15 @@ fn every_force_of_a_standing_adult_is_held_by_the_statics_and_none_is_beyond_a_p
         assert!(worst[0] < 1e-9 && worst[1..4].iter().all(|excess| *excess < 1e-6) && worst[4] < 1e-9, "{worst:?}");
         // Convex: no force is beyond the plane of another one. Each plane proves that 1e-6 more cannot be exerted.
         let beyond = found().flat_map(|plane| {
-            found().map(|reach| {
-                plane.normal.dot(&reach.direction) * reach.force / plane.force.max(1e-3)
+            found().map(|greatest| {
+                plane.normal.dot(&greatest.direction) * greatest.force / plane.force.max(1e-3)
                     - plane.force / plane.force.max(1e-3)
             })
         });
         let most = beyond.fold(f64::NEG_INFINITY, f64::max);
         assert!(most < 1e-8, "{most:e}");
-        assert!(found().all(|reach| reach.force >= solid.weakest.force * (1.0 - 1e-12)));
-        assert!(found().all(|reach| reach.force <= solid.strongest.force));
+        assert!(found().all(|greatest| greatest.force >= solid.weakest.force * (1.0 - 1e-12)));
+        assert!(found().all(|greatest| greatest.force <= solid.strongest.force));
     }
 }
 
@@ -378,15 +378,15 @@ fn a_symmetric_body_has_mirror_images_of_forces_at_both_hands() {
     let [right, left] = ["hand_r", "hand_l"].map(|hand| Body::standing(0.6, hand).solid());
     let key = |v: &V| [v.x, v.y, v.z].map(|x| (x * 1e9).round() as i64);
     let of_left: BTreeMap<[i64; 3], f64> =
-        left.reaches.iter().map(|reach| (key(&reach.direction), reach.force)).collect();
-    for reach in &right.reaches {
-        let mirrored = V::new(reach.direction.x, reach.direction.y, -reach.direction.z);
+        left.forces.iter().map(|greatest| (key(&greatest.direction), greatest.force)).collect();
+    for greatest in &right.forces {
+        let mirrored = V::new(greatest.direction.x, greatest.direction.y, -greatest.direction.z);
         let force = of_left[&key(&mirrored)];
         assert!(
-            (force - reach.force).abs() < 1e-8 * reach.force.max(1.0),
+            (force - greatest.force).abs() < 1e-8 * greatest.force.max(1.0),
             "{:?}: {force} {}",
-            reach.direction,
-            reach.force
+            greatest.direction,
+            greatest.force
         );
     }
     assert!((right.weakest.force - left.weakest.force).abs() < 1e-6 * left.weakest.force);
@@ -397,8 +397,8 @@ fn shares_of_limits_are_relative_derivatives() {
     let body = Body::standing(0.4, "hand_r");
     let step = 1e-6;
     let (mut compared, mut kinds) = (0, [0; 3]);
-    for reach in body.solid().reaches.iter().step_by(5) {
-        for limit in &reach.limits {
+    for greatest in body.solid().forces.iter().step_by(5) {
+        for limit in &greatest.limits {
             let with = |by: f64| {
                 let mut other = body.clone();
                 match limit.by {
@@ -415,12 +415,12 @@ fn shares_of_limits_are_relative_derivatives() {
                         }
                     }
                 }
-                other.capacity().in_direction(&reach.direction).force
+                other.capacity().in_direction(&greatest.direction).force
             };
-            let [more, less] = [with(step), with(-step)].map(|force| (force - reach.force) / reach.force / step);
+            let [more, less] = [with(step), with(-step)].map(|force| (force - greatest.force) / greatest.force / step);
             // On both sides of a corner of the program the derivative differs: the share lies between.
             let between = limit.share >= more.min(-less) - 1e-4 && limit.share <= more.max(-less) + 1e-4;
-            assert!(between, "{:?} {:?}: {more} {}", reach.direction, limit, -less);
+            assert!(between, "{:?} {:?}: {more} {}", greatest.direction, limit, -less);
             compared += 1;
             kinds[match limit.by {
                 Limiter::Strength { .. } => 0,

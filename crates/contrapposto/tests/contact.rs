@@ -104,7 +104,7 @@ fn near_standing(rng: &mut Pcg64, model: &Model) -> Posture {
 #[test]
 fn forces_hold_the_root_push_and_stay_inside_friction_and_patch() {
     let mut rng = random("forces");
-    let (mut held, mut worst, mut wished) = (0, 0f64, 0);
+    let (mut held, mut worst, mut kept) = (0, 0f64, 0);
     let mut without = JointTorques::new(&Stand::adult(0.6, 1.0).model);
     for round in 0..4 {
         let (friction, share_max) = [(0.6, 1.0), (0.3, 0.4), (f64::INFINITY, 1.0), (0.8, 0.15)][round];
@@ -148,14 +148,14 @@ fn forces_hold_the_root_push_and_stay_inside_friction_and_patch() {
             assert!((total - (weight + lifted) / weight).abs() < 1e-8, "all weight is carried: {total}");
             if share_max < 1.0 {
                 let least = Oracle::of(&stand).least_share(1);
-                let wish = share_max.max(least);
-                wished += usize::from(least <= share_max);
-                assert!(share <= wish + 2e-6, "share {share}, least {least}, wish {share_max}");
+                let most = share_max.max(least);
+                kept += usize::from(least <= share_max);
+                assert!(share <= most + 2e-6, "share {share}, least {least}, greatest {share_max}");
             }
         }
     }
-    println!("{held} postures held of 600, root off by {worst:.1e} at most; the wish could be kept in {wished}");
-    assert!(held > 200 && wished > 20);
+    println!("{held} postures held of 600, root off by {worst:.1e} at most; the greatest share was kept in {kept}");
+    assert!(held > 200 && kept > 20);
     assert!(worst < 1e-8, "{worst}");
 }
 

@@ -187,7 +187,7 @@ fn the_other_leg_gives_the_mirror_image() {
     assert_eq!(a.postures.len(), b.postures.len());
     for (rank, (a, b)) in a.postures.iter().zip(&b.postures).enumerate() {
         let image = mirror.posture(&a.relaxed.posture);
-        // Forearms weigh on no muscle however they are turned: of arms only what muscles feel is compared.
+        // Forearms weigh on no muscle however they are turned: of arms only joints whose muscles carry weight are compared.
         let body = |name: &str| {
             ["hip", "knee", "ankle", "subtalar", "lumbar", "thoracic", "neck", "pelvis"]
                 .iter()
@@ -332,7 +332,7 @@ fn a_body_with_one_leg_longer_has_no_mirror_image() {
     assert!((mirror.vector(hand) - both[1].placement(&model, left).translation.vector).norm() < 1e-12);
 }
 
-/// On a fixed pelvis, the other arm locked straight ahead, which its muscles feel: what may not move is left out while valleys are looked for, and the
+/// On a fixed pelvis, the other arm locked straight ahead, which loads its muscles: joints that may not move are left out while local minima are sought, and the
 /// answer is one that steps on the whole body have nothing to gain from, no worse than theirs.
 #[test]
 fn what_may_not_move_is_left_out_without_loss() {
@@ -366,7 +366,7 @@ fn what_may_not_move_is_left_out_without_loss() {
 }
 
 /// A free body that nothing holds is not brought to rest by turning it over, a stiff joint that counts as no effort or not:
-/// looking for valleys changes nothing.
+/// the search for local minima changes nothing.
 #[test]
 fn a_free_root_without_supports_stays() {
     let standing = Standing::new(None, None);

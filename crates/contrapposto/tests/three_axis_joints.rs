@@ -1,4 +1,4 @@
-//! Tests joints of three hinges: nothing that muscles feel depends on the angles that describe an orientation. Seeded;
+//! Tests joints of three hinges: no load of muscles depends on the angles that describe an orientation. Seeded;
 //! `CONTRAPPOSTO_SEED` chooses another seed.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]

@@ -59,7 +59,8 @@ impl IdentityLevel {
         }
     }
 
-    /// Minimises level `k`, the last one, if it is of this kind.
+    /// Minimises level `k`, the last one, by an active-set method, if all its rows are equations for single unknowns with one weight. After
+    /// [`Outcome::NotApplicable`] the general solver goes on from the iterate and the working set.
     pub(crate) fn solve(&mut self, problem: &Problem, set: &mut ActiveSet, k: usize) -> Outcome {
         if !self.recognise(problem, set, k) {
             return Outcome::NotApplicable;

@@ -96,8 +96,16 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let advice = advice(&whole, &found, &verdict, args.suggest);
     let answer = Answer::new(verdict, advice);
     let page = assessed_frames.map(|assessed_frames| {
-        let manner = said.as_deref();
-        report_of_assessment(&title, &assessed_frames, (&found, manner), &answer, &settings.supports, &held, &warnings)
+        let dynamics = said.as_deref();
+        report_of_assessment(
+            &title,
+            &assessed_frames,
+            (&found, dynamics),
+            &answer,
+            &settings.supports,
+            &held,
+            &warnings,
+        )
     });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };

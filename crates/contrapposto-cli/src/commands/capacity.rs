@@ -130,7 +130,7 @@ fn text(
     // The posture is said first where it is not the one that was asked for, or costs more than its muscles have at least effort.
     text.sentence = if verdict.kind.is_done() { found } else { format!("{} {found}", verdict.sentence) };
     text.main = forces.main(model);
-    text.directions = solid.reaches.iter().map(|reach| forces.text(model, reach)).collect();
+    text.directions = solid.forces.iter().map(|greatest| forces.text(model, greatest)).collect();
     text.faces = solid.faces;
     (text.weakest, text.strongest) = (Some(weakest), Some(strongest));
     text

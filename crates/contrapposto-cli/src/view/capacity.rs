@@ -1,6 +1,6 @@
 //! The greatest forces at a point of a body, of the mean person and of weaker and stronger ones, with their words.
 
-use contrapposto::capacity::{Capacity, CapacityError, Demand, People, Reach, Situation, Solid, Station};
+use contrapposto::capacity::{Capacity, CapacityError, Demand, GreatestForce, People, Situation, Solid, Station};
 use contrapposto::model::Model;
 use contrapposto_formats::ForceText;
 use nalgebra::Vector3;
@@ -51,11 +51,11 @@ impl Forces {
     }
 
     /// The force in a direction of ground.
-    pub(crate) fn text(&mut self, model: &Model, reach: &Reach) -> ForceText {
+    pub(crate) fn text(&mut self, model: &Model, greatest: &GreatestForce) -> ForceText {
         let others = [1, 2].map(|who: usize| {
-            self.programs[who].as_mut().map_or(0.0, |program| program.in_direction(&reach.direction).force)
+            self.programs[who].as_mut().map_or(0.0, |program| program.in_direction(&greatest.direction).force)
         });
-        ForceText::new(model, reach, toward(model, &reach.direction), others)
+        ForceText::new(model, greatest, toward(model, &greatest.direction), others)
     }
 
     /// Forward, back, up, down, left and right.
@@ -63,11 +63,11 @@ impl Forces {
         let [right, ahead, up] = directions(model);
         let named = [ahead, -ahead, up, -up, -right, right];
         let found = named.map(|direction| self.in_direction(&direction));
-        found.into_iter().flatten().map(|reach| self.text(model, &reach)).collect()
+        found.into_iter().flatten().map(|greatest| self.text(model, &greatest)).collect()
     }
 
     /// The mean person's greatest force in a direction of ground.
-    pub(crate) fn in_direction(&mut self, direction: &Vector3<f64>) -> Option<Reach> {
+    pub(crate) fn in_direction(&mut self, direction: &Vector3<f64>) -> Option<GreatestForce> {
         self.programs[0].as_mut().map(|program| program.in_direction(direction))
     }
 }

@@ -59,13 +59,14 @@ impl<'a> Scene<'a> {
         let centers: Vec<[f64; 3]> = standing.map(|standing| turn.point(standing.center_of_mass)).collect();
         // Postures that differ bend the curves of coupled laws each in its own way.
         let last = self.frames.last().into_iter().collect();
-        let bent: Vec<&Frame> = if matches!(moments, Moments::Times(_)) { last } else { self.frames.iter().collect() };
+        let balanced: Vec<&Frame> =
+            if matches!(moments, Moments::Times(_)) { last } else { self.frames.iter().collect() };
         Ok(Report {
             title: self.title.to_owned(),
             body: model.name().to_owned(),
             moments,
             segments: self.segments(&shown, &turn)?,
-            joints: shown.iter().map(|&i| self.joint(i, &bent)).collect::<Result<_, _>>()?,
+            joints: shown.iter().map(|&i| self.joint(i, &balanced)).collect::<Result<_, _>>()?,
             main: shown.iter().position(|&i| i == main).unwrap_or(0),
             supports: self.supports(&turn),
             ground: surroundings.ground,
@@ -162,7 +163,7 @@ impl<'a> Scene<'a> {
         self.names_of_supports().into_iter().enumerate().map(support).collect()
     }
 
-    fn joint(&self, i: usize, bent: &[&Frame]) -> Result<Joint, Fail> {
+    fn joint(&self, i: usize, balanced: &[&Frame]) -> Result<Joint, Fail> {
         let coordinate = &self.model.coordinates()[i];
         let over = |value: &dyn Fn(&Frame) -> f64| self.frames.iter().map(value).collect::<Vec<f64>>();
         let about_axis = self.model.three_axis_joint_of(i).is_some();
@@ -190,7 +191,10 @@ impl<'a> Scene<'a> {
             passive: over(&|frame| frame.passive[i]),
             load: over(&|frame| frame.load[i]),
             hazard: self.hazard(i),
-            balance: bent.iter().filter_map(|frame| self.balance(i, frame).transpose()).collect::<Result<_, _>>()?,
+            balance: balanced
+                .iter()
+                .filter_map(|frame| self.balance(i, frame).transpose())
+                .collect::<Result<_, _>>()?,
         })
     }
 

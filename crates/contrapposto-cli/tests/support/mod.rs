@@ -125,7 +125,7 @@ pub fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&answer.stdout).unwrap_or_else(|error| panic!("{error}: {}", answer.stdout))
 }
 
-/// Runs it, expects exit code 2 and nothing on standard output; what it told, on one line.
+/// Runs it, expects exit code 2 and nothing on standard output; the message on standard error, on one line.
 pub fn refused(arguments: &[&str]) -> String {
     let answer = run(arguments);
     assert_eq!(answer.code, 2, "{arguments:?}: {}{}", answer.stdout, answer.stderr);

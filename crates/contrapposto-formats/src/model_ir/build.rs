@@ -97,11 +97,11 @@ pub(crate) fn compose_couplings(couplings: &mut [Coupling], coordinates: usize) 
         }
         for index in path.into_iter().rev() {
             if !std::mem::replace(&mut done[index], true)
-                && let Some(leader) = of[couplings[index].independent]
+                && let Some(next) = of[couplings[index].independent]
             {
-                let inner = couplings[leader].function.clone();
+                let inner = couplings[next].function.clone();
                 couplings[index].function = compose(&couplings[index].function, &inner).ok_or(index)?;
-                couplings[index].independent = couplings[leader].independent;
+                couplings[index].independent = couplings[next].independent;
             }
         }
     }

@@ -13,7 +13,7 @@ const DEFAULT_RANGE: (f64, f64) = (-10.0, 10.0);
 
 /// Properties of a coordinate that its forces need.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Manner {
+pub(super) struct CoordinateTraits {
     /// OpenSim calls it rotational: limit forces are in degrees.
     pub(super) degrees: bool,
     /// A rotation of a ball or free joint.
@@ -24,7 +24,7 @@ pub(super) struct Manner {
 #[derive(Default)]
 pub(super) struct Coordinates {
     list: Vec<CoordinateIr>,
-    manners: Vec<Manner>,
+    traits: Vec<CoordinateTraits>,
     by_name: HashMap<String, usize>,
     by_path: HashMap<String, usize>,
 }
@@ -38,8 +38,8 @@ impl Coordinates {
         &self.list
     }
 
-    pub(super) fn manner(&self, index: usize) -> Manner {
-        self.manners[index]
+    pub(super) fn traits(&self, index: usize) -> CoordinateTraits {
+        self.traits[index]
     }
 
     /// Takes in a coordinate. A name that is taken becomes `joint/name`.
@@ -49,7 +49,7 @@ impl Coordinates {
         place: Place,
         joint: &str,
         mut coordinate: CoordinateIr,
-        manner: Manner,
+        traits: CoordinateTraits,
     ) -> Result<usize, OsimProblem> {
         let index = self.list.len();
         if index == reader.limits.coordinates {
@@ -63,7 +63,7 @@ impl Coordinates {
             return Err(OsimProblem::Twice { place, what: "coordinate", name: coordinate.name });
         }
         self.list.push(coordinate);
-        self.manners.push(manner);
+        self.traits.push(traits);
         Ok(index)
     }
 

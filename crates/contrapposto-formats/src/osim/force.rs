@@ -56,21 +56,21 @@ pub(super) fn read<'a>(
 }
 
 fn coupling<'a>(reader: &Reader<'a>, node: Node<'a>, coordinates: &Coordinates) -> Result<Coupling, OsimProblem> {
-    let (leaders, leader_node) = reader.required_text(node, "independent_coordinate_names")?;
-    let mut leaders = leaders.split_ascii_whitespace();
-    let (Some(leader), None) = (leaders.next(), leaders.next()) else {
+    let (names, node_of_names) = reader.required_text(node, "independent_coordinate_names")?;
+    let mut names = names.split_ascii_whitespace();
+    let (Some(independent), None) = (names.next(), names.next()) else {
         let what = "a coupling to several coordinates";
-        return Err(OsimProblem::unsupported(leader_node.place(), what, "one independent coordinate"));
+        return Err(OsimProblem::unsupported(node_of_names.place(), what, "one independent coordinate"));
     };
-    let (follower, follower_node) = reader.required_text(node, "dependent_coordinate_name")?;
+    let (dependent, node_of_dependent) = reader.required_text(node, "dependent_coordinate_name")?;
     let Some(function) = reader.object(node, "coupled_coordinates_function", functions::is_function) else {
         let what = "<coupled_coordinates_function>".to_owned();
         return Err(OsimProblem::Missing { place: node.place(), what });
     };
     let scale = reader.number(node, "scale_factor", Some(1.0))?;
     Ok(Coupling {
-        dependent: coordinates.find(&follower, follower_node)?,
-        independent: coordinates.find(leader, leader_node)?,
+        dependent: coordinates.find(&dependent, node_of_dependent)?,
+        independent: coordinates.find(independent, node_of_names)?,
         function: functions::read(reader, function)?.scaled(scale),
     })
 }
@@ -113,12 +113,12 @@ fn passive<'a>(reader: &Reader<'a>, node: Node<'a>, coordinates: &Coordinates) -
     let property = if node.child("socket_coordinate").is_some() { "socket_coordinate" } else { "coordinate" };
     let (name, name_node) = reader.required_text(node, property)?;
     let coordinate = coordinates.find(&name, name_node)?;
-    let manner = coordinates.manner(coordinate);
-    if manner.of_ball {
+    let traits = coordinates.traits(coordinate);
+    if traits.of_ball {
         let accepted = "coordinates of other joints (OpenSim applies it about an axis of the parent, which is not that of the angle)";
         return Err(OsimProblem::unsupported(node.place(), "a force on a rotation of a ball or free joint", accepted));
     }
-    Ok(PassiveIr { name: reader.name(node)?, coordinate, law: read_law(reader, node, manner.degrees)? })
+    Ok(PassiveIr { name: reader.name(node)?, coordinate, law: read_law(reader, node, traits.degrees)? })
 }
 
 /// Degrees for a coordinate that OpenSim calls rotational, rad or m for the others.

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use nalgebra::Vector3;
 
 use super::attributes::{Reader, objects};
-use super::coordinates::{self, Coordinates, Manner};
+use super::coordinates::{self, CoordinateTraits, Coordinates};
 use super::error::OsimProblem;
 use super::functions;
 use super::sets::SceneJoint;
@@ -77,9 +77,9 @@ pub(super) fn motions<'a>(
             Some(&coordinate) => coordinates::read(reader, coordinate, kind)?,
             None => coordinates::unwritten(format!("{}_coord_{i}", joint.name), kind),
         };
-        let manner = Manner { degrees: kind == Rotation, of_ball: ball && kind == Rotation };
+        let traits = CoordinateTraits { degrees: kind == Rotation, of_ball: ball && kind == Rotation };
         let place = declared.get(i).unwrap_or(&node).place();
-        driven.push(((kind, axis), all.add(reader, place, &joint.name, coordinate, manner)?));
+        driven.push(((kind, axis), all.add(reader, place, &joint.name, coordinate, traits)?));
     }
     Ok(slides_first(&driven))
 }
@@ -103,8 +103,8 @@ pub(super) fn free<'a>(
     let mut driven = Vec::new();
     for (i, &(kind, axis)) in FREE.iter().enumerate() {
         let coordinate = coordinates::unwritten(format!("{joint}_coord_{i}"), kind);
-        let manner = Manner { degrees: kind == Rotation, of_ball: kind == Rotation };
-        driven.push(((kind, axis), all.add(reader, node.place(), &joint, coordinate, manner)?));
+        let traits = CoordinateTraits { degrees: kind == Rotation, of_ball: kind == Rotation };
+        driven.push(((kind, axis), all.add(reader, node.place(), &joint, coordinate, traits)?));
     }
     Ok((joint, slides_first(&driven)))
 }
@@ -191,8 +191,8 @@ fn custom<'a>(
             numbers.push(None);
             continue;
         }
-        let manner = Manner { degrees: plain[i] == Some(Rotation), of_ball: false };
-        numbers.push(Some(all.add(reader, coordinate.place(), &joint.name, read, manner)?));
+        let traits = CoordinateTraits { degrees: plain[i] == Some(Rotation), of_ball: false };
+        numbers.push(Some(all.add(reader, coordinate.place(), &joint.name, read, traits)?));
     }
     let drive = |function: Function, coordinate: Option<usize>| match (coordinate.and_then(|i| numbers[i]), function) {
         (_, Function::Constant(value)) => Drive::Fixed(value),

@@ -1,7 +1,7 @@
 //! Lays the patches of supports flat on their surfaces before the start.
 //!
-//! A common distance of all feet from the floor is a move of the whole body. What is left of distance and angle is taken out by inverse
-//! kinematics: patches on their planes first, then the middle of each patch above the same place of its plane, then all coordinates
+//! A common distance of all feet from the floor is a move of the whole body. Inverse kinematics takes out the rest of distances and
+//! angles: patches on their planes first, then the middle of each patch above the same place of its plane, then all coordinates
 //! as near to the start as that allows. Soft patches (pelvis, trunk, thighs) take the shape of their surface instead of turning.
 //! Distances and angles beyond the limits below are refused: nobody can say where the patch was meant to be.
 
@@ -38,7 +38,7 @@ const STEEPEST_SOFT: f64 = std::f64::consts::FRAC_PI_3;
 /// Segments of palms.
 const PALMS: [&str; 2] = ["hand_r", "hand_l"];
 
-/// Lays all patches flat, and returns the supports. `free`: one flag a rate; other rates stay. What was moved goes to `notes`.
+/// Lays all patches flat, and returns the supports. `free`: one flag a rate; other rates stay. Sentences on moved patches go to `notes`.
 pub(super) fn lay_flat(
     at: &Located,
     model: &Model,

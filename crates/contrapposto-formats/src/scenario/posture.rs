@@ -26,9 +26,9 @@ pub(super) fn set(
         let path: Vec<&str> = path.iter().copied().chain([key.as_str()]).collect();
         let (index, value) = posture_value(at, model, &path, value)?;
         if let Some(coupling) = model.couplings().iter().find(|coupling| coupling.dependent == index) {
-            let leader = &model.coordinates()[coupling.independent].name;
-            let message = format!("`{}` follows `{leader}`", model.coordinates()[index].name);
-            return Err(at.key_error(&path, message, Some(format!("set `{leader}` and leave this out"))));
+            let independent = &model.coordinates()[coupling.independent].name;
+            let message = format!("`{}` follows `{independent}`", model.coordinates()[index].name);
+            return Err(at.key_error(&path, message, Some(format!("set `{independent}` and leave this out"))));
         }
         if let Some(first) = ball(model, index) {
             quaternions.push((first, key));

@@ -32,7 +32,7 @@ pub(crate) struct ScenarioText {
     /// Strength of the person beside the mean of people of that sex and size.
     #[serde(default)]
     pub(crate) strength: StrengthText,
-    /// Start: `NAME_deg` for rotations, `NAME_m` for slides, bare names for quaternions. What is not named is at its default.
+    /// Start: `NAME_deg` for rotations, `NAME_m` for slides, bare names for quaternions. Other coordinates are at their defaults.
     #[serde(default)]
     pub(crate) posture: BTreeMap<String, f64>,
     /// Start as a result has it, over `[posture]`: the `coordinates` of `pose.json`, rad or m. `--start-from pose.json` gives it.

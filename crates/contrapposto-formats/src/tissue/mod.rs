@@ -184,8 +184,8 @@ impl SourcedModel {
         let twin = adult(&size)?;
         let said = person.said(&self.model, &size);
         let count = self.notes.len();
-        let manner = (self.format, false);
-        self.model = fill::fill(self.model, manner, &size, &twin, &mut self.origins, &mut self.notes);
+        let format = (self.format, false);
+        self.model = fill::fill(self.model, format, &size, &twin, &mut self.origins, &mut self.notes);
         let filled = |origins: &Origins| [origins.passive, origins.strength].contains(&Origin::Library);
         if self.origins.iter().any(filled) {
             self.notes.insert(count, said);

@@ -2,7 +2,7 @@
 //!
 //! Readers compute: degrees become radians, angles a quaternion, a vector one of unit length. Each search here tries the
 //! obvious number, its short decimal forms and its neighbours, and takes the first that the reader's own arithmetic turns into
-//! the wanted bits. What came from a file has such a number; where there is none the nearest one is taken, which differs by
+//! the wanted bits. Values that came from a file have such a number; where there is none the nearest one is taken, which differs by
 //! rounding only.
 
 use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};

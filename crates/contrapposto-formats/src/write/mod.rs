@@ -2,7 +2,7 @@
 //!
 //! Each writer gives the text and, in plain sentences, what the format cannot hold. Numbers stand in the shortest form that
 //! reads back as the same bits; orientations are chosen so that our readers find the same quaternion where there is one such
-//! choice (`exact.rs`). What is lost stands at the head of the file too. The same model always gives the same text.
+//! choice (`exact.rs`). The list of lost parts stands at the head of the file, too. The same model always gives the same text.
 //!
 //! Coordinates keep their names and values everywhere, except balls in `.osim` files, which become three angles. External
 //! torque is what the programs call generalised gravity, with the other sign.

@@ -227,8 +227,8 @@ impl<'m> Writer<'m> {
         let Some(coupling) = self.model.couplings().iter().find(|coupling| coupling.dependent == c) else { return };
         if let Some((slope, intercept)) = linear(&coupling.function) {
             let (multiplier, offset) = (number(slope), number(intercept));
-            let leader = self.coordinates[coupling.independent].clone();
-            self.xml.leaf("mimic", &[("joint", &leader), ("multiplier", &multiplier), ("offset", &offset)]);
+            let independent = self.coordinates[coupling.independent].clone();
+            self.xml.leaf("mimic", &[("joint", &independent), ("multiplier", &multiplier), ("offset", &offset)]);
         }
     }
 

@@ -147,7 +147,7 @@ impl Peer {
     pub fn reachable(&self, rng: &mut Pcg64) -> (Vector3<f64>, Posture) {
         let mut kinematics = Kinematics::new(&self.model);
         loop {
-            let mut wish = self.rest.clone();
+            let mut wanted = self.rest.clone();
             for (i, coordinate) in self.model.coordinates().iter().enumerate() {
                 let (name, (lower, upper)) = (coordinate.name.as_str(), coordinate.range);
                 let named = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
@@ -160,18 +160,18 @@ impl Peer {
                 } else {
                     continue;
                 };
-                wish.values_mut()[i] = lower + (upper - lower) * rng.random::<f64>();
+                wanted.values_mut()[i] = lower + (upper - lower) * rng.random::<f64>();
             }
-            // Feet and centre of mass as asked, and everything else as near to the wish as that allows.
+            // Feet and centre of mass as asked, and everything else as near to the wanted posture as that allows.
             let mut goals = self.goals(Vector3::zeros());
             goals.drain(2..4);
             let Some([Task::Posture(tasks::Posture { target, .. })]) = goals.last_mut().map(|goal| &mut goal.tasks[..])
             else {
                 panic!("the last goal is a posture");
             };
-            target.clone_from(&wish);
+            target.clone_from(&wanted);
             let pose =
-                Engine::new(&self.model, goals, &[], Options::inverse_kinematics()).unwrap().solve(&wish).unwrap();
+                Engine::new(&self.model, goals, &[], Options::inverse_kinematics()).unwrap().solve(&wanted).unwrap();
             if pose.levels[..2].iter().all(|level| level.length < 1e-9) && self.excess(&pose.posture) == 0.0 {
                 kinematics.update(&self.model, &pose.posture).unwrap();
                 return (kinematics.station(&self.model, self.hand(), Vector3::zeros()), pose.posture);

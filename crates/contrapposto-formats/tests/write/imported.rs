@@ -54,7 +54,7 @@ fn skeleton(model: &Model) -> (String, Vec<f64>) {
     (words, numbers)
 }
 
-/// No format of ours holds patches: they are told as lost.
+/// No format of ours holds patches: they are listed as lost.
 fn without_patches(mut model: Model) -> Model {
     for segment in 0..model.segments().len() {
         model = model.with_patch(segment, vec![]);

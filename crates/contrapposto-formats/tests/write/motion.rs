@@ -174,7 +174,7 @@ fn bvh_is_where_kinematics_is() {
     }
 }
 
-/// Nothing that moves, one posture, two roots, no solids: files all the same. What does not fit is told.
+/// Nothing that moves, one posture, two roots, no solids: files all the same. Postures that do not fit are refused with the reason.
 #[test]
 fn little_and_wrong_motions() {
     let model = build(vec![

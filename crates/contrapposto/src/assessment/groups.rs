@@ -88,12 +88,13 @@ impl Groups {
         }
     }
 
-    /// Adds the next instant, `seconds` after the one before.
+    /// Adds the next instant, `seconds` after the one before: load, peak and fatigue of every group.
     pub(super) fn add(&mut self, evaluation: &Evaluation<'_>, index: usize, time: f64, seconds: f64) {
         let pieces = (seconds / PIECE).ceil().clamp(1.0, MOST_PIECES);
         for (place, summary) in self.summaries.iter_mut().enumerate() {
             let (i, side) = (summary.coordinate, summary.side);
             let coordinate = &evaluation.model.coordinates()[i];
+            // Present: `new` takes no other coordinates.
             let (Some(groups), Some(rate)) = (&coordinate.groups, coordinate.rate) else { continue };
             let active = evaluation.active(rate);
             let angle = evaluation.torques.angles()[i];

@@ -40,7 +40,7 @@ pub struct Limit {
 
 /// The greatest force in a direction.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reach {
+pub struct GreatestForce {
     /// The direction in which the body pushes, ground axes, of unit length.
     pub direction: Vector3<f64>,
     /// The force, N; infinite where nothing limits it.
@@ -58,7 +58,7 @@ pub struct Reach {
 
 impl Capacity {
     /// The greatest force along `direction` (ground axes, any length).
-    pub fn in_direction(&mut self, direction: &Vector3<f64>) -> Reach {
+    pub fn in_direction(&mut self, direction: &Vector3<f64>) -> GreatestForce {
         let direction = direction.normalize();
         let column = self.program.column(&direction);
         let optimum = self.program.maximise(&column).filter(|found| self.program.gap(found) <= WIDEST_GAP);
@@ -66,7 +66,7 @@ impl Capacity {
             self.program.linear.clone_from(&self.at_rest.linear);
             self.program.maximise(&column).unwrap_or_default()
         });
-        self.program.reach(direction, &optimum)
+        self.program.greatest_force(direction, &optimum)
     }
 }
 
@@ -79,7 +79,7 @@ impl Program {
         found.gap.abs() / found.value.max(self.weight.recip())
     }
 
-    fn reach(&self, direction: Vector3<f64>, found: &Optimum) -> Reach {
+    fn greatest_force(&self, direction: Vector3<f64>, found: &Optimum) -> GreatestForce {
         let force = found.value * self.weight;
         let mut contact = vec![Vector3::zeros(); self.axes.len()];
         for (edge, &unknown) in self.edges.iter().zip(found.unknowns.get(self.torques..).unwrap_or_default()) {
@@ -88,7 +88,7 @@ impl Program {
                 self.weight * edge.force(unknown) * axes.map(|(part, axis)| *part * axis).sum::<Vector3<f64>>();
         }
         let unlimited = force >= NO_LIMIT * (1.0 - LEAST_SHARE);
-        Reach {
+        GreatestForce {
             direction,
             force: if unlimited { f64::INFINITY } else { force },
             normal: if unlimited { Vector3::zeros() } else { self.normal(&found.multipliers) },

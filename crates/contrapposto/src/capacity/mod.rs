@@ -11,10 +11,10 @@
 //! with active torque `a`, contact forces `f`, the Jacobian `J` of the point, external torque `tau_e` of weight and loads, passive torque
 //! `tau_p`, and the strengths `S` of both muscle groups at the present angle, those of three-axis joints about their axes. A force that is
 //! held for a time has strengths that last so long ([`Demand`]). All forces that can be exerted are a convex solid; each program gives a
-//! point of its surface and a plane that the whole solid is behind ([`Reach::normal`]).
+//! point of its surface and a plane that the whole solid is behind ([`GreatestForce::normal`]).
 //!
 //! Friction is the pyramid of [`crate::contact`], which lies inside the cone: along the two axes of a plane it is `1 / sqrt(2)` of the cone's, so
-//! a force limited by friction is at most 29 % below that of the cone, and never above. `share_max` of a support is a wish and limits no force.
+//! a force limited by friction is at most 29 % below that of the cone, and never above. `share_max` of a support is a preference and limits no force.
 //! Coordinates of unknown strength limit nothing.
 
 mod available;
@@ -25,7 +25,7 @@ mod solid;
 mod tolerances;
 
 pub use available::{Demand, People};
-pub use direction::{Limit, Limiter, Reach};
+pub use direction::{GreatestForce, Limit, Limiter};
 pub use situation::{CapacityError, Situation, Station};
 pub use solid::{Solid, directions};
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::tolerances::{STRONGEST_STEPS, WEAKER, WEAKEST_ROUNDS};
-use super::{Capacity, Reach};
+use super::{Capacity, GreatestForce};
 
 /// Number of times that faces are divided.
 const DIVISIONS: usize = 3;
@@ -21,37 +21,37 @@ const BANDS: f64 = 16.0;
 #[derive(Clone, Debug)]
 pub struct Solid {
     /// The greatest force in every direction of [`directions`].
-    pub reaches: Vec<Reach>,
+    pub forces: Vec<GreatestForce>,
     /// Triangles of directions, by index, seen counterclockwise from outside.
     pub faces: Vec<[usize; 3]>,
     /// The weakest direction of all that were found.
-    pub weakest: Reach,
+    pub weakest: GreatestForce,
     /// The strongest direction of all that were found.
-    pub strongest: Reach,
+    pub strongest: GreatestForce,
 }
 
 impl Capacity {
     /// The forces in 642 directions.
     pub fn solid(&mut self) -> Solid {
         let (directions, faces) = directions();
-        let mut reaches: Vec<Option<Reach>> = vec![None; directions.len()];
+        let mut forces: Vec<Option<GreatestForce>> = vec![None; directions.len()];
         for place in sweep(&directions) {
-            reaches[place] = Some(self.in_direction(&directions[place]));
+            forces[place] = Some(self.in_direction(&directions[place]));
         }
-        let reaches: Vec<Reach> = reaches.into_iter().flatten().collect();
-        let weakest = self.weakest(&reaches);
-        let strongest = self.strongest(&reaches);
-        Solid { reaches, faces, weakest, strongest }
+        let forces: Vec<GreatestForce> = forces.into_iter().flatten().collect();
+        let weakest = self.weakest(&forces);
+        let strongest = self.strongest(&forces);
+        Solid { forces, faces, weakest, strongest }
     }
 
     /// Along the normals of nearest planes.
-    fn weakest(&mut self, reaches: &[Reach]) -> Reach {
-        let distance = |reach: &Reach| reach.force / reach.normal.norm();
-        let least = |a: &&Reach, b: &&Reach| distance(a).total_cmp(&distance(b));
-        let limited = || reaches.iter().filter(|reach| reach.force.is_finite());
-        let weakest = |a: &&Reach, b: &&Reach| a.force.total_cmp(&b.force);
-        let mut best = reaches.iter().min_by(weakest).cloned().unwrap_or_else(|| self.in_direction(&Vector3::x()));
-        let mut next = limited().min_by(least).map(|reach| reach.normal);
+    fn weakest(&mut self, forces: &[GreatestForce]) -> GreatestForce {
+        let distance = |greatest: &GreatestForce| greatest.force / greatest.normal.norm();
+        let least = |a: &&GreatestForce, b: &&GreatestForce| distance(a).total_cmp(&distance(b));
+        let limited = || forces.iter().filter(|greatest| greatest.force.is_finite());
+        let weakest = |a: &&GreatestForce, b: &&GreatestForce| a.force.total_cmp(&b.force);
+        let mut best = forces.iter().min_by(weakest).cloned().unwrap_or_else(|| self.in_direction(&Vector3::x()));
+        let mut next = limited().min_by(least).map(|greatest| greatest.normal);
         for _ in 0..WEAKEST_ROUNDS {
             let Some(normal) = next.filter(|normal| *normal != Vector3::zeros()) else { break };
             let found = self.in_direction(&normal);
@@ -65,8 +65,8 @@ impl Capacity {
     }
 
     /// Around the strongest of all directions.
-    fn strongest(&mut self, reaches: &[Reach]) -> Reach {
-        let strongest = reaches.iter().max_by(|a, b| a.force.total_cmp(&b.force)).cloned();
+    fn strongest(&mut self, forces: &[GreatestForce]) -> GreatestForce {
+        let strongest = forces.iter().max_by(|a, b| a.force.total_cmp(&b.force)).cloned();
         let mut best = strongest.unwrap_or_else(|| self.in_direction(&Vector3::x()));
         let mut step = STRONGEST_STEPS.0;
         while step > STRONGEST_STEPS.1 && best.force.is_finite() {

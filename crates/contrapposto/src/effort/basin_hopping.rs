@@ -234,6 +234,7 @@ impl Hop {
             if found.violation > SEARCH_VIOLATION {
                 continue;
             }
+            // A second start: every subtree from that of the two local minima in which its objective is lower.
             let others = subtrees.objectives(&sqp.iterate.residual);
             let mixed: f64 = objectives.iter().zip(&others).map(|(a, b)| a.min(*b)).sum();
             self.perturbed.posture.values_mut().copy_from_slice(lowest.posture.values());

@@ -27,7 +27,7 @@ struct Goal {
 }
 
 impl Finder<'_> {
-    /// Solves with goal angles as half-spaces, and then without them.
+    /// Solves with goal angles as half-spaces, and then without them: the goals choose the start, and do not constrain the answer.
     fn explore_with(&mut self, from: &Posture, goals: &[&Goal], label: String) {
         if self.is_spent(Stage::Exploratory) {
             return;
@@ -48,7 +48,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Solves with the goal angles of both strategies in a posture: all together, and one by one.
+    /// Searches from goal angles of both strategies in a posture: from all goals of a strategy together, then from each goal of the
+    /// coordinates with the greatest relative loads alone.
     pub(super) fn explore_goals(&mut self, posture: &Posture) -> Result<(), SearchError> {
         let model = self.search.model;
         let mut asked: Vec<(f64, usize, [Option<Goal>; 2])> = vec![];

@@ -3,7 +3,7 @@
 use crate::model::data::{HazardRow, library};
 use crate::model::{Coordinate, Model, plain_name};
 
-/// Below this external torque, N m, nobody asks what carries it. Assumed.
+/// External torque below which no hazard is reported, whatever tissue carries it, N m. Assumed.
 const SMALL_TORQUE: f64 = 0.5;
 
 /// A coordinate that passive tissue carries at an angle where that is a hazard.

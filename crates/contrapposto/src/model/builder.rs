@@ -135,11 +135,11 @@ impl ModelBuilder {
         let (Some(d), Some(i)) = (index(dependent), index(independent)) else {
             return refuse("both must be angles or distances of the model");
         };
-        let leader = |c| self.model.couplings.iter().find(|k| k.dependent == c).map(|k| k.independent);
-        if leader(d).is_some() {
+        let independent_of = |c| self.model.couplings.iter().find(|k| k.dependent == c).map(|k| k.independent);
+        if independent_of(d).is_some() {
             return refuse("it already follows another coordinate");
         }
-        if std::iter::successors(Some(i), |&c| leader(c)).any(|c| c == d) {
+        if std::iter::successors(Some(i), |&c| independent_of(c)).any(|c| c == d) {
             return refuse("it would follow itself");
         }
         check_size(dependent, "number of the function it follows", &function.numbers())?;

@@ -40,9 +40,9 @@ pub enum ModelError {
     /// Two coordinates cannot be coupled.
     #[error("`{dependent}` cannot follow `{independent}`: {problem}")]
     Coupling {
-        /// The coordinate that should follow.
+        /// The coordinate that should depend on the other one.
         dependent: String,
-        /// The one that should lead.
+        /// The other one.
         independent: String,
         /// The reason.
         problem: &'static str,

@@ -148,9 +148,9 @@ pub struct Model {
 /// `dependent = function(independent)`, both coordinates by index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupling {
-    /// The coordinate that follows.
+    /// The coordinate that the function gives.
     pub dependent: usize,
-    /// The coordinate that leads.
+    /// The argument of the function.
     pub independent: usize,
     /// The function.
     pub function: Function,

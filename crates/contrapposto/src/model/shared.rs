@@ -8,7 +8,7 @@ use super::Model;
 /// The model of an engine: borrowed, or shared where the engine is to have no lifetime (in a language without any).
 #[derive(Clone, Debug)]
 pub enum SharedModel<'a> {
-    /// Somebody else's, who keeps it for as long.
+    /// A borrowed model, whose owner keeps it for as long.
     Borrowed(&'a Model),
     /// One of several owners.
     Counted(Arc<Model>),

@@ -24,7 +24,7 @@ pub struct Bushing {
     pub translational_stiffness: Vector3<f64>,
 }
 
-/// The second frame seen from the first.
+/// Placement of the second frame in the first one.
 struct Deflection {
     angles: Vector3<f64>,
     offset: Vector3<f64>,
@@ -59,7 +59,7 @@ impl Bushing {
             + self.translational_stiffness.dot(&offset.component_mul(&offset)))
     }
 
-    /// Adds its torque to rows by rate as if nothing were coupled, N m (N for slides).
+    /// Adds the torque of the bushing to `torque` by rate, as if no coordinates were coupled, N m (N for slides).
     fn add(&self, model: &Model, kinematics: &Kinematics, torque: &mut [f64]) {
         let Deflection { angles, offset, axes, at } = self.deflection(model, kinematics);
         let force = -(axes * self.translational_stiffness.component_mul(&offset));
@@ -67,8 +67,8 @@ impl Bushing {
         let about_x = Rotation3::from_axis_angle(&Vector3::x_axis(), angles.x);
         let middle = about_x * Vector3::y();
         let last = about_x * (Rotation3::from_axis_angle(&Vector3::y_axis(), angles.y) * Vector3::z());
-        // Rows are the axes of the angles: a couple has these moments by angle. Without an inverse two axes are one, and the angles of
-        // both are not determined.
+        // The rows are the axes of the three angles in the first frame: rows times couple are the moments by angle. Where the second
+        // angle is a right one, the other two axes coincide, no couple is determined, and none is added.
         let couple = Matrix3::from_rows(&[Vector3::x().transpose(), middle.transpose(), last.transpose()])
             .try_inverse()
             .map_or_else(Vector3::zeros, |inverse| axes * (inverse * by_angle));

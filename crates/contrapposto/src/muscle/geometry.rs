@@ -27,7 +27,7 @@ pub struct PathGeometry {
     /// By path: the mobilities that move some of its points and not all, outermost first.
     moving: Vec<Vec<usize>>,
     /// By path over several surfaces: all mobilities that move any of its points; empty for other paths. The forces of OpenSim's rule are
-    /// not in balance there ([`super::routing::Node::seen`]), so that it has moment arms about joints that the path does not cross.
+    /// not in balance there ([`super::routing::Node::reference`]), so that it has moment arms about joints that the path does not cross.
     carrying: Vec<Vec<usize>>,
     /// By path: the coordinates that change its length by themselves.
     driving: Vec<Vec<usize>>,
@@ -80,14 +80,14 @@ impl PathGeometry {
         &self.lengths
     }
 
-    /// Moment arms of one path: torque by rate for each newton of tension, m (N/N for slides). Those of coordinates that follow others
-    /// are folded into those that lead them.
+    /// Moment arms of one path: torque by rate for each newton of tension, m (N/N for slides). Those of dependent coordinates
+    /// are folded into those of their independent ones.
     pub fn moment_arms(&self, path: usize) -> &[f64] {
         &self.moment_arms[path * self.rates..(path + 1) * self.rates]
     }
 
     /// The rates about which paths can turn a body: all that move some part of a path against another, or change its length by
-    /// themselves, but for slides, locked coordinates and those that follow others, which count where they lead.
+    /// themselves, but for slides, locked coordinates and dependent coordinates, which count as their independent ones.
     pub fn crossed(&self, model: &Model) -> Vec<usize> {
         self.crossed_by(model, 0..self.lengths.len())
     }
@@ -254,7 +254,7 @@ impl Tension<'_> {
             if same && self.rule == PathRule::OpenSim {
                 continue;
             }
-            let straight = to.seen - from.seen;
+            let straight = to.reference - from.reference;
             let length = straight.norm();
             if length == 0.0 {
                 continue;

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::path::{Location, Path, PathWrap, Paths};
 use super::rule::PathRule;
 use super::tolerances::{GEODESIC_AT_REST, GEODESIC_ROUNDS, OPENSIM_AT_REST, OPENSIM_ROUNDS, RANGE_SLACK};
-use super::wrap::{Contact, Manner, Wrapping};
+use super::wrap::{Contact, WrapSettings, Wrapping};
 
 /// Origin and axes of a frame in ground.
 pub(crate) type FrameInGround = (Matrix3<f64>, Vector3<f64>);
@@ -17,7 +17,7 @@ pub(crate) struct Node {
     pub(crate) place: Vector3<f64>,
     /// The place from which lengths and directions are taken. By OpenSim's rule that is the first place of this corner in the posture: OpenSim
     /// keeps a point's place in ground when surfaces move the point on their surface again.
-    pub(super) seen: Vector3<f64>,
+    pub(super) reference: Vector3<f64>,
     /// The segment that carries it.
     pub(crate) segment: Option<usize>,
     /// Origin of the corner.
@@ -44,8 +44,8 @@ pub(super) struct Routing {
     pub(super) nodes: Vec<Node>,
     /// Length on the surface, by wrap of the path, or by part of the tendon, m.
     pub(super) lengths: Vec<f64>,
-    /// The places of both corners on the surface when they were first asked for, by wrap of the path; for OpenSim's rule.
-    first_seen: Vec<[Option<Vector3<f64>>; 2]>,
+    /// The first places of both corners on the surface in the posture, by wrap of the path; for OpenSim's rule.
+    first_references: Vec<[Option<Vector3<f64>>; 2]>,
     /// Order in which the wraps are applied.
     order: Vec<usize>,
     /// The corners of the round before.
@@ -81,7 +81,7 @@ impl Routing {
         Self {
             nodes: Vec::with_capacity(nodes),
             lengths: Vec::with_capacity(wraps),
-            first_seen: Vec::with_capacity(wraps),
+            first_references: Vec::with_capacity(wraps),
             order: Vec::with_capacity(wraps),
             before: Vec::with_capacity(nodes),
         }
@@ -105,7 +105,7 @@ impl Routing {
             let place = point.segment.map_or(place, |s| scene.segments[s].0 * place + scene.segments[s].1);
             self.nodes.push(Node {
                 place,
-                seen: place,
+                reference: place,
                 segment: point.segment,
                 kind: NodeKind::Point(index),
                 weight: 1.0,
@@ -113,8 +113,8 @@ impl Routing {
         }
         self.lengths.clear();
         self.lengths.resize(path.wraps.len(), 0.0);
-        self.first_seen.clear();
-        self.first_seen.resize(path.wraps.len(), [None; 2]);
+        self.first_references.clear();
+        self.first_references.resize(path.wraps.len(), [None; 2]);
         if !path.wraps.is_empty() {
             self.wrap(scene, path);
         }
@@ -123,23 +123,23 @@ impl Routing {
 
     /// The straight parts and those on surfaces, m.
     fn length(&mut self, rule: PathRule) -> f64 {
-        (0..self.nodes.len()).for_each(|at| self.see(at, rule));
+        (0..self.nodes.len()).for_each(|at| self.set_reference(at, rule));
         let part = |pair: &[Node]| match pair[0].kind {
             NodeKind::On(wrap) => self.lengths[wrap],
-            _ => (pair[1].seen - pair[0].seen).norm(),
+            _ => (pair[1].reference - pair[0].reference).norm(),
         };
         self.nodes.windows(2).map(part).sum()
     }
 
     /// Fills in the place from which lengths are taken.
-    fn see(&mut self, at: usize, rule: PathRule) {
+    fn set_reference(&mut self, at: usize, rule: PathRule) {
         let node = &mut self.nodes[at];
         let first = match (rule, node.kind) {
-            (PathRule::OpenSim, NodeKind::On(wrap)) => Some(&mut self.first_seen[wrap][0]),
-            (PathRule::OpenSim, NodeKind::Off(wrap)) => Some(&mut self.first_seen[wrap][1]),
+            (PathRule::OpenSim, NodeKind::On(wrap)) => Some(&mut self.first_references[wrap][0]),
+            (PathRule::OpenSim, NodeKind::Off(wrap)) => Some(&mut self.first_references[wrap][1]),
             _ => None,
         };
-        node.seen = first.map_or(node.place, |first| *first.get_or_insert(node.place));
+        node.reference = first.map_or(node.place, |first| *first.get_or_insert(node.place));
     }
 
     /// Applies all wraps, round after round, until the line rests.
@@ -209,7 +209,7 @@ impl Routing {
         let start = self.nodes.iter().position(within)?;
         let end = self.nodes.iter().rposition(within)?;
         let (axes, origin) = &scene.objects[*index];
-        let manner = Manner { rule: scene.rule, method: *method, single: path.wraps.len() == 1 };
+        let settings = WrapSettings { rule: scene.rule, method: *method, single: path.wraps.len() == 1 };
         let mut found = Found::Free;
         let mut best: Option<(usize, Contact, f64)> = None;
         for at in start..end {
@@ -219,7 +219,7 @@ impl Routing {
             }
             let local = |place: &Vector3<f64>| axes.tr_mul(&(place - origin));
             let (from, to) = (local(&from.place), local(&to.place));
-            match object.wrap(&from, &to, manner) {
+            match object.wrap(&from, &to, settings) {
                 Wrapping::Inside => found = Found::Inside,
                 Wrapping::Free => found = Found::Free,
                 Wrapping::WithoutLine => found = Found::Touches,
@@ -230,8 +230,8 @@ impl Routing {
                 }
                 Wrapping::Touches(contact) => {
                     found = Found::Touches;
-                    self.see(at, scene.rule);
-                    self.see(at + 1, scene.rule);
+                    self.set_reference(at, scene.rule);
+                    self.set_reference(at + 1, scene.rule);
                     let longer = self.longer(at, &contact, (axes, origin));
                     if best.as_ref().is_none_or(|(_, _, least)| longer < *least) {
                         best = Some((at, contact, longer));
@@ -242,7 +242,7 @@ impl Routing {
         if let Some((at, contact, _)) = best {
             let node = |place: Vector3<f64>, kind| {
                 let place = axes * place + origin;
-                Node { place, seen: place, segment: object.segment, kind, weight: 1.0 }
+                Node { place, reference: place, segment: object.segment, kind, weight: 1.0 }
             };
             self.lengths[wrap] = contact.length;
             self.nodes.insert(at + 1, node(contact.first, NodeKind::On(wrap)));
@@ -253,7 +253,7 @@ impl Routing {
 
     /// By how much a contact makes the part of the line behind a corner longer, m.
     fn longer(&self, at: usize, contact: &Contact, (axes, origin): (&Matrix3<f64>, &Vector3<f64>)) -> f64 {
-        let (from, to) = (self.nodes[at].seen, self.nodes[at + 1].seen);
+        let (from, to) = (self.nodes[at].reference, self.nodes[at + 1].reference);
         let [first, second] = [contact.first, contact.second].map(|place| axes * place + origin);
         (first - from).norm() + contact.length + (to - second).norm() - (to - from).norm()
     }

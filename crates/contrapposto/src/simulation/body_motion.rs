@@ -133,7 +133,9 @@ impl<'a> BodyMotion<'a> {
     }
 
     /// Moves by one step toward the half-spaces of the `requested` coordinates, the most fatigued first, and the tasks.
-    /// `reliefs_move`: some relief asks for motion, not only to be kept.
+    /// `reliefs_move`: some relief asks for motion, not only to be kept. A body at rest stays while the same coordinates request relief.
+    /// Afterwards `deferred` holds the requested coordinates whose half-spaces the posture violates, and those past the first
+    /// [`MOST_RELIEFS`].
     pub(super) fn step(
         &mut self,
         posture: &mut Posture,

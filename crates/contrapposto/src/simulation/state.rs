@@ -12,7 +12,7 @@ use crate::hybrid::{Decision, Strategy};
 use crate::model::Side;
 use crate::posture::Posture;
 
-/// Everything that one step hands to the next. Whatever else a simulation holds is computed from it, or makes it faster.
+/// Everything that one step hands to the next. All other fields of a simulation are computed from the state, or make the simulation faster.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
     /// Steps made.
@@ -24,7 +24,7 @@ pub(super) struct State {
     /// Strategy of every coordinate.
     pub(super) strategies: Vec<Strategy>,
     /// Of the last sample: active torque (N m), fatigue, effort, decisions. The effort is none from an event to the next sample of
-    /// a whole body: what it was before the event does not tell whether the next step is worth its cost.
+    /// a whole body: the effort before the event is no measure of whether the next step is worth its cost.
     pub(super) active: Vec<f64>,
     pub(super) fatigue: Vec<[f64; 2]>,
     pub(super) effort: Option<f64>,

@@ -113,8 +113,8 @@ impl<'a> Simulation<'a> {
         self.state.searched
     }
 
-    /// The state from which another simulation goes on to the same numbers as this one. Whatever only makes this one faster is
-    /// forgotten.
+    /// The state from which another simulation goes on to the same numbers as this one. Data that only make this one faster
+    /// are forgotten.
     pub(super) fn state(&mut self) -> State {
         self.motion.forget();
         self.state.clone()

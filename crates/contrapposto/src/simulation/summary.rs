@@ -104,7 +104,7 @@ pub struct CoordinateSummary {
     pub peak_fatigue: [f64; 2],
     /// The positive and negative group in the last sample in which no support was put elsewhere.
     pub final_groups: [GroupAtEnd; 2],
-    /// Time at which each group could first no longer hold its load, s; while a support is put elsewhere nobody is judged.
+    /// Time at which each group could first no longer hold its load, s; groups are not judged while a support is put elsewhere.
     pub exhausted_at: [Option<f64>; 2],
     /// The last decision.
     pub last_decision: Option<Decision>,

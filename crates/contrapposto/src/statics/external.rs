@@ -215,8 +215,8 @@ impl ExternalTorque {
         }
     }
 
-    /// External torque of every rate, N m (N for slides), in the model's order. What a coordinate that follows another
-    /// one gives is folded into its independent one, and its own entry is zero.
+    /// External torque of every rate, N m (N for slides), in the model's order. The torque of a dependent coordinate
+    /// is folded into the independent one, and the entry of the dependent one is zero.
     pub fn torques(&self) -> &[f64] {
         &self.torques
     }

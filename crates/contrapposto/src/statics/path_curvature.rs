@@ -30,7 +30,7 @@ pub(super) struct Rates(Vec<(Option<usize>, f64, f64)>);
 impl Rates {
     pub(super) fn new(model: &Model) -> Self {
         let mut rates = Self(vec![(None, 1.0, 0.0); model.rates.len()]);
-        rates.0.iter_mut().enumerate().for_each(|(rate, lead)| lead.0 = Some(rate));
+        rates.0.iter_mut().enumerate().for_each(|(rate, independent)| independent.0 = Some(rate));
         for coupling in &model.couplings {
             let rate = |coordinate: usize| model.coordinates[coordinate].rate;
             if let Some(d) = rate(coupling.dependent) {
@@ -60,14 +60,14 @@ impl Rates {
             while let Some(m) = next {
                 let elements = model.mobilities[m].rate..model.mobilities[m].rate + model.mobilities[m].motion.rates();
                 for rate in model.elements[elements].iter().flatten() {
-                    self.0[*rate].0.into_iter().for_each(|lead| found[lead] = true);
+                    self.0[*rate].0.into_iter().for_each(|independent| found[independent] = true);
                 }
                 next = model.mobilities[m].parent;
             }
         }
         for point in &path.points {
             let rate = moving_coordinate(&point.location).and_then(|c| model.coordinates[c].rate);
-            rate.and_then(|rate| self.0[rate].0).into_iter().for_each(|lead| found[lead] = true);
+            rate.and_then(|rate| self.0[rate].0).into_iter().for_each(|independent| found[independent] = true);
         }
         (0..found.len()).filter(|&rate| found[rate]).collect()
     }
@@ -123,7 +123,7 @@ impl PathCurvature {
         &self.pulls
     }
 
-    /// Computes them for a line and the independent rates that move it. Does not allocate.
+    /// Computes second derivatives and forces for a line and the independent rates `moving` that move the line. Does not allocate.
     pub(super) fn update(&mut self, at: &Posed<'_>, line: &Line, moving: &[usize]) {
         self.place.fill(usize::MAX);
         moving.iter().enumerate().for_each(|(place, &rate)| self.place[rate] = place);
@@ -279,8 +279,8 @@ impl PathCurvature {
         let NodeKind::Point(index) = node.kind else { return None };
         let Location::Moving(point) = &at.path.points[index].location else { return None };
         let rate = at.model.coordinates[point.coordinate?].rate?;
-        let (lead, first, second) = at.rates.0[rate];
-        let place = self.place[lead?];
+        let (independent, first, second) = at.rates.0[rate];
+        let place = self.place[independent?];
         let moves = point.slope_and_curvature(at.kinematics.values());
         let moves = moves.map(|by| node.segment.map_or(by, |s| at.geometry.segment_frame(s).0 * by));
         Some(Slide { place, slope: [first, second], moves })
@@ -327,8 +327,8 @@ impl Posed<'_> {
             let mobility = &self.model.mobilities[m];
             for element in mobility.rate..mobility.rate + mobility.motion.rates() {
                 let Some(rate) = self.model.elements[element] else { continue };
-                if let (Some(lead), first, _) = self.rates.0[rate] {
-                    visit(m, element, lead, self.kinematics.drives[element].0 * first);
+                if let (Some(independent), first, _) = self.rates.0[rate] {
+                    visit(m, element, independent, self.kinematics.drives[element].0 * first);
                 }
             }
             next = mobility.parent;

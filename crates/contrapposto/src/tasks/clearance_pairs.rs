@@ -49,7 +49,8 @@ impl Clearance {
     }
 }
 
-/// Spheres at the ends of the parts, but for those at joints with the carrying segments; of ends in one place the largest.
+/// Spheres at the ends of `parts`, none of which carries the body, for rows against a half-space: of ends in one place the largest, and
+/// none at joints with the `carrying` segments.
 fn ends(model: &Model, kinematics: &Kinematics, parts: &[Capsule], carrying: &[usize]) -> Vec<Capsule> {
     let mut spheres: Vec<Capsule> = vec![];
     let place = |sphere: &Capsule| kinematics.station(model, sphere.segment, sphere.ends[0]);

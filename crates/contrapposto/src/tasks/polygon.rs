@@ -22,14 +22,14 @@ impl HalfPlane {
     }
 }
 
-/// A hull thinner than this, m, counts as a stretch, and a shorter stretch as a place: corners so sharp would not hold.
+/// A hull thinner than this, m, counts as a line segment, and a shorter line segment as a point: the half-planes at so sharp corners would be inaccurate.
 const THIN_HULL: f64 = 1e-6;
 
 /// Corners nearer to each other than this, m, are one.
 const SAME_CORNER: f64 = 1e-9;
 
 /// The half-planes whose intersection is the convex hull of `points` (ground, m) seen along `gravity`. Points on one
-/// line, or all in one place (to a micrometre), give the half-planes that close that stretch or place in. Empty without
+/// line, or all in one place (to a micrometre), give the half-planes around that line segment or point. Empty without
 /// points or without gravity.
 pub fn half_planes(points: &[Vector3<f64>], gravity: Vector3<f64>) -> Vec<HalfPlane> {
     let Some(down) = gravity.try_normalize(0.0) else { return vec![] };

@@ -20,7 +20,7 @@ pub struct HandLoad {
 }
 
 impl HandLoad {
-    /// The hands whose weights are told, the heaviest weight first: those with half of the strength of the grip or more.
+    /// The hands whose weights are reported, the heaviest weight first: those with half of the strength of the grip or more.
     pub fn all(model: &Model, loads: &[Load]) -> Vec<Self> {
         let mut hands: Vec<Self> = vec![];
         for load in loads {
@@ -39,7 +39,7 @@ impl HandLoad {
         }
         let sex = Adult::of(model).map(|size| size.sex);
         hands.iter_mut().for_each(|hand| hand.sex = sex);
-        hands.retain(|hand| hand.weight >= library().grip().told_share * hand.grip());
+        hands.retain(|hand| hand.weight >= library().grip().reported_share * hand.grip());
         hands.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         hands
     }

@@ -6,7 +6,7 @@ use crate::fatigue::LoadHistory;
 use crate::joint_torques::GroupLoad;
 use crate::model::{Model, MuscleGroup};
 
-/// When every group fails that was rested at first; infinite where it holds for ever.
+/// Time at which every group fails that was rested at first; infinite where the group holds for ever.
 pub(super) fn failures(model: &Model, groups: &[GroupLoad]) -> Vec<Failure> {
     let failure = |group: &GroupLoad| {
         let muscles = &model.coordinates().get(group.coordinate)?.groups.as_ref()?[group.side.index()];
@@ -18,9 +18,9 @@ pub(super) fn failures(model: &Model, groups: &[GroupLoad]) -> Vec<Failure> {
 
 /// A muscle group at the end of a run or motion.
 pub(super) struct GroupAtEnd<'a> {
-    /// Which, with its load at the end.
+    /// The group, with its load at the end.
     pub(super) who: Who,
-    /// Its law and strength.
+    /// Law and strength of the group.
     pub(super) muscles: &'a MuscleGroup,
     /// Relative load until then.
     pub(super) history: &'a LoadHistory,
@@ -33,7 +33,7 @@ pub(super) struct GroupAtEnd<'a> {
 }
 
 impl GroupAtEnd<'_> {
-    /// When the group fails under its load at the time `end`, s after `start`; `None` where it does not work.
+    /// Time at which the group fails under its load at the time `end`, s after `start`; `None` where the group does not work.
     fn failure(&self, (start, end): (f64, f64)) -> Option<Failure> {
         if self.who.load <= 0.0 {
             return None;

@@ -29,10 +29,10 @@ pub struct Missed {
     pub contradicts: bool,
 }
 
-/// Where a point gets that misses its target.
+/// Place of a point that misses its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// Where it is, ground, m.
+    /// Place of the point, ground, m.
     pub at: Vector3<f64>,
     /// From there to the target on the asked axes, ground, m.
     pub to_target: Vector3<f64>,

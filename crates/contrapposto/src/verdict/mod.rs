@@ -74,9 +74,9 @@ impl VerdictKind {
 /// A muscle group that a verdict names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Who {
-    /// Its coordinate.
+    /// Coordinate of the group.
     pub coordinate: usize,
-    /// Which of the two groups of the coordinate.
+    /// The group of the coordinate, by the sign of its torque.
     pub side: Side,
     /// Active torque over strength: the greatest, or where the group fails that at this time.
     pub load: f64,
@@ -92,7 +92,7 @@ impl From<GroupLoad> for Who {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Failure {
     pub(crate) who: Who,
-    /// When, s.
+    /// Time of the failure, s.
     pub(crate) time: f64,
     /// Least and greatest of that time, s.
     pub(crate) range: (f64, f64),
@@ -106,7 +106,7 @@ pub const TIRED: f64 = 0.5;
 pub struct Tired {
     /// The group with its load.
     pub who: Who,
-    /// Its fatigue, 0..=1.
+    /// Fatigue of the group, 0..=1.
     pub fatigue: f64,
     /// Under its load of the end it tires no further, or recovers.
     pub lasts: bool,
@@ -117,9 +117,9 @@ pub struct Tired {
 pub struct PassedHazard {
     /// At the moment when ligaments carried most.
     pub hazard: Hazard,
-    /// That moment, s.
+    /// Time of that moment, s.
     pub time: f64,
-    /// How long there was a hazard in all, s.
+    /// Time for which there was a hazard in all, s.
     pub seconds: f64,
 }
 
@@ -129,11 +129,11 @@ const LEAST_HAZARD: f64 = 5.0;
 /// The answer to a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// Its kind.
+    /// Kind of the verdict.
     pub kind: VerdictKind,
     /// The time that was asked for, s; `None` where none was.
     pub asked: Option<f64>,
-    /// How long the job can be done, s: until `who` fails; of a job that holds, with the posture of its end held on. `None` where no
+    /// Time for which the job can be done, s: until `who` fails; of a job that holds, with the posture of its end held on. `None` where no
     /// muscle sets a limit, and where the job cannot be done.
     pub seconds: Option<f64>,
     /// Least and greatest time until `who` fails, s, over published laws and two of three people; infinite where it never fails.
@@ -188,7 +188,7 @@ pub(crate) struct Findings {
     pub(crate) missed: Vec<Missed>,
     /// The group that fails first.
     pub(crate) fails: Option<Failure>,
-    /// When every group that works at the end would fail, were the posture of the end held on.
+    /// Time at which every group that works at the end would fail, were the posture of the end held on.
     pub(crate) later: Vec<Failure>,
     /// The group with the greatest fatigue at the end.
     pub(crate) tired: Option<Tired>,

@@ -25,7 +25,7 @@ pub fn spread(group: &MuscleGroup, history: &LoadHistory, start: f64) -> (f64, f
     times.fold((f64::INFINITY, 0.0), |(least, greatest), time| (time.min(least), time.max(greatest)))
 }
 
-/// When a group of `strength` times the mean fails, s; infinite if never.
+/// Time at which a group of `strength` times the mean fails, s; infinite if never.
 fn failure(law: &FatigueLaw, history: &LoadHistory, strength: f64, start: f64) -> f64 {
     let pieces: Vec<(f64, f64)> = history.pieces().iter().map(|(from, load)| (*from, load / strength)).collect();
     let Some(&(_, first)) = pieces.first() else { return f64::INFINITY };

@@ -113,11 +113,11 @@ pub fn tree(rng: &mut Pcg64, segments: usize, coupled: bool) -> Model {
         builder.segment(spec).unwrap();
     }
     if coupled {
-        // Pairs that would make a circle or a second leader are refused, which is as good.
+        // Pairs that would make a circle or a second coupling of one coordinate are refused, which is as good.
         for _ in 0..names.len() / 4 {
             let pick = |rng: &mut Pcg64| names[rng.random_range(0..names.len())].clone();
-            let (follower, leader) = (pick(rng), pick(rng));
-            let _ = builder.couple(&follower, &leader, function(rng));
+            let (dependent, independent) = (pick(rng), pick(rng));
+            let _ = builder.couple(&dependent, &independent, function(rng));
         }
     }
     builder.build()

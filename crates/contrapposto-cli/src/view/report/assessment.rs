@@ -18,7 +18,7 @@ use crate::view::decision::answer;
 use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{hazards, tell};
+use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
 use crate::view::text::assess::times_from;
@@ -138,15 +138,15 @@ pub(crate) fn report_of_assessment(
     report.reasons = advice.sentence.clone().into_iter().collect();
     report.reasons.extend(warnings.iter().map(|warning| sentence(warning) + "."));
     report.reasons.extend(times_from(first.time));
-    let manner = inertia.map_or_else(|| "Each posture is treated as held at rest".to_owned(), sentence);
-    report.reasons.push(format!("{manner}; loads are interpolated linearly between postures."));
+    let basis = inertia.map_or_else(|| "Each posture is treated as held at rest".to_owned(), sentence);
+    report.reasons.push(format!("{basis}; loads are interpolated linearly between postures."));
     report.figures = figures(model, found, &working, format!("{} postures", assessed_frames.instants), span);
     report.list = List {
         heading: "Muscle groups that fail, and relief by one joint".to_owned(),
         entries: entries(assessed_frames, &working, &shown),
         none: "None: no group fails, and no joint alone gives relief.".to_owned(),
     };
-    tell(&mut report, hazards(model, frames, true));
+    add_reasons(&mut report, hazards(model, frames, true));
     report.table = table(assessed_frames.opened, &working);
     Ok(contrapposto_report::write(&report))
 }

@@ -1,6 +1,6 @@
 //! The page and the picture of the greatest forces at a point.
 
-use contrapposto::capacity::{Limiter, Reach};
+use contrapposto::capacity::{GreatestForce, Limiter};
 use contrapposto::model::Model;
 use contrapposto::verdict::Who;
 use contrapposto_formats::{CapacityText, ForceText};
@@ -14,7 +14,7 @@ use crate::view::body::held_body;
 use crate::view::capacity::{Forces, limited_by, newtons};
 use crate::view::held::Held;
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{hazards, tell};
+use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::stage::Stage;
 use crate::view::text::capacity::row;
 use crate::view::text::compare::ComparedPosture;
@@ -62,8 +62,8 @@ fn first_limit(force: &ForceText) -> String {
     force.limits.first().map_or_else(|| "nothing".to_owned(), |limit| limit.name().to_owned())
 }
 
-fn limit_of(model: &Model, reach: &Reach) -> String {
-    match reach.limits.first().map(|limit| limit.by) {
+fn limit_of(model: &Model, greatest: &GreatestForce) -> String {
+    match greatest.limits.first().map(|limit| limit.by) {
         None => "nothing".to_owned(),
         Some(Limiter::Strength { coordinate, side }) => Who { coordinate, side, load: 0.0 }.name(model),
         Some(Limiter::Balance) => "balance".to_owned(),
@@ -114,7 +114,7 @@ pub(crate) fn report_of_capacity(
             rows: extremes.chain(text.main.iter().map(named)).collect(),
         };
     }
-    tell(&mut report, hazards(model, &frames, false));
+    add_reasons(&mut report, hazards(model, &frames, false));
     Ok(contrapposto_report::write(&report))
 }
 
@@ -123,14 +123,14 @@ fn solid(model: &Model, text: &CapacityText, forces: &Forces) -> ForceSolid {
     let (turn, limits) = (turn(model), Limits::of(text));
     let finite = text.directions.iter().filter_map(|force| force.force_n);
     let largest = finite.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-    let corner = |reach: &Reach| {
-        let length = LARGEST_FORCE_LENGTH * reach.force.min(largest) / largest;
-        turn.point(forces.place + length * reach.direction)
+    let corner = |greatest: &GreatestForce| {
+        let length = LARGEST_FORCE_LENGTH * greatest.force.min(largest) / largest;
+        turn.point(forces.place + length * greatest.direction)
     };
     let per_ten_centimetres = 0.1 * largest / LARGEST_FORCE_LENGTH;
     ForceSolid {
         at: turn.point(forces.place),
-        corners: forces.solid.reaches.iter().map(corner).collect(),
+        corners: forces.solid.forces.iter().map(corner).collect(),
         faces: forces.solid.faces.clone(),
         limits: text.directions.iter().map(|force| limits.place(&first_limit(force))).collect(),
         names: limits.shares(text),
@@ -168,14 +168,14 @@ pub(crate) fn picture_of_capacity(
     for (section, [across, along]) in figure.sections.iter_mut().zip([[ahead, up], [right, up], [right, ahead]]) {
         for k in 0..SPOKES {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / SPOKES as f64).sin_cos();
-            let Some(reach) = forces.in_direction(&(cos * across + sin * along)) else { continue };
-            let name = limit_of(model, &reach);
+            let Some(greatest) = forces.in_direction(&(cos * across + sin * along)) else { continue };
+            let name = limit_of(model, &greatest);
             let limit = limits.place(&name);
             if limit == limits.names.len() {
                 limits.names.push(name);
             }
-            let direction = turn.point(reach.direction);
-            section.push(Spoke { direction, force: reach.force, limit, marked: k.is_multiple_of(NUMBERED) });
+            let direction = turn.point(greatest.direction);
+            section.push(Spoke { direction, force: greatest.force, limit, marked: k.is_multiple_of(NUMBERED) });
         }
     }
     figure.limits = limits.names;

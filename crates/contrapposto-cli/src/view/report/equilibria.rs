@@ -15,7 +15,7 @@ use crate::view::figures::figures_of_postures;
 use crate::view::frame::{Frame, frame_of_posture};
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{hazards, tell};
+use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
 use crate::view::words::{MOST_JOINTS_SHOWN, how_long, list, percent, plain, value};
@@ -94,7 +94,7 @@ pub(crate) fn report_of_equilibria(
         columns: ["Posture", "Effort", "Weight on", "Held by", "Highest load"].map(str::to_owned).to_vec(),
         rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
     };
-    tell(&mut report, hazards(model, &frames, false));
+    add_reasons(&mut report, hazards(model, &frames, false));
     Ok(contrapposto_report::write(&report))
 }
 

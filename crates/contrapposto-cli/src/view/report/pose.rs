@@ -11,7 +11,7 @@ use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
 use crate::view::held::{Held, held};
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{hazards, tell};
+use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::stage::Stage;
 use crate::view::targets::targets;
 use crate::view::text::pose::{mark, reached, tasks as tasks_of};
@@ -63,7 +63,7 @@ pub(crate) fn report_of_pose(
         columns: ["Priority", "Task", "Remaining error", "Result"].map(str::to_owned).to_vec(),
         rows: all.iter().map(row).collect(),
     };
-    tell(&mut report, hazards(model, &frames, false));
+    add_reasons(&mut report, hazards(model, &frames, false));
     Ok(contrapposto_report::write(&report))
 }
 

@@ -14,7 +14,7 @@ use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::frame::Frame;
 use crate::view::recording::Recording;
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{hazards, tell};
+use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::selection::{main_coordinate, shown};
 use crate::view::stage::{Stage, load_in_words};
 use crate::view::targets::missed_targets;
@@ -48,7 +48,7 @@ pub(crate) fn report_of_run(
     };
     let hazards = hazards(&scenario.model, &excerpt.frames, true);
     narrative::write((scenario, &scene.names_of_supports()), &excerpt, summary, answer, &mut report);
-    tell(&mut report, hazards);
+    add_reasons(&mut report, hazards);
     Ok(contrapposto_report::write(&report))
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<Strin
 }
 
 /// Puts the sentences behind the first reason of a page.
-pub(crate) fn tell(report: &mut Report, sentences: Vec<String>) {
+pub(crate) fn add_reasons(report: &mut Report, sentences: Vec<String>) {
     let place = report.reasons.len().min(1);
     report.reasons.splice(place..place, sentences);
 }

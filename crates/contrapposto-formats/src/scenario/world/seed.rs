@@ -2,7 +2,7 @@
 //!
 //! A sitter has the shanks upright: with the knee `K` above the floor, the hip joint `H` above it and a thigh of length `L`, the thigh
 //! rises forward by `sin phi = (K - H) / L`; hip flexion is `90 deg + phi` less the backward tilt of the pelvis, knee flexion
-//! `90 deg + phi`. Who reaches below the hips squats the lower the hands must be. All angles here are assumed; `start` moves the body
+//! `90 deg + phi`. A body whose hands are below the hips squats, deeper for lower hands. All angles here are assumed; `start` moves the body
 //! until the things fit.
 
 use contrapposto::kinematics::Kinematics;
@@ -135,7 +135,7 @@ impl Seeder<'_> {
         Some(pairs)
     }
 
-    /// The squat of who reaches below the hips.
+    /// The squat of a body whose hands are below the hips.
     fn squat(&self, world: &World) -> Vec<(String, f64)> {
         let (Some(hip), Some(sole)) = (self.joint("femur_r"), self.patch("calcn_r")) else { return vec![] };
         let lowest = targets(world).map(|(_, place)| place.y).fold(f64::INFINITY, f64::min);

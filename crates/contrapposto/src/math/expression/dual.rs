@@ -14,7 +14,7 @@ impl Dual {
         Self { value, slope: 0.0 }
     }
 
-    /// Chain rule. What does not move gives no slope, whatever the outer derivative.
+    /// Chain rule. A constant gives no slope, even where the outer derivative is infinite or not a number.
     fn chain(self, value: f64, derivative: f64) -> Self {
         Self { value, slope: if self.slope == 0.0 { 0.0 } else { derivative * self.slope } }
     }

@@ -16,10 +16,10 @@ pub struct GripRow {
     pub handle_factor: f64,
     /// Source of that factor.
     pub handle_reference: Reference,
-    /// A weight from that share of the strength of the grip on is told.
-    pub told_share: f64,
+    /// Share of the strength of the grip from which on a weight is reported.
+    pub reported_share: f64,
     /// Source of that share.
-    pub told_reference: Reference,
+    pub reported_reference: Reference,
     male: GripOfSex,
     female: GripOfSex,
     /// Source of the strengths.

@@ -5,7 +5,7 @@ use serde::Deserialize;
 /// Trust in a number, the best first: the greater of two is the weaker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 pub enum Status {
-    /// Somebody measured it, in the named source.
+    /// Measured in the named source.
     #[serde(rename = "measured")]
     Measured,
     /// Copied rightly from the named source; says nothing of a measurement.

@@ -67,10 +67,11 @@ impl Forces {
 }
 
 impl Fibers {
-    /// The equilibrium at a path length, m.
+    /// The equilibrium of fibres and tendon at a path length, m, and an activation.
     pub(super) fn solve(&self, curves: &impl Curves, path_length: f64, activation: f64) -> FiberState {
         let forces = |length: f64| self.evaluate(curves, path_length, activation, length);
         let extent = path_length - self.slack_length;
+        // Fibre length at which the tendon has its slack length.
         let slack = self.length_of_extent(extent);
         let least = self.least_length;
         if self.rigid {

@@ -31,7 +31,7 @@ impl Routing {
             }
             let weight = tendon.parts.get(index).map_or(0.0, |part| part.weight);
             let kind = NodeKind::Point(index);
-            self.nodes.push(Node { place, seen: place, segment: point.segment, kind, weight });
+            self.nodes.push(Node { place, reference: place, segment: point.segment, kind, weight });
         }
         length
     }
@@ -55,7 +55,7 @@ impl Routing {
         let [first, second] = [contact.first, contact.second].map(|place| axes * place + origin);
         self.lengths[index] = contact.length;
         for (place, kind) in [(first, NodeKind::On(index)), (second, NodeKind::Off(index))] {
-            self.nodes.push(Node { place, seen: place, segment: geom.segment, kind, weight: part.weight });
+            self.nodes.push(Node { place, reference: place, segment: geom.segment, kind, weight: part.weight });
         }
         part.weight * ((first - from).norm() + contact.length + (to - second).norm())
     }

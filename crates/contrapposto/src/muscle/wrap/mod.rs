@@ -68,9 +68,9 @@ pub enum WrapShape {
     },
 }
 
-/// Circumstances of a part of a path.
+/// Rules by which a part of a path is laid over a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Manner {
+pub(super) struct WrapSettings {
     pub(super) rule: PathRule,
     pub(super) method: WrapMethod,
     /// The path has no other surface.
@@ -89,33 +89,33 @@ impl WrapObject {
     }
 
     /// Lays the straight part of a path between two points, in the frame of the surface, over it. A search that ends in no number leaves the part straight.
-    pub(super) fn wrap(&self, from: &Vector3<f64>, to: &Vector3<f64>, manner: Manner) -> Wrapping {
-        match self.laid(from, to, manner) {
+    pub(super) fn wrap(&self, from: &Vector3<f64>, to: &Vector3<f64>, settings: WrapSettings) -> Wrapping {
+        match self.laid(from, to, settings) {
             Wrapping::Touches(contact) | Wrapping::Crosses(contact) if !contact.is_finite() => Wrapping::Free,
             other => other,
         }
     }
 
-    fn laid(&self, from: &Vector3<f64>, to: &Vector3<f64>, manner: Manner) -> Wrapping {
-        match (&self.shape, manner.rule) {
+    fn laid(&self, from: &Vector3<f64>, to: &Vector3<f64>, settings: WrapSettings) -> Wrapping {
+        match (&self.shape, settings.rule) {
             (WrapShape::Cylinder { radius, length }, PathRule::Geodesic) => {
                 cylinder::wrap(*radius, *length, self.quadrant, from, to)
             }
             (WrapShape::Cylinder { radius, length }, PathRule::OpenSim) => {
-                cylinder_opensim::wrap(*radius, *length, self.quadrant, from, to, manner.single)
+                cylinder_opensim::wrap(*radius, *length, self.quadrant, from, to, settings.single)
             }
             (WrapShape::Sphere { radius }, rule) => sphere::wrap(*radius, self.quadrant, from, to, rule),
             (WrapShape::Ellipsoid { half_axes }, PathRule::Geodesic) => {
                 ellipsoid::wrap(half_axes, self.quadrant, from, to)
             }
             (WrapShape::Ellipsoid { half_axes }, PathRule::OpenSim) => {
-                ellipsoid_opensim::wrap(half_axes, self.quadrant, manner.method, from, to)
+                ellipsoid_opensim::wrap(half_axes, self.quadrant, settings.method, from, to)
             }
             (WrapShape::Torus { tube, circle }, PathRule::Geodesic) => {
                 torus::wrap(*tube, *circle, self.quadrant, from, to)
             }
             (WrapShape::Torus { tube, circle }, PathRule::OpenSim) => {
-                torus_opensim::wrap(*tube, *circle, self.quadrant, from, to, manner.single)
+                torus_opensim::wrap(*tube, *circle, self.quadrant, from, to, settings.single)
             }
         }
     }
