@@ -1,9 +1,10 @@
 //! Holds the tree to ARCHITECTURE.md and to the rules of the house: modules use only modules above them, crates only the crates
 //! that they list, no file of a crate uses another one that uses it back, files and functions stay short, a constant's name has
-//! one meaning in a crate, and no documentation opens with a question.
+//! one meaning in a crate, and documentation opens with a statement about a thing with a name.
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
+mod docs;
 mod graph;
 mod measures;
 mod sources;
@@ -19,6 +20,8 @@ const FILE_LINES: usize = 400;
 const FUNCTION_LINES: usize = 60;
 /// Deepest nesting of blocks in a function.
 const NESTING: usize = 4;
+/// Files whose doc comments may still begin with a question word or a pronoun.
+const NOT_YET_REWORDED: [&str; 2] = ["contrapposto-web/src", "equilibria/outcome.rs"];
 
 fn assert_none(found: &[String], rule: &str) {
     assert!(found.is_empty(), "{rule}:\n{}", found.join("\n"));
@@ -119,25 +122,29 @@ fn a_constant_has_one_meaning_in_its_crate() {
 }
 
 #[test]
-fn documentation_opens_with_a_statement() {
+fn every_file_begins_with_module_documentation() {
     let mut found = vec![];
     for folder in crates().values() {
         for (source, _) in sources_of(folder) {
-            let Some(first) = source.text.lines().next() else { continue };
-            if !first.starts_with("//!") {
-                found.push(format!("{}: no module documentation", source.name));
-            }
-            let mut code = false;
-            for line in source.text.lines().map(str::trim_start) {
-                let Some(words) = line.strip_prefix("//!").or_else(|| line.strip_prefix("///")) else { continue };
-                code ^= words.trim_start().starts_with("```");
-                if !code && (words.ends_with('?') || words.contains("? ")) && !words.contains("`?`") {
-                    found.push(format!("{}: {}", source.name, line));
-                }
+            if source.text.lines().next().is_some_and(|first| !first.starts_with("//!")) {
+                found.push(source.name);
             }
         }
     }
-    assert_none(&found, "questions in documentation");
+    assert_none(&found, "files without module documentation");
+}
+
+#[test]
+fn documentation_opens_with_a_statement_about_a_thing_with_a_name() {
+    let mut found = vec![];
+    for path in docs::all_files() {
+        let name = path.strip_prefix(root()).unwrap().display().to_string();
+        let excepted = NOT_YET_REWORDED.iter().any(|file| name.contains(file));
+        let text = read(&path);
+        let faults = docs::faults(&text).into_iter().filter(|line| !excepted || line.contains('?'));
+        found.extend(faults.map(|line| format!("{name}: {line}")));
+    }
+    assert_none(&found, "questions, and first sentences without a subject, in documentation");
 }
 
 #[test]
