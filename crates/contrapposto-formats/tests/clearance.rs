@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use contrapposto::equilibria::{Search, equilibria};
+use contrapposto::equilibria::equilibria;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Capsule, Model};
 use contrapposto::posture::Posture;
@@ -134,17 +134,7 @@ fn postures_of_least_effort_have_no_part_in_another_or_in_the_floor() {
         if scenario.supports.is_empty() {
             continue;
         }
-        let search = Search {
-            model: &scenario.model,
-            start: &scenario.start,
-            supports: &scenario.supports,
-            limits: &scenario.limits,
-            goals: &scenario.goals,
-            loads: &scenario.loads,
-            locked: &scenario.locked,
-            most_work: usize::MAX,
-            scattered: contrapposto::equilibria::SCATTERED_STARTS,
-        };
+        let search = scenario.search();
         let found = equilibria(&search, Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() }).unwrap();
         let carrying: Vec<usize> = scenario.supports.iter().map(|support| support.segment).collect();
         for (i, posture) in found.postures.iter().enumerate() {

@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 
 use contrapposto::contact::{Balance, ContactForces};
-use contrapposto::equilibria::{Search, equilibria};
+use contrapposto::equilibria::equilibria;
 use contrapposto::joint_torques::{JointTorques, Quantities, effort};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::posture::Posture;
@@ -73,21 +73,6 @@ impl Kept {
         };
         (tasks, effort)
     }
-
-    fn search(&self) -> Search<'_> {
-        let RelaxScenario { model, start, supports, limits, goals, loads, locked, .. } = &self.scenario;
-        Search {
-            model,
-            start,
-            supports,
-            limits,
-            goals,
-            loads,
-            locked,
-            most_work: usize::MAX,
-            scattered: contrapposto::equilibria::SCATTERED_STARTS,
-        }
-    }
 }
 
 /// Balance is held, no support, task or clearance is off, and effort is the kept one, in every posture that SLSQP found.
@@ -145,7 +130,7 @@ fn relax_is_within_two_percent_of_slsqp() {
     let all = kept();
     assert!(all.len() >= 4 && all.iter().all(|kept| kept.runs >= 50));
     for kept in all {
-        let found = equilibria(&kept.search(), OPTIONS).unwrap();
+        let found = equilibria(&kept.scenario.search(), OPTIONS).unwrap();
         let least = found.postures[0].relaxed.effort;
         let more = least / kept.effort - 1.0;
         println!("{}: relax {least:.6}, SLSQP {:.6}, {:+.1} %", kept.name, kept.effort, 100.0 * more);

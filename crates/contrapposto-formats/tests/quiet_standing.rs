@@ -5,7 +5,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use contrapposto::equilibria::{Search, Work, equilibria};
+use contrapposto::equilibria::{Work, equilibria};
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::data::library;
 use contrapposto::model::{Model, Side};
@@ -66,17 +66,7 @@ fn scenario(model: &str, known: &Model, sole: Option<&str>) -> String {
 fn most_tired(text: &str, model: Option<Model>) -> Tired {
     let read = read_relax("standing.toml", text.as_bytes(), model);
     let scenario = read.unwrap_or_else(|error| panic!("{:?}", miette::Report::new(error)));
-    let search = Search {
-        model: &scenario.model,
-        start: &scenario.start,
-        supports: &scenario.supports,
-        limits: &scenario.limits,
-        goals: &scenario.goals,
-        loads: &scenario.loads,
-        locked: &scenario.locked,
-        most_work: usize::MAX,
-        scattered: contrapposto::equilibria::SCATTERED_STARTS,
-    };
+    let search = scenario.search();
     let options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
     let found = equilibria(&search, options).unwrap();
     let natural =

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use contrapposto::contact::ContactForces;
-use contrapposto::equilibria::{Search, equilibria};
+use contrapposto::equilibria::equilibria;
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::model::{Model, Side, ThreeAxisJoint};
 use contrapposto::posture_solver::Options;
@@ -82,18 +82,8 @@ fn load_of_the_shoulders_is_that_of_their_moment_in_every_posture_found() {
         "stand-shifting.toml",
     ] {
         let scenario = scenario(name);
-        let RelaxScenario { model, start, supports, limits, goals, loads, locked, .. } = &scenario;
-        let search = Search {
-            model,
-            start,
-            supports,
-            limits,
-            goals,
-            loads,
-            locked,
-            most_work: usize::MAX,
-            scattered: contrapposto::equilibria::SCATTERED_STARTS,
-        };
+        let RelaxScenario { model, supports, loads, .. } = &scenario;
+        let search = scenario.search();
         let options = Options { max_step: 0.1, max_steps: 40, ..Options::least_effort() };
         let found = equilibria(&search, options).unwrap();
         let mut body = JointTorques::new(model);

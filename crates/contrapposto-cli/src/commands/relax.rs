@@ -90,26 +90,11 @@ pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
     Ok(scenario)
 }
 
-/// The search of a scenario.
-fn search(scenario: &RelaxScenario) -> Search<'_> {
-    Search {
-        model: &scenario.model,
-        start: &scenario.start,
-        supports: &scenario.supports,
-        limits: &scenario.limits,
-        goals: &scenario.goals,
-        loads: &scenario.loads,
-        locked: &scenario.locked,
-        most_work: usize::MAX,
-        scattered: contrapposto::equilibria::SCATTERED_STARTS,
-    }
-}
-
 /// The postures of least effort. A body with muscles has the strength of the best of them: it is searched again until that stays.
 pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchError> {
     let mut round = 0;
     loop {
-        let found = equilibria(&search(scenario), OPTIONS)?;
+        let found = equilibria(&scenario.search(), OPTIONS)?;
         let Some(best) = found.postures.first() else { return Ok(found) };
         let change = scenario.take_strength(&best.relaxed.posture);
         if change <= SAME_STRENGTH {
@@ -134,7 +119,7 @@ pub(crate) fn unsettled(change: f64) -> String {
 
 /// The answer: that of the posture of least effort, and the changes that were tried.
 pub(crate) fn answer(scenario: &RelaxScenario, found: &Equilibria, suggest: SuggestArgs) -> Answer {
-    let search = search(scenario);
+    let search = scenario.search();
     let Some((verdict, best)) = Verdict::of_equilibria(&search, found).zip(found.postures.first()) else {
         let verdict = Verdict::of_posture(&scenario.model, &HeldPosture::default());
         return Answer::new(verdict, Advice::default());
@@ -146,7 +131,7 @@ pub(crate) fn answer(scenario: &RelaxScenario, found: &Equilibria, suggest: Sugg
 
 /// The changes that were tried of a body that cannot stand.
 pub(crate) fn advice_without(scenario: &RelaxScenario, verdict: &Verdict, suggest: SuggestArgs) -> Advice {
-    let search = search(scenario);
+    let search = scenario.search();
     advice_of_search(verdict, (&search, &search), (OPTIONS, 0), suggest)
 }
 

@@ -1,6 +1,7 @@
 //! Reads a scenario for `contrapposto relax`: body, start, loads, supports and tasks.
 
 use contrapposto::contact::{Support, root_rates};
+use contrapposto::equilibria::{SCATTERED_STARTS, Search};
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
@@ -48,6 +49,21 @@ pub struct RelaxScenario {
 }
 
 impl RelaxScenario {
+    /// The search for its postures of least effort, with all starts.
+    pub fn search(&self) -> Search<'_> {
+        Search {
+            model: &self.model,
+            start: &self.start,
+            supports: &self.supports,
+            limits: &self.limits,
+            goals: &self.goals,
+            loads: &self.loads,
+            locked: &self.locked,
+            most_work: usize::MAX,
+            scattered: SCATTERED_STARTS,
+        }
+    }
+
     /// Takes the muscles of the scenario's model, in the posture of the start.
     pub fn take_muscles(&mut self, muscles: Option<JointMuscles>) {
         self.muscles = muscles;

@@ -1,5 +1,7 @@
 //! Holds a posture that a solve of a search has reached, and decides which of them count as one.
 
+use std::cmp::Ordering;
+
 use nalgebra::Vector3;
 
 use super::mirror::Mirror;
@@ -18,6 +20,8 @@ pub(super) struct Candidate {
     pub(super) relaxed: SolvedPosture,
     /// Load of supports beyond their greatest shares, shares of body weight.
     pub(super) excess: f64,
+    /// Limbs without a task that are held up, though they can hang.
+    pub(super) raised_limbs: usize,
     /// External and passive torque of every coordinate with muscles, as shares of strength.
     pub(super) relative_torques: Vec<[f64; 2]>,
     /// Centre of mass of every segment, ground, m.
@@ -33,6 +37,12 @@ impl Candidate {
         let pairs = self.relative_torques.iter().flatten().zip(other.relative_torques.iter().flatten());
         let far = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b).norm() > SAME_PLACE;
         pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_TORQUE) && !self.places.iter().zip(&other.places).any(far)
+    }
+
+    /// Orders postures: those with fewer limbs held up come first, of them the one of less effort.
+    pub(super) fn compare(&self, other: &Self) -> Ordering {
+        let by_limbs = self.raised_limbs.cmp(&other.raised_limbs);
+        by_limbs.then(self.relaxed.effort.total_cmp(&other.relaxed.effort))
     }
 
     /// The mirror image, where its posture fits the model; its other numbers are those of this posture.

@@ -6,11 +6,13 @@ use super::hanging_limbs::{hanging_limbs, idle_segments, in_mid_range};
 use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
+use super::raised_limbs::LimbsWithoutTask;
 use super::scattered::scattered;
 use super::search::{Search, SearchError};
 use super::ways_to_stand::DifferentWays;
 use crate::contact::{Condition, Missing};
 use crate::effort::hessian::HessianModel;
+use crate::kinematics::Kinematics;
 use crate::posture::Posture;
 use crate::posture_solver::{Engine, EngineError, Options};
 use crate::tasks::PriorityLevel;
@@ -20,6 +22,8 @@ use crate::tasks::{Effort, Task};
 const ROUNDS: usize = 2;
 /// Best postures from which lower local minima are searched for.
 const SEARCHED_FOR_LOWER: usize = 3;
+/// Most postures with a limb held up from which limbs are let hang.
+const HUNG: usize = 5;
 /// Steps of an exploratory solve.
 const EXPLORATORY_STEPS: usize = 40;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
@@ -40,6 +44,7 @@ const EVERYTHING: Missing = Missing { force: f64::INFINITY, moment: f64::INFINIT
 /// [`SearchError`] when something does not fit the model, or the body cannot stand.
 pub fn equilibria(search: &Search<'_>, options: Options) -> Result<Equilibria, SearchError> {
     let mut finder = Finder::new(search, options)?;
+    finder.find_limbs_that_can_hang();
     finder.explore()?;
     finder.converge();
     finder.finish()
@@ -63,6 +68,8 @@ pub(super) struct Finder<'a> {
     approach: Engine<'a>,
     /// Index of the level of goal angles among the engines' levels.
     pub(super) slot: usize,
+    /// Limbs that are not to be held up.
+    limbs: LimbsWithoutTask,
     found: Vec<Candidate>,
     /// Missing contact forces where the body fell.
     fell: Vec<Missing>,
@@ -105,6 +112,7 @@ impl<'a> Finder<'a> {
             engines,
             approach,
             slot,
+            limbs: LimbsWithoutTask::default(),
             found: vec![],
             fell: vec![],
             refused: None,
@@ -128,6 +136,14 @@ impl<'a> Finder<'a> {
         let spent = self.starts > 0 && self.work() >= most;
         self.cut |= spent;
         spent
+    }
+
+    fn find_limbs_that_can_hang(&mut self) {
+        let Some(posture) = self.with_hanging_limbs(self.search.start) else { return };
+        let mut kinematics = Kinematics::new(self.search.model);
+        if kinematics.update(self.search.model, &posture).is_ok() {
+            self.limbs = LimbsWithoutTask::of(self.search, &kinematics);
+        }
     }
 
     /// Solves from all starts, a few steps each.
@@ -175,7 +191,7 @@ impl<'a> Finder<'a> {
     /// Searches for lower local minima from the best postures, and converges from the mirror images of what is found.
     fn lower(&mut self) {
         let mut best = self.selected(Stage::Converged);
-        best.sort_by(|&a, &b| self.found[a].relaxed.effort.total_cmp(&self.found[b].relaxed.effort));
+        best.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         best.truncate(SEARCHED_FOR_LOWER);
         let count = self.found.len();
         for i in best {
@@ -218,13 +234,14 @@ impl<'a> Finder<'a> {
         let excess = supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum();
         let (relative_torques, places) =
             (relative_torques(model, engine), places(model, engine.torques().kinematics()));
-        let new = Candidate { relaxed, excess, starts, relative_torques, places };
+        let raised_limbs = self.limbs.raised(self.search, engine.torques().kinematics());
+        let new = Candidate { relaxed, excess, starts, raised_limbs, relative_torques, places };
         let Some(known) = self.found.iter_mut().find(|known| known.is_same(&new)) else {
             self.found.push(new);
             return;
         };
         let allowed = known.distance(self.slot) + ALLOWED_ERROR[Stage::Converged as usize];
-        let better = new.relaxed.effort < known.relaxed.effort && new.distance(self.slot) <= allowed;
+        let better = new.compare(known).is_lt() && new.distance(self.slot) <= allowed;
         let mut starts = std::mem::take(&mut known.starts);
         starts.extend_from_slice(&new.starts);
         if better {
@@ -257,24 +274,34 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// Converges from the posture of least effort so far with limbs that hang: exploratory steps would leave it again.
+    /// Converges with hanging limbs from the first posture, and from the first of those in which a limb is held up: exploratory steps would leave
+    /// limbs that hang.
     fn hang(&mut self) {
-        let converged = self.selected(Stage::Converged).into_iter().map(|i| &self.found[i].relaxed);
-        let Some(best) = converged.min_by(|a, b| a.effort.total_cmp(&b.effort)) else { return };
-        let from = best.posture.clone();
-        let (model, supports) = (self.search.model, self.search.supports);
-        let Ok(tasks) = hanging_limbs(model, supports, &from) else { return };
-        let mut from = self.approached_with(&tasks, &from);
-        if from.0 > HANGING {
-            // Along the shortest turn a joint may meet the end of its range: the other way begins in the middle of the ranges.
-            let middle = in_mid_range(model, supports, &from.1);
-            let other = self.approached_with(&tasks, &middle);
-            if other.0 < from.0 - HANGING {
-                from = other;
+        let mut known = self.selected(Stage::Converged);
+        known.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
+        let raised = known.iter().skip(1).filter(|&&i| self.found[i].raised_limbs > 0).take(HUNG);
+        let from = known.first().into_iter().chain(raised).map(|&i| self.found[i].relaxed.posture.clone());
+        for posture in from.collect::<Vec<_>>() {
+            if let Some(from) = self.with_hanging_limbs(&posture) {
+                self.solve(Stage::Converged, &from, vec!["limbs that carry nothing hang".to_owned()]);
             }
         }
-        let (_, from) = from;
-        self.solve(Stage::Converged, &from, vec!["limbs that carry nothing hang".to_owned()]);
+    }
+
+    /// The posture with limbs that hang as far as tasks allow.
+    fn with_hanging_limbs(&mut self, posture: &Posture) -> Option<Posture> {
+        let (model, supports) = (self.search.model, self.search.supports);
+        let tasks = hanging_limbs(model, supports, posture).ok()?;
+        let (distance, near) = self.approached_with(&tasks, posture);
+        if distance > HANGING {
+            // Along the shortest turn a joint may meet the end of its range: the other way begins in the middle of the ranges.
+            let middle = in_mid_range(model, supports, &near);
+            let (other, posture) = self.approached_with(&tasks, &middle);
+            if other < distance - HANGING {
+                return Some(posture);
+            }
+        }
+        Some(near)
     }
 
     /// Moves to the tasks without regard to effort first: from afar the two would obstruct each other.
@@ -311,7 +338,7 @@ impl<'a> Finder<'a> {
     /// The posture of least effort so far.
     fn best(&self) -> Option<Candidate> {
         let found = self.selected(Stage::Exploratory).into_iter().map(|i| &self.found[i]);
-        found.min_by(|a, b| a.relaxed.effort.total_cmp(&b.relaxed.effort)).cloned()
+        found.min_by(|a, b| a.compare(b)).cloned()
     }
 
     /// Postures with supports in place and, level by level, tasks as near as in any other posture.
@@ -348,8 +375,11 @@ impl<'a> Finder<'a> {
             let slip = |i: &usize| self.found[*i].relaxed.slip.length();
             selected.extend((0..self.found.len()).min_by(|a, b| slip(a).total_cmp(&slip(b))));
         }
-        selected.sort_by(|&a, &b| self.found[a].relaxed.effort.total_cmp(&self.found[b].relaxed.effort));
+        selected.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         let yielded = self.found.len() - selected.len();
+        let (least, all) = (self.found[selected[0]].raised_limbs, selected.len());
+        selected.retain(|&i| self.found[i].raised_limbs == least);
+        let raised = all - selected.len();
         let (mut answers, engine) =
             (DifferentWays::new(idle_segments(self.search)), &mut self.engines[Stage::Converged as usize]);
         for i in selected {
@@ -359,6 +389,6 @@ impl<'a> Finder<'a> {
         }
         let DifferentWays { postures, alike, .. } = answers;
         let (starts, fell, steps, work, cut) = (self.starts, self.fell.len(), self.steps, self.work(), self.cut);
-        Ok(Equilibria { postures, starts, fell, yielded, alike, steps, work, cut })
+        Ok(Equilibria { postures, starts, fell, yielded, alike: alike + raised, steps, work, cut })
     }
 }

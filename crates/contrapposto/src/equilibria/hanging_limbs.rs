@@ -9,7 +9,7 @@ use crate::tasks::{Point, Task};
 use super::search::Search;
 
 /// The limbs that move no support: each a chain of segments, from the joint where the limb begins to its last segment.
-fn free_limbs(model: &Model, supports: &[Support]) -> Vec<Vec<usize>> {
+pub(super) fn free_limbs(model: &Model, supports: &[Support]) -> Vec<Vec<usize>> {
     let moves = rates_that_move(model, supports);
     let carries = |segment: usize| {
         let rates = model.segments()[segment].mobility.map(|mobility| model.rates_of(mobility));

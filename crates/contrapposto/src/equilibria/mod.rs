@@ -16,7 +16,8 @@
 //!
 //! From every different posture the engine then converges. Two postures count as one if at no joint the torque of loads or of
 //! passive tissue differs by more than a twentieth of the strength there and no segment is elsewhere: minima can be flat, a forearm
-//! may rotate without load on a muscle. Of those the one of least effort is kept. Postures whose tasks are farther away than in the best one, that slipped or
+//! may rotate without load on a muscle. Of those the one of least effort is kept. A limb without a task that can hang is not held up: postures
+//! with fewer such limbs come first, whatever their efforts (`raised_limbs.rs`). Postures whose tasks are farther away than in the best one, that slipped or
 //! fell, are counted and left out, and so are those that are the same way to stand as a better one (`ways_to_stand.rs`).
 
 mod candidate;
@@ -27,6 +28,7 @@ mod hanging_limbs;
 mod mirror;
 mod other_places;
 mod outcome;
+mod raised_limbs;
 mod scattered;
 mod search;
 mod stability;
