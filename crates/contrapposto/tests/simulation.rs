@@ -4,11 +4,15 @@
 
 use contrapposto::fatigue::Hysteresis;
 use contrapposto::hybrid::Strategy;
+use contrapposto::joint_torques::Hazard;
 use contrapposto::model::{Adult, adult, data};
+use contrapposto::posture::Posture;
 use contrapposto::simulation::{
     Event, ReliefSettings, RunSettings, Sample, Scenario, StopReason, StrategySettings, Tables, run,
 };
 use contrapposto::statics::{Load, LoadKind};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 /// The reference man's right arm, elbow free, `load` kg in the hand, an elbow curve that can carry it.
 fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
@@ -175,4 +179,42 @@ fn fatigue_of_a_held_posture_is_the_same_at_time_steps_from_5_ms_to_60_s() {
             assert!(worst < 1e-9);
         }
     }
+}
+
+/// The whole body in postures drawn from all ranges, held still: the angles of its three-axis joints are far from their coordinates.
+#[test]
+fn hazards_of_a_run_are_those_of_its_posture_by_angles_about_axes() {
+    let (arm, _) = loaded_elbow(0.0, 0.0);
+    let model = adult(&Adult::default()).unwrap();
+    let n = model.coordinates().len();
+    let mut random = Pcg64::seed_from_u64(17);
+    let (mut found, mut only_by_coordinates) = (0, 0);
+    for draw in 0..400 {
+        let values = model.coordinates().iter().map(|c| random.random_range(c.range.0..c.range.1)).collect();
+        let scenario = Scenario {
+            model: model.clone(),
+            start: Posture::new(values),
+            free: vec![false; n],
+            loads: vec![],
+            start_fatigue: vec![[0.0; 2]; n],
+            ..arm.clone()
+        };
+        let mut torques = (vec![], vec![]);
+        let summary = run(&scenario, |sample| torques = (sample.external.to_vec(), sample.passive.to_vec())).unwrap();
+        let values = scenario.start.values();
+        let hazards = Hazard::of_posture(&model, values, &torques.0, &torques.1);
+        for (i, coordinate) in summary.coordinates.iter().enumerate() {
+            let expected = hazards.iter().find(|hazard| hazard.coordinate == i);
+            let name = &model.coordinates()[i].name;
+            assert_eq!(coordinate.hazardous.is_some(), expected.is_some(), "{name}, posture {draw}");
+            found += usize::from(expected.is_some());
+            let by_coordinate = Hazard::at(&model.coordinates()[i], values[i], torques.0[i], torques.1[i]);
+            only_by_coordinates += usize::from(by_coordinate.is_some() != expected.is_some());
+            if let Some((hazardous, expected)) = coordinate.hazardous.zip(expected) {
+                assert!((hazardous.angle - expected.angle).abs() < 1e-12, "{name}, posture {draw}");
+            }
+        }
+    }
+    println!("{found} hazards; {only_by_coordinates} answers would differ by coordinates");
+    assert!(found > 50 && only_by_coordinates > 20, "{found} {only_by_coordinates}");
 }

@@ -14,6 +14,9 @@ pub struct Sample<'a> {
     pub time: f64,
     /// Value of every coordinate, rad or m.
     pub posture: &'a [f64],
+    /// Angle that the torques of every coordinate belong to, rad or m: of a three-axis joint those about the axes that stand for its coordinates,
+    /// else the value.
+    pub angles: &'a [f64],
     /// External torque of every coordinate, N m (N for slides). Depends on posture and loads.
     pub external: &'a [f64],
     /// Passive torque of every coordinate. Depends on posture.
@@ -50,6 +53,7 @@ pub struct Sample<'a> {
 /// The parts of a sample that no later step needs.
 #[derive(Debug)]
 pub(super) struct Record {
+    pub(super) angles: Vec<f64>,
     pub(super) external: Vec<f64>,
     pub(super) passive: Vec<f64>,
     pub(super) load: Vec<f64>,
@@ -69,6 +73,7 @@ impl Record {
     /// Space for `n` coordinates.
     pub(super) fn new(n: usize) -> Self {
         Self {
+            angles: vec![0.0; n],
             external: vec![0.0; n],
             passive: vec![0.0; n],
             load: vec![0.0; n],

@@ -140,6 +140,7 @@ impl<'a> Simulation<'a> {
         Ok(Sample {
             time,
             posture: self.state.posture.values(),
+            angles: &self.record.angles,
             external: &self.record.external,
             passive: &self.record.passive,
             active: &self.state.active,
@@ -298,6 +299,7 @@ impl<'a> Simulation<'a> {
             let (external, passive) = coordinate.rate.map_or((0.0, 0.0), of_rate);
             (self.record.external[i], self.record.passive[i]) = (external, passive);
             self.state.active[i] = active_torque(external, passive);
+            self.record.angles[i] = torques.angles()[i];
             self.record.load[i] = relative_load(coordinate, torques.angles()[i], self.state.active[i]);
         }
         Ok(effort(&self.record.load))

@@ -79,7 +79,7 @@ pub struct Hazardous {
     pub samples: u64,
     /// The moment, s.
     pub time: f64,
-    /// Angle there, rad.
+    /// Angle there, rad: of a three-axis joint that about the axis.
     pub angle: f64,
     /// External and passive torque there, N m.
     pub torques: [f64; 2],
@@ -168,7 +168,7 @@ impl CoordinateSummary {
     }
 
     fn take_hazard(&mut self, i: usize, coordinate: &Coordinate, sample: &Sample) {
-        let (angle, torques) = (sample.posture[i], [sample.external[i], sample.passive[i]]);
+        let (angle, torques) = (sample.angles[i], [sample.external[i], sample.passive[i]]);
         if Hazard::at(coordinate, angle, torques[0], torques[1]).is_none() {
             return;
         }
