@@ -4,12 +4,14 @@ use std::cell::Cell;
 
 use super::ScenarioError;
 use super::body_motion::{BodyMotion, engine, is_effort};
-use super::easiest::{Now, SEARCH_BUDGET_OF_STEP, Searched, easiest};
+use super::easiest::{Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference};
 use super::path::{Path, Planner};
-use crate::contact::Support;
+use crate::contact::{Balance, Support};
+use crate::joint_torques::JointTorquesError;
+use crate::kinematics::Kinematics;
 use crate::posture::Posture;
-use crate::posture_solver::Options;
-use crate::tasks::PriorityLevel;
+use crate::posture_solver::{Engine, Options, SolvedPosture};
+use crate::tasks::{PriorityLevel, Task, held_place};
 
 /// Greatest change of a joint in the search for the start, rad or m.
 const START_MAX_STEP: f64 = 0.1;
@@ -22,7 +24,15 @@ impl BodyMotion<'_> {
         let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
         let levels = self.levels().cloned().collect();
         let mut nearest = engine((scenario, self.model.clone()), &scenario.start, &self.supports, levels, options)?;
-        let mut posture = nearest.solve(&scenario.start)?.posture;
+        let mut solved = nearest.solve(&scenario.start)?;
+        if self.misses(&solved) {
+            let other = nearest.solve(&self.without_effort()?)?;
+            let errors: Vec<f64> = solved.levels.iter().map(|level| level.length).collect();
+            if other.balance == Balance::Held && first_difference(&other.levels, &errors) < 0.0 {
+                solved = other;
+            }
+        }
+        let mut posture = solved.posture;
         // A body whose weight acts at the very edge of its supports may be off balance by rounding.
         if let Some(missing) = self.recover_balance(&mut posture)? {
             return Err(ScenarioError::CannotStand(missing));
@@ -30,6 +40,35 @@ impl BodyMotion<'_> {
         let Searched { found, work, cut } = self.easiest(&posture, SEARCH_BUDGET_OF_STEP)?;
         self.forget();
         Ok(Searched { found: found.unwrap_or(posture), work, cut })
+    }
+
+    /// Errors of the levels above effort that ask for something, in the posture of the last update.
+    fn errors_above_effort(&self) -> Vec<f64> {
+        let levels = self.engine.levels().iter().enumerate().take_while(|(_, level)| !is_effort(level));
+        let asks = levels.filter(|(_, level)| !level.tasks.is_empty() || !level.half_spaces.is_empty());
+        asks.map(|(i, _)| self.engine.error(i)).collect()
+    }
+
+    /// Whether a solve of all levels leaves one above effort unreached.
+    fn misses(&self, solved: &SolvedPosture) -> bool {
+        let above = self.levels().take_while(|level| !is_effort(level)).count();
+        solved.levels[..above].iter().any(|level| level.length > UNREACHED)
+    }
+
+    /// The posture nearest to the tasks above effort, by the step rule of strict priorities, whether the supports hold the body in it or not.
+    fn without_effort(&self) -> Result<Posture, ScenarioError> {
+        let scenario = self.scenario;
+        let mut at_start = Kinematics::new(&self.model);
+        at_start.update(&self.model, &scenario.start).map_err(JointTorquesError::from)?;
+        let places = self.supports.iter().map(|support| held_place(support, &self.model, &at_start)).collect();
+        let level = |tasks: Vec<Task>, hard: bool| PriorityLevel { tasks, hard, ..PriorityLevel::default() };
+        let fixed = [level(places, true), level(scenario.limits.clone(), false)];
+        let tasks = self.levels().take_while(|level| !is_effort(level)).cloned();
+        let levels = fixed.into_iter().filter(|level| !level.tasks.is_empty()).chain(tasks).collect();
+        let options = Options::inverse_kinematics();
+        let mut engine = Engine::new(self.model.clone(), levels, &scenario.loads, options)?;
+        scenario.locked_rates().for_each(|rate| engine.lock(rate));
+        Ok(engine.solve(&scenario.start)?.posture)
     }
 
     /// A posture of less effort that the body can take without moving a support, if `budget` of work shows one worth a motion.
@@ -44,9 +83,11 @@ impl BodyMotion<'_> {
         self.engine.evaluate(posture)?;
         let effort = self.effort();
         let levels: Vec<PriorityLevel> = self.levels().cloned().collect();
-        let now = Now { model: &self.model, posture, levels: &levels, loads: self.engine.loads(), effort };
+        let errors = self.errors_above_effort();
+        let loads = self.engine.loads();
+        let now = Now { model: &self.model, posture, levels: &levels, loads, effort };
         // A search that finds nothing leaves the body as it is.
-        Ok(easiest(self.scenario, now, &self.supports, budget).unwrap_or_default())
+        Ok(easiest(self.scenario, now, &errors, &self.supports, budget).unwrap_or_default())
     }
 
     /// The way to `to`, where support number `lifted`, if any, has another place; `None` where there is none, where a law gives no

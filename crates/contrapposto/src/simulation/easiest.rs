@@ -7,7 +7,7 @@ use crate::contact::{Support, rates_that_move};
 use crate::equilibria::{RelaxedPosture, Search, SearchError, equilibria};
 use crate::model::Model;
 use crate::posture::Posture;
-use crate::posture_solver::Options;
+use crate::posture_solver::{LevelError, Options};
 use crate::statics::Load;
 use crate::tasks::PriorityLevel;
 
@@ -24,6 +24,11 @@ pub(super) const SEARCH_BUDGET: usize = 200_000;
 pub(super) const SEARCH_BUDGET_OF_STEP: usize = 48_000;
 /// A posture is worth a motion if its effort is less than this share of the present one.
 const WORTH_A_MOTION: f64 = 0.98;
+/// A task whose error is greater is out of reach, and a posture in which it is nearer by more is another one, m or rad. Assumed: a tenth of
+/// the distance from which on a verdict calls a target missed.
+pub(super) const UNREACHED: f64 = 5e-4;
+/// A posture that is nearer to a task by more is worth a motion, m or rad. Assumed: the distance from which on a verdict calls a target missed.
+const NEARER: f64 = 5e-3;
 /// A posture whose supports are farther off their places is none, m and rad together.
 const MOST_SLIP: f64 = 1e-5;
 
@@ -48,10 +53,12 @@ pub(super) struct Searched<T> {
     pub(super) cut: bool,
 }
 
-/// A better posture, if `budget` of work shows one.
+/// A posture that is nearer to the tasks above effort, whose `errors` are those now, or of less effort and as near, if `budget` of work shows
+/// one.
 pub(super) fn easiest(
     scenario: &Scenario,
     now: Now<'_>,
+    errors: &[f64],
     supports: &[Support],
     budget: usize,
 ) -> Result<Searched<Option<Posture>>, SearchError> {
@@ -60,10 +67,18 @@ pub(super) fn easiest(
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
     let Searched { found, work, cut } = search(scenario, now, supports, &locked, budget)?;
     let better = |best: &RelaxedPosture| {
-        best.relaxed.slip.length() <= MOST_SLIP && best.relaxed.effort < WORTH_A_MOTION * now.effort
+        let farther = first_difference(&best.relaxed.levels, errors);
+        let easier = best.relaxed.effort < WORTH_A_MOTION * now.effort;
+        best.relaxed.slip.length() <= MOST_SLIP && (farther < -NEARER || easier && farther <= 0.0)
     };
     let better = found.into_iter().next().filter(better);
     Ok(Searched { found: better.map(|best| best.relaxed.posture), work, cut })
+}
+
+/// How much farther the first task is whose errors differ by more than [`UNREACHED`]; 0 where none does.
+pub(super) fn first_difference(levels: &[LevelError], errors: &[f64]) -> f64 {
+    let mut differences = levels.iter().zip(errors).map(|(level, error)| level.length - error);
+    differences.find(|difference| difference.abs() > UNREACHED).unwrap_or(0.0)
 }
 
 /// The postures that a search finds, that of least effort first.
