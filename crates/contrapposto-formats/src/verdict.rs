@@ -130,6 +130,9 @@ pub struct SuggestionText {
     pub least_minutes: Option<f64>,
     /// Number of coordinates that ligaments carry in hazard.
     pub hazards: usize,
+    /// Number of hands that hold half of the strength of their grip or more, where there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hands: Option<usize>,
     /// Load of the group that works hardest.
     pub load: Option<f64>,
 }
@@ -142,6 +145,7 @@ impl From<&Suggestion> for SuggestionText {
             minutes: suggestion.seconds.map(|seconds| seconds / 60.0),
             least_minutes: suggestion.least.filter(|least| least.is_finite()).map(|seconds| seconds / 60.0),
             hazards: suggestion.hazards,
+            hands: Some(suggestion.hands).filter(|hands| *hands > 0),
             load: suggestion.load,
         }
     }

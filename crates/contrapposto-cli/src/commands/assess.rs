@@ -171,9 +171,9 @@ fn advice(given: &Motion<'_>, found: &Assessment, verdict: &Verdict, suggest: Su
         return Advice::default();
     }
     let start = &motion[0].1;
-    let (supports, has_loads) = (&settings.supports, !held.is_empty() && ground.is_none());
-    let job = Job { model, start, supports, levels: vec![], has_loads, asked: Some(end - begin), strategy: None };
-    let all = || changes(&job).into_iter().filter(|change| *change != Change::OtherFoot).collect();
+    let (supports, loads) = (&settings.supports, if ground.is_none() { vec![held] } else { vec![] });
+    let job = Job { model, start, supports, levels: vec![], loads, asked: Some(end - begin), strategy: None };
+    let all = || changes(&job, &verdict.hazards).into_iter().filter(|change| *change != Change::OtherFoot).collect();
     let groups = Worked::in_motion(model, found);
     let breaks = || with_breaks(&groups, end - begin, (begin, end), verdict);
     let trial = |change: &Change| {

@@ -15,6 +15,7 @@ use super::relax::{MOST_STRENGTH_ROUNDS, SAME_STRENGTH, unsettled};
 use crate::args::{PoseArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note};
+use crate::progress::{TRYING_CHANGES, spinner};
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::{Answer, answered};
 use crate::view::held::{Held, held};
@@ -38,11 +39,16 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let name = file.name.clone();
     let mut scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POSE_FILES)).transpose()?;
-    let Posed { pose, held, kept_balance, .. } = solve(&name, &mut scenario)?;
+    let solving = spinner("solving for the posture");
+    let posed = posed(&name, &mut scenario);
+    solving.finish_and_clear();
+    let Posed { pose, held, kept_balance, .. } = told(posed?);
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let files = if args.out.is_some() { names.collect() } else { vec![] };
+    let trying = spinner(TRYING_CHANGES);
     let answer = answer(&scenario, &pose, &held, args.suggest);
+    trying.finish_and_clear();
     let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), files);
     let json = json_text("pose.json", &text)?;
     if let Some(folder) = &folder {
@@ -103,7 +109,11 @@ pub(crate) struct Posed {
 
 /// Solves for the posture of a scenario named `name`, with the errors of its goals. Where the supports do not hold the one nearest to the tasks, and no task asks for balance, balance comes first.
 pub(crate) fn solve(name: &str, scenario: &mut PoseScenario) -> Result<Posed, Fail> {
-    let posed = posed(name, scenario)?;
+    Ok(told(posed(name, scenario)?))
+}
+
+/// Notes about a posture go to standard error.
+fn told(posed: Posed) -> Posed {
     if let Some(change) = posed.unsettled {
         print_note("warning", &unsettled(change));
     }
@@ -113,7 +123,7 @@ pub(crate) fn solve(name: &str, scenario: &mut PoseScenario) -> Result<Posed, Fa
             print_note("note", STILL_FALLING);
         }
     }
-    Ok(posed)
+    posed
 }
 
 /// As [`solve`], without a word. A body with muscles has the strength of that posture: where effort counts it is solved for again until
@@ -206,18 +216,18 @@ fn advice(scenario: &PoseScenario, verdict: &Verdict, steps: usize, suggest: Sug
         start: &scenario.start,
         supports: &scenario.supports,
         levels: scenario.goals.iter().collect(),
-        has_loads: !scenario.loads.is_empty(),
+        loads: vec![&scenario.loads],
         asked: None,
         strategy: None,
     };
-    let all = || changes(&job).into_iter().filter(|change| *change != Change::OtherFoot).collect();
+    let all = || changes(&job, &verdict.hazards).into_iter().filter(|change| *change != Change::OtherFoot).collect();
     Advice::new(verdict, &job, all, || None, budget, |change| trial(scenario, &job, change))
 }
 
 /// Solves for the posture with a change.
 fn trial(scenario: &PoseScenario, job: &Job<'_>, change: &Change) -> Trial {
     let mut changed = scenario.clone();
-    changed.goals.iter_mut().for_each(|goal| change.apply_to_level(job, goal));
+    change.apply_to_goals(job, &mut changed.goals);
     change.apply_to_loads(&mut changed.loads);
     let Ok(Posed { pose, held, .. }) = posed("pose", &mut changed) else { return Trial::default() };
     Trial { verdict: Some(verdict(&changed, &pose, &held)), steps: pose.steps }

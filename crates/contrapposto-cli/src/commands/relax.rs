@@ -17,7 +17,7 @@ use super::trials::advice_of_search;
 use crate::args::{RelaxArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note};
-use crate::progress::spinner;
+use crate::progress::{TRYING_CHANGES, spinner};
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::body;
@@ -41,7 +41,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let name = file.name.clone();
     let mut scenario = read(file)?;
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &RELAX_FILES)).transpose()?;
-    let spinner = spinner();
+    let spinner = spinner("trying starts");
     let found = find(&mut scenario);
     let found = match found {
         Ok(found) => found,
@@ -55,6 +55,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         Err(SearchError::Relax(error)) => return Err(Fail::Refused(format!("{name}: {error}"))),
         Err(error) => return Err(Fail::Job(format!("{name}: {error}"))),
     };
+    spinner.set_message(TRYING_CHANGES);
     let answer = answer(&scenario, &found, args.suggest);
     spinner.finish_and_clear();
     let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };

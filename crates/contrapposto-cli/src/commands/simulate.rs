@@ -9,6 +9,7 @@ use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, S
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
+use indicatif::ProgressBar;
 
 use self::snapshot::{SNAPSHOT, go_on, save};
 use super::trials::{advice_of_run, advice_without_posture};
@@ -16,7 +17,7 @@ use crate::args::{DemoArgs, SimulateArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::interruption;
 use crate::output::{ResultSet, json_text, print, print_note};
-use crate::progress::progress_bar;
+use crate::progress::{TRYING_CHANGES, progress_bar, spinner};
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::figures::{figures_of_run, pictures_of_run};
@@ -104,6 +105,8 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     interruption::watch();
     let goes_on = || !interruption::is_requested();
     let failed = |error| Fail::job("simulation", error);
+    // The bar is there while the start is searched for, too.
+    let progress = progress_bar(scenario.run.duration);
     let resumed =
         folder.as_ref().filter(|_| resume).map(|folder| go_on(scenario, &folder.path(SNAPSHOT))).transpose()?;
     let (mut run, recording) = match resumed {
@@ -111,6 +114,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         None => match Run::new(scenario) {
             Ok(run) => (run, Recording::new(scenario)),
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
+                progress.finish_and_clear();
                 let body = (&scenario.model, scenario.loads.as_slice());
                 let advice = |verdict: &Verdict| advice_without_posture(verdict, scenario, suggest, goes_on);
                 return without_posture(
@@ -126,11 +130,14 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         },
     };
     let mut files = folder.map(|folder| Files { folder, recording });
-    go_through(scenario, &mut run, files.as_mut())?;
+    go_through(scenario, &mut run, files.as_mut(), &progress)?;
+    progress.finish_and_clear();
     let summary = run.summary();
     let mut answer = Answer::of_run(scenario, &summary);
     if summary.reason != StopReason::Interrupted {
+        let trying = spinner(TRYING_CHANGES);
         answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
+        trying.finish_and_clear();
     }
     let text = match &files {
         Some(files) => files.write((scenario, things), (&run, &summary), &answer, figures)?,
@@ -145,8 +152,12 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
 }
 
 /// Computes and records all samples up to the end of a run, or until it is interrupted.
-fn go_through<'a>(scenario: &'a Scenario, run: &mut Run<'a>, mut files: Option<&mut Files>) -> Result<(), Fail> {
-    let progress = progress_bar(scenario.run.duration);
+fn go_through<'a>(
+    scenario: &'a Scenario,
+    run: &mut Run<'a>,
+    mut files: Option<&mut Files>,
+    progress: &ProgressBar,
+) -> Result<(), Fail> {
     let mut number = run.snapshot().samples;
     let mut saved = (Instant::now(), number);
     // The start is always shown.
@@ -164,7 +175,6 @@ fn go_through<'a>(scenario: &'a Scenario, run: &mut Run<'a>, mut files: Option<&
             }
         }
     }
-    progress.finish_and_clear();
     Ok(())
 }
 

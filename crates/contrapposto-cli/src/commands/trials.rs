@@ -34,7 +34,7 @@ pub(crate) fn advice_of_run(
     Advice::new(
         verdict,
         &job,
-        || by_promise(scenario, summary, changes(&job)),
+        || by_promise(scenario, summary, changes(&job, &verdict.hazards)),
         || verdict.kind.is_done().then(breaks).flatten(),
         budget,
         |change| try_run(scenario, change, &go_on),
@@ -51,7 +51,7 @@ pub(crate) fn advice_without_posture(
     let Some(budget) = suggest.budget(0) else { return Advice::default() };
     let job = Job::from(scenario);
     let trial = |change: &_| try_run(scenario, change, &go_on);
-    Advice::new(verdict, &job, || changes(&job), || None, budget, trial)
+    Advice::new(verdict, &job, || changes(&job, &verdict.hazards), || None, budget, trial)
 }
 
 /// The changes of a search for postures of least effort, whose best posture is `search.start`, and which took so many solver steps.
@@ -64,6 +64,6 @@ pub(super) fn advice_of_search(
 ) -> Advice {
     let Some(budget) = suggest.budget(steps) else { return Advice::default() };
     let job = Job::from(given);
-    let order = || by_promise_of_search(search, changes(&job));
+    let order = || by_promise_of_search(search, changes(&job, &verdict.hazards));
     Advice::new(verdict, &job, order, || None, budget, |change| try_search(given, options, change))
 }

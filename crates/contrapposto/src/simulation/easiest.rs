@@ -28,7 +28,7 @@ const WORTH_A_MOTION: f64 = 0.98;
 /// the distance from which on a verdict calls a target missed.
 pub(super) const UNREACHED: f64 = 5e-4;
 /// A posture that is nearer to a task by more is worth a motion, m or rad. Assumed: the distance from which on a verdict calls a target missed.
-const NEARER: f64 = 5e-3;
+const WORTH_NEARING: f64 = 5e-3;
 /// A posture whose supports are farther off their places is none, m and rad together.
 const MOST_SLIP: f64 = 1e-5;
 
@@ -69,13 +69,13 @@ pub(super) fn easiest(
     let better = |best: &RelaxedPosture| {
         let farther = first_difference(&best.relaxed.levels, errors);
         let easier = best.relaxed.effort < WORTH_A_MOTION * now.effort;
-        best.relaxed.slip.length() <= MOST_SLIP && (farther < -NEARER || easier && farther <= 0.0)
+        best.relaxed.slip.length() <= MOST_SLIP && (farther < -WORTH_NEARING || easier && farther <= 0.0)
     };
     let better = found.into_iter().next().filter(better);
     Ok(Searched { found: better.map(|best| best.relaxed.posture), work, cut })
 }
 
-/// How much farther the first task is whose errors differ by more than [`UNREACHED`]; 0 where none does.
+/// Difference of the errors of the first task that differ by more than [`UNREACHED`], greater than 0 where it is farther; 0 where none does.
 pub(super) fn first_difference(levels: &[LevelError], errors: &[f64]) -> f64 {
     let mut differences = levels.iter().zip(errors).map(|(level, error)| level.length - error);
     differences.find(|difference| difference.abs() > UNREACHED).unwrap_or(0.0)

@@ -36,27 +36,32 @@ impl Advice {
         let suggestion =
             |(change, trial): (&Change, &Trial)| Some(Suggestion::new(job, change, trial.verdict.as_ref()?));
         let all: Vec<Suggestion> = changes.iter().zip(&trials).filter_map(suggestion).chain(known()).collect();
-        let tried = all.len();
+        let tried: Vec<String> = all.iter().map(|one| one.change.clone()).collect();
         let helping = Suggestion::that_help(all, verdict);
-        let sentence = sentence(verdict, &helping, tried, &not_tried);
+        let sentence = sentence(verdict, &helping, &tried, &not_tried);
         Self { helping, not_tried, sentence }
     }
 }
 
 /// The sentence after the verdict; `None` where there is nothing to try.
-fn sentence(verdict: &Verdict, helping: &[Suggestion], tried: usize, not_tried: &[String]) -> Option<String> {
+fn sentence(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried: &[String]) -> Option<String> {
+    let all = tried.join("; ");
+    let stays = !helping.is_empty() && !verdict.hazards.is_empty() && helping.iter().all(|one| one.hazards > 0);
+    let hazard = stays.then(|| format!("No change that was tried ends every hazard: {all}."));
+    let what = if stays { "What would let it go on longer" } else { "What would help" };
     let said = match helping {
-        [] if tried == 0 => None,
-        [] if tried == 1 => Some("The one change that was tried does not help.".to_owned()),
-        [] => Some(format!("None of the {tried} changes that were tried helps.")),
-        [best] => Some(format!("What would help: {}.", best.in_words(verdict))),
+        [] if tried.is_empty() => None,
+        [] if tried.len() == 1 => Some(format!("The one change that was tried does not help: {all}.")),
+        [] => Some(format!("None of the {} changes that were tried helps: {all}.", tried.len())),
+        [best] => Some(format!("{what}: {}.", best.in_words(verdict))),
         [best, rest @ ..] => {
             let rest: Vec<String> = rest.iter().map(|one| one.in_words(verdict)).collect();
-            Some(format!("What would help most: {}. Also: {}.", best.in_words(verdict), rest.join("; ")))
+            let most = if stays { "" } else { " most" };
+            Some(format!("{what}{most}: {}. Also: {}.", best.in_words(verdict), rest.join("; ")))
         }
     };
     let left = (!not_tried.is_empty())
         .then(|| format!("Not tried within the budget of solver steps: {}.", not_tried.join("; ")));
-    let parts: Vec<String> = said.into_iter().chain(left).collect();
+    let parts: Vec<String> = hazard.into_iter().chain(said).chain(left).collect();
     (!parts.is_empty()).then(|| parts.join(" "))
 }

@@ -87,6 +87,7 @@ pub fn with_breaks(
         seconds: (first < longest).then_some(first),
         least: None,
         hazards: verdict.hazards.len(),
+        hands: verdict.hands.len(),
         load: verdict.hardest.map(|group| group.load),
     })
 }

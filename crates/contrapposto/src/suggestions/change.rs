@@ -5,17 +5,26 @@ use nalgebra::Vector3;
 use crate::contact::Support;
 use crate::equilibria::{Mirror, Search};
 use crate::hybrid::Strategy;
+use crate::joint_torques::Hazard;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, plain_name};
 use crate::posture::Posture;
-use crate::simulation::Scenario;
+use crate::simulation::{Scenario, TaskSettings};
 use crate::statics::{Load, LoadKind};
-use crate::tasks::{LookAt, LookAtGoal, PriorityLevel, Task};
+use crate::tasks::{self, LookAt, LookAtGoal, PriorityLevel, Task};
+use crate::verdict::HandLoad;
 
 /// A target is moved so far, m.
 const MOVED: f64 = 0.1;
+/// Of a job in hazard a target is moved so far up, too, m: what is lifted begins on a shelf or a pallet. Assumed.
+const SHELF: f64 = 0.3;
+/// A joint in hazard is asked to this share of the angle from which on there is one. Assumed.
+const WITHIN_HAZARD: f64 = 2.0 / 3.0;
 /// A lighter load is so much of the given one.
 const LIGHTER: f64 = 0.8;
+/// A load that a hand can hold is told in steps of this share of the given one, or in fine ones where that is less than a step.
+const SHARE_STEP: f64 = 0.05;
+const FINE_SHARE_STEP: f64 = 0.01;
 /// Feet are one ahead of the other from this distance on, m.
 const AHEAD: f64 = 0.05;
 
@@ -24,6 +33,8 @@ const AHEAD: f64 = 0.05;
 pub enum Change {
     /// All targets of segments that carry nothing are moved, ground, m.
     Targets(Vector3<f64>, &'static str),
+    /// Coordinates take these angles, rad, as far as the targets allow.
+    Joints(Vec<(usize, f64)>),
     /// All loads are so much of the given ones.
     Loads(f64),
     /// The whole body seeks relief by this strategy.
@@ -43,8 +54,8 @@ pub struct Job<'a> {
     pub supports: &'a [Support],
     /// Tasks, the most important first.
     pub levels: Vec<&'a PriorityLevel>,
-    /// Whether there are loads at any time.
-    pub has_loads: bool,
+    /// The loads at the start, and those of every event that changes them.
+    pub loads: Vec<&'a [Load]>,
     /// The time that is asked for, s.
     pub asked: Option<f64>,
     /// The strategy of the whole body; `None` where there are several, and where nobody seeks relief.
@@ -61,7 +72,9 @@ impl<'a> From<&'a Scenario> for Job<'a> {
             start: &scenario.start,
             supports: &scenario.supports,
             levels: scenario.tasks.iter().map(|task| &task.goal).collect(),
-            has_loads: !scenario.loads.is_empty() || scenario.events.iter().any(|event| event.loads.is_some()),
+            loads: std::iter::once(scenario.loads.as_slice())
+                .chain(scenario.events.iter().filter_map(|event| event.loads.as_deref()))
+                .collect(),
             asked: Some(scenario.run.end()),
             strategy: is_one.then_some(kind),
         }
@@ -75,15 +88,15 @@ impl<'a> From<&Search<'a>> for Job<'a> {
             start: search.start,
             supports: search.supports,
             levels: search.goals.iter().collect(),
-            has_loads: !search.loads.is_empty(),
+            loads: vec![search.loads],
             asked: None,
             strategy: None,
         }
     }
 }
 
-/// The changes that make sense for a job, in a fixed order.
-pub fn changes(job: &Job<'_>) -> Vec<Change> {
+/// The changes that make sense for a job that ends in these hazards, in a fixed order.
+pub fn changes(job: &Job<'_>, hazards: &[Hazard]) -> Vec<Change> {
     let model = job.model;
     let mut changes = vec![];
     let up = (-model.gravity()).try_normalize(1e-9);
@@ -97,7 +110,11 @@ pub fn changes(job: &Job<'_>) -> Vec<Change> {
             changes.push(Change::Targets(MOVED * toward.normalize(), "10 cm nearer"));
         }
     }
-    changes.extend(job.has_loads.then_some(Change::Loads(LIGHTER)));
+    if let (false, Some(up), Some(_)) = (hazards.is_empty(), up, job.targets().first()) {
+        changes.push(Change::Targets(SHELF * up, "30 cm higher"));
+    }
+    changes.extend(job.out_of_hazard(hazards).map(Change::Joints));
+    changes.extend(job.lighter().map(Change::Loads));
     changes.extend(job.strategy.map(|kind| {
         Change::Strategy(match kind {
             Strategy::Active => Strategy::Passive,
@@ -118,6 +135,31 @@ impl Job<'_> {
             _ => None,
         };
         tasks.filter_map(target).filter(|(segment, _)| !self.carries(*segment)).collect()
+    }
+
+    /// The share of the loads that is tried: four fifths, or less where no hand could hold that. `None` without loads, and where a hand
+    /// could not hold a hundredth.
+    fn lighter(&self) -> Option<f64> {
+        if self.loads.iter().all(|loads| loads.is_empty()) {
+            return None;
+        }
+        let hands = self.loads.iter().flat_map(|loads| HandLoad::all(self.model, loads));
+        let share = hands.map(|hand| hand.most() / hand.weight).fold(f64::INFINITY, f64::min);
+        let within = |step: f64| (share / step).floor() * step;
+        match share >= LIGHTER {
+            true => Some(LIGHTER),
+            false => [SHARE_STEP, FINE_SHARE_STEP].map(within).into_iter().find(|share| *share > 0.0),
+        }
+    }
+
+    /// Angles at which the coordinates in these hazards are in none; `None` without hazards, and where the posture is given.
+    fn out_of_hazard(&self, hazards: &[Hazard]) -> Option<Vec<(usize, f64)>> {
+        let angle = |hazard: &Hazard| {
+            let limit = hazard.row.limit(&self.model.coordinates()[hazard.coordinate], hazard.angle)?;
+            Some((hazard.coordinate, WITHIN_HAZARD * limit))
+        };
+        let angles: Vec<(usize, f64)> = hazards.iter().filter_map(angle).collect();
+        (!angles.is_empty() && !self.levels.is_empty()).then_some(angles)
     }
 
     fn carries(&self, segment: usize) -> bool {
@@ -146,6 +188,11 @@ impl Change {
     pub fn apply(&self, scenario: &Scenario) -> Scenario {
         let (job, mut changed) = (Job::from(scenario), scenario.clone());
         changed.tasks.iter_mut().for_each(|task| self.apply_to_level(&job, &mut task.goal));
+        if let Some((place, goal)) = self.new_level(&job) {
+            changed.tasks.insert(place, TaskSettings { goal, above_relief: false });
+            let later = changed.events.iter_mut().flat_map(|event| &mut event.tasks);
+            later.for_each(|(task, _)| *task += usize::from(*task >= place));
+        }
         self.apply_to_loads(&mut changed.loads);
         for event in &mut changed.events {
             event.tasks.iter_mut().for_each(|(_, goal)| self.apply_to_level(&job, goal));
@@ -159,8 +206,29 @@ impl Change {
         changed
     }
 
+    /// Moves targets, and adds a level where the change asks for angles.
+    pub fn apply_to_goals(&self, job: &Job<'_>, goals: &mut Vec<PriorityLevel>) {
+        goals.iter_mut().for_each(|level| self.apply_to_level(job, level));
+        if let Some((place, level)) = self.new_level(job) {
+            goals.insert(place, level);
+        }
+    }
+
+    /// The level that asks for angles, and its place among the levels of the job: below all targets, above effort and postures of rest.
+    fn new_level(&self, job: &Job<'_>) -> Option<(usize, PriorityLevel)> {
+        let Self::Joints(angles) = self else { return None };
+        let rest = |task: &Task| matches!(task, Task::Effort(_) | Task::Posture(_));
+        let place = job.levels.iter().position(|level| level.tasks.iter().any(rest)).unwrap_or(job.levels.len());
+        let (mut target, mut weights) = (job.start.clone(), vec![0.0; job.model.rates().len()]);
+        for &(i, angle) in angles {
+            target.values_mut()[i] = angle;
+            job.model.coordinates()[i].rate.iter().for_each(|&rate| weights[rate] = 1.0);
+        }
+        Some((place, Task::Posture(tasks::Posture { target, weights }).into()))
+    }
+
     /// Moves the targets of a level.
-    pub fn apply_to_level(&self, job: &Job<'_>, level: &mut PriorityLevel) {
+    fn apply_to_level(&self, job: &Job<'_>, level: &mut PriorityLevel) {
         let Self::Targets(by, _) = self else { return };
         for task in level.tasks.iter_mut().filter(|_| !level.hard) {
             match task {
@@ -203,6 +271,14 @@ impl Change {
                     }
                 }
                 format!("the target of {} {how}", names.join(" and "))
+            }
+            Self::Joints(angles) => {
+                let coordinates = job.model.coordinates();
+                let at = |&(i, angle): &(usize, f64)| {
+                    let degrees = format!("{:.0}", angle.to_degrees()).replace('-', "\u{2212}");
+                    format!("{} at {degrees}°", plain_name(&coordinates[i].name))
+                };
+                angles.iter().map(at).collect::<Vec<_>>().join(" and ")
             }
             Self::Loads(share) => format!("{:.0}\u{a0}% less load", 100.0 * (1.0 - share)),
             Self::Strategy(Strategy::Active) => "relief by the active strategy".to_owned(),

@@ -7,7 +7,7 @@ use crate::posture::Posture;
 use crate::posture_solver::{Engine, Options};
 use crate::simulation::{Scenario, Summary};
 use crate::tasks::{PriorityLevel, Task};
-use crate::verdict::{HeldPosture, Missed, Verdict};
+use crate::verdict::{HandLoad, HeldPosture, Missed, Verdict};
 
 /// Most solver steps to the posture of a change.
 const GLANCE_STEPS: usize = 60;
@@ -48,16 +48,17 @@ pub fn by_promise_of_search(search: &Search<'_>, changes: Vec<Change>) -> Vec<Ch
     promises.into_iter().map(|(change, _)| change).collect()
 }
 
-/// The better kind first, then the longer time, then less hazard, the nearer target and the smaller load.
+/// The better kind first, then the longer time, then fewer hazards and hands with much weight, the nearer target and the smaller load.
 fn compared(a: &Verdict, b: &Verdict) -> std::cmp::Ordering {
     let time = |verdict: &Verdict| verdict.seconds.unwrap_or(f64::INFINITY);
+    let risks = |verdict: &Verdict| verdict.hazards.len() + verdict.hands.len();
     let miss = |verdict: &Verdict| verdict.missed.first().map_or(0.0, |missed| missed.distance);
     let load = |verdict: &Verdict| verdict.hardest.map_or(0.0, |group| group.load);
     b.kind
         .is_done()
         .cmp(&a.kind.is_done())
         .then(time(b).total_cmp(&time(a)))
-        .then(a.hazards.len().cmp(&b.hazards.len()))
+        .then(risks(a).cmp(&risks(b)))
         .then(miss(a).total_cmp(&miss(b)))
         .then(load(a).total_cmp(&load(b)))
 }
@@ -66,7 +67,7 @@ fn compared(a: &Verdict, b: &Verdict) -> std::cmp::Ordering {
 fn glance(search: &Search<'_>, change: &Change) -> Option<Verdict> {
     let job = Job::from(search);
     let (start, mut goals, mut loads) = (change.start(&job), search.goals.to_vec(), search.loads.to_vec());
-    goals.iter_mut().for_each(|level| change.apply_to_level(&job, level));
+    change.apply_to_goals(&job, &mut goals);
     change.apply_to_loads(&mut loads);
     let (mut posture, mut missed) = (start, vec![]);
     if !search.supports.is_empty() || !goals.is_empty() {
@@ -84,5 +85,6 @@ fn glance(search: &Search<'_>, change: &Change) -> Option<Verdict> {
     let settings = AssessSettings { supports: search.supports.to_vec(), ..AssessSettings::default() };
     let held = [(0.0, posture)];
     let found = assess(search.model, &held, |_, _, all| all.extend_from_slice(&loads), &settings, |_| {}).ok()?;
-    Some(Verdict::of_posture(search.model, &HeldPosture { missed, ..HeldPosture::from(&found) }))
+    let hands = HandLoad::all(search.model, &loads);
+    Some(Verdict::of_posture(search.model, &HeldPosture { missed, hands, ..HeldPosture::from(&found) }))
 }

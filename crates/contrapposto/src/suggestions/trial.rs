@@ -26,6 +26,8 @@ pub struct Suggestion {
     pub least: Option<f64>,
     /// Number of coordinates that ligaments carry in hazard at the end.
     pub hazards: usize,
+    /// Number of hands that hold half of the strength of their grip or more.
+    pub hands: usize,
     /// Load of the hardest worked group.
     pub load: Option<f64>,
 }
@@ -73,7 +75,7 @@ fn judged(scenario: &Scenario, run: &mut Run<'_>, go_on: impl Fn() -> bool) -> R
 pub fn try_search(search: &Search<'_>, options: Options, change: &Change) -> Trial {
     let job = Job::from(search);
     let (start, mut goals, mut loads) = (change.start(&job), search.goals.to_vec(), search.loads.to_vec());
-    goals.iter_mut().for_each(|level| change.apply_to_level(&job, level));
+    change.apply_to_goals(&job, &mut goals);
     change.apply_to_loads(&mut loads);
     let search = Search { start: &start, goals: &goals, loads: &loads, ..search.clone() };
     match equilibria(&search, options) {
@@ -100,11 +102,18 @@ impl Suggestion {
             seconds: verdict.seconds,
             least: verdict.range.map(|(least, _)| least),
             hazards: verdict.hazards.len(),
+            hands: verdict.hands.len(),
             load: verdict.hardest.map(|group| group.load),
         }
     }
 
-    /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards or for longer; where no muscle
+    /// Number of hazards and of hands with much weight.
+    fn risks(&self) -> usize {
+        self.hazards + self.hands
+    }
+
+    /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards and
+    /// hands with much weight or for longer; where no muscle
     /// limits the mean person before or after, longer for weaker ones.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
         let (before, least_before) = times(verdict.seconds, verdict.range.map(|(least, _)| least));
@@ -112,8 +121,9 @@ impl Suggestion {
             let (after, least_after) = times(one.seconds, one.least);
             after > LONGER * before || (after.is_infinite() && least_after > LONGER * least_before)
         };
-        let safer = |one: &Self| one.hazards < verdict.hazards.len();
-        let equally_safe = |one: &Self| one.hazards == verdict.hazards.len();
+        let risks = verdict.hazards.len() + verdict.hands.len();
+        let safer = |one: &Self| one.risks() < risks;
+        let equally_safe = |one: &Self| one.risks() == risks;
         let better = |one: &Self| safer(one) || equally_safe(one) && longer(one);
         let helps =
             |one: &Self| one.kind.is_done() && (one.kind > verdict.kind || one.kind == verdict.kind && better(one));
@@ -123,7 +133,7 @@ impl Suggestion {
             let load = a.load.unwrap_or(0.0).total_cmp(&b.load.unwrap_or(0.0));
             b.kind
                 .cmp(&a.kind)
-                .then(a.hazards.cmp(&b.hazards))
+                .then(a.risks().cmp(&b.risks()))
                 .then(time_b.total_cmp(&time_a))
                 .then(least_b.total_cmp(&least_a))
                 .then(load)
@@ -142,6 +152,11 @@ impl Suggestion {
             (_, 0) => ", without ligaments in hazard",
             _ => ", with ligaments in hazard",
         };
+        let grip = match (before.hands.len(), self.hands) {
+            (0, 0) => "",
+            (_, 0) => ", with less than half of the strength of the grip",
+            _ => ", with half of the strength of a grip or more",
+        };
         let weaker = self.least.filter(|least| self.asked.is_some_and(|asked| *least < asked));
         let weaker = weaker.map_or_else(String::new, |least| format!(" (weaker people: {})", how_long(least)));
         let held = || how_long(self.seconds.unwrap_or(0.0));
@@ -154,6 +169,6 @@ impl Suggestion {
             (_, Some(asked), _) => format!("it can be held {} of the {asked} asked", held()),
             (_, None, _) => format!("it can be held {}", held()),
         };
-        format!("with {change} {time}{weaker}{hazard}")
+        format!("with {change} {time}{weaker}{hazard}{grip}")
     }
 }

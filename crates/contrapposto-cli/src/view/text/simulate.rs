@@ -11,7 +11,7 @@ use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
-use crate::view::words::{MOST_ROWS, joint, shares_of_all};
+use crate::view::words::{MOST_ROWS, joint, plain, shares_of_all};
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
 const REACHED: f64 = 1e-3;
@@ -128,18 +128,21 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
     )
 }
 
-/// `calcn_r carries 85.0 %, calcn_l 15.0 %; effort 0.097 at the start, 0.059 at the end`, and below it
-/// `tasks: point hand_r (above relief), head upright, effort`, with the error of those that are off at the end.
+/// `right foot carries 85.0 %, left foot carries 15.0 % of body and loads; effort (sum of squared shares of strength) 0.097 at the start, 0.059
+/// at the end`, and below it `tasks: point hand_r (above relief), head upright, effort`, with the error of those that are off at the end.
 fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) -> String {
     let segments = scenario.model.segments();
     let shares = shares_of_all(&standing.contacts.iter().map(|contact| contact.share).collect::<Vec<_>>());
     let share = |(support, share): (&Support, f64)| {
-        format!("{} carries {:.1} %", segments[support.segment].name, 100.0 * share)
+        format!("{} carries {:.1} %", plain(&segments[support.segment].name), 100.0 * share)
     };
-    let mut parts: Vec<String> = scenario.supports.iter().zip(shares).map(share).collect();
+    let carried: Vec<String> = scenario.supports.iter().zip(shares).map(share).collect();
+    let carried = if carried.is_empty() { String::new() } else { carried.join(", ") + " of body and loads; " };
     let start = summary.effort_at_start.unwrap_or(standing.effort);
-    parts.push(format!("effort {start:.4} at the start, {:.4} at the end", standing.effort));
-    let mut text = parts.join(", ") + "\n";
+    let mut text = format!(
+        "{carried}effort (sum of squared shares of strength) {start:.4} at the start, {:.4} at the end\n",
+        standing.effort
+    );
     if !scenario.tasks.is_empty() {
         let task = |(task, error): (&TaskSettings, &f64)| {
             let place = if task.above_relief { " (above relief)" } else { "" };
@@ -155,8 +158,8 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
         text += &format!("tasks: {}\n", tasks.join(", "));
     }
     for step in &summary.foot_steps {
-        let segment = &segments[scenario.supports[step.support].segment].name;
-        let relieved = &scenario.model.coordinates()[step.coordinate].name;
+        let segment = plain(&segments[scenario.supports[step.support].segment].name);
+        let relieved = plain(&scenario.model.coordinates()[step.coordinate].name);
         let ([x, y, z], [to_x, to_y, to_z]) = step.place;
         text += &format!(
             "{segment} was put elsewhere from {:.1} s to {:.1} s, from ({x:.2}, {y:.2}, {z:.2}) to ({to_x:.2}, {to_y:.2}, {to_z:.2}) m, \

@@ -35,13 +35,21 @@ pub struct HazardRow {
 impl HazardRow {
     /// Whether a coordinate is in this hazard: its angle, rad, and the share of its external torque that passive tissue carries.
     pub fn applies(&self, coordinate: &Coordinate, angle: f64, carried: f64) -> bool {
+        self.limit(coordinate, angle).is_some() && carried >= self.least_carried
+    }
+
+    /// The angle from which on a coordinate at this one is in hazard, rad; `None` where it is not.
+    pub(crate) fn limit(&self, coordinate: &Coordinate, angle: f64) -> Option<f64> {
         let same_sense = self.positive.is_empty() || coordinate.positive == self.positive;
         let opposite = !self.negative.is_empty() && coordinate.positive == self.negative;
-        let degrees = if opposite { -angle.to_degrees() } else { angle.to_degrees() };
-        let beyond = self.below_deg.is_some_and(|limit| degrees <= limit)
-            || self.above_deg.is_some_and(|limit| degrees >= limit);
-        let senses = same_sense || opposite;
-        self.coordinates.contains(&coordinate.name) && senses && beyond && carried >= self.least_carried
+        if !self.coordinates.contains(&coordinate.name) || !(same_sense || opposite) {
+            return None;
+        }
+        let sense = if opposite { -1.0 } else { 1.0 };
+        let degrees = sense * angle.to_degrees();
+        let below = self.below_deg.filter(|limit| degrees <= *limit);
+        let limit = below.or(self.above_deg.filter(|limit| degrees >= *limit));
+        limit.map(|limit| sense * limit.to_radians())
     }
 
     /// Longest time for which the study kept people there, s.
