@@ -1,8 +1,37 @@
-import { defineConfig } from "vite";
+import { createHash } from "node:crypto";
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { defineConfig, type Plugin } from "vite";
+
+/** Writes the names of all files of the page, and a digest of them, into the service worker. */
+function filesForServiceWorker(): Plugin {
+  let folder = "dist";
+  const worker = "service-worker.js";
+  return {
+    name: "files-for-service-worker",
+    apply: "build",
+    configResolved: (config) => void (folder = join(config.root, config.build.outDir)),
+    closeBundle() {
+      const entries = readdirSync(folder, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
+      const paths = entries.map((entry) => join(entry.parentPath, entry.name)).filter((path) => !path.endsWith(worker)).sort();
+      const digest = createHash("sha256");
+      for (const path of paths) digest.update(path.slice(folder.length)).update(readFileSync(path));
+      const names = paths.map((path) => path.slice(folder.length + 1).replaceAll("\\", "/"));
+      const listed = ["./", ...names.filter((name) => name !== "index.html")];
+      const text = readFileSync(join(folder, worker), "utf8");
+      const written = text
+        .replace('BUILD = "none"', `BUILD = "${digest.digest("hex").slice(0, 16)}"`)
+        .replace("FILES = []", `FILES = ${JSON.stringify(listed)}`);
+      if (written === text) throw new Error(`${worker} has no place for the names of files`);
+      writeFileSync(join(folder, worker), written);
+    },
+  };
+}
 
 // Relative addresses: the page works from any folder of any file server.
 export default defineConfig({
   base: "./",
+  plugins: [filesForServiceWorker()],
   build: { target: "es2022", modulePreload: { polyfill: false }, assetsInlineLimit: 0, chunkSizeWarningLimit: 900 },
   worker: { format: "es" },
 });

@@ -1,20 +1,30 @@
-// Keeps every file of the page, so that it opens without a network after the first time. Files whose names carry a digest never change;
-// the others are asked for first, and taken from here where there is no answer.
-const KEPT = "contrapposto-studio-1";
+// Keeps the files of the page, so that it opens without a network after the first time. All are of one build: a new build has a new cache.
+const BUILD = "none"; // The build writes a digest of its files here,
+const FILES = []; // and their names here.
+const NAME = "contrapposto-studio-";
 
-self.addEventListener("install", () => self.skipWaiting());
-self.addEventListener("activate", (event) => event.waitUntil(self.clients.claim()));
+self.addEventListener("install", (event) => {
+  const fill = async () => (await caches.open(NAME + BUILD)).addAll(FILES);
+  event.waitUntil(fill().then(() => self.skipWaiting()));
+});
 
+self.addEventListener("activate", (event) => {
+  const clear = async () => {
+    const others = (await caches.keys()).filter((name) => name.startsWith(NAME) && name !== NAME + BUILD);
+    await Promise.all(others.map((name) => caches.delete(name)));
+    await self.clients.claim();
+  };
+  event.waitUntil(clear());
+});
+
+// Files whose names carry a digest never change; the others are asked for first, and taken from here where there is no answer.
 async function answer(request) {
-  const kept = await caches.open(KEPT);
-  const known = await kept.match(request, { ignoreSearch: true });
-  if (known && new URL(request.url).pathname.includes("/assets/")) return known;
+  const kept = await (await caches.open(NAME + BUILD)).match(request, { ignoreSearch: true });
+  if (kept && new URL(request.url).pathname.includes("/assets/")) return kept;
   try {
-    const fresh = await fetch(request);
-    if (fresh.ok) await kept.put(request, fresh.clone());
-    return fresh;
+    return await fetch(request);
   } catch (error) {
-    if (known) return known;
+    if (kept) return kept;
     throw error;
   }
 }
@@ -22,9 +32,4 @@ async function answer(request) {
 self.addEventListener("fetch", (event) => {
   const { request } = event;
   if (request.method === "GET" && new URL(request.url).origin === self.location.origin) event.respondWith(answer(request));
-});
-
-// The files that were loaded before this worker was there.
-self.addEventListener("message", (event) => {
-  event.waitUntil(caches.open(KEPT).then((kept) => Promise.allSettled(event.data.map((url) => kept.add(url)))));
 });

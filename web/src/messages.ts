@@ -19,6 +19,8 @@ export type Request =
   | { do: "stop"; take: boolean }
   | { do: "balance"; coordinate: string }
   | { do: "export" }
+  | { do: "state" }
+  | { do: "restore"; state: string }
   | { do: "undo" }
   | { do: "redo" }
   | { do: "reset" };

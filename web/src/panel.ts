@@ -174,17 +174,24 @@ export class Panel {
     this.jointChoice.value = joints.some(({ name }) => name === joint) ? joint : hardest(scene);
     const free = ({ label, segment }: Handle) => make("li", {}, button(texts.free(label), `free-${segment}`, () => this.doing.free(segment)));
     this.held.replaceChildren(...(scene.held.length ? scene.held.map(free) : [make("li", { className: "quiet", textContent: texts.nothingHeld })]));
+    for (const control of [this.sex, this.stature, this.mass]) control.disabled = scene.person === null;
+    [this.undo.disabled, this.redo.disabled] = [!scene.can_undo, !scene.can_redo];
+    this.notes.replaceChildren(...scene.notes.map((textContent) => make("li", { textContent })));
+    this.restore();
+    this.show(scene.shown);
+  }
+
+  /** Controls show what is so, also after a change that was refused. */
+  restore(): void {
+    const { scene } = this;
+    if (!scene) return;
     if (scene.person) {
       this.sex.value = scene.person.sex;
       this.stature.value = scene.person.stature;
       this.mass.value = scene.person.mass;
     }
-    for (const control of [this.sex, this.stature, this.mass]) control.disabled = scene.person === null;
     for (const choice of this.strategies) choice.checked = choice.value === scene.strategy;
-    [this.undo.disabled, this.redo.disabled] = [!scene.can_undo, !scene.can_redo];
-    this.notes.replaceChildren(...scene.notes.map((textContent) => make("li", { textContent })));
     this.showWeight();
-    this.show(scene.shown);
   }
 
   private showWeight(): void {

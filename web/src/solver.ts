@@ -1,4 +1,4 @@
-// The page's side of the worker: one request at a time, each with its answer.
+// The page's side of the worker: requests, each with its answer. A worker that has failed is replaced by another one.
 import type { Answer, FromWorker, Request } from "./messages";
 
 /** The session refused a request, or ended. */
@@ -11,58 +11,73 @@ export class Refused extends Error {
   }
 }
 
-type Waiting = { resolve: (answer: Answer) => void; reject: (error: Refused) => void };
+type Waiting = { resolve: (answer: Answer) => void; reject: (error: Refused) => void; request: Request };
+
+const opens = (request: Request) => request.do === "open" || request.do === "open_model";
 
 export class Solver {
   /** Durations of the calls by kind of request, ms; the last thousand of each. */
   readonly times: Record<string, number[]> = {};
-  private worker!: Worker;
-  private waiting = new Map<number, Waiting & { request: Request }>();
+  private worker?: Worker;
+  private waiting = new Map<number, Waiting>();
   private next = 0;
-  private ready = false;
+  private reason?: string;
 
-  constructor(private readonly onReady: (version: string) => void) {
-    this.start();
+  /** `failed`: the session has ended while nothing was asked of it. */
+  constructor(private readonly failed: () => void) {
+    this.worker = this.start();
   }
 
-  /** A fresh session in place of one that has ended. */
-  start(): void {
-    this.worker?.terminate();
-    this.worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
-    this.worker.addEventListener("message", (event: MessageEvent<FromWorker>) => this.receive(event.data));
-    this.worker.addEventListener("error", (event) => this.fail(event.message || "the worker did not start"));
+  /** Why the session is gone. Another one knows nothing: until a scenario is opened, all other requests are refused. */
+  get lost(): string | undefined {
+    return this.reason;
   }
 
   ask(request: Request): Promise<Answer> {
+    if (this.reason !== undefined && !opens(request)) return Promise.reject(new Refused(this.reason, true));
+    const worker = (this.worker ??= this.start());
     const id = this.next++;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve, reject, request });
-      this.worker.postMessage({ id, request });
+      worker.postMessage({ id, request });
     });
   }
 
-  private receive(message: FromWorker): void {
-    if (message.kind === "ready") {
-      this.ready = true;
-      return this.onReady(message.version);
-    }
-    if (message.kind === "broken") return this.fail(message.sentence);
-    const waiting = this.waiting.get(message.id);
-    if (!waiting) return;
-    this.waiting.delete(message.id);
-    const times = (this.times[waiting.request.do] ??= []);
-    times.push(message.ms);
-    if (times.length > 1000) times.shift();
-    if (message.answer.is === "refused") waiting.reject(new Refused(message.answer.sentence, false));
-    else waiting.resolve(message.answer);
+  private start(): Worker {
+    // A lock that the worker has until it ends, in whatever way. There are locks in secure contexts alone.
+    const name = `contrapposto-${Math.random()}`;
+    const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module", name });
+    worker.addEventListener("message", ({ data }: MessageEvent<FromWorker>) => {
+      if (worker !== this.worker) return;
+      if (data.kind === "answer") this.receive(data);
+      else if (data.kind === "broken") this.fail(worker, data.sentence);
+      else void navigator.locks?.request(name, () => this.fail(worker, "the worker has ended"));
+    });
+    worker.addEventListener("error", (event) => this.fail(worker, event.message || "the worker did not start"));
+    return worker;
   }
 
-  private fail(sentence: string): void {
+  private receive({ id, answer, ms }: FromWorker & { kind: "answer" }): void {
+    const waiting = this.waiting.get(id);
+    if (!waiting) return;
+    this.waiting.delete(id);
+    const times = (this.times[waiting.request.do] ??= []);
+    times.push(ms);
+    if (times.length > 1000) times.shift();
+    if (opens(waiting.request) && answer.is === "scene") this.reason = undefined;
+    if (answer.is === "refused") waiting.reject(new Refused(answer.sentence, false));
+    else waiting.resolve(answer);
+  }
+
+  /** The next request starts another worker. */
+  private fail(worker: Worker, sentence: string): void {
+    if (worker !== this.worker) return;
+    worker.terminate();
+    this.worker = undefined;
+    this.reason = sentence;
     const waiting = [...this.waiting.values()];
     this.waiting.clear();
-    // A module that cannot be loaded is not loaded again and again.
-    if (this.ready) this.start();
-    this.ready = false;
     for (const { reject } of waiting) reject(new Refused(sentence, true));
+    if (waiting.length === 0) this.failed();
   }
 }

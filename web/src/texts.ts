@@ -1,11 +1,19 @@
 // Every text of the page, so that another language is another file.
+
+/** A sentence without its full stop. */
+const sentence = (text: string) => text.replace(/\.\s*$/, "");
+
 export const texts = {
   loading: "Loading the body …",
   preparing: "Preparing the run …",
   hint: "Drag a part of the body. Drag beside the body to turn the view, with the wheel or two fingers to come nearer.",
-  broken: "The studio stopped on a defect of its own and began anew; the last scenario was opened again.",
+  broken: (why: string, state: string) => `The studio stopped on a defect of its own (${sentence(why)}) and began anew. ${state}`,
+  asBefore: "The body is as it was after the last change; a run begins at its start, and earlier changes cannot be undone one by one.",
+  asOpened: "The last scenario was opened again, without the changes since.",
+  asFirst: "The last scenario could not be opened again; this is the body of a new page.",
+  noSession: (why: string) => `The studio does not work here (${sentence(why)}). Every change that is made tries again; so does a reload of the page.`,
+  cannotKeep: (why: string) => `The posture of the run cannot be kept: ${sentence(why)}. “Back to the start” ends the run without it.`,
   noWebgl: "This browser shows no 3D graphics (WebGL). All numbers and controls work without the picture.",
-  offlineReady: "The page is stored in this browser and opens without a network.",
   body: "Body",
   sex: "Sex",
   female: "woman",
@@ -63,6 +71,7 @@ export const texts = {
   saved: (name: string) => `Saved as ${name}; \`contrapposto simulate ${name}\` gives the same numbers.`,
   noFile: "This file is no scenario (.toml) and no model (.osim, .urdf, .xml).",
   tooLarge: (name: string, most: string) => `${name} is larger than ${most}; such a file is not read here.`,
+  unreadable: (name: string) => `${name} cannot be read.`,
   badLink: "The link holds no scenario that can be read.",
   contacts: "Contact forces",
   share: (label: string, share: string) => `${label} ${share}`,

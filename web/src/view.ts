@@ -8,11 +8,13 @@ import {
   GridHelper,
   Group,
   HemisphereLight,
+  Line,
   LineBasicMaterial,
   LineSegments,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
+  type Object3D,
   PerspectiveCamera,
   Plane,
   Raycaster,
@@ -37,6 +39,19 @@ export interface Dragging {
   release(): void;
 }
 
+/** The ball that all marks share. */
+const BALL = new SphereGeometry(1, 16, 12);
+
+/** Takes an object out of the picture, and its shapes and materials off the graphics card. All balls, and all arrows, share their shapes. */
+function discard(object: Object3D): void {
+  object.removeFromParent();
+  object.traverse((part) => {
+    if (!(part instanceof Mesh || part instanceof Line)) return;
+    if (part.geometry !== BALL && !(part.parent instanceof ArrowHelper)) part.geometry.dispose();
+    for (const material of [part.material].flat()) material.dispose();
+  });
+}
+
 function put(object: Group, place: Place): void {
   object.position.set(place[0], place[1], place[2]);
   object.quaternion.set(place[3], place[4], place[5], place[6]);
@@ -51,10 +66,11 @@ export class View {
   private marks = new Group();
   private segments: Group[] = [];
   private materials: MeshLambertMaterial[][] = [];
-  private things: (Group | null)[] = [];
+  private things: Group[] = [];
   private scene?: Scene;
   private shown?: Shown;
   private due = false;
+  private readonly colours = new Map<string, Color>();
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -74,7 +90,10 @@ export class View {
     this.world.add(lamp);
     this.listen();
     new ResizeObserver(() => this.redraw()).observe(canvas);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.paint());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      this.colours.clear();
+      this.paint();
+    });
     this.controls.update();
   }
 
@@ -82,8 +101,8 @@ export class View {
   open(scene: Scene): void {
     const before = this.scene;
     this.scene = scene;
+    this.things.forEach((thing) => discard(thing));
     if (JSON.stringify(before?.segments) !== JSON.stringify(scene.segments)) this.build(scene);
-    this.things.forEach((thing) => thing?.removeFromParent());
     this.things = scene.things.map(({ size, place, segment }) => {
       const box = new BoxGeometry(...size);
       const group = new Group();
@@ -98,7 +117,7 @@ export class View {
   }
 
   private build(scene: Scene): void {
-    this.body.clear();
+    this.segments.forEach((segment) => discard(segment));
     this.segments = [];
     this.materials = [];
     for (const [index, segment] of scene.segments.entries()) {
@@ -143,10 +162,7 @@ export class View {
   }
 
   private mark(shown: Shown, held: Handle[]): void {
-    for (const old of [...this.marks.children]) {
-      old.removeFromParent();
-      if (old instanceof ArrowHelper || old instanceof GridHelper) old.dispose();
-    }
+    for (const old of [...this.marks.children]) discard(old);
     const weight = shown.contacts.reduce((sum, { force }) => sum + force[1], 0) || 600;
     const arrow = (at: Vector, force: Vector, colour: string, least: number) => {
       const way = new Vector3(...force);
@@ -165,7 +181,8 @@ export class View {
     const [x, y, z] = shown.center;
     const ball = (at: Vector, radius: number, colour: string, through: boolean) => {
       const material = new MeshBasicMaterial({ color: this.colour(colour), depthTest: !through, transparent: through });
-      const mesh = new Mesh(new SphereGeometry(radius, 16, 12), material);
+      const mesh = new Mesh(BALL, material);
+      mesh.scale.setScalar(radius);
       mesh.position.set(...at);
       mesh.renderOrder = through ? 1 : 0;
       this.marks.add(mesh);
@@ -186,7 +203,12 @@ export class View {
   }
 
   private colour(name: string): Color {
-    return new Color(getComputedStyle(this.canvas).getPropertyValue(name).trim() || "#888888");
+    let colour = this.colours.get(name);
+    if (!colour) {
+      colour = new Color(getComputedStyle(this.canvas).getPropertyValue(name).trim() || "#888888");
+      this.colours.set(name, colour);
+    }
+    return colour;
   }
 
   private redraw(): void {
@@ -202,6 +224,11 @@ export class View {
       this.camera.updateProjectionMatrix();
       this.renderer.render(this.world, this.camera);
     });
+  }
+
+  /** Shapes that the graphics card holds. */
+  get geometries(): number {
+    return this.renderer.info.memory.geometries;
   }
 
   /** Where a point of ground is on the canvas, px. */

@@ -22,13 +22,24 @@ function answer({ id, request }: ToWorker): void {
   }
 }
 
+/** A lock of this worker's name, until it ends: so the page learns of an end of which nothing else tells. */
+function lock(): Promise<void> {
+  if (!navigator.locks) return Promise.resolve();
+  return new Promise((locked) => {
+    void navigator.locks.request(self.name, () => {
+      locked();
+      return new Promise(() => undefined);
+    });
+  });
+}
+
 const waiting: ToWorker[] = [];
 self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
   if (session) answer(event.data);
   else waiting.push(event.data);
 });
 
-init({ module_or_path: address }).then(
+Promise.all([init({ module_or_path: address }), lock()]).then(
   () => {
     session = new Session();
     send({ kind: "ready", version: version() });

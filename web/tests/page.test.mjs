@@ -1,61 +1,22 @@
 // The page in headless Chromium: lets time run until the tired hip asks, saves the scenario, opens broken files, moves a part by keys.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { createServer } from "node:http";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, extname, join } from "node:path";
-import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
+import { join } from "node:path";
+import { test } from "node:test";
 import { gzipSync } from "node:zlib";
-import { chromium } from "playwright-core";
+import { close, dist, open, result, root, useBrowser } from "./browser.mjs";
 
-const web = dirname(dirname(fileURLToPath(import.meta.url))), root = dirname(web), dist = join(web, "dist");
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".svg": "image/svg+xml" };
-// This machine may be busy and has no graphics card: waits are long, bounds on times are the measuring test's alone.
-const PATIENCE = 180_000;
 // Of everything that the first visit loads, compressed by gzip, bytes.
 const MOST_LOADED = 1_600_000;
 
-let server, browser, url;
-
-before(async () => {
-  server = createServer((request, response) => {
-    const name = new URL(request.url, "http://page").pathname;
-    const file = join(dist, name === "/" ? "index.html" : name);
-    const found = file.startsWith(dist) && existsSync(file);
-    response.writeHead(found ? 200 : 404, { "content-type": TYPES[extname(file)] ?? "application/octet-stream" });
-    response.end(found ? readFileSync(file) : "");
-  });
-  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  url = `http://127.0.0.1:${server.address().port}/`;
-  browser = await chromium.launch({
-    executablePath: process.env.CONTRAPPOSTO_CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-  });
-});
-
-after(async () => {
-  await browser?.close();
-  server?.close();
-});
-
-async function open(hash = "", viewport = { width: 700, height: 500 }) {
-  const context = await browser.newContext({ viewport, acceptDownloads: true });
-  context.setDefaultTimeout(PATIENCE);
-  const page = await context.newPage();
-  page.on("pageerror", (error) => assert.fail(error));
-  await page.goto(url + hash, { waitUntil: "commit" });
-  await page.waitForFunction(() => JSON.parse(document.querySelector("#result").textContent).q);
-  return page;
-}
-
-const result = async (page) => JSON.parse(await page.textContent("#result"));
+useBrowser();
 
 test("time runs until the tired hip asks; the saved scenario gives the same verdict in the program", async (t) => {
   const scenario = readFileSync(join(root, "scenarios", "stand-relaxed.toml"));
-  const page = await open(`#scenario=${scenario.toString("base64url")}`);
+  const opened = await open(`#scenario=${scenario.toString("base64url")}`);
+  const { page } = opened;
   await page.selectOption("#speed", "10");
   await page.click("#play");
   await page.waitForFunction(() => document.querySelector("#asking").textContent.includes("hip"));
@@ -68,7 +29,7 @@ test("time runs until the tired hip asks; the saved scenario gives the same verd
   const folder = mkdtempSync(join(tmpdir(), "studio-"));
   const file = join(folder, "studio.toml");
   await download.saveAs(file);
-  await page.context().close();
+  await close(opened);
   const program = process.env.CONTRAPPOSTO_PROGRAM;
   const command = program ? [program] : ["cargo", "run", "--quiet", "--locked", "--manifest-path", join(root, "Cargo.toml"), "--"];
   const run = spawnSync(command[0], [...command.slice(1), "simulate", file, "--no-report", "--no-suggest"], { encoding: "utf8" });
@@ -78,7 +39,8 @@ test("time runs until the tired hip asks; the saved scenario gives the same verd
 });
 
 test("a broken file is refused in a sentence with its line, and the body stays", async () => {
-  const page = await open();
+  const opened = await open();
+  const { page } = opened;
   const before = await result(page);
   const drop = (name, text) => page.locator("input[type=file]").setInputFiles({ name, mimeType: "text/plain", buffer: Buffer.from(text) });
   await drop("broken.toml", "format = 1\n[model]\nadult = 3\n");
@@ -88,11 +50,12 @@ test("a broken file is refused in a sentence with its line, and the body stays",
   await drop("photo.png", "x");
   await page.waitForFunction(() => document.querySelector("#notice").textContent.includes(".toml"));
   assert.deepEqual((await result(page)).names, before.names);
-  await page.context().close();
+  await close(opened);
 });
 
 test("every control is reached by the keyboard, and arrow keys on the picture move a part; on a phone nothing is cut off", async () => {
-  const page = await open("", { width: 390, height: 780 });
+  const opened = await open("", { width: 390, height: 780 });
+  const { page } = opened;
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(wide <= 390, `the page is ${wide} px wide`);
   await page.focus("#canvas");
@@ -106,7 +69,7 @@ test("every control is reached by the keyboard, and arrow keys on the picture mo
   for (const id of ["part", "weight", "move-up", "play", "speed", "joint", "sex", "stature", "mass", "export", "open", "link"]) {
     assert.ok(seen.has(id), `${id} is not reached: ${[...seen]}`);
   }
-  await page.context().close();
+  await close(opened);
 });
 
 test("what a first visit loads is small", (t) => {

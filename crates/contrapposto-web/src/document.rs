@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use contrapposto::hybrid::Strategy;
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::error::Refusal;
@@ -18,7 +19,7 @@ pub(crate) const FIRST: &str = include_str!("first.toml");
 const RUN: (f64, f64) = (3600.0, 0.1);
 
 /// A scenario file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Document {
     /// As it was opened, with the changes of its own tables.
     table: Table,
@@ -46,6 +47,16 @@ impl Document {
             run.insert("step_s".to_owned(), Value::Float(RUN.1));
         }
         Ok(Self { table, held: vec![], posture: vec![], files })
+    }
+
+    /// From a text of [`Document::state`].
+    pub(crate) fn from_state(state: &str) -> Result<Self, Refusal> {
+        toml::from_str(state).map_err(Refusal::of)
+    }
+
+    /// All of it as a text. Unlike the file, it keeps held points apart from tasks, and other files are in it.
+    pub(crate) fn state(&self) -> Result<String, Refusal> {
+        toml::to_string(self).map_err(Refusal::of)
     }
 
     /// The text of the file.

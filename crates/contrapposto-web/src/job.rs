@@ -70,6 +70,11 @@ impl Job {
             Request::Stop { take } => self.stop(take),
             Request::Balance { coordinate } => self.balance(&coordinate),
             Request::Export {} => Ok(self.export()),
+            Request::State {} => Ok(Answer::Text { text: self.document_as_shown().state()? }),
+            Request::Restore { state } => {
+                self.check_released()?;
+                self.replace(Document::from_state(&state)?)
+            }
             Request::Undo {} => self.go(false),
             Request::Redo {} => self.go(true),
             Request::Reset {} => {

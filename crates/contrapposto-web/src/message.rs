@@ -41,6 +41,10 @@ pub(crate) enum Request {
     Balance { coordinate: String },
     /// The scenario as a file.
     Export {},
+    /// All of the present document as a text, for `restore` in another session.
+    State {},
+    /// Takes over the document of another session; a change that can be undone.
+    Restore { state: String },
     /// Takes the last change back.
     Undo {},
     /// Makes it again.
@@ -116,7 +120,7 @@ pub(crate) struct SegmentScene {
 }
 
 /// A point of a segment that can be dragged or is held.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Handle {
     pub(crate) label: String,
     pub(crate) segment: String,

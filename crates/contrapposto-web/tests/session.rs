@@ -340,3 +340,27 @@ fn a_hand_on_a_thing_is_not_dragged_and_a_dragged_point_comes_after_it() {
     let way = (0..3).map(|k| (after[k] - before[k]).powi(2)).sum::<f64>().sqrt();
     assert!(way < 0.01, "the hand left the box by {way} m");
 }
+
+#[test]
+fn another_session_takes_over_a_state_with_its_held_points_events_and_files() {
+    let text = format!("{}\n[[event]]\nat_s = 2\ntask = 1\ntarget_m = [0.05, 0, 0]\n", scenario_with_a_task());
+    let mut studio = Studio::new();
+    ask(&mut studio, json!({ "do": "open", "scenario": text, "files": { "notes.txt": "\"a\"\n\u{1}" } }));
+    ask(&mut studio, json!({ "do": "grab", "segment": "hand_l", "point": [0, 0, 0] }));
+    ask(&mut studio, json!({ "do": "release", "hold": true }));
+    ask(&mut studio, json!({ "do": "load", "segment": "hand_r", "mass": 5.0 }));
+    let shown = settled(&mut studio, 5);
+    let state = ask(&mut studio, json!({ "do": "state" }))["text"].clone();
+
+    let mut other = Studio::new();
+    ask(&mut other, json!({ "do": "open", "scenario": text }));
+    let scene = ask(&mut other, json!({ "do": "restore", "state": state }));
+    assert_eq!(scene["shown"]["q"], shown["q"]);
+    assert_eq!((&scene["held"][0]["segment"], &scene["loads"][0]["mass"]), (&json!("hand_l"), &json!(5.0)));
+    assert_eq!(ask(&mut other, json!({ "do": "state" }))["text"], state);
+    assert_eq!(exported(&mut other), exported(&mut studio));
+    ask(&mut other, json!({ "do": "free", "segment": "hand_l" }));
+    ask(&mut other, json!({ "do": "undo" }));
+    ask(&mut other, json!({ "do": "undo" }));
+    refused(&mut other, json!({ "do": "restore", "state": "table = 3" }));
+}

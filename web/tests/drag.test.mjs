@@ -1,0 +1,107 @@
+// The mouse drags a hand, a weight hangs on it, undo takes both back; no request leaves the page.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { atRest, close, open, port, result, slide, useBrowser } from "./browser.mjs";
+
+useBrowser();
+
+/** Where a part is on the screen, px. */
+async function onScreen(page, part) {
+  const [x, y] = await page.evaluate((part) => window.studio.onCanvas(part), part);
+  const box = await page.locator("#canvas").boundingBox();
+  return [box.x + x, box.y + y];
+}
+
+test("the mouse drags a hand, 5 kg change the torques, undo brings the posture back; all requests go to the page's own server", async (t) => {
+  const opened = await open();
+  const { page, requests } = opened;
+  await atRest(page);
+  const standing = await result(page);
+  const [x, y] = await onScreen(page, "right hand");
+  const box = await page.locator("#canvas").boundingBox();
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y - 90, { steps: 12 });
+  // The body follows as long as the button is pressed. The point of the hand that is measured is not the one that was pressed: it lies within, up
+  // to 4 cm away, and turns about it.
+  await page.waitForFunction(
+    ([x, y]) => {
+      const at = window.studio.onCanvas("right hand");
+      const box = document.querySelector("#canvas").getBoundingClientRect();
+      return Math.hypot(box.x + at[0] - x, box.y + at[1] - y) < 12;
+    },
+    [x + 60, y - 90],
+  );
+  assert.deepEqual(await page.locator("#canvas").boundingBox(), box, "the picture has moved under the pointer");
+  await page.mouse.up();
+  await page.waitForSelector("#free-hand_r");
+  await atRest(page);
+  const dragged = await result(page);
+  const shoulder = dragged.names.indexOf("arm_flex_r");
+  t.diagnostic(`shoulder flexed by ${dragged.q[shoulder] - standing.q[shoulder]} rad`);
+  assert.ok(dragged.q[shoulder] - standing.q[shoulder] > 0.2, "the arm did not follow the mouse");
+
+  await page.selectOption("#part", { label: "right hand" });
+  await slide(page, "#weight", 5);
+  await page.waitForFunction((before) => JSON.parse(document.querySelector("#result").textContent).external.join() !== before, dragged.external.join());
+  await atRest(page);
+  const loaded = await result(page);
+  const change = loaded.external[shoulder] - dragged.external[shoulder];
+  t.diagnostic(`external torque of the shoulder ${dragged.external[shoulder]}, with 5 kg ${loaded.external[shoulder]} N m`);
+  // 5 kg, 2 cm or more before the axis of the shoulder.
+  assert.ok(Math.abs(change) > 5 * 9.81 * 0.02, `external torque of the shoulder changed by ${change} N m`);
+
+  await page.click("#undo");
+  await page.waitForFunction(() => document.querySelector("#weight").value === "0");
+  await atRest(page);
+  assert.deepEqual((await result(page)).q, dragged.q);
+  // The same posture, its torques computed anew.
+  const apart = (await result(page)).external.map((torque, i) => Math.abs(torque - dragged.external[i]));
+  assert.ok(Math.max(...apart) < 1e-9, `external torques differ by ${Math.max(...apart)} N m`);
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction(() => !document.querySelector("#free-hand_r"));
+  await atRest(page);
+  assert.deepEqual((await result(page)).q, standing.q);
+
+  assert.ok(requests.some((url) => url.endsWith(".wasm")), "the worker's requests were not counted");
+  const elsewhere = requests.filter((url) => new URL(url).origin !== `http://127.0.0.1:${port()}` && !/^(blob|data):/.test(url));
+  assert.deepEqual(elsewhere, []);
+  await close(opened);
+});
+
+test("a press without a motion, and one beside the body, change nothing", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await atRest(page);
+  const before = await result(page);
+  const [x, y] = await onScreen(page, "right hand");
+  await page.mouse.click(x, y);
+  await atRest(page);
+  await page.mouse.click(20, y);
+  await atRest(page);
+  assert.equal(await page.isDisabled("#undo"), true);
+  assert.deepEqual((await result(page)).names, before.names);
+  await close(opened);
+});
+
+test("twenty changes leave as many shapes on the graphics card as none", async (t) => {
+  const opened = await open();
+  const { page } = opened;
+  await atRest(page);
+  await page.evaluate(() => new Promise(requestAnimationFrame));
+  const before = await page.evaluate(() => window.studio.geometries());
+  for (let k = 0; k < 10; k++) {
+    // Another body, then the same body in other postures: a change ends the settling after the one before.
+    await slide(page, "#stature", k % 2 ? 1.65 : 1.85);
+    await slide(page, "#weight", k + 1);
+    await page.waitForFunction((weight) => document.querySelector("#weight").value === weight, String(k + 1));
+    await page.waitForTimeout(200);
+  }
+  await atRest(page);
+  await page.waitForTimeout(500);
+  const after = await page.evaluate(() => window.studio.geometries());
+  t.diagnostic(`${before} shapes, then ${after}`);
+  assert.ok(before > 10, "nothing was drawn");
+  assert.ok(after <= before + 3, `${before} shapes became ${after}`);
+  await close(opened);
+});
