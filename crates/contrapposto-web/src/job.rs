@@ -183,11 +183,14 @@ impl Job {
 
     fn play(&mut self, samples: u32) -> Result<Answer, Refusal> {
         self.check_released()?;
-        if self.play.is_none() {
-            self.play = Some(Play::new(&self.document_as_shown())?);
+        if let Some(play) = &mut self.play {
+            return Ok(Answer::Played(Box::new(play.advance(&self.figure.body, samples)?)));
         }
-        let play = self.play.as_mut().ok_or_else(|| Refusal::of("no run is under way"))?;
-        Ok(Answer::Played(Box::new(play.advance(&self.figure.body, samples)?)))
+        let mut play = Play::new(&self.document_as_shown())?;
+        let played = play.advance(&self.figure.body, samples)?;
+        // A run that is refused at its first samples has not begun.
+        self.play = Some(play);
+        Ok(Answer::Played(Box::new(played)))
     }
 
     /// Ends a run. `take`: the scenario then begins where the run ended.
