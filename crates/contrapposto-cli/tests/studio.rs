@@ -4,10 +4,11 @@
 
 mod support;
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use support::run;
 
@@ -79,6 +80,33 @@ fn other_files_methods_and_hosts_are_refused() {
         assert!(answer.starts_with(&format!("HTTP/1.1 {status}")), "{method} {target} {host}: {answer}");
         assert!(!answer.contains("secret"), "{answer}");
     }
+}
+
+#[test]
+fn slow_connections_take_no_more_than_some_threads_and_some_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let (server, port, _) = serve(folder.path(), None);
+    let mut slow: Vec<TcpStream> = (0..40).map(|_| TcpStream::connect(("127.0.0.1", port)).unwrap()).collect();
+    let begin = Instant::now();
+    let mut open = true;
+    // A byte a second is faster than the wait for one read.
+    while open && begin.elapsed() < Duration::from_secs(30) {
+        for stream in &mut slow {
+            let _ = stream.write_all(b"G");
+        }
+        std::thread::sleep(Duration::from_secs(1));
+        if cfg!(target_os = "linux") {
+            let status = std::fs::read_to_string(format!("/proc/{}/status", server.0.id())).unwrap();
+            let threads = status.lines().find_map(|line| line.strip_prefix("Threads:")).unwrap();
+            assert!(threads.trim().parse::<usize>().unwrap() <= 16, "{threads} threads");
+        }
+        slow[0].set_read_timeout(Some(Duration::from_millis(1))).unwrap();
+        let read = slow[0].read(&mut [0]);
+        open = read.is_err_and(|error| [ErrorKind::WouldBlock, ErrorKind::TimedOut].contains(&error.kind()));
+    }
+    assert!(!open, "a slow connection is open after {} s", begin.elapsed().as_secs());
+    drop(slow);
+    assert!(ask(port, "GET", "/", &format!("127.0.0.1:{port}")).starts_with("HTTP/1.1 200 OK"));
 }
 
 #[test]
