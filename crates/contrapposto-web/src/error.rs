@@ -3,7 +3,7 @@
 use contrapposto_formats::InputError;
 use miette::Diagnostic;
 
-/// Why a request was refused: a sentence for the reader of the page.
+/// The reason for which a request was refused: a sentence for the reader of the page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Refusal(pub(crate) String);
 

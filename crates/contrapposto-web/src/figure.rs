@@ -46,7 +46,7 @@ impl Figure {
         self.posture == self.body.scenario.start
     }
 
-    /// Where a point of a segment is in ground, m.
+    /// Place of a point of a segment in ground, m.
     pub(crate) fn place(&self, handle: &Handle) -> Result<[f64; 3], Refusal> {
         let segment = self.body.segment(&handle.segment)?;
         let kinematics = self.body.kinematics(&self.posture)?;

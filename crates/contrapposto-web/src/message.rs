@@ -193,11 +193,11 @@ pub(crate) struct Played {
     pub(crate) fatigue: Vec<[f64; 2]>,
     /// Muscle groups that ask for relief.
     pub(crate) asking: Vec<String>,
-    /// What was decided and why: the sentences of `decisions.csv`, the latest last.
+    /// Decisions with their reasons: the sentences of `decisions.csv`, the latest last.
     pub(crate) log: Vec<LogLine>,
-    /// How many there are in all.
+    /// Number of all decisions.
     pub(crate) decisions: u64,
-    /// Why the run ended; `None` while it goes on.
+    /// The reason for which the run ended; `None` while it goes on.
     pub(crate) ended: Option<&'static str>,
     pub(crate) shown: Shown,
 }

@@ -9,13 +9,13 @@ use crate::posture_solver::SolvedPosture;
 pub struct Work {
     /// The coordinate.
     pub coordinate: usize,
-    /// Which of its groups.
+    /// The group of the coordinate, by the sign of its torque.
     pub side: Side,
     /// Active torque, N m.
     pub active: f64,
     /// Strength of the group at its angle, N m.
     pub strength: f64,
-    /// How long the group, rested at first, can hold this, s; infinite if for ever.
+    /// Time for which the group, rested at first, can hold this load, s; infinite if for ever.
     pub endurance: f64,
 }
 
@@ -98,7 +98,7 @@ pub struct Equilibria {
     pub alike: usize,
     /// Steps of all starts together.
     pub steps: usize,
-    /// Those steps and the changes of their working sets ([`Step::work`](crate::posture_solver::Step::work)).
+    /// Work of these steps: their number and the changes of their working sets ([`Step::work`](crate::posture_solver::Step::work)).
     pub work: usize,
     /// The search ended at [`Search::most_work`](super::Search::most_work), not because all starts were tried.
     pub cut: bool,
