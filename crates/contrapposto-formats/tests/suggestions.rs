@@ -279,3 +279,29 @@ fn the_hazard_of_a_bent_spine_is_ended_by_changes_that_are_tried_for_it_and_thei
     assert!(words.iter().all(|words| ended.contains(&words.as_str())), "{ended:?}");
     assert_eq!(advice.helping[0].hazards, 0);
 }
+
+#[test]
+fn a_change_that_ends_one_of_two_hazards_for_a_shorter_time_says_both() {
+    let text = include_str!("../../../scenarios/reach-floor.toml").replace("duration_s = 120", "duration_s = 1");
+    let (_, before) = ran(&read(&text));
+    assert_eq!((before.hazards.len(), before.seconds), (2, None), "{:?}", before.hazards);
+    let one = |hazards: usize, seconds: Option<f64>| Suggestion {
+        change: "it changed".to_owned(),
+        kind: VerdictKind::Holds,
+        asked: Some(1.0),
+        seconds,
+        least: None,
+        hazards,
+        hands: 0,
+        load: None,
+    };
+    for (hazards, seconds, end) in [
+        (2, None, "without a limit, with ligaments in hazard"),
+        (1, None, "without a limit, with ligaments in hazard at 1 of 2 joints"),
+        (1, Some(60.0), "in all, with ligaments in hazard at 1 of 2 joints, but for a shorter time"),
+        (0, Some(60.0), "in all, without ligaments in hazard, but for a shorter time"),
+    ] {
+        let words = one(hazards, seconds).in_words(&before);
+        assert!(words.ends_with(end), "{words}");
+    }
+}

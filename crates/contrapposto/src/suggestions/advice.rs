@@ -48,7 +48,11 @@ fn sentence(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tri
     let all = tried.join("; ");
     let stays = !helping.is_empty() && !verdict.hazards.is_empty() && helping.iter().all(|one| one.hazards > 0);
     let hazard = stays.then(|| format!("No change that was tried ends every hazard: {all}."));
-    let what = if stays { "What would let it go on longer" } else { "What would help" };
+    let what = match (stays, helping.iter().any(|one| one.lessens_hazards(verdict))) {
+        (false, _) => "What would help",
+        (true, false) => "What would let it go on longer",
+        (true, true) => "What would end some of them, or let it go on longer",
+    };
     let said = match helping {
         [] if tried.is_empty() => None,
         [] if tried.len() == 1 => Some(format!("The one change that was tried does not help: {all}.")),

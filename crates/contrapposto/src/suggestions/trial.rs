@@ -141,16 +141,22 @@ impl Suggestion {
         all
     }
 
+    /// Whether fewer joints than before, but some, are carried by ligaments in hazard.
+    pub(super) fn lessens_hazards(&self, before: &Verdict) -> bool {
+        (1..before.hazards.len()).contains(&self.hazards)
+    }
+
     /// `with the target of right hand 10 cm lower it holds through the run (5.0 min), about 11.2 min in all`,
     /// `with 20 % less load it can be held 11 s of the 30 s asked (weaker people: 5.0 s)`; beside the verdict on the job without the change.
     pub fn in_words(&self, before: &Verdict) -> String {
         let change = &self.change;
         let shorter = times(self.seconds, None).0 < times(before.seconds, None).0;
+        let but = if shorter { ", but for a shorter time" } else { "" };
         let hazard = match (before.hazards.len(), self.hazards) {
-            (0, 0) => "",
-            (_, 0) if shorter => ", without ligaments in hazard, but for a shorter time",
-            (_, 0) => ", without ligaments in hazard",
-            _ => ", with ligaments in hazard",
+            (0, 0) => String::new(),
+            (_, 0) => format!(", without ligaments in hazard{but}"),
+            (joints, left) if left < joints => format!(", with ligaments in hazard at {left} of {joints} joints{but}"),
+            _ => ", with ligaments in hazard".to_owned(),
         };
         let grip = match (before.hands.len(), self.hands) {
             (0, 0) => "",
