@@ -7,7 +7,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{Run, Scenario, ScenarioError, StopReason, Summary};
-use contrapposto::verdict::{HeldPosture, Verdict, VerdictKind};
+use contrapposto::verdict::{HeldPosture, Verdict, VerdictKind, how_long};
 use contrapposto_formats::{VerdictText, read_scenario};
 use nalgebra::Vector3;
 
@@ -143,8 +143,13 @@ fn a_weight_that_tires_the_elbow_is_held_until_the_time_of_eulers_method_and_the
     assert!((seconds - time).abs() < 1.0 + 0.01 * time, "{seconds} s, by Euler {time} s");
     let (least, greatest) = verdict.range.unwrap();
     assert!(least < 0.8 * seconds && greatest > 1.2 * seconds, "{least} to {greatest}");
-    assert!(verdict.sentence.starts_with("Can be held "), "{}", verdict.sentence);
+    let start = format!("Can be held {} of the 15.0\u{a0}min asked (", how_long(seconds));
+    assert!(verdict.sentence.starts_with(&start), "{}", verdict.sentence);
     assert!(verdict.sentence.ends_with("then right elbow flexion fails first."), "{}", verdict.sentence);
+    // A failure in the last second is said in seconds.
+    let (_, barely, _) = run(&arm(kilograms, seconds.ceil() + 1.0));
+    let start = format!("Can be held {:.0}\u{a0}s of the {:.0}\u{a0}s asked (", seconds.floor(), seconds.ceil() + 1.0);
+    assert!(barely.sentence.starts_with(&start), "{}", barely.sentence);
     let text = VerdictText::new(&scenario.model, &verdict);
     assert_eq!((text.kind, text.who.as_deref()), ("held_until", Some("right elbow flexion")));
     assert!((text.minutes.unwrap() - seconds / 60.0).abs() < 1e-12);

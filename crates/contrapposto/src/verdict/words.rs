@@ -105,7 +105,21 @@ impl Findings {
         let hazards: Vec<String> = self.ligaments(model).into_iter().chain(self.passed(model)).collect();
         let hazards = if hazards.is_empty() { String::new() } else { format!("; but {}", listed(&hazards)) };
         let overload = self.overload(model).unwrap_or_default();
-        format!("Can be held {} ({range}), then {who} fails first{hazards}.{overload}", how_long(time))
+        format!("Can be held {} ({range}), then {who} fails first{hazards}.{overload}", self.held(time))
+    }
+
+    /// `10 min of the 2.0 h asked`, `598 s of the 600 s asked`, or `10 min` where no time was asked for.
+    fn held(&self, time: f64) -> String {
+        let Some(asked) = self.asked.filter(|asked| time < *asked && self.interrupted.is_none()) else {
+            return how_long(time);
+        };
+        let words = [time, asked].map(how_long);
+        let [time, asked] = if words[0] == words[1] {
+            [time.floor(), asked].map(|seconds| format!("{seconds:.0}\u{a0}s"))
+        } else {
+            words
+        };
+        format!("{time} of the {asked} asked")
     }
 
     /// ` Later, at 5.0 min, right hip extension would need 130 % of its strength.`, of a group that is too weak after another one has failed.
