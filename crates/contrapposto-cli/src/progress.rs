@@ -1,9 +1,11 @@
 //! Progress on standard error: a bar on a terminal; elsewhere a line after ten seconds, and then one a minute.
 
 use std::io::{IsTerminal, Write};
+use std::ops::Deref;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle, WeakProgressBar};
+use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time to the first line where standard error is no terminal, and between two lines.
 const WAITS: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(60)];
@@ -11,8 +13,31 @@ const WAITS: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(60)];
 /// Words for trials of changes of a job.
 pub(crate) const TRYING_CHANGES: &str = "trying changes of the job";
 
+/// A bar on standard error, until it is finished or dropped. The thread that writes its lines ends with it, so that the next one takes its memory.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    /// Its end is the end of the thread.
+    _lines: Option<Sender<()>>,
+}
+
+impl Progress {
+    /// Removes the bar.
+    pub(crate) fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Deref for Progress {
+    type Target = ProgressBar;
+
+    fn deref(&self) -> &ProgressBar {
+        &self.bar
+    }
+}
+
 /// Simulated time on standard error.
-pub(crate) fn progress_bar(duration: f64) -> ProgressBar {
+pub(crate) fn progress_bar(duration: f64) -> Progress {
     let bar = ProgressBar::new(duration.ceil() as u64);
     if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} s simulated") {
         bar.set_style(style);
@@ -21,7 +46,7 @@ pub(crate) fn progress_bar(duration: f64) -> ProgressBar {
 }
 
 /// Finished runs on standard error, with the time that is left.
-pub(crate) fn rows_bar(rows: u64) -> ProgressBar {
+pub(crate) fn rows_bar(rows: u64) -> Progress {
     let bar = ProgressBar::new(rows);
     if let Ok(style) = ProgressStyle::with_template("{elapsed} {bar:40} {pos} of {len} runs, {eta} left") {
         bar.set_style(style);
@@ -33,7 +58,7 @@ pub(crate) fn rows_bar(rows: u64) -> ProgressBar {
 }
 
 /// Something that turns on standard error, with words for what is done.
-pub(crate) fn spinner(what: &'static str) -> ProgressBar {
+pub(crate) fn spinner(what: &'static str) -> Progress {
     let bar = ProgressBar::new_spinner().with_message(what);
     if let Ok(style) = ProgressStyle::with_template("{elapsed} {spinner} {msg}") {
         bar.set_style(style);
@@ -42,25 +67,30 @@ pub(crate) fn spinner(what: &'static str) -> ProgressBar {
 }
 
 /// Draws the bar on a terminal; elsewhere a thread writes lines until the bar is finished or dropped.
-fn shown(bar: ProgressBar, line: fn(&ProgressBar) -> String) -> ProgressBar {
+fn shown(bar: ProgressBar, line: fn(&ProgressBar) -> String) -> Progress {
     if std::io::stderr().is_terminal() {
         bar.enable_steady_tick(Duration::from_millis(200));
-        return bar;
+        return Progress { bar, _lines: None };
     }
-    let weak = bar.downgrade();
+    let (lines, end) = channel();
+    let told = bar.clone();
     // Nothing is left to try when standard error is closed.
-    std::thread::spawn(move || tell(&weak, line, WAITS, |text| drop(writeln!(std::io::stderr(), "{text}"))));
-    bar
+    std::thread::spawn(move || tell(&told, &end, line, WAITS, |text| drop(writeln!(std::io::stderr(), "{text}"))));
+    Progress { bar, _lines: Some(lines) }
 }
 
-/// Tells how far the bar is: after the first wait, and then after each second one, until the bar is finished or dropped.
-fn tell(bar: &WeakProgressBar, line: fn(&ProgressBar) -> String, waits: [Duration; 2], mut write: impl FnMut(String)) {
+/// Tells how far the bar is: after the first wait, and then after each second one, until the sender of `end` is dropped.
+fn tell(
+    bar: &ProgressBar,
+    end: &Receiver<()>,
+    line: fn(&ProgressBar) -> String,
+    waits: [Duration; 2],
+    mut write: impl FnMut(String),
+) {
     let start = Instant::now();
     let [mut wait, then] = waits;
-    loop {
-        std::thread::sleep(std::mem::replace(&mut wait, then));
-        let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) else { return };
-        write(format!("progress: {} after {} s", line(&bar), start.elapsed().as_secs()));
+    while end.recv_timeout(std::mem::replace(&mut wait, then)) == Err(RecvTimeoutError::Timeout) {
+        write(format!("progress: {} after {} s", line(bar), start.elapsed().as_secs()));
     }
 }
 
@@ -69,18 +99,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_bar_is_told_after_the_first_wait_and_then_after_each_second_one_until_it_is_finished() {
+    fn a_bar_is_told_after_the_first_wait_and_then_after_each_second_one_until_it_is_dropped() {
         let bar = ProgressBar::hidden();
         bar.set_length(7200);
         let mut lines = vec![];
         let words: fn(&ProgressBar) -> String = |bar| format!("{} done", bar.position());
-        let (weak, start) = (bar.downgrade(), Instant::now());
+        let ((lines_end, end), start) = (channel(), Instant::now());
+        let mut lines_end = Some(lines_end);
         let waits = [30, 200].map(Duration::from_millis);
-        tell(&weak, words, waits, |line| {
+        tell(&bar, &end, words, waits, |line| {
             lines.push((line, start.elapsed()));
             bar.inc(5);
             if lines.len() == 3 {
-                bar.finish();
+                lines_end.take();
             }
         });
         let told: Vec<&str> = lines.iter().map(|(line, _)| line.as_str()).collect();

@@ -65,7 +65,7 @@ pub(super) fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fa
         progress.set_position(sample.time as u64);
         last = Some(Frame::of_sample(&scenario.model, &sample));
     }
-    progress.finish_and_clear();
+    progress.finish();
     let Some(frame) = last else { return Err(Fail::job(&file, "the run has no sample")) };
     let verdict = Verdict::of_run(&scenario, &run.summary());
     let loads = Stage::of_run(&scenario, &things).loads_at(frame.time).to_vec();

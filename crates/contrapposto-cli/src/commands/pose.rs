@@ -41,14 +41,14 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POSE_FILES)).transpose()?;
     let solving = spinner("solving for the posture");
     let posed = posed(&name, &mut scenario);
-    solving.finish_and_clear();
+    solving.finish();
     let Posed { pose, held, kept_balance, .. } = told(posed?);
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let files = if args.out.is_some() { names.collect() } else { vec![] };
     let trying = spinner(TRYING_CHANGES);
     let answer = answer(&scenario, &pose, &held, args.suggest);
-    trying.finish_and_clear();
+    trying.finish();
     let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), files);
     let json = json_text("pose.json", &text)?;
     if let Some(folder) = &folder {

@@ -49,7 +49,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
             let (title, body) = (&scenario.title, (&scenario.model, scenario.loads.as_slice()));
             let advice = |verdict: &Verdict| advice_without(&scenario, verdict, args.suggest);
             let answered = without_posture("relax.json", title, body, (missing, advice), folder.as_ref(), args.json);
-            spinner.finish_and_clear();
+            spinner.finish();
             return answered;
         }
         Err(SearchError::Relax(error)) => return Err(Fail::Refused(format!("{name}: {error}"))),
@@ -57,7 +57,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     };
     spinner.set_message(TRYING_CHANGES);
     let answer = answer(&scenario, &found, args.suggest);
-    spinner.finish_and_clear();
+    spinner.finish();
     let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
     let names = RELAX_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };

@@ -114,7 +114,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         None => match Run::new(scenario) {
             Ok(run) => (run, Recording::new(scenario)),
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
-                progress.finish_and_clear();
+                progress.finish();
                 let body = (&scenario.model, scenario.loads.as_slice());
                 let advice = |verdict: &Verdict| advice_without_posture(verdict, scenario, suggest, goes_on);
                 return without_posture(
@@ -131,13 +131,13 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     };
     let mut files = folder.map(|folder| Files { folder, recording });
     go_through(scenario, &mut run, files.as_mut(), &progress)?;
-    progress.finish_and_clear();
+    progress.finish();
     let summary = run.summary();
     let mut answer = Answer::of_run(scenario, &summary);
     if summary.reason != StopReason::Interrupted {
         let trying = spinner(TRYING_CHANGES);
         answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
-        trying.finish_and_clear();
+        trying.finish();
     }
     let text = match &files {
         Some(files) => files.write((scenario, things), (&run, &summary), &answer, figures)?,

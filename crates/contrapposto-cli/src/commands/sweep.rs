@@ -9,7 +9,6 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 
 use contrapposto_formats::{MOST_BYTES, Plan, read_plan, read_run, scenario_model};
 use contrapposto_sweep::{COLUMNS, Study};
-use indicatif::ProgressBar;
 use serde::Serialize;
 
 use crate::args::SweepArgs;
@@ -17,7 +16,7 @@ use crate::fail::Fail;
 use crate::input::{confined, read};
 use crate::interruption;
 use crate::output::{Folder, json_text, print};
-use crate::progress::rows_bar;
+use crate::progress::{Progress, rows_bar};
 
 /// The file that lists the parts of a finished sweep.
 const LIST: &str = "sweep.json";
@@ -133,7 +132,7 @@ fn compute(
         }
         Ok(())
     });
-    work.bar.finish_and_clear();
+    work.bar.finish();
     result.map(|()| written)
 }
 
@@ -141,7 +140,7 @@ fn compute(
 struct Work<'a> {
     study: &'a Study,
     parts: &'a [usize],
-    bar: ProgressBar,
+    bar: Progress,
     /// Place in `parts` of the next part that no thread has taken.
     next: AtomicUsize,
     /// A part could not be written.
