@@ -22,11 +22,15 @@ impl BodyMotion<'_> {
     pub(super) fn start(&mut self) -> Result<Searched<Posture>, ScenarioError> {
         let scenario = self.scenario;
         let options = Options { max_step: START_MAX_STEP, local_minima: 0, ..Options::least_effort() };
-        let levels = self.levels().cloned().collect();
-        let mut nearest = engine((scenario, self.model.clone()), &scenario.start, &self.supports, levels, options)?;
-        let mut solved = nearest.solve(&scenario.start)?;
+        // One engine at a time: with many tasks they are large.
+        let solve = |from: &Posture| -> Result<SolvedPosture, ScenarioError> {
+            let levels = self.levels().cloned().collect();
+            let mut nearest = engine((scenario, self.model.clone()), &scenario.start, &self.supports, levels, options)?;
+            Ok(nearest.solve(from)?)
+        };
+        let mut solved = solve(&scenario.start)?;
         if self.misses(&solved) {
-            let other = nearest.solve(&self.without_effort()?)?;
+            let other = solve(&self.without_effort()?)?;
             let errors: Vec<f64> = solved.levels.iter().map(|level| level.length).collect();
             if other.balance == Balance::Held && first_difference(&other.levels, &errors) < 0.0 {
                 solved = other;
