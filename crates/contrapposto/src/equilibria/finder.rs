@@ -140,9 +140,10 @@ impl<'a> Finder<'a> {
 
     fn find_limbs_that_can_hang(&mut self) {
         let Some(posture) = self.with_hanging_limbs(self.search.start) else { return };
-        let mut kinematics = Kinematics::new(self.search.model);
-        if kinematics.update(self.search.model, &posture).is_ok() {
-            self.limbs = LimbsWithoutTask::of(self.search, &kinematics);
+        let model = self.search.model;
+        let [mut start, mut hanging] = [Kinematics::new(model), Kinematics::new(model)];
+        if start.update(model, self.search.start).is_ok() && hanging.update(model, &posture).is_ok() {
+            self.limbs = LimbsWithoutTask::of(self.search, &start, &hanging);
         }
     }
 

@@ -16,7 +16,7 @@
 //!
 //! From every different posture the engine then converges. Two postures count as one if at no joint the torque of loads or of
 //! passive tissue differs by more than a twentieth of the strength there and no segment is elsewhere: minima can be flat, a forearm
-//! may rotate without load on a muscle. Of those the one of least effort is kept. A limb without a task that can hang is not held up: postures
+//! may rotate without load on a muscle. Of those the one of least effort is kept. A limb without a task that hangs in the start is not held up: postures
 //! with fewer such limbs come first, whatever their efforts (`raised_limbs.rs`). Postures whose tasks are farther away than in the best one, that slipped or
 //! fell, are counted and left out, and so are those that are the same way to stand as a better one (`ways_to_stand.rs`).
 

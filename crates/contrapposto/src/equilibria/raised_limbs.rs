@@ -1,4 +1,4 @@
-//! Counts the limbs that are held up without a task, though they can hang.
+//! Counts the limbs that are held up without a task, though they hang in the start.
 //!
 //! An arm held straight up, with a bag or without, needs little torque but constant attention, since its balance is unstable, or the ligaments at
 //! the end of the shoulder's range. Effort charges neither. So of two postures that with fewer such limbs comes first, whatever their efforts.
@@ -13,7 +13,8 @@ use crate::tasks::Task;
 /// Assumed: a straight arm hangs within 60 deg of the vertical, an arm with the elbow bent by a right angle has 0.6.
 const LEAST_DEPTH: f64 = 0.5;
 
-/// The limbs that move no support, have no task and bear nothing but weights, and that can hang.
+/// The limbs that move no support, have no task and bear nothing but weights, and that hang in the start: a trunk or a head that is upright there
+/// may stay so.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LimbsWithoutTask {
     limbs: Vec<Limb>,
@@ -27,15 +28,16 @@ struct Limb {
 }
 
 impl LimbsWithoutTask {
-    /// `hanging`: a posture in which limbs hang as far as they can.
-    pub(super) fn of(search: &Search<'_>, hanging: &Kinematics) -> Self {
+    /// `start` and a posture in which limbs hang as far as they can.
+    pub(super) fn of(search: &Search<'_>, start: &Kinematics, hanging: &Kinematics) -> Self {
         let tasks = || search.goals.iter().flat_map(|level| &level.tasks);
         let has_task = |segment: usize| tasks().any(|task: &Task| task.concerns(search.model, segment));
         let loads = |segment: usize| search.loads.iter().filter(move |load| load.segment == segment);
         let is_pulled = |segment: usize| loads(segment).any(|load| !matches!(load.kind, LoadKind::Weight(_)));
         let limb = |segments: Vec<usize>| {
             let depth = depth(search, hanging, &segments)?;
-            let counts = depth > 0.0 && !segments.iter().any(|&segment| has_task(segment) || is_pulled(segment));
+            let hangs = self::depth(search, start, &segments)? > 0.0 && depth > 0.0;
+            let counts = hangs && !segments.iter().any(|&segment| has_task(segment) || is_pulled(segment));
             counts.then_some(Limb { segments, least_depth: LEAST_DEPTH * depth })
         };
         Self { limbs: free_limbs(search.model, search.supports).into_iter().filter_map(limb).collect() }
