@@ -17,7 +17,7 @@ pub(crate) const TRYING_CHANGES: &str = "trying changes of the job";
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
-    /// Its end is the end of the thread.
+    /// The sender whose end is the end of the thread.
     _lines: Option<Sender<()>>,
 }
 
