@@ -3,18 +3,23 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::contact::{Balance, Condition, Missing, Support, root_rates};
+use contrapposto::fatigue::FatigueLaw;
 use contrapposto::joint_torques::{JointTorques, Quantities};
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{Adult, Model, Sex, adult};
+use contrapposto::model::{
+    Adult, CoordinateSpec, JointKind, Model, ModelBuilder, MuscleGroup, Placement, SegmentSpec, Sex, adult,
+};
 use contrapposto::posture::Posture;
+use contrapposto::strength::Strength;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::{self, CenterOfMass, Effort, Orientation, Point, Task};
+use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use contrapposto::equilibria::{Equilibria, Mirror, Search, SearchError, equilibria};
+use contrapposto::equilibria::{Equilibria, Mirror, SCATTERED_STARTS, Search, SearchError, equilibria};
 use contrapposto::posture_solver::{Engine, Options};
 use contrapposto::statics::Load;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 type V = Vector3<f64>;
 
@@ -91,7 +96,7 @@ impl Standing {
             loads: &self.loads,
             locked: &[],
             most_work: usize::MAX,
-            scattered: contrapposto::equilibria::SCATTERED_STARTS,
+            scattered: SCATTERED_STARTS,
         }
     }
 
@@ -381,4 +386,61 @@ fn a_free_root_without_supports_stays() {
         engine.solve(&standing.start).unwrap().posture
     };
     assert_eq!(solve(4), solve(0));
+}
+
+/// A link of 3 kg on a hinge at the ground, which turns by -180 to 360 deg, upright or hanging at 0, with a tip without mass fixed to its end.
+fn link(up: f64) -> Model {
+    let mut builder = ModelBuilder::new("link", V::new(0.0, -9.81, 0.0));
+    let group = |name: &str| MuscleGroup {
+        name: name.to_owned(),
+        strength: Strength::constant(50.0),
+        fatigue: FatigueLaw::Tireless,
+    };
+    let mut coordinate = CoordinateSpec::new("q", (-PI, 2.0 * PI));
+    coordinate.groups = Some([group("one way"), group("the other way")]);
+    let segment = |name: &str, mass: f64, kind: JointKind| SegmentSpec {
+        name: name.into(),
+        parent: None,
+        mass,
+        center_of_mass: V::new(0.0, 0.4 * up, 0.0),
+        inertia: Matrix3::zeros(),
+        joint: format!("joint of {name}"),
+        kind,
+        in_parent: Placement::identity(),
+        in_segment: Placement::identity(),
+        coordinates: vec![],
+    };
+    let hinged = SegmentSpec { coordinates: vec![coordinate], ..segment("link", 3.0, JointKind::Hinge(V::z_axis())) };
+    builder.segment(hinged).unwrap();
+    let end = Placement::translation(0.0, 0.8 * up, 0.0);
+    let tip = SegmentSpec { parent: Some("link".into()), in_parent: end, ..segment("tip", 0.0, JointKind::Weld) };
+    builder.segment(tip).unwrap();
+    builder.build()
+}
+
+/// Neither needs any torque: a limb that hangs in the start is not held up, as an arm, and one that is up in the start may stay so, as a trunk.
+#[test]
+fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_may_stay() {
+    for (up, stays_upright) in [(1.0, true), (-1.0, false)] {
+        let model = link(up);
+        let start = Posture::new(vec![1.0]);
+        let search = Search {
+            model: &model,
+            start: &start,
+            supports: &[],
+            limits: &[],
+            goals: &[],
+            loads: &[],
+            locked: &[],
+            most_work: usize::MAX,
+            scattered: SCATTERED_STARTS,
+        };
+        let found = equilibria(&search, OPTIONS).unwrap();
+        // 1 upright, -1 hanging.
+        let places = found.postures.iter().map(|posture| up * posture.relaxed.posture.values()[0].cos());
+        let places: Vec<f64> = places.collect();
+        println!("starts at {up}: {places:?}");
+        assert!(places.iter().all(|place| place.abs() > 0.999), "{places:?}");
+        assert_eq!(places.iter().any(|place| *place > 0.0), stays_upright, "{places:?}");
+    }
 }

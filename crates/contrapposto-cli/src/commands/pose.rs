@@ -42,7 +42,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let solving = spinner("solving for the posture");
     let posed = posed(&name, &mut scenario);
     solving.finish();
-    let Posed { pose, held, kept_balance, .. } = told(posed?);
+    let Posed { pose, held, kept_balance, .. } = with_notes(posed?);
     let figures = if args.figures { figures_of_pose(&scenario, &pose)? } else { vec![] };
     let names = POSE_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str())).map(str::to_owned);
     let files = if args.out.is_some() { names.collect() } else { vec![] };
@@ -109,11 +109,11 @@ pub(crate) struct Posed {
 
 /// Solves for the posture of a scenario named `name`, with the errors of its goals. Where the supports do not hold the one nearest to the tasks, and no task asks for balance, balance comes first.
 pub(crate) fn solve(name: &str, scenario: &mut PoseScenario) -> Result<Posed, Fail> {
-    Ok(told(posed(name, scenario)?))
+    Ok(with_notes(posed(name, scenario)?))
 }
 
-/// Notes about a posture go to standard error.
-fn told(posed: Posed) -> Posed {
+/// Prints the notes about a posture to standard error.
+fn with_notes(posed: Posed) -> Posed {
     if let Some(change) = posed.unsettled {
         print_note("warning", &unsettled(change));
     }

@@ -20,7 +20,7 @@ pub(super) struct Candidate {
     pub(super) relaxed: SolvedPosture,
     /// Load of supports beyond their greatest shares, shares of body weight.
     pub(super) excess: f64,
-    /// Limbs without a task that are held up, though they can hang.
+    /// Number of limbs without a task that are held up, though they hang in the start.
     pub(super) raised_limbs: usize,
     /// External and passive torque of every coordinate with muscles, as shares of strength.
     pub(super) relative_torques: Vec<[f64; 2]>,

@@ -44,7 +44,7 @@ const EVERYTHING: Missing = Missing { force: f64::INFINITY, moment: f64::INFINIT
 /// [`SearchError`] when something does not fit the model, or the body cannot stand.
 pub fn equilibria(search: &Search<'_>, options: Options) -> Result<Equilibria, SearchError> {
     let mut finder = Finder::new(search, options)?;
-    finder.find_limbs_that_can_hang();
+    finder.find_limbs_to_hang();
     finder.explore()?;
     finder.converge();
     finder.finish()
@@ -138,7 +138,8 @@ impl<'a> Finder<'a> {
         spent
     }
 
-    fn find_limbs_that_can_hang(&mut self) {
+    /// Finds the limbs that are not to be held up, and the depth to which they can hang.
+    fn find_limbs_to_hang(&mut self) {
         let Some(posture) = self.with_hanging_limbs(self.search.start) else { return };
         let model = self.search.model;
         let [mut start, mut hanging] = [Kinematics::new(model), Kinematics::new(model)];

@@ -37,28 +37,33 @@ pub(super) fn idle_segments(search: &Search<'_>) -> Vec<bool> {
     }
     for limb in free_limbs(search.model, search.supports) {
         let is_loaded = limb.iter().any(|segment| search.loads.iter().any(|load| load.segment == *segment));
-        let tasks = || search.goals.iter().flat_map(|level| &level.tasks);
-        let has_task = limb.iter().any(|&segment| tasks().any(|task| task.concerns(search.model, segment)));
+        let is_idle = !is_loaded && !has_task(search, &limb);
         // The joint where the limb begins belongs to the body.
-        limb.iter().skip(1).for_each(|&segment| idle[segment] = !is_loaded && !has_task);
+        limb.iter().skip(1).for_each(|&segment| idle[segment] = is_idle);
     }
     idle
 }
 
-/// For the last segment of every limb that moves no support: its centre of mass straight below the joint where the limb begins, as
+/// Whether a task concerns a segment of a limb.
+pub(super) fn has_task(search: &Search<'_>, limb: &[usize]) -> bool {
+    let mut tasks = search.goals.iter().flat_map(|level| &level.tasks);
+    tasks.any(|task| limb.iter().any(|&segment| task.concerns(search.model, segment)))
+}
+
+/// For the last segment with mass of every limb that moves no support: its centre of mass straight below the joint where the limb begins, as
 /// far as it is from that joint in `posture`.
 pub(super) fn hanging_limbs(model: &Model, supports: &[Support], posture: &Posture) -> Result<Vec<Task>, PostureError> {
     let Some(down) = model.gravity().try_normalize(0.0) else { return Ok(vec![]) };
     let mut kinematics = Kinematics::new(model);
     kinematics.update(model, posture)?;
     let task = |limb: Vec<usize>| {
-        let (&first, &segment) = limb.first().zip(limb.last())?;
+        let first = *limb.first()?;
+        let segment = limb.into_iter().rfind(|&segment| model.segments()[segment].mass > 0.0)?;
         let last = &model.segments()[segment];
         let joint = kinematics.placement(model, first).translation.vector;
         let end = kinematics.station(model, segment, last.center_of_mass);
         let target = joint + (end - joint).norm() * down;
-        let point = Point { segment, point: last.center_of_mass, target, axes: [true; 3] };
-        (last.mass > 0.0).then_some(Task::Point(point))
+        Some(Task::Point(Point { segment, point: last.center_of_mass, target, axes: [true; 3] }))
     };
     Ok(free_limbs(model, supports).into_iter().filter_map(task).collect())
 }

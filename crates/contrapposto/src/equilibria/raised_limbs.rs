@@ -3,11 +3,10 @@
 //! An arm held straight up, with a bag or without, needs little torque but constant attention, since its balance is unstable, or the ligaments at
 //! the end of the shoulder's range. Effort charges neither. So of two postures that with fewer such limbs comes first, whatever their efforts.
 
-use super::hanging_limbs::free_limbs;
+use super::hanging_limbs::{free_limbs, has_task};
 use super::search::Search;
 use crate::kinematics::Kinematics;
 use crate::statics::LoadKind;
-use crate::tasks::Task;
 
 /// Share of the depth to which a limb can hang, at which its centre of mass lies below its joint at least in a limb that counts as hanging.
 /// Assumed: a straight arm hangs within 60 deg of the vertical, an arm with the elbow bent by a right angle has 0.6.
@@ -30,14 +29,13 @@ struct Limb {
 impl LimbsWithoutTask {
     /// `start` and a posture in which limbs hang as far as they can.
     pub(super) fn of(search: &Search<'_>, start: &Kinematics, hanging: &Kinematics) -> Self {
-        let tasks = || search.goals.iter().flat_map(|level| &level.tasks);
-        let has_task = |segment: usize| tasks().any(|task: &Task| task.concerns(search.model, segment));
-        let loads = |segment: usize| search.loads.iter().filter(move |load| load.segment == segment);
-        let is_pulled = |segment: usize| loads(segment).any(|load| !matches!(load.kind, LoadKind::Weight(_)));
+        let pulls = search.loads.iter().filter(|load| !matches!(load.kind, LoadKind::Weight(_)));
         let limb = |segments: Vec<usize>| {
-            let depth = depth(search, hanging, &segments)?;
-            let hangs = self::depth(search, start, &segments)? > 0.0 && depth > 0.0;
-            let counts = hangs && !segments.iter().any(|&segment| has_task(segment) || is_pulled(segment));
+            let [depth, at_start] = [hanging, start].map(|kinematics| depth(search, kinematics, &segments));
+            let (depth, at_start) = (depth?, at_start?);
+            let hangs = depth > 0.0 && at_start > 0.0;
+            let is_pulled = pulls.clone().any(|load| segments.contains(&load.segment));
+            let counts = hangs && !is_pulled && !has_task(search, &segments);
             counts.then_some(Limb { segments, least_depth: LEAST_DEPTH * depth })
         };
         Self { limbs: free_limbs(search.model, search.supports).into_iter().filter_map(limb).collect() }

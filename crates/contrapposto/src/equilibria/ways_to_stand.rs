@@ -2,7 +2,7 @@
 //!
 //! Two postures are one way to stand if no joint of the body is farther away in one than in the other by more than 5 cm,
 //! and no support carries more of the weight in one than in the other by more than a tenth. Both limits are assumed. Limbs that carry
-//! nothing and have no task do not count: an arm up and an arm down are one way to stand, and that of less effort is the answer. A posture in
+//! nothing and have no task do not count: an arm to the front and an arm at the side are one way to stand, and the first of them is the answer. A posture in
 //! which a group would need more than its strength is no way to stand where another posture needs less.
 
 use nalgebra::Vector3;

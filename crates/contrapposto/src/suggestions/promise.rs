@@ -51,14 +51,13 @@ pub fn by_promise_of_search(search: &Search<'_>, changes: Vec<Change>) -> Vec<Ch
 /// The better kind first, then the longer time, then fewer hazards and hands with much weight, the nearer target and the smaller load.
 fn compared(a: &Verdict, b: &Verdict) -> std::cmp::Ordering {
     let time = |verdict: &Verdict| verdict.seconds.unwrap_or(f64::INFINITY);
-    let risks = |verdict: &Verdict| verdict.hazards.len() + verdict.hands.len();
     let miss = |verdict: &Verdict| verdict.missed.first().map_or(0.0, |missed| missed.distance);
     let load = |verdict: &Verdict| verdict.hardest.map_or(0.0, |group| group.load);
     b.kind
         .is_done()
         .cmp(&a.kind.is_done())
         .then(time(b).total_cmp(&time(a)))
-        .then(risks(a).cmp(&risks(b)))
+        .then(a.risks().cmp(&b.risks()))
         .then(miss(a).total_cmp(&miss(b)))
         .then(load(a).total_cmp(&load(b)))
 }

@@ -121,9 +121,8 @@ impl Suggestion {
             let (after, least_after) = times(one.seconds, one.least);
             after > LONGER * before || (after.is_infinite() && least_after > LONGER * least_before)
         };
-        let risks = verdict.hazards.len() + verdict.hands.len();
-        let safer = |one: &Self| one.risks() < risks;
-        let equally_safe = |one: &Self| one.risks() == risks;
+        let safer = |one: &Self| one.risks() < verdict.risks();
+        let equally_safe = |one: &Self| one.risks() == verdict.risks();
         let better = |one: &Self| safer(one) || equally_safe(one) && longer(one);
         let helps =
             |one: &Self| one.kind.is_done() && (one.kind > verdict.kind || one.kind == verdict.kind && better(one));

@@ -169,6 +169,11 @@ impl Verdict {
         let hazard = !self.hazards.is_empty() || !self.passed.is_empty() || !self.hands.is_empty();
         self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && !hazard
     }
+
+    /// Number of coordinates in hazard at the end and of hands with much weight.
+    pub(crate) fn risks(&self) -> usize {
+        self.hazards.len() + self.hands.len()
+    }
 }
 
 /// The findings of a job.
