@@ -188,6 +188,10 @@ pub(crate) struct AssessArgs {
     /// Nothing carries the body, and its root is held as if by hand: only the muscles are judged.
     #[arg(long, conflicts_with_all = ["grf", "support"])]
     pub(crate) fixed_root: bool,
+    /// Error of the given angles: muscles that work against the ligaments of their own joint are judged at the angle within it where they work
+    /// least. 5 for measured angles; 0 for a file of this program that holds the built-in adult, whose motions are exact.
+    #[arg(long, value_name = "DEG", value_parser = angle_error)]
+    pub(crate) angle_error: Option<f64>,
     /// Corners of the patch on which a supporting segment rests, in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
     #[arg(long, value_name = "PATCH", requires = "support")]
     pub(crate) patch: Vec<String>,
@@ -206,6 +210,15 @@ pub(crate) struct AssessArgs {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) suggest: super::SuggestArgs,
+}
+
+/// Greatest error of angles that is accepted, deg: no method of measurement is worse.
+const MOST_ANGLE_ERROR: f64 = 20.0;
+
+/// The error of angles, deg.
+fn angle_error(text: &str) -> Result<f64, String> {
+    let error = text.parse().ok().filter(|error| (0.0..=MOST_ANGLE_ERROR).contains(error));
+    error.ok_or_else(|| format!("an error of angles lies between 0 and {MOST_ANGLE_ERROR} deg"))
 }
 
 /// Loads on a body in given postures, and the unit of the postures.

@@ -1,13 +1,12 @@
 //! `contrapposto assess`: the muscle group that fails first in a recorded motion, its time, and its relief.
 
 mod support_doubts;
+mod warnings;
 
 use std::path::Path;
 
 use contrapposto::assessment::assess as assessed;
-use contrapposto::assessment::{
-    AssessError, AssessSettings, Assessment, FAST_SHARE, GroupAssessment, Instant, PeakTorques,
-};
+use contrapposto::assessment::{ANGLE_ERROR, AssessError, AssessSettings, Assessment, FAST_SHARE, Instant};
 use contrapposto::contact::Support;
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::kinematics::Kinematics;
@@ -22,18 +21,18 @@ use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use nalgebra::Vector3;
 
 use self::support_doubts::support_doubts;
+use self::warnings::warnings;
 use crate::args::{AssessArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
 use crate::motion_file::{loads_of, note_values_out_of_range, read_whole_motion};
-use crate::moving::{Recorded, fast_motion, keep_overlap};
+use crate::moving::{Recorded, keep_overlap};
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::view::answer::{Answer, answered};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
 use crate::view::stage::Stage;
 use crate::view::text::assess::{AssessText, report};
-use crate::view::text::sources::StrengthAtText;
 use crate::view::text::torques::{Columns, header, row};
 use crate::view::torque_rows::{Frame, Order};
 
@@ -42,13 +41,6 @@ const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "r
 const WHAT_CARRIES: &str = "give --support SEG,SEG or --grf FILE.mot; --fixed-root judges the muscles alone";
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
-/// Least residual, as a share of the body's weight, that gives a warning.
-const RESIDUAL: f64 = 1e-6;
-/// Least load of a group that works against ligaments, as a share of its strength, that gives a warning (assumed).
-const LIGAMENT_LOAD: f64 = 0.1;
-/// Most groups that the warning names.
-const MOST_LIGAMENTS: usize = 5;
-
 /// The motion and its loads, checked.
 struct Given {
     /// Times (s) and postures.
@@ -80,7 +72,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         .assess(&mut tables, assessed_frames.as_mut())
         .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
     let new =
-        [support_doubts(model, &motion, &settings.supports), warnings(args, &opened, &found, motion.len())].concat();
+        [support_doubts(model, &motion, &settings.supports), warnings(args, &opened, (&settings, &found), motion.len())].concat();
     new.iter().for_each(|warning| print_note("warning", warning));
     let warnings = [of_muscles, doubts, new].concat();
 
@@ -109,7 +101,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = AssessText::new(&opened, &args.motion, &tables.times, &found, &answer, warnings, files);
+    let text = AssessText::new(&opened, &args.motion, &tables.times, (settings.angle_error, &found), &answer, warnings, files);
     let json = json_text("assess.json", &text)?;
     if let (Some(folder), Some(page)) = (folder, page.transpose()?) {
         let fatigue = tables.fatigue()?;
@@ -214,12 +206,15 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
         let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
         return Err(Fail::Refused(why.to_owned()));
     }
+    let usual = if opened.is_exported_adult() { 0.0 } else { ANGLE_ERROR };
+    let angle_error = args.angle_error.map_or(usual, f64::to_radians);
     let settings = AssessSettings {
         supports: supports(args, model)?,
         rates,
         root_held: args.fixed_root,
         passive_ranges: opened.passive_ranges(),
         muscles,
+        angle_error,
         ..AssessSettings::default()
     };
     let warnings = note_values_out_of_range(opened, &motion, &mut notes);
@@ -266,71 +261,6 @@ fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
         return Err(Fail::Refused(format!("--patch \"{name} ...\": `{name}` is no support; name it with --support")));
     }
     Ok(supports)
-}
-
-/// Reasons to doubt the numbers.
-fn warnings(args: &AssessArgs, opened: &SourcedModel, found: &Assessment, frames: usize) -> Vec<String> {
-    let mut warnings = vec![];
-    let (force, moment) = (found.residual_force, found.residual_moment);
-    let least = RESIDUAL * (opened.model.mass() * opened.model.gravity().norm()).max(1.0);
-    if !args.fixed_root && (force.value > least || moment.value > least) {
-        let missing = format!(
-            "{:.2} N at {} s and {:.2} N m at {} s at most",
-            force.value, force.time, moment.value, moment.time
-        );
-        warnings.push(if !args.support.is_empty() {
-            format!(
-                "in {} of {frames} frames the supports cannot hold the body; the missing force and moment: {missing}",
-                found.unheld
-            )
-        } else if args.under.grf.is_some() {
-            format!("ground reaction and motion do not agree: the root carries {missing}")
-        } else {
-            format!("nothing holds the body up: the root carries {missing}; {WHAT_CARRIES}")
-        });
-    }
-    if !found.dynamics {
-        warnings.extend(fast_motion((found.acceleration, found.fast_share)));
-    }
-    warnings.extend(against_ligaments(opened, found));
-    warnings
-}
-
-/// The warning about groups that work against the ligaments of their own joint at their greatest load.
-fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String> {
-    let worked = |group: &&GroupAssessment| {
-        let angle = opened.model.coordinates()[group.coordinate].kind == CoordinateKind::Rotation;
-        angle && group.peak_load.value >= LIGAMENT_LOAD && group.at_peak.works_against_ligaments()
-    };
-    let in_words = |group: &&GroupAssessment| {
-        let PeakTorques { angle, external, passive, .. } = group.at_peak;
-        let floor = StrengthAtText::new(opened, group).is_some_and(|strength| strength.is_floor());
-        let [passive, external, active] = [passive, external, group.peak_torque].map(tenths);
-        format!(
-            "`{}` at {} deg ({} s): passive torque {passive} N m, load {external} N m, muscles {active} N m{}",
-            opened.model.coordinates()[group.coordinate].name,
-            tenths(angle.to_degrees()),
-            group.peak_load.time,
-            if floor { " over a strength that is the floor of its curve" } else { "" }
-        )
-    };
-    let groups: Vec<&GroupAssessment> = found.groups.iter().filter(worked).collect();
-    let listed: Vec<String> = groups.iter().take(MOST_LIGAMENTS).map(in_words).collect();
-    let more = groups.len().saturating_sub(MOST_LIGAMENTS);
-    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
-    (!groups.is_empty()).then(|| {
-        format!(
-            "muscles work against the ligaments of their own joint; usually the zero of the angle is offset in the motion, or the joint is \
-             hyperextended: {}{more}",
-            listed.join("; ")
-        )
-    })
-}
-
-/// One decimal, without the sign of -0.
-fn tenths(value: f64) -> String {
-    let text = format!("{value:.1}");
-    if text == "-0.0" { "0.0".to_owned() } else { text }
 }
 
 /// The tables of torques and fatigue, as they grow.

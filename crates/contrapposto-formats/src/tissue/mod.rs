@@ -194,6 +194,11 @@ impl SourcedModel {
         Ok(self)
     }
 
+    /// Whether the model comes from a file of this program that holds the built-in adult.
+    pub fn is_exported_adult(&self) -> bool {
+        built_in::verified(self.credited.as_ref(), &self.model).is_some()
+    }
+
     /// Fills in the built-in adult of this size, which the file holds.
     fn fill_own(mut self, size: &Adult) -> Result<Self, AdultError> {
         let (twin, mut of_joints) = (adult(size)?, vec![]);

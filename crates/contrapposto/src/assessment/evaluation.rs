@@ -24,6 +24,9 @@ pub(super) struct Evaluation<'a> {
     pub(super) inertia: Option<Inertia>,
     root: Vec<usize>,
     loads: Vec<Load>,
+    angle_error: f64,
+    /// Space for the angles of all coordinates.
+    values: Vec<f64>,
 }
 
 impl<'a> Evaluation<'a> {
@@ -40,6 +43,8 @@ impl<'a> Evaluation<'a> {
             inertia: (!settings.rates.is_empty()).then(|| Inertia::new(model)),
             root: root_rates(model),
             loads: vec![],
+            angle_error: settings.angle_error,
+            values: vec![0.0; model.coordinates().len()],
         })
     }
 
@@ -87,6 +92,26 @@ impl<'a> Evaluation<'a> {
     /// Active torque of a rate, N m.
     pub(super) fn active(&self, rate: usize) -> f64 {
         self.torques.active_torque()[rate]
+    }
+
+    /// The change of the passive torque of a coordinate within the error of its angle that most eases a group which works against it, N m. At the
+    /// most the passive torque vanishes, and with it the active torque that it asks for.
+    pub(super) fn eased_passive(&mut self, coordinate: usize) -> f64 {
+        let Some(rate) = self.model.coordinates()[coordinate].rate.filter(|_| self.angle_error > 0.0) else { return 0.0 };
+        let (active, (_, passive)) = (self.active(rate), self.torques.external_and_passive(rate));
+        // Muscles of several joints have no passive torque of one joint alone.
+        let of_muscles = self.torques.muscles().is_some_and(|muscles| muscles.gives_passive(rate));
+        if active * passive >= 0.0 || of_muscles || !self.model.rates()[rate].rotational {
+            return 0.0;
+        }
+        let Self { model, torques, values, angle_error: error, .. } = self;
+        let at = (&*model, torques.kinematics());
+        let mut law = |turn: f64| torques.passive_torque().torque_after_turn(at, coordinate, turn, values);
+        let here = law(0.0);
+        // Against `active` from the side of `passive`: at the most by as much as either has.
+        let most = active.abs().min(passive.abs());
+        let eased = [-*error, *error].map(|turn| (here - law(turn)) * passive.signum());
+        -passive.signum() * eased[0].max(eased[1]).clamp(0.0, most)
     }
 
     /// Force (N) and moment (N m) that the root lacks: its active torque, for which it has no muscles.

@@ -1,7 +1,7 @@
 //! Follows load and fatigue of every muscle group through a motion.
 
 use super::evaluation::Evaluation;
-use super::result::{GroupAssessment, Peak, PeakTorques};
+use super::result::{AngleInDoubt, GroupAssessment, Peak, PeakTorques};
 use crate::fatigue::{FatigueLaw, FatigueState, LoadHistory};
 use crate::joint_torques::relative_load;
 use crate::model::{Model, Side};
@@ -77,6 +77,7 @@ impl Groups {
             fatigue: 0.0,
             load: 0.0,
             exhausted_at: None,
+            in_doubt: None,
             proposals: vec![],
         };
         let n = model.coordinates().len();
@@ -89,28 +90,39 @@ impl Groups {
     }
 
     /// Adds the next instant, `seconds` after the one before: load, peak and fatigue of every group.
-    pub(super) fn add(&mut self, evaluation: &Evaluation<'_>, index: usize, time: f64, seconds: f64) {
+    pub(super) fn add(&mut self, evaluation: &mut Evaluation<'_>, index: usize, time: f64, seconds: f64) {
         let pieces = (seconds / PIECE).ceil().clamp(1.0, MOST_PIECES);
         for (place, summary) in self.summaries.iter_mut().enumerate() {
             let (i, side) = (summary.coordinate, summary.side);
+            let eased = evaluation.eased_passive(i);
             let coordinate = &evaluation.model.coordinates()[i];
             // Present: `new` takes no other coordinates.
             let (Some(groups), Some(rate)) = (&coordinate.groups, coordinate.rate) else { continue };
-            let active = evaluation.active(rate);
-            let angle = evaluation.torques.angles()[i];
-            let load = if Side::of(active) == side { relative_load(coordinate, angle, active) } else { 0.0 };
+            let (active, angle) = (evaluation.active(rate), evaluation.torques.angles()[i]);
+            let (external, passive) = evaluation.torques.external_and_passive(rate);
+            let judged = active - eased;
+            let load_of = |torque| if Side::of(torque) == side { relative_load(coordinate, angle, torque) } else { 0.0 };
+            let load = load_of(judged);
             let before = std::mem::replace(&mut self.load[i][side.index()], load);
             let law = &groups[side.index()].fatigue;
             if index == 0 {
                 self.states.push(law.start(0.0, load));
             }
             if load > summary.peak_load.value {
-                summary.peak_torque = active;
-                let (external, passive) = evaluation.torques.external_and_passive(rate);
+                summary.peak_torque = judged;
+                let passive = passive + eased;
                 let strength = groups[side.index()].strength.torque(angle);
                 let inertia = evaluation.inertia_about_axis(rate);
                 summary.at_peak = PeakTorques { angle, external, passive, inertia, strength };
             }
+            AngleInDoubt::take(&mut summary.in_doubt, (load_of(active), load), || AngleInDoubt {
+                time,
+                angle,
+                recorded_load: load_of(active),
+                judged_load: load,
+                recorded_torque: active,
+                judged_torque: judged,
+            });
             summary.peak_load.take(load, index, time);
             summary.loads.push(time, load);
             summary.load = load;

@@ -56,7 +56,7 @@ pub struct GroupAssessment {
     pub side: Side,
     /// Greatest active torque over strength.
     pub peak_load: Peak,
-    /// Active torque at that peak, N m.
+    /// Active torque at that peak, as it is judged ([`AssessSettings::angle_error`](super::AssessSettings::angle_error)), N m.
     pub peak_torque: f64,
     /// Angle and torques at that peak.
     pub at_peak: PeakTorques,
@@ -70,6 +70,8 @@ pub struct GroupAssessment {
     pub load: f64,
     /// Time at which the fatigue of the group first reached 1, s.
     pub exhausted_at: Option<f64>,
+    /// Where the recorded angles would ask most more of the group than those within their error that ask least; `None` where both are equal.
+    pub in_doubt: Option<AngleInDoubt>,
     /// Reliefs at both peaks, by both strategies; none where the group rested or has no falling passive curve.
     pub proposals: Vec<Proposal>,
 }
@@ -81,12 +83,39 @@ pub struct PeakTorques {
     pub angle: f64,
     /// External torque, N m.
     pub external: f64,
-    /// Passive torque, N m.
+    /// Passive torque, as it is judged, N m.
     pub passive: f64,
     /// Strength of the group, N m.
     pub strength: f64,
     /// The part of the external torque that inertia gives, N m; 0 of a posture at rest.
     pub inertia: f64,
+}
+
+/// The instant in which the error of a recorded angle counts most for a group.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngleInDoubt {
+    /// Time, s.
+    pub time: f64,
+    /// The recorded angle, rad.
+    pub angle: f64,
+    /// Load at the recorded angle, as a share of strength.
+    pub recorded_load: f64,
+    /// Load within the error of the angle, where it is least.
+    pub judged_load: f64,
+    /// Active torque at the recorded angle, N m.
+    pub recorded_torque: f64,
+    /// Active torque as it is judged, N m.
+    pub judged_torque: f64,
+}
+
+impl AngleInDoubt {
+    /// Takes in another instant, with its recorded and its judged load, where these differ most so far.
+    pub(super) fn take(known: &mut Option<Self>, (recorded, judged): (f64, f64), new: impl FnOnce() -> Self) {
+        let most = known.map_or(0.0, |known| known.recorded_load - known.judged_load);
+        if recorded - judged > most {
+            *known = Some(new());
+        }
+    }
 }
 
 /// Passive torque over external torque from which on a muscle that opposes it counts as working against the ligaments (assumed).

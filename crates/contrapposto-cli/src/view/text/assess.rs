@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use contrapposto::assessment::{Assessment, GroupAssessment, Peak, PeakKind, Proposal};
+use contrapposto::assessment::{AngleInDoubt, Assessment, GroupAssessment, Peak, PeakKind, Proposal};
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::CoordinateKind;
 use contrapposto_formats::tissue::SourcedModel;
@@ -32,6 +32,8 @@ pub(crate) struct AssessText {
     frames: usize,
     start_s: f64,
     end_s: f64,
+    /// Error of the angles within which groups that work against passive torque are judged.
+    angle_error_deg: f64,
     /// Every group of known strength, the worst first.
     groups: Vec<AssessedGroupText>,
     /// Largest residual of the root, which neither loads nor supports give.
@@ -72,7 +74,20 @@ struct AssessedGroupText {
     fatigue_at_end: f64,
     /// `null`: it holds.
     exhausted_at_s: Option<f64>,
+    /// Where the recorded angles would ask most more of the group than it is judged by.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    angle_in_doubt: Option<AngleInDoubtText>,
     proposals: Vec<ProposalText>,
+}
+
+#[derive(Serialize)]
+struct AngleInDoubtText {
+    at_s: f64,
+    angle_deg: f64,
+    recorded_load: f64,
+    judged_load: f64,
+    recorded_active_nm: f64,
+    judged_active_nm: f64,
 }
 
 #[derive(Serialize)]
@@ -101,7 +116,7 @@ impl AssessText {
         opened: &SourcedModel,
         motion: &Path,
         times: &[f64],
-        found: &Assessment,
+        (angle_error, found): (f64, &Assessment),
         answer: &Answer,
         warnings: Vec<String>,
         files: Vec<String>,
@@ -115,6 +130,7 @@ impl AssessText {
             frames: times.len(),
             start_s: times.first().copied().unwrap_or_default(),
             end_s: times.last().copied().unwrap_or_default(),
+            angle_error_deg: angle_error.to_degrees(),
             groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group, found.dynamics)).collect(),
             residual_force_n: found.residual_force.into(),
             residual_moment_nm: found.residual_moment.into(),
@@ -142,11 +158,25 @@ impl AssessedGroupText {
             peak_fatigue: found.peak_fatigue.into(),
             fatigue_at_end: found.fatigue,
             exhausted_at_s: found.exhausted_at,
+            angle_in_doubt: found.in_doubt.as_ref().map(AngleInDoubtText::new),
             // Relief of a slide is no angle.
             proposals: match model.coordinates()[found.coordinate].kind {
                 CoordinateKind::Rotation => found.proposals.iter().map(ProposalText::new).collect(),
                 _ => vec![],
             },
+        }
+    }
+}
+
+impl AngleInDoubtText {
+    fn new(doubt: &AngleInDoubt) -> Self {
+        Self {
+            at_s: doubt.time,
+            angle_deg: doubt.angle.to_degrees(),
+            recorded_load: doubt.recorded_load,
+            judged_load: doubt.judged_load,
+            recorded_active_nm: doubt.recorded_torque,
+            judged_active_nm: doubt.judged_torque,
         }
     }
 }
