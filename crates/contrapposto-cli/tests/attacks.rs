@@ -68,7 +68,7 @@ fn every_attack_gets_its_answer() {
 fn without_the_attack_it_runs() {
     let folder = tempfile::tempdir().unwrap();
     let run = contrapposto(["simulate", "-", "--out"]).arg(folder.path()).stdin(GOOD).run();
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
 }
 
 const GOOD: &str = "format = 1\ntitle = \"attack\"\n[coordinates]\nfree = [\"elbow_flex_r\"]\n[strategy]\nkind = \"active\"\n\
@@ -159,7 +159,7 @@ fn a_hostile_title_is_text() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = GOOD.replace("\"attack\"", &format!("\"{title}\""));
     let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folder.path()).stdin(scenario).run();
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     let summary: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
     assert!(summary["title"].as_str().unwrap().starts_with("<script>"));
     for (name, bytes) in contents(folder.path()) {

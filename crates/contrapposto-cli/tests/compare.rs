@@ -36,7 +36,7 @@ fn what_is_compared_is_what_simulate_and_pose_find() {
     let relaxed = short("stand-relaxed.toml", folder.path());
     let out = folder.path().join("out");
     let run = compare(&[&relaxed, &shelf()], &out, &["--json"]);
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     let written = results(&out);
     let names: Vec<&str> = written.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["compare.json", "compare.png", "compare.svg", "report.html"]);

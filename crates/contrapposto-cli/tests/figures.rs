@@ -17,7 +17,7 @@ const NEAR_DEG: f64 = 0.3;
 
 fn figures(out: &Path, arguments: &[&str]) -> Vec<Value> {
     let run = contrapposto(["figures", "--json", "--out"]).arg(out).args(arguments).run();
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     println!("figures {arguments:?}: {:.2} s", run.seconds);
     serde_json::from_str(&run.stdout).unwrap()
 }
@@ -248,7 +248,7 @@ fn a_zone_of_30_deg_reaches_the_end_of_figure_9_but_changes_the_cases_of_figure_
         let text = text.replace("reshape = true", "reshape = { zone_deg = 30, end_torque_nm = 20 }");
         std::fs::write(&file, text).unwrap();
         let run = contrapposto(["simulate", "--json", "--out"]).arg(folder.path().join("out")).arg(&file).run();
-        assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+        assert_eq!((run.code, run.notes().as_str()), (0, ""));
         let summary: Value = serde_json::from_str(&run.stdout).unwrap();
         let elbow = &summary["coordinates"]["elbow_flex_r"];
         (elbow["cases"].clone(), elbow["final_deg"].as_f64().unwrap())
@@ -265,7 +265,7 @@ fn a_zone_of_30_deg_reaches_the_end_of_figure_9_but_changes_the_cases_of_figure_
 fn the_table_says_how_cases_compare() {
     let out = tempfile::tempdir().unwrap();
     let run = contrapposto(["figures", "--out"]).arg(out.path()).run();
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     for number in ["1", "7", "8", "9", "10", "11", "12", "13", "14"] {
         let shown = run.stdout.lines().any(|line| line.split_whitespace().next() == Some(number));
         assert!(shown, "figure {number} is missing:\n{}", run.stdout);

@@ -175,7 +175,7 @@ fn answers(lines: &[Line], arguments: &[&str]) -> Vec<Value> {
         lines.len(),
         lines.len() as f64 / seconds
     );
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     let answers = json_lines(&run);
     assert_eq!(answers.len(), lines.len());
     answers
@@ -387,7 +387,7 @@ const EXAMPLE: &str = r#"{"passive": {"lower": {"torque_nm": 12.67, "rate_per_ra
 fn the_example_is_case_3_2_in_both_modes() {
     for arguments in [&["minimize"][..], &["minimize", "--literal"], &["minimize", "--json"], &["minimize", "-"]] {
         let run = contrapposto(arguments).stdin(format!("{EXAMPLE}\n")).run();
-        assert_eq!((run.code, run.stderr.as_str()), (0, ""), "{arguments:?}");
+        assert_eq!((run.code, run.notes().as_str()), (0, ""), "{arguments:?}");
         let answers = json_lines(&run);
         assert_eq!(answers.len(), 1);
         assert_eq!((&answers[0]["case"], &answers[0]["outcome"]), (&json!("3.2"), &json!("passive")));

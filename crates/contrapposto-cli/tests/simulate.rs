@@ -97,7 +97,7 @@ fn simulate_shortened(path: &Path, out: &Path) -> Run {
 fn simulate_text(text: &str) -> (Value, Table) {
     let folder = tempfile::tempdir().unwrap();
     let run = contrapposto(["simulate", "-", "--json", "--out"]).arg(folder.path()).stdin(text).run();
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     (serde_json::from_str(&run.stdout).unwrap(), Table::read(&folder.path().join("trajectory.csv")))
 }
 
@@ -294,7 +294,7 @@ fn the_same_scenario_gives_the_same_bytes() {
 fn the_demo_is_figure_8() {
     let [demo, figure] = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
     let run = contrapposto(["demo", "--figure-8", "--out"]).arg(demo.path()).run();
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     assert!(run.stdout.contains("elbow_flex_r") && run.stdout.contains("3.1"), "{}", run.stdout);
     assert_eq!(simulate(&scenarios().join("figure-08.toml"), figure.path(), &[]).code, 0);
     assert!(contents(demo.path()) == contents(figure.path()));
@@ -325,7 +325,7 @@ fn the_whole_body_runs() {
 fn the_demo_is_a_person_who_waits_and_says_where_to_look_next() {
     let folder = tempfile::tempdir().unwrap();
     let run = contrapposto(["demo", "--out"]).arg(folder.path()).run();
-    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert_eq!((run.code, run.notes().as_str()), (0, ""));
     let first = run.stdout.lines().next().unwrap();
     let summary: Value = serde_json::from_slice(&std::fs::read(folder.path().join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["verdict"]["sentence"], first);
@@ -620,7 +620,7 @@ fn ground_reaction_and_motion_give_back_the_torques() {
 fn every_verb_has_help_with_an_example() {
     for verb in ["simulate", "demo", "figures", "minimize", "passive", "schema"] {
         let run = contrapposto([verb, "--help"]).run();
-        assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+        assert_eq!((run.code, run.notes().as_str()), (0, ""));
         assert!(
             run.stdout.contains("Example") && run.stdout.contains(&format!("contrapposto {verb}")),
             "{}",

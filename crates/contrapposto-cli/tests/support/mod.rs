@@ -32,6 +32,14 @@ pub struct Run {
     pub seconds: f64,
 }
 
+impl Run {
+    /// Standard error without the lines that tell of progress, which come after ten seconds on a slow or busy machine.
+    pub fn notes(&self) -> String {
+        let lines = self.stderr.lines().filter(|line| !line.starts_with("progress: "));
+        lines.collect::<Vec<_>>().join("\n")
+    }
+}
+
 /// The program with arguments.
 pub fn contrapposto<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Call {
     let mut command = Command::new(env!("CARGO_BIN_EXE_contrapposto"));
