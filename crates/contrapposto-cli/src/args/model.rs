@@ -190,7 +190,7 @@ pub(crate) struct AssessArgs {
     pub(crate) fixed_root: bool,
     /// Error of the given angles: muscles that work against the ligaments of their own joint are judged at the angle within it where they work
     /// least. 5 for measured angles; 0 for a file of this program that holds the built-in adult, whose motions are exact.
-    #[arg(long, value_name = "DEG", value_parser = angle_error)]
+    #[arg(long, value_name = "DEG", value_parser = angle_error, allow_hyphen_values = true)]
     pub(crate) angle_error: Option<f64>,
     /// Corners of the patch on which a supporting segment rests, in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
     #[arg(long, value_name = "PATCH", requires = "support")]

@@ -71,8 +71,11 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let found = whole
         .assess(&mut tables, assessed_frames.as_mut())
         .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
-    let new =
-        [support_doubts(model, &motion, &settings.supports), warnings(args, &opened, (&settings, &found), motion.len())].concat();
+    let new = [
+        support_doubts(model, &motion, &settings.supports),
+        warnings(args, &opened, (&settings, &found), motion.len()),
+    ]
+    .concat();
     new.iter().for_each(|warning| print_note("warning", warning));
     let warnings = [of_muscles, doubts, new].concat();
 
@@ -101,7 +104,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     });
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = AssessText::new(&opened, &args.motion, &tables.times, (settings.angle_error, &found), &answer, warnings, files);
+    let text =
+        AssessText::new(&opened, &args.motion, &tables.times, (settings.angle_error, &found), &answer, warnings, files);
     let json = json_text("assess.json", &text)?;
     if let (Some(folder), Some(page)) = (folder, page.transpose()?) {
         let fatigue = tables.fatigue()?;

@@ -1,7 +1,7 @@
 //! Evaluates one instant of a motion: torques, what the root lacks, and where relief would lie.
 
 use super::error::AssessError;
-use super::result::{GroupAssessment, PeakKind, Proposal};
+use super::result::{GroupAssessment, LIGAMENT_RATIO, PeakKind, Proposal};
 use super::settings::AssessSettings;
 use crate::contact::{Balance, ContactForces, Missing, SupportError, root_rates};
 use crate::dynamics::{Inertia, Rates};
@@ -95,10 +95,13 @@ impl<'a> Evaluation<'a> {
     }
 
     /// The change of the passive torque of a coordinate within the error of its angle that most eases a group which works against it, N m. At the
-    /// most the passive torque vanishes, and with it the active torque that it asks for.
+    /// most the passive torque vanishes, and with it the active torque that it asks for. Where the external torque is the larger one the load
+    /// decides, and nothing changes; from twice the external torque on the whole change counts, between them a part in proportion.
     pub(super) fn eased_passive(&mut self, coordinate: usize) -> f64 {
-        let Some(rate) = self.model.coordinates()[coordinate].rate.filter(|_| self.angle_error > 0.0) else { return 0.0 };
-        let (active, (_, passive)) = (self.active(rate), self.torques.external_and_passive(rate));
+        let Some(rate) = self.model.coordinates()[coordinate].rate.filter(|_| self.angle_error > 0.0) else {
+            return 0.0;
+        };
+        let (active, (external, passive)) = (self.active(rate), self.torques.external_and_passive(rate));
         // Muscles of several joints have no passive torque of one joint alone.
         let of_muscles = self.torques.muscles().is_some_and(|muscles| muscles.gives_passive(rate));
         if active * passive >= 0.0 || of_muscles || !self.model.rates()[rate].rotational {
@@ -111,7 +114,8 @@ impl<'a> Evaluation<'a> {
         // Against `active` from the side of `passive`: at the most by as much as either has.
         let most = active.abs().min(passive.abs());
         let eased = [-*error, *error].map(|turn| (here - law(turn)) * passive.signum());
-        -passive.signum() * eased[0].max(eased[1]).clamp(0.0, most)
+        let share = (passive.abs() / external.abs() - 1.0).clamp(0.0, LIGAMENT_RATIO - 1.0);
+        -passive.signum() * share * eased[0].max(eased[1]).clamp(0.0, most)
     }
 
     /// Force (N) and moment (N m) that the root lacks: its active torque, for which it has no muscles.

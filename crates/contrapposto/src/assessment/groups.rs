@@ -101,7 +101,8 @@ impl Groups {
             let (active, angle) = (evaluation.active(rate), evaluation.torques.angles()[i]);
             let (external, passive) = evaluation.torques.external_and_passive(rate);
             let judged = active - eased;
-            let load_of = |torque| if Side::of(torque) == side { relative_load(coordinate, angle, torque) } else { 0.0 };
+            let load_of =
+                |torque| if Side::of(torque) == side { relative_load(coordinate, angle, torque) } else { 0.0 };
             let load = load_of(judged);
             let before = std::mem::replace(&mut self.load[i][side.index()], load);
             let law = &groups[side.index()].fatigue;

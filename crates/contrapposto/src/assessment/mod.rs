@@ -8,7 +8,8 @@
 //!
 //! Passive torque grows e-fold within a few degrees at the end of a joint's range, and recorded angles have errors of that size: a straight elbow
 //! recorded at 0 deg would need 13 N m of its extensors, at 5 deg 2.7. So a group that works against the passive torque of its own joint
-//! is judged by the passive torque within [`AssessSettings::angle_error`] that asks least of it, but never by one that helps it.
+//! is judged by the passive torque within [`AssessSettings::angle_error`] that asks least of it, but never by one that helps it. Groups whose
+//! load comes from the external torque are not concerned.
 
 mod acceleration;
 mod error;

@@ -119,7 +119,7 @@ impl AngleInDoubt {
 }
 
 /// Passive torque over external torque from which on a muscle that opposes it counts as working against the ligaments (assumed).
-const LIGAMENT_RATIO: f64 = 2.0;
+pub(super) const LIGAMENT_RATIO: f64 = 2.0;
 
 impl PeakTorques {
     /// The muscle works against the joint's own ligaments: its torque `-(external + passive)` opposes the passive torque, which is at least

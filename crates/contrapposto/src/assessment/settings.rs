@@ -24,7 +24,8 @@ pub struct AssessSettings {
     /// Muscles that give joints passive torque and strength in every posture, beside the laws of the model.
     pub muscles: Option<JointMuscles>,
     /// Error of the joint angles, rad; 0 for exact ones, [`ANGLE_ERROR`] for measured ones. A group that works against the passive torque of
-    /// its own joint is judged by the passive torque within this error of the angle at which it asks least of the group.
+    /// its own joint, where that outweighs the external torque, is judged by the passive torque within this error of the angle at which it asks
+    /// least of the group.
     pub angle_error: f64,
     /// `R_min` of the proposals, 0..=1.
     pub minimum_decrease_ratio: f64,

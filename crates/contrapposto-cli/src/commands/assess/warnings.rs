@@ -84,7 +84,8 @@ fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String
 /// The warning about groups whose load hangs on the error of a recorded angle.
 fn angles_in_doubt(opened: &SourcedModel, error: f64, found: &Assessment) -> Option<String> {
     let doubts = found.groups.iter().filter_map(|group| Some((group, group.in_doubt?)));
-    let mut doubts: Vec<_> = doubts.filter(|(_, doubt)| doubt.recorded_load >= doubt.judged_load + LIGAMENT_LOAD).collect();
+    let mut doubts: Vec<_> =
+        doubts.filter(|(_, doubt)| doubt.recorded_load >= doubt.judged_load + LIGAMENT_LOAD).collect();
     doubts.sort_by(|(_, a), (_, b)| b.recorded_load.total_cmp(&a.recorded_load));
     let in_words = |(group, doubt): &(&GroupAssessment, AngleInDoubt)| {
         format!(
