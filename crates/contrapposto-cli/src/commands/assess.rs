@@ -21,7 +21,7 @@ use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use nalgebra::Vector3;
 
 use self::support_doubts::support_doubts;
-use self::warnings::warnings;
+use self::warnings::{WHAT_CARRIES, warnings};
 use crate::args::{AssessArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
@@ -37,8 +37,6 @@ use crate::view::text::torques::{Columns, header, row};
 use crate::view::torque_rows::{Frame, Order};
 
 const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
-/// The arguments that say what carries a body.
-const WHAT_CARRIES: &str = "give --support SEG,SEG or --grf FILE.mot; --fixed-root judges the muscles alone";
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
 /// The motion and its loads, checked.

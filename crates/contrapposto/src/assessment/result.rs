@@ -70,7 +70,7 @@ pub struct GroupAssessment {
     pub load: f64,
     /// Time at which the fatigue of the group first reached 1, s.
     pub exhausted_at: Option<f64>,
-    /// Where the recorded angles would ask most more of the group than those within their error that ask least; `None` where both are equal.
+    /// The instant in which the error of the recorded angle counts most; `None` where it counts nowhere.
     pub in_doubt: Option<AngleInDoubt>,
     /// Reliefs at both peaks, by both strategies; none where the group rested or has no falling passive curve.
     pub proposals: Vec<Proposal>,

@@ -4,11 +4,12 @@ use contrapposto::assessment::{AngleInDoubt, AssessSettings, Assessment, GroupAs
 use contrapposto::model::CoordinateKind;
 use contrapposto_formats::tissue::SourcedModel;
 
-use super::WHAT_CARRIES;
 use crate::args::AssessArgs;
 use crate::moving::fast_motion;
 use crate::view::text::sources::StrengthAtText;
 
+/// The arguments that say what carries a body.
+pub(super) const WHAT_CARRIES: &str = "give --support SEG,SEG or --grf FILE.mot; --fixed-root judges the muscles alone";
 /// Least residual, as a share of the body's weight, that gives a warning.
 const RESIDUAL: f64 = 1e-6;
 /// Least load of a group that works against ligaments, as a share of its strength, that gives a warning (assumed).

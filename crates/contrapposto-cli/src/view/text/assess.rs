@@ -74,7 +74,7 @@ struct AssessedGroupText {
     fatigue_at_end: f64,
     /// `null`: it holds.
     exhausted_at_s: Option<f64>,
-    /// Where the recorded angles would ask most more of the group than it is judged by.
+    /// The instant in which the error of the recorded angle counts most.
     #[serde(skip_serializing_if = "Option::is_none")]
     angle_in_doubt: Option<AngleInDoubtText>,
     proposals: Vec<ProposalText>,
