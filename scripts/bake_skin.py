@@ -41,7 +41,7 @@ SKIN, SUIT, HAIR, EYE, IRIS = (214, 186, 166), (78, 96, 122), (72, 60, 52), (236
 # Rounds of smoothing of what the suit covers.
 CLOTH_ROUNDS = 4
 # Heights of the trunk, as shares of stature, between which the weight goes over from one segment to the next.
-WAIST, CHEST = (0.57, 0.665), (0.68, 0.79)
+WAIST, CHEST = (0.545, 0.69), (0.67, 0.81)
 
 
 class Source:

@@ -254,7 +254,10 @@ fn files_are_those_of_torques_and_json_is_what_is_printed() {
     let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
     assert_eq!(answer.stdout, read("assess.json"));
     let report: Value = serde_json::from_str(&answer.stdout).unwrap();
-    assert_eq!(report["files"], serde_json::json!(["assess.json", "torques.sto", "fatigue.sto", "report.html"]));
+    assert_eq!(
+        report["files"],
+        serde_json::json!(["assess.json", "torques.sto", "fatigue.sto", "report.html", "motion.glb"])
+    );
     let warnings = report["warnings"].as_array().unwrap();
     let begin =
         ["nothing holds the body up", "muscles work against the ligaments", "muscles that work against the ligaments"];

@@ -43,7 +43,7 @@ fn the_shelf_is_reached_on_both_feet() {
     for file in found["files"].as_array().unwrap() {
         assert!(std::fs::metadata(folder.path().join(file.as_str().unwrap())).unwrap().len() > 100, "{file}");
     }
-    assert_eq!(found["files"].as_array().unwrap().len(), 6 + 2 * 5);
+    assert_eq!(found["files"].as_array().unwrap().len(), 8 + 2 * 5);
     shown_as_found(&page(folder.path()), &found);
 }
 

@@ -98,11 +98,11 @@ fn one_leg_rests_by_a_slouch_or_level() {
         assert!(chart.contains(words), "{words}");
     }
     assert!(!chart.contains(">start<") && !chart.contains(">goal<"));
-    assert_eq!(found["files"].as_array().unwrap().len(), 6 + 2 * 5);
+    assert_eq!(found["files"].as_array().unwrap().len(), 8 + 2 * 5);
     for name in found["files"].as_array().unwrap() {
         assert!(std::fs::metadata(out.join(name.as_str().unwrap())).unwrap().len() > 1000, "{name}");
     }
-    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 6 + 2, "six files, their manifest, a folder of figures");
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 8 + 2, "eight files, their manifest, a folder of figures");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Tests the writers: our readers read the written files as the same model, and other programs give the same torques.
 //!
 //! `write/laws.rs`: passive laws. `write/imported.rs`: model files survive their own format. `write/peers.rs`: what other programs say.
-//! `write/motion.rs`: a body in motion, read back by the readers of `write/players.rs`.
+//! `write/motion.rs`: a body in motion, read back by the readers of `write/players.rs`. `write/skin.rs`: the adult's skin;
+//! `write/skinned.rs`: its glTF.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests fail and print like tests")]
 
@@ -16,6 +17,10 @@ mod motion;
 mod peers;
 #[path = "write/players.rs"]
 mod players;
+#[path = "write/skin.rs"]
+mod skin;
+#[path = "write/skinned.rs"]
+mod skinned;
 
 use std::collections::BTreeMap;
 

@@ -168,7 +168,7 @@ pub(crate) struct TorquesArgs {
     contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
     Inertia counts where the motion is fast, or with --dynamics; otherwise each posture is held at rest. Loads are interpolated linearly \
     between postures. Writes assess.json, \
-    report.html, torques.sto and fatigue.sto into DIR.")]
+    report.html, torques.sto, fatigue.sto and motion.glb into DIR.")]
 pub(crate) struct AssessArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
@@ -208,6 +208,9 @@ pub(crate) struct AssessArgs {
     /// Print assess.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    /// Write the built-in adult as a wooden figure into .glb, without a skin; other bodies have none.
+    #[arg(long)]
+    pub(crate) wooden: bool,
     #[command(flatten)]
     pub(crate) suggest: super::SuggestArgs,
 }

@@ -8,7 +8,7 @@ use clap::{Parser, ValueEnum};
 #[command(after_help = "Example:\n  contrapposto simulate scenarios/figure-07.toml --out out\n\n\
     Writes into DIR: summary.json, report.html, trajectory.csv, torques.sto, fatigue.sto, decisions.csv, time-line.svg/.png, and for \
     one joint torque-balance.svg/.png, for a body on its supports ground_reaction.mot and postures.svg/.png.\n\
-    For other programs the body in motion: motion.glb (glTF: Blender, three.js, viewers), motion.bvh (BVH, in cm: animation programs), \
+    For other programs the body in motion: motion.glb (glTF: Blender, three.js, viewers; the built-in adult has a skin), motion.bvh (BVH, in cm: animation programs), \
     motion.mot with model.osim (OpenSim).\n\
     Ctrl-C ends a run, writes the results so far, and a snapshot.json from which --resume continues to the same bytes.")]
 pub(crate) struct SimulateArgs {
@@ -33,6 +33,9 @@ pub(crate) struct SimulateArgs {
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    /// Write the built-in adult as a wooden figure into .glb, without a skin; other bodies have none.
+    #[arg(long)]
+    pub(crate) wooden: bool,
     #[command(flatten)]
     pub(crate) suggest: SuggestArgs,
 }
@@ -95,7 +98,7 @@ pub(crate) struct DemoArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto pose scenarios/poses/reach-shelf.toml --out out\n\n\
-    Writes pose.json, report.html, pose.mot, pose.csv and pose.svg/.png into DIR. A task that yields to tasks of higher priority is no failure; \
+    Writes pose.json, report.html, pose.mot, pose.csv, pose.svg/.png and pose.glb/.bvh into DIR. A task that yields to tasks of higher priority is no failure; \
     supports that cannot hold, and the step limit, are (exit code 1).")]
 pub(crate) struct PoseArgs {
     /// Scenario file (TOML) with tasks; `-` reads standard input.
@@ -115,6 +118,9 @@ pub(crate) struct PoseArgs {
     /// Print pose.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    /// Write the built-in adult as a wooden figure into .glb, without a skin; other bodies have none.
+    #[arg(long)]
+    pub(crate) wooden: bool,
     #[command(flatten)]
     pub(crate) suggest: SuggestArgs,
 }
@@ -123,7 +129,7 @@ pub(crate) struct PoseArgs {
 #[command(after_help = "Examples:\n  contrapposto relax scenarios/stand-relaxed.toml --out out\n  \
     contrapposto relax scenarios/stand-relaxed.toml --json\n\n\
     Searches from starts of both strategies: coordinates at their active goals, at their passive goals, and mirror images. Writes \
-    relax.json, report.html, postures.mot, relax.csv and postures.svg/.png into DIR. [strategy], [relief], [fatigue] and [run] are \
+    relax.json, report.html, postures.mot, relax.csv, postures.svg/.png and postures.glb/.bvh into DIR. [strategy], [relief], [fatigue] and [run] are \
     ignored. Exit code 1 when the supports cannot hold the body in any posture that was tried.")]
 pub(crate) struct RelaxArgs {
     /// Scenario file (TOML) with supports and tasks; `-` reads standard input.
@@ -143,6 +149,9 @@ pub(crate) struct RelaxArgs {
     /// Print relax.json instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
+    /// Write the built-in adult as a wooden figure into .glb, without a skin; other bodies have none.
+    #[arg(long)]
+    pub(crate) wooden: bool,
     #[command(flatten)]
     pub(crate) suggest: SuggestArgs,
 }

@@ -28,6 +28,7 @@ use crate::model_file::open_with_muscles;
 use crate::motion_file::{loads_of, note_values_out_of_range, read_whole_motion};
 use crate::moving::{Recorded, keep_overlap};
 use crate::output::{ResultSet, json_text, print, print_note};
+use crate::view::animation;
 use crate::view::answer::{Answer, answered};
 use crate::view::figures::figures_of_assessment;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
@@ -36,7 +37,7 @@ use crate::view::text::assess::{AssessText, report};
 use crate::view::text::torques::{Columns, header, row};
 use crate::view::torque_rows::{Frame, Order};
 
-const ASSESS_FILES: [&str; 4] = ["assess.json", "torques.sto", "fatigue.sto", "report.html"];
+const ASSESS_FILES: [&str; 5] = ["assess.json", "torques.sto", "fatigue.sto", "report.html", "motion.glb"];
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
 /// The motion and its loads, checked.
@@ -107,7 +108,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let json = json_text("assess.json", &text)?;
     if let (Some(folder), Some(page)) = (folder, page.transpose()?) {
         let fatigue = tables.fatigue()?;
-        let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes);
+        let gltf = animation::motion("motion.glb", model, &title, &motion, args.wooden)?;
+        let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes).into_iter().chain([&gltf[..]]);
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
         folder.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }

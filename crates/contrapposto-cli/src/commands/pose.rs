@@ -17,13 +17,15 @@ use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::progress::{TRYING_CHANGES, spinner};
 use crate::scenario_file::ScenarioFile;
+use crate::view::animation::steps;
 use crate::view::answer::{Answer, answered};
 use crate::view::held::{Held, held};
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
 use crate::view::text::pose::{report, subtitle};
 
-const POSE_FILES: [&str; 6] = ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png"];
+const POSE_FILES: [&str; 8] =
+    ["pose.json", "report.html", "pose.mot", "pose.csv", "pose.svg", "pose.png", "pose.glb", "pose.bvh"];
 
 /// Largest change of a joint in a step toward a posture in balance, rad, and most of these steps.
 const BALANCE_STEP: f64 = 0.1;
@@ -52,7 +54,7 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), files);
     let json = json_text("pose.json", &text)?;
     if let Some(folder) = &folder {
-        write(&scenario, &pose, (&text, &json, &answer), &figures, held, folder)?;
+        write(&scenario, &pose, (&text, &json, &answer), &figures, held, (folder, args.wooden))?;
     }
     print(&if args.json { json } else { report(&scenario, &pose, &text, &answer, folder.as_ref()) })?;
     exit(&pose, kept_balance, &answer.verdict)
@@ -79,7 +81,7 @@ fn write(
     (text, json, answer): (&PoseText, &str, &Answer),
     figures: &[(String, Vec<u8>)],
     held: Held,
-    folder: &ResultSet,
+    (folder, wooden): (&ResultSet, bool),
 ) -> Result<(), Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows = [pose.posture.values()];
@@ -89,7 +91,9 @@ fn write(
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let page = report_of_pose(scenario, pose, (text, answer), held)?;
-    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], &scenario.model, title, &rows, wooden)?;
+    let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
+    let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
     folder.write(&POSE_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())
 }

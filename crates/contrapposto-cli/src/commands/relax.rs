@@ -19,6 +19,7 @@ use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note};
 use crate::progress::{TRYING_CHANGES, spinner};
 use crate::scenario_file::ScenarioFile;
+use crate::view::animation::steps;
 use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::body;
 use crate::view::frame::frame_of_posture;
@@ -26,8 +27,16 @@ use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibri
 use crate::view::stage::Stage;
 use crate::view::text::relax::{RelaxText, percent, report};
 
-const RELAX_FILES: [&str; 6] =
-    ["relax.json", "report.html", "postures.mot", "relax.csv", "postures.svg", "postures.png"];
+const RELAX_FILES: [&str; 8] = [
+    "relax.json",
+    "report.html",
+    "postures.mot",
+    "relax.csv",
+    "postures.svg",
+    "postures.png",
+    "postures.glb",
+    "postures.bvh",
+];
 /// Largest change of a joint in one step, rad, and most steps of the last stage of each posture.
 const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
 
@@ -64,7 +73,7 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let text = RelaxText::new(&scenario, &found, &answer, files);
     let json = json_text("relax.json", &text)?;
     if let Some(folder) = &folder {
-        write(&scenario, &found, &answer, (&text, &json), &figures, folder)?;
+        write(&scenario, &found, &answer, (&text, &json), &figures, (folder, args.wooden))?;
     }
     let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
     print(&if args.json { json } else { answer.first_lines() + &report(&text) + page.as_deref().unwrap_or_default() })?;
@@ -143,7 +152,7 @@ fn write(
     answer: &Answer,
     (text, json): (&RelaxText, &str),
     figures: &[(String, Vec<u8>)],
-    folder: &ResultSet,
+    (folder, wooden): (&ResultSet, bool),
 ) -> Result<(), Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows: Vec<&[f64]> = found.postures.iter().map(|posture| posture.relaxed.posture.values()).collect();
@@ -154,7 +163,9 @@ fn write(
     let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let page = report_of_equilibria(scenario, found, answer)?;
-    let contents = [json.as_bytes(), page.as_bytes(), mot.as_bytes(), csv.as_bytes(), svg.as_bytes(), png.as_slice()];
+    let [gltf, bvh] = steps(["postures.glb", "postures.bvh"], &scenario.model, title, &rows, wooden)?;
+    let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
+    let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
     folder.write(&RELAX_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())
 }

@@ -58,8 +58,8 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let run = read(ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?)?;
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
-    let SimulateArgs { resume, figures, json, suggest, .. } = *args;
-    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest })
+    let SimulateArgs { resume, figures, json, suggest, wooden, .. } = *args;
+    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest, wooden })
 }
 
 /// The run of a file, with the muscles of its model.
@@ -73,11 +73,7 @@ pub(crate) fn read(file: ScenarioFile) -> Result<RunScenario, Fail> {
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     let (name, text) = if args.figure_8 { FIGURE_8 } else { DEMO };
     let run = read_run(name, text.as_bytes(), None)?;
-    carry_out(
-        &run,
-        Some(&args.out),
-        How { resume: false, figures: false, json: args.json, suggest: SuggestArgs::default() },
-    )?;
+    carry_out(&run, Some(&args.out), How { json: args.json, ..How::default() })?;
     if args.json {
         return Ok(());
     }
@@ -90,17 +86,18 @@ pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
 }
 
 /// Choices of the command line for carrying out a scenario.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct How {
     resume: bool,
     figures: bool,
     json: bool,
     suggest: SuggestArgs,
+    wooden: bool,
 }
 
 /// Runs a scenario; without `out` nothing is recorded, drawn and written.
 fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail> {
-    let (RunScenario { scenario, things, .. }, How { resume, figures, json, suggest }) = (run, how);
+    let (RunScenario { scenario, things, .. }, How { resume, json, suggest, .. }) = (run, how);
     let folder = out.map(|out| ResultSet::open(out, &RUN_FILES)).transpose()?;
     interruption::watch();
     let goes_on = || !interruption::is_requested();
@@ -140,7 +137,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         trying.finish();
     }
     let text = match &files {
-        Some(files) => files.write((scenario, things), (&run, &summary), &answer, figures)?,
+        Some(files) => files.write((scenario, things), (&run, &summary), &answer, how)?,
         None => summary_json(scenario, &summary, &answer, vec![])?,
     };
     let folder = files.as_ref().map(|files| &files.folder);
@@ -209,7 +206,7 @@ impl Files {
         (scenario, things): (&Scenario, &[Thing]),
         (run, summary): (&Run, &Summary),
         answer: &Answer,
-        figures: bool,
+        How { figures, wooden, .. }: How,
     ) -> Result<String, Fail> {
         let recording = &self.recording;
         let figures = if figures { figures_of_run(scenario, things, recording, summary)? } else { vec![] };
@@ -221,7 +218,7 @@ impl Files {
             ("report.html", report_of_run((scenario, things), recording, summary, answer)?.into_bytes()),
             ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
         ];
-        contents.extend(animation::bodies(scenario, recording)?);
+        contents.extend(animation::bodies(scenario, recording, wooden)?);
         if !scenario.supports.is_empty() {
             contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
         }

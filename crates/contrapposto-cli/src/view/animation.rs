@@ -1,7 +1,9 @@
-//! The body of a run for other programs: `motion.glb`, `motion.bvh`, `model.osim`.
+//! Bodies for other programs: `motion.glb`, `motion.bvh`, `model.osim`, and the postures of other commands as glTF and BVH.
 
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
 use contrapposto::simulation::Scenario;
-use contrapposto_formats::animation::{Clip, bvh, glb, solids};
+use contrapposto_formats::animation::{Clip, Skin, bvh, glb, skinned_glb, solids};
 use contrapposto_formats::write;
 
 use super::axes::directions;
@@ -9,26 +11,68 @@ use super::recording::Recording;
 use crate::fail::Fail;
 use crate::output::print_note;
 
-/// Name and content of every file; one that a body cannot be written as is missing, and standard error says why.
-pub(crate) fn bodies(scenario: &Scenario, recording: &Recording) -> Result<Vec<(&'static str, Vec<u8>)>, Fail> {
+/// Name and content of every file of a run; one that a body cannot be written as is missing, and standard error says why.
+pub(crate) fn bodies(
+    scenario: &Scenario,
+    recording: &Recording,
+    wooden: bool,
+) -> Result<Vec<(&'static str, Vec<u8>)>, Fail> {
     let model = &scenario.model;
-    let [right, ahead, up] = directions(model);
     let postures: Vec<&[f64]> = recording.rows().map(|row| row.posture).collect();
-    let clip = Clip {
-        model,
-        title: &scenario.title,
-        directions: [-right, up, ahead],
-        times: recording.times(),
-        postures: &postures,
-    };
-    let solids: Vec<_> = (0..model.segments().len()).map(|s| solids(model, s)).collect();
-    let mut files = vec![
-        ("motion.glb", glb(&clip, &solids).map_err(|error| Fail::job("motion.glb", error))?),
-        ("motion.bvh", bvh(&clip).map_err(|error| Fail::job("motion.bvh", error))?.into_bytes()),
-    ];
+    let clip = clip(model, &scenario.title, recording.times(), &postures);
+    let mut files =
+        vec![("motion.glb", gltf("motion.glb", &clip, wooden)?), ("motion.bvh", bvh_text("motion.bvh", &clip)?)];
     match write::osim(model) {
         Ok(written) => files.push(("model.osim", written.text.into_bytes())),
         Err(error) => print_note("note", &format!("no model.osim: {error}")),
     }
     Ok(files)
+}
+
+/// Postures one after another, each for a second: glTF under the first name, BVH under the second.
+pub(crate) fn steps(
+    [gltf_name, bvh_name]: [&str; 2],
+    model: &Model,
+    title: &str,
+    postures: &[&[f64]],
+    wooden: bool,
+) -> Result<[Vec<u8>; 2], Fail> {
+    let times: Vec<f64> = (0..postures.len()).map(|i| i as f64).collect();
+    let clip = Clip { steps: true, ..clip(model, title, &times, postures) };
+    Ok([gltf(gltf_name, &clip, wooden)?, bvh_text(bvh_name, &clip)?])
+}
+
+/// A recorded motion as glTF.
+pub(crate) fn motion(
+    name: &str,
+    model: &Model,
+    title: &str,
+    motion: &[(f64, Posture)],
+    wooden: bool,
+) -> Result<Vec<u8>, Fail> {
+    let times: Vec<f64> = motion.iter().map(|(time, _)| *time).collect();
+    let postures: Vec<&[f64]> = motion.iter().map(|(_, posture)| posture.values()).collect();
+    gltf(name, &clip(model, title, &times, &postures), wooden)
+}
+
+fn clip<'a>(model: &'a Model, title: &'a str, times: &'a [f64], postures: &'a [&'a [f64]]) -> Clip<'a> {
+    let [right, ahead, up] = directions(model);
+    Clip { model, title, directions: [-right, up, ahead], times, postures, steps: false }
+}
+
+/// With a skin, where the body has one and none of wood is asked for.
+fn gltf(name: &str, clip: &Clip<'_>, wooden: bool) -> Result<Vec<u8>, Fail> {
+    let skin = if wooden { None } else { Skin::of(clip.model) };
+    let written = match skin {
+        Some(skin) => skinned_glb(clip, &skin),
+        None => {
+            let solids: Vec<_> = (0..clip.model.segments().len()).map(|s| solids(clip.model, s)).collect();
+            glb(clip, &solids)
+        }
+    };
+    written.map_err(|error| Fail::job(name, error))
+}
+
+fn bvh_text(name: &str, clip: &Clip<'_>) -> Result<Vec<u8>, Fail> {
+    bvh(clip).map(String::into_bytes).map_err(|error| Fail::job(name, error))
 }

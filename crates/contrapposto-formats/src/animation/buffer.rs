@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 const FLOAT: u32 = 5126;
+const UNSIGNED_BYTE: u32 = 5121;
 const UNSIGNED_SHORT: u32 = 5123;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
@@ -35,6 +36,20 @@ impl Buffer {
                 "min": least, "max": most,
             }))
         })
+    }
+
+    /// Colours of vertices, RGBA, or bones of vertices and their weights (shares of 255); gives the accessor.
+    pub(super) fn bytes_of_vertices(&mut self, values: &[[u8; 4]], shares: bool) -> usize {
+        let view = self.view(values.iter().flatten().copied(), json!({ "target": VERTICES, "byteStride": 4 }));
+        self.accessor(json!({
+            "bufferView": view, "componentType": UNSIGNED_BYTE, "normalized": shares, "count": values.len(), "type": "VEC4",
+        }))
+    }
+
+    /// Matrices by columns; gives the accessor.
+    pub(super) fn matrices(&mut self, matrices: &[[f32; 16]]) -> usize {
+        let view = self.view(matrices.iter().flatten().flat_map(|v| v.to_le_bytes()), json!({}));
+        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": matrices.len(), "type": "MAT4" }))
     }
 
     /// Numbers of an animation: times (`SCALAR`), places (`VEC3`) or rotations (`VEC4`); gives the accessor.
@@ -72,4 +87,31 @@ fn bounds(width: usize, values: impl Iterator<Item = f32>) -> (Vec<f32>, Vec<f32
         most[i % width] = most[i % width].max(value);
     }
     (least, most)
+}
+
+/// The file: header, JSON with the buffer's description, and binary chunk, each padded to four bytes.
+pub(super) fn packed(mut json: Value, buffer: Buffer) -> Vec<u8> {
+    if !buffer.bytes.is_empty() {
+        json["buffers"] = json!([{ "byteLength": buffer.bytes.len() }]);
+        json["bufferViews"] = buffer.views.into();
+        json["accessors"] = buffer.accessors.into();
+    }
+    let (json, binary) = (json.to_string(), buffer.bytes);
+    let mut file = vec![];
+    let word = |bytes: &mut Vec<u8>, value: usize| bytes.extend((value as u32).to_le_bytes());
+    let padded = json.len().next_multiple_of(4);
+    let body = if binary.is_empty() { 0 } else { 8 + binary.len() };
+    file.extend(b"glTF");
+    word(&mut file, 2);
+    word(&mut file, 12 + 8 + padded + body);
+    word(&mut file, padded);
+    file.extend(b"JSON");
+    file.extend(json.as_bytes());
+    file.resize(20 + padded, b' ');
+    if !binary.is_empty() {
+        word(&mut file, binary.len());
+        file.extend(b"BIN\0");
+        file.extend(binary);
+    }
+    file
 }

@@ -1,21 +1,12 @@
 //! Writes a motion as binary glTF 2.0: rigid segments in a tree of nodes, and one animation.
 
-use std::collections::BTreeMap;
-
 use contrapposto::model::Placement;
 use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
-use super::buffer::Buffer;
-use super::track::Track;
+use super::buffer::{Buffer, packed};
+use super::course::{Course, animation, courses};
 use super::{AnimationError, Clip, Solid, hull};
-
-/// Placement of a node in its parent, over time.
-struct Course {
-    place: Track<3>,
-    /// x, y, z, w.
-    turn: Track<4>,
-}
 
 /// Writes a motion as `.glb`.
 ///
@@ -31,27 +22,17 @@ struct Course {
 /// [`AnimationError`] says which time or posture does not fit.
 pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationError> {
     let segments = clip.model.segments();
-    let new = || Course { place: Track::new(), turn: Track::new() };
-    let mut courses: Vec<Course> = segments.iter().map(|_| new()).collect();
-    let mut times: Vec<f32> = vec![];
-    clip.play(|index, frames| {
-        // Times so near each other that they are one in f32 would be refused by every reader.
-        let time = (clip.times[index] - clip.times[0]) as f32;
-        if times.last().is_some_and(|last| *last >= time) {
-            return;
-        }
-        for ((segment, course), frame) in segments.iter().zip(&mut courses).zip(frames) {
-            let parent = segment.parent.map_or_else(Placement::identity, |parent| frames[parent]);
-            let local = parent.inv_mul(frame);
-            course.place.push(times.len(), local.translation.vector.into());
-            course.turn.push_nearer(times.len(), local.rotation.coords.into());
-        }
-        times.push(time);
+    let (times, courses) = courses(clip, segments.len(), |frames| {
+        let in_parent = |(segment, frame): (&contrapposto::model::Segment, &Placement)| {
+            segment.parent.map_or_else(|| *frame, |parent| frames[parent].inv_mul(frame))
+        };
+        segments.iter().zip(frames).map(in_parent).collect()
     })?;
     let mut buffer = Buffer::default();
     let meshes = meshes(clip, solids, &mut buffer);
     let nodes = nodes(clip, &courses, &meshes);
-    let animation = animation(clip, &courses, &times, &mut buffer);
+    let channels: Vec<_> = courses.iter().enumerate().map(|(s, course)| (s + 1, course.moving())).collect();
+    let animation = animation(clip, &channels, &times, &mut buffer);
     let mut file = json!({
         "asset": { "version": "2.0", "generator": concat!("contrapposto ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
@@ -68,12 +49,7 @@ pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationE
     if let Some(animation) = animation {
         file["animations"] = json!([animation]);
     }
-    if !buffer.bytes.is_empty() {
-        file["buffers"] = json!([{ "byteLength": buffer.bytes.len() }]);
-        file["bufferViews"] = buffer.views.into();
-        file["accessors"] = buffer.accessors.into();
-    }
-    Ok(packed(&file.to_string(), &buffer.bytes))
+    Ok(packed(file, buffer))
 }
 
 /// Of each segment its mesh, if it has solids.
@@ -117,46 +93,4 @@ fn nodes(clip: &Clip<'_>, courses: &[Course], meshes: &[Option<Value>]) -> Vec<V
         node["children"] = json!(children);
     }
     nodes
-}
-
-/// One channel for everything that moves; `None` where nothing does.
-fn animation(clip: &Clip<'_>, courses: &[Course], times: &[f32], buffer: &mut Buffer) -> Option<Value> {
-    let (mut channels, mut samplers) = (vec![], vec![]);
-    let mut inputs: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
-    for (s, course) in courses.iter().enumerate() {
-        let paths = [("translation", "VEC3", 3, course.place.moving()), ("rotation", "VEC4", 4, course.turn.moving())];
-        for (path, kind, width, moving) in paths {
-            let Some((keys, values)) = moving else { continue };
-            let input = *inputs.entry(keys).or_insert_with_key(|keys| {
-                let times: Vec<f32> = keys.iter().map(|&key| times[key]).collect();
-                buffer.course("SCALAR", 1, &times)
-            });
-            let output = buffer.course(kind, width, &values);
-            channels.push(json!({ "sampler": samplers.len(), "target": { "node": s + 1, "path": path } }));
-            samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
-        }
-    }
-    let name = if clip.title.is_empty() { "motion" } else { clip.title };
-    (!channels.is_empty()).then(|| json!({ "name": name, "channels": channels, "samplers": samplers }))
-}
-
-/// Header, JSON and binary chunk, each padded to four bytes.
-fn packed(json: &str, binary: &[u8]) -> Vec<u8> {
-    let mut file = vec![];
-    let word = |bytes: &mut Vec<u8>, value: usize| bytes.extend((value as u32).to_le_bytes());
-    let padded = json.len().next_multiple_of(4);
-    let body = if binary.is_empty() { 0 } else { 8 + binary.len() };
-    file.extend(b"glTF");
-    word(&mut file, 2);
-    word(&mut file, 12 + 8 + padded + body);
-    word(&mut file, padded);
-    file.extend(b"JSON");
-    file.extend(json.as_bytes());
-    file.resize(20 + padded, b' ');
-    if !binary.is_empty() {
-        word(&mut file, binary.len());
-        file.extend(b"BIN\0");
-        file.extend(binary);
-    }
-    file
 }

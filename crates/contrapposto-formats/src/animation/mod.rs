@@ -1,13 +1,17 @@
-//! Writes a body in motion for programs that draw: glTF for viewers and modellers ([`glb`]), BVH for animation programs ([`bvh`]).
+//! Writes a body in motion for programs that draw: glTF for viewers and modellers, of rigid segments ([`glb`]) or with a skin
+//! ([`skinned_glb`]), BVH for animation programs ([`bvh`]).
 //!
-//! Both stand upright with y up, look along z and have their left at x, as those programs expect. In both a segment is a node
+//! All stand upright with y up, look along z and have their left at x, as those programs expect. In all a segment is a node
 //! at the centre of its joint: the origin of the joint's moved frame, the point about which the segment turns.
 
 mod buffer;
 mod bvh;
+mod course;
 mod euler;
 mod glb;
 mod hull;
+mod skin;
+mod skinned;
 mod solid;
 mod thickness;
 mod track;
@@ -16,6 +20,8 @@ pub use bvh::bvh;
 pub(crate) use euler::zyx;
 pub use glb::glb;
 pub use hull::Solid;
+pub use skin::{Bone, Skin};
+pub use skinned::skinned_glb;
 pub use solid::{joined_by, solids};
 
 use contrapposto::kinematics::Kinematics;
@@ -36,6 +42,9 @@ pub struct Clip<'a> {
     pub times: &'a [f64],
     /// A posture for every time: values in the model's order, rad and m.
     pub postures: &'a [&'a [f64]],
+    /// Whether the body stands in each posture until the next one, and in the last one for 1 s, instead of moving between them. BVH, which
+    /// knows frames only, has one for each posture.
+    pub steps: bool,
 }
 
 /// The reason for which a motion was not written.

@@ -7,7 +7,7 @@ use super::hull::{Ball, Solid};
 use super::thickness::balls_of;
 
 /// Density of a body, kg/m3.
-const WATER: f64 = 1000.0;
+pub(super) const WATER: f64 = 1000.0;
 /// Points nearer than this, m, are one.
 const SAME_POINT: f64 = 1e-6;
 /// Radius at the edge of a sole, m.

@@ -3,6 +3,9 @@
 /// Coarser than rounding of the kinematics, finer than `f32` in a body's size: a number that stands still then has one value only.
 const GRAIN: f64 = 1e-9;
 
+/// A component this near to its rest is there: rounding of `f32` in a body's size.
+const AT_REST: f32 = 5e-7;
+
 /// Values of one node.
 #[derive(Clone, Debug)]
 pub(super) struct Track<const N: usize> {
@@ -45,7 +48,17 @@ impl<const N: usize> Track<N> {
     /// Indices and values, unless it is the same all the time.
     pub(super) fn moving(&self) -> Option<(Vec<usize>, Vec<f32>)> {
         let moves = self.keys.windows(2).any(|pair| pair[0].1 != pair[1].1);
-        moves.then(|| (self.keys.iter().map(|key| key.0).collect(), self.keys.iter().flat_map(|key| key.1).collect()))
+        moves.then(|| self.all())
+    }
+
+    /// Indices and values, unless it is at rest all the time, to the grain.
+    pub(super) fn off(&self, rest: [f32; N]) -> Option<(Vec<usize>, Vec<f32>)> {
+        let is_off = |value: &[f32; N]| value.iter().zip(rest).any(|(v, rest)| (v - rest).abs() > AT_REST);
+        self.keys.iter().any(|key| is_off(&key.1)).then(|| self.all())
+    }
+
+    fn all(&self) -> (Vec<usize>, Vec<f32>) {
+        (self.keys.iter().map(|key| key.0).collect(), self.keys.iter().flat_map(|key| key.1).collect())
     }
 }
 

@@ -8,14 +8,14 @@ use serde_json::Value;
 /// A binary glTF file.
 pub(crate) struct Glb {
     pub(crate) json: Value,
-    binary: Vec<u8>,
+    pub(crate) binary: Vec<u8>,
 }
 
-fn index(value: &Value) -> usize {
+pub(crate) fn index(value: &Value) -> usize {
     value.as_u64().unwrap() as usize
 }
 
-fn list(value: &Value) -> &[Value] {
+pub(crate) fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
 
@@ -35,7 +35,7 @@ impl Glb {
     }
 
     /// The rows of an accessor of floats.
-    fn floats(&self, accessor: &Value, width: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn floats(&self, accessor: &Value, width: usize) -> Vec<Vec<f64>> {
         let accessor = &self.json["accessors"][index(accessor)];
         assert_eq!(accessor["componentType"], 5126);
         assert_eq!(accessor["type"], ["SCALAR", "", "VEC3", "VEC4"][width - 1]);
@@ -57,16 +57,18 @@ impl Glb {
 
     /// The value of a channel at a time: linear, of rotations along the shorter arc.
     fn value(&self, sampler: &Value, width: usize, time: f64) -> Vec<f64> {
-        assert_eq!(sampler["interpolation"], "LINEAR");
+        let steps = sampler["interpolation"] == "STEP";
+        assert!(steps || sampler["interpolation"] == "LINEAR");
         let (times, values) = (self.floats(&sampler["input"], 1), self.floats(&sampler["output"], width));
         assert_eq!(times.len(), values.len());
         assert!(times.windows(2).all(|pair| pair[0][0] < pair[1][0]));
         let after = times.partition_point(|t| t[0] < time).clamp(1, times.len() - 1);
         let (from, to) = (times[after - 1][0], times[after][0]);
         let part = ((time - from) / (to - from)).clamp(0.0, 1.0);
+        let part = if steps { part.floor() } else { part };
         let (a, b) = (&values[after - 1], &values[after]);
         let along: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-        assert!(width == 3 || along >= 0.0, "the sign of a quaternion jumps");
+        assert!(width == 3 || steps || along >= 0.0, "the sign of a quaternion jumps");
         let mut weights = [1.0 - part, part];
         let angle = along.clamp(-1.0, 1.0).acos();
         if width == 4 && angle > 1e-6 {
@@ -86,7 +88,7 @@ impl Glb {
             .iter()
             .map(|n| [own(n, "translation", &[0.0; 3]), own(n, "rotation", &[0.0, 0.0, 0.0, 1.0])])
             .collect();
-        let animation = &self.json["animations"][0];
+        let animation = self.json.get("animations").map_or(&Value::Null, |animations| &animations[0]);
         for channel in list(&animation["channels"]) {
             let sampler = &animation["samplers"][index(&channel["sampler"])];
             let part = usize::from(channel["target"]["path"] == "rotation");
