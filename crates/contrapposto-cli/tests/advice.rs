@@ -51,12 +51,12 @@ fn changes_of_a_held_weight_give_the_minutes_of_the_changed_file(command: &str) 
     let found = job("job.toml", held(TARGET, KILOGRAMS), &[]);
     let before = found["verdict"]["minutes"].as_f64().unwrap();
     let all = suggested(&found);
-    assert!(all.iter().any(|(change, _)| change.ends_with("less load")), "{all:?}");
+    assert!(all.iter().any(|(change, _)| change.contains("less load")), "{all:?}");
     for (change, promised) in &all {
         let lower = [TARGET[0], TARGET[1] - 0.1, TARGET[2]];
-        let text = match change.as_str() {
-            "the target of right hand 10 cm lower" => held(lower, KILOGRAMS),
-            "20\u{a0}% less load" => held(TARGET, 0.8 * KILOGRAMS),
+        let text = match change.replace('\u{a0}', " ").as_str() {
+            "the target of right hand 10 cm lower (height 1.15 m instead of 1.25 m)" => held(lower, KILOGRAMS),
+            "20 % less load (3.2 kg instead of 4 kg)" => held(TARGET, 0.8 * KILOGRAMS),
             // The direction of "nearer" is that of the centre of mass, which a file does not name.
             _ => continue,
         };
@@ -65,7 +65,7 @@ fn changes_of_a_held_weight_give_the_minutes_of_the_changed_file(command: &str) 
         assert!((promised - alone).abs() < 1e-3 * alone, "{command}: {change}: {promised} min promised, {alone}");
         assert!(*promised > before, "{change}: {promised} min, without {before}");
     }
-    let counted = all.iter().filter(|(change, _)| change.ends_with("lower") || change.ends_with("less load")).count();
+    let counted = all.iter().filter(|(change, _)| change.contains("cm lower") || change.contains("less load")).count();
     assert_eq!(counted, 2, "{all:?}");
 }
 
@@ -90,7 +90,7 @@ fn less_load_that_assess_suggests_gives_the_minutes_of_the_smaller_load() {
     };
     let found = assess("hand_r 4kg", &[]);
     let all = suggested(&found);
-    let (_, promised) = all.iter().find(|(change, _)| change.ends_with("less load")).unwrap();
+    let (_, promised) = all.iter().find(|(change, _)| change.contains("less load")).unwrap();
     let alone = minutes(&assess("hand_r 3.2kg", &["--no-suggest"]));
     assert!((promised - alone).abs() < 1e-9 * alone, "{promised} min promised, {alone}");
     assert!(*promised > found["verdict"]["minutes"].as_f64().unwrap());

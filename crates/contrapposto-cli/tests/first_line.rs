@@ -36,3 +36,32 @@ fn a_misspelt_column_is_warned_of_with_the_coordinate_that_was_meant() {
         assert!(!said.contains("column `sampling`"), "{said}");
     }
 }
+
+/// A load of tonnes is named in the first line, with what may be wrong with it; a pull is named, too.
+#[test]
+fn a_fall_names_the_loads() {
+    let folder = tempfile::tempdir().unwrap();
+    let job = |load: &str| {
+        let text = format!(
+            "format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 75 }}\n[[support]]\nsegment = \"calcn_r\"\n\
+             [[support]]\nsegment = \"calcn_l\"\n[[load]]\nsegment = \"hand_r\"\n{load}\n[[task]]\nkind = \"effort\"\n[strategy]\n\
+             kind = \"active\"\n[run]\nduration_s = 1\n"
+        );
+        let scenario = write(folder.path(), "job.toml", &text);
+        let run = run(&["relax", &scenario, "--no-suggest"]);
+        assert_eq!(run.code, 1, "{}", run.stderr);
+        run.stdout.lines().next().unwrap().replace('\u{a0}', " ")
+    };
+    let heavy = job("mass_kg = 3000");
+    assert!(
+        heavy.starts_with("Cannot stand: the supports do not hold the body under its load of 3000 kg; "),
+        "{heavy}"
+    );
+    assert!(heavy.ends_with(" N are missing. The body weighs 75 kg: are kilograms meant?"), "{heavy}");
+    let pulled = job("force_n = [1000, 0, 0]\nfixed_in = \"world\"");
+    assert!(
+        pulled.starts_with("Cannot stand: the supports do not hold the body under its load of 1000 N; "),
+        "{pulled}"
+    );
+    assert!(!pulled.contains("kilograms"), "{pulled}");
+}

@@ -131,6 +131,32 @@ fn out_of_reach_the_hand_gives_way_and_the_feet_do_not() {
     assert_eq!(found["reason"], "closest");
 }
 
+/// The steps of `[solver]` that run out are a failure, those toward a posture in balance are not: its answer gives the exit code.
+#[test]
+fn steps_that_run_out_are_a_failure_and_steps_toward_balance_are_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let few = folder.path().join("few.toml");
+    std::fs::write(&few, std::fs::read_to_string(shelf()).unwrap() + "\n[solver]\nmax_steps = 2\n").unwrap();
+    let run = pose(&few, folder.path(), &["--no-suggest"]);
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    assert!(
+        run.stdout.contains("the step limit was reached") && run.stderr.contains("not converged"),
+        "{}",
+        run.stderr
+    );
+    let lift = folder.path().join("lift.toml");
+    assert_eq!(contrapposto(["new", "lift", "--out", lift.to_str().unwrap()]).run().code, 0);
+    let run = pose(&lift, folder.path(), &["--no-suggest"]);
+    let found: Value = serde_json::from_slice(&std::fs::read(folder.path().join("pose.json")).unwrap()).unwrap();
+    assert_eq!((run.code, found["reason"].as_str()), (0, Some("steps")), "{}", run.stderr);
+    assert!(
+        !run.stdout.contains("step limit") && run.stdout.contains("in balance; its effort still fell"),
+        "{}",
+        run.stdout
+    );
+    assert!(run.stderr.contains("balance over the supports came before the tasks"), "{}", run.stderr);
+}
+
 #[test]
 fn a_wrong_name_is_shown_where_it_stands() {
     let folder = tempfile::tempdir().unwrap();

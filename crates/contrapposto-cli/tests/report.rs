@@ -28,7 +28,7 @@ fn figure<'a>(page: &'a Value, label: &str) -> Option<[&'a str; 2]> {
     Some([found[1].as_str().unwrap(), found[2].as_str().unwrap()])
 }
 
-/// The page opens at the moment and with the joint of its title, where text and tile have the title's load.
+/// The page opens at the end, from which its minutes are counted, and with the joint of its title, where text and tile have the title's load.
 #[test]
 fn the_title_of_a_lift_its_tile_and_its_text_have_one_load_and_the_terminal_names_the_hazard() {
     let folder = tempfile::tempdir().unwrap();
@@ -47,6 +47,10 @@ fn the_title_of_a_lift_its_tile_and_its_text_have_one_load_and_the_terminal_name
     let (frames, open) = (page["frames"].as_u64().unwrap() as usize, page["open"].as_u64().unwrap() as usize);
     let at = column(&shown["load"], frames)[open];
     assert_eq!(percent(at), percent(load), "{at} {load}");
+    assert_eq!(open + 1, frames);
+    let group = groups.iter().find(|group| group["label"] == verdict["who"]).unwrap();
+    let left = column(&group["left"], frames)[open];
+    assert!((60.0 + left - 60.0 * verdict["minutes"].as_f64().unwrap()).abs() < 1.0, "{left} {verdict}");
     // A lift relieves no pelvis.
     let all = texts(&page["reasons"]);
     assert!(all.iter().all(|reason| !reason.to_lowercase().contains("slouch")), "{all:?}");

@@ -49,6 +49,28 @@ fn a_motor_above_its_strength_fails_at_once() {
     assert_eq!(hip["exhausted_at_s"].as_f64(), Some(0.0), "{hip}");
 }
 
+/// A body that motors move has no muscles, neither in the terminal nor in JSON nor in the page's own words; a person has.
+#[test]
+fn motors_are_called_motors_and_muscles_muscles() {
+    let folder = tempfile::tempdir().unwrap();
+    let held = write(folder.path(), "held.csv", "time,left_hip,left_ankle\n0,-1,1\n700,-1,1\n");
+    let out = folder.path().join("out");
+    let report = |model: &str, held: &str| {
+        let run = run(&["assess", model, held, "--fixed-root", "--radians", "--out", out.to_str().unwrap()]);
+        let page = support::page(&out);
+        let words = [&page["headline"], &page["reasons"], &page["figures"], &page["list"], &page["table"]];
+        let words: String = words.iter().map(|part| part.to_string()).collect();
+        (run.stdout.to_lowercase(), words.to_lowercase(), page["motors"].as_bool().unwrap())
+    };
+    let (said, shown, motors) = report(&biped(), &held);
+    assert!(motors && said.contains("motor") && !said.contains("muscle"), "{said}");
+    assert!(shown.contains("motor") && !shown.contains("muscle"), "{shown}");
+    let held = write(folder.path(), "arm.csv", "time,elbow_flex_r\n0,1\n700,1\n");
+    let (said, shown, motors) = report("adult", &held);
+    assert!(!motors && said.contains("muscle") && !said.contains("motor"), "{said}");
+    assert!(shown.contains("muscle") && !shown.contains("motor"), "{shown}");
+}
+
 #[test]
 fn without_the_strength_of_the_file_a_robot_is_not_assessed() {
     let folder = tempfile::tempdir().unwrap();

@@ -121,9 +121,9 @@ fn an_overload_after_a_failure_does_not_make_the_job_one_that_cannot_be_done() {
     assert_eq!(rested.kind, VerdictKind::CannotBeDone, "{}", rested.sentence);
 }
 
-/// An elbow that is tired from before holds so little that it tires no further: beside its fatigue stands why no muscle fails.
+/// An elbow that is tired from before holds so little that it does not become more tired: beside its fatigue stands why no muscle fails.
 #[test]
-fn a_tired_group_without_a_limit_is_told_to_tire_no_further() {
+fn a_tired_group_without_a_limit_is_told_to_become_no_more_tired() {
     let arm = |kilograms: f64| {
         let (_, verdict) = answer(&format!(
             "format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73 }}\n[posture]\npelvis_ty_m = 0.95\n\
@@ -134,7 +134,7 @@ fn a_tired_group_without_a_limit_is_told_to_tire_no_further() {
         assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
         let tired = verdict.tired.unwrap();
         assert!(tired.fatigue > 0.5, "{}", verdict.sentence);
-        assert_eq!(tired.lasts, verdict.sentence.contains("(but tires no further under its load there)"));
+        assert_eq!(tired.lasts, verdict.sentence.contains("(under its load there it does not become more tired)"));
         (tired.lasts, verdict.sentence)
     };
     let (lasts, sentence) = arm(0.0);

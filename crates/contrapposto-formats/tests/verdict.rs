@@ -253,9 +253,10 @@ fn a_weight_before_the_body_with_every_joint_locked_cannot_stand_where_the_line_
         Err(ScenarioError::CannotStand(missing)) => missing,
         other => panic!("{other:?}"),
     };
-    let verdict = Verdict::of_fall(model, missing);
+    let verdict = Verdict::of_fall(model, missing, &scenario.loads);
     assert_eq!(verdict.kind, VerdictKind::CannotStand);
-    assert!(verdict.sentence.starts_with("Cannot stand: the supports do not hold the body; "), "{}", verdict.sentence);
+    let under = format!("Cannot stand: the supports do not hold the body under its load of {kilograms}\u{a0}kg; ");
+    assert!(verdict.sentence.starts_with(&under), "{}", verdict.sentence);
     let beyond = together.x - front;
     assert!(verdict.sentence.contains("beyond the supports"), "{}", verdict.sentence);
     let said: f64 = verdict.sentence.split(" act ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
@@ -384,8 +385,8 @@ fn a_lumbar_spine_that_hangs_on_its_ligaments_holds_but_is_named_with_the_torque
     let share = (passive / torque).min(1.0);
     assert!(share > 0.5, "{passive} of {torque}");
     assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
-    let words =
-        format!("ligaments hold lumbar extension at \u{2212}60.0° ({:.0}\u{a0}% of {torque:.0} N m)", 100.0 * share);
+    let part = if share > 0.995 { "the whole".to_owned() } else { format!("{:.0}\u{a0}% of the", 100.0 * share) };
+    let words = format!("ligaments hold lumbar extension at \u{2212}60.0° ({part} torque of {torque:.0} N m there)");
     assert!(verdict.sentence.contains(&words) && verdict.sentence.contains(", but "), "{words}: {}", verdict.sentence);
     assert!(!verdict.has_reserve());
     let text = VerdictText::new(model, &verdict);

@@ -51,18 +51,25 @@ function levelLabel(y, text) {
   };
 }
 
+// The unit of a time axis, and its seconds: the one in which the last time is told in words.
+function timeUnit(times) {
+  const end = times ? times[times.length - 1] : 0;
+  return end < 100 ? ["s", 1] : end < 5970 ? ["min", 60] : ["h", 3600];
+}
+
 class Charts {
   // `onTime` is called with the time of a click.
   constructor(onTime) {
     const ids = { balance: "balance", marks: "balance-now", course: "course", cursor: "cursor" };
     for (const [name, id] of Object.entries(ids)) this[name] = document.getElementById(id);
-    this.times = report.times && Array.from(report.times);
+    [this.unit, this.unitSeconds] = timeUnit(report.times);
+    this.times = report.times && Array.from(report.times, (time) => time / this.unitSeconds);
     [this.joint, this.frame] = [null, 0];
     this.course.addEventListener("click", (event) => {
       const axis = this.course._fullLayout && this.course._fullLayout.xaxis;
       if (!axis) return;
       const time = axis.p2d(event.clientX - this.course.getBoundingClientRect().left - axis._offset);
-      if (time >= axis.range[0] && time <= axis.range[1]) onTime(time);
+      if (time >= axis.range[0] && time <= axis.range[1]) onTime(time * this.unitSeconds);
     });
   }
 
@@ -114,7 +121,7 @@ class Charts {
     const y = angles.flatMap((_, i) => [-joint.passive[i], joint.external[i], null]);
     const marker = { size: 9, color: styleValue("--active") }, hovertemplate = this.hover("active");
     return [
-      { name: "muscles hold", x, y, line, hoverinfo: "skip" },
+      { name: `${MUSCLES} hold`, x, y, line, hoverinfo: "skip" },
       { name: "active", x: angles, y: joint.active, mode: "markers", marker, hovertemplate },
     ];
   }
@@ -151,7 +158,7 @@ class Charts {
       hovermode: "x unified",
       shapes: levels.map((y, i) => levelLine(y, i ? "dot" : "dash")),
       annotations: levels.map((y, i) => levelLabel(y, i ? "relief ends" : "relief begins")),
-      xaxis: chartAxis("time, s", { anchor: tires ? "y3" : "y2", zeroline: false }),
+      xaxis: chartAxis(`time, ${this.unit}`, { anchor: tires ? "y3" : "y2", zeroline: false }),
       yaxis: chartAxis(joint.slides ? "place, m" : "angle, °", { domain: tires ? [0.71, 1] : [0.55, 1], zeroline: false }),
       yaxis2: chartAxis(`torque, ${joint.torque}`, { domain: tires ? [0.355, 0.645] : [0, 0.45] }),
       ...(tires && { yaxis3: chartAxis("fatigue, %", { domain: [0, 0.29], range: [0, 105], zeroline: false }) }),
@@ -174,7 +181,8 @@ class Charts {
   }
 
   // Fatigue over time, %, with the moment at which it becomes whole.
-  fatigueCourse({ fatigue, fails }) {
+  fatigueCourse({ fatigue, fails: seconds }) {
+    const fails = seconds === null ? null : seconds / this.unitSeconds;
     const [x, y] = [[...this.times], Array.from(fatigue, (share) => 100 * share)];
     const after = fails === null ? -1 : x.findIndex((time) => time > fails);
     if (after > 0 && x[after - 1] < fails) {

@@ -41,6 +41,9 @@ const report = (() => {
   return read;
 })();
 
+// What moves the body: muscles, or the motors of a robot.
+const MUSCLES = report.motors ? "motors" : "muscles";
+
 // Bands of load, the same in every report: the share of strength from which on each is in force, and its colours at that share and
 // at its end. Bounds: 8 and 14 % limit an hour of sustained and of intermittent holding (Björkstén & Jonsson 1977: 7.9 and 14.0 %),
 // 50 % the peaks of a load (Jonsson 1978, recalled), 100 % is the strength. Every colour is darker than those before it.

@@ -34,23 +34,28 @@ function press(buttons, isPressed) {
 
 // --- Numbers in words.
 
+// The bounds are those of all times in words (`how_long` of the library): seconds, minutes, hours.
+function inUnit(s, digits) {
+  if (s < 9.95) return `${s.toFixed(digits + 1)}\u00a0s`;
+  if (s < 100) return `${s.toFixed(digits)}\u00a0s`;
+  return s < 5970 ? `${(s / 60).toFixed(digits + 1)}\u00a0min` : `${(s / 3600).toFixed(2 * digits + 1)}\u00a0h`;
+}
+// A moment has a digit more than a time.
 function clock(t) {
-  if (END < 300 || t < 100) return `${t.toFixed(END < 20 ? 2 : 1)} s`;
-  return `${Math.floor(t / 60)} min ${String(Math.floor(t % 60)).padStart(2, "0")} s`;
+  return inUnit(t, 1);
 }
 function frameName(frame) {
   return report.names ? report.names[frame] : clock(TIMES[frame] || 0);
 }
 function percent(share) {
+  if (share > 10) return "more than 1000\u00a0%";
   return share > 0 && share < 0.005 ? "<\u00a01\u00a0%" : `${(100 * share).toFixed(0)}\u00a0%`;
 }
 function signed(value) {
   return `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(Math.abs(value) < 9.95 ? 2 : 1)}`;
 }
 function duration(s) {
-  if (s < 0) return "no limit";
-  if (s < 100) return `${s.toFixed(0)} s`;
-  return s < 5400 ? `${(s / 60).toFixed(0)} min` : `${(s / 3600).toFixed(1)} h`;
+  return s < 0 ? "no limit" : inUnit(s, 0);
 }
 
 function metres(far) {
@@ -92,6 +97,15 @@ function fillHeader() {
 function showMore(id, count) {
   find(id).hidden = count <= 0;
   find(id).querySelector("summary").textContent = `${count} more`;
+}
+
+// The page's own words about muscles, for a body that motors move.
+function nameMotors() {
+  const texts = document.createTreeWalker(document.querySelector("main"), NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const text = texts.currentNode;
+    text.data = text.data.replace(/muscle group/g, "motor").replace(/Muscle group/g, "Motor").replace(/muscle/g, "motor").replace(/Muscle/g, "Motor");
+  }
 }
 
 // Hides every part about which the report says nothing.
@@ -165,11 +179,11 @@ function balanceHint(joint) {
   const axis = joint && joint.about_axis ? about : "";
   const end = axis + (MOVES || SEVERAL ? " Large dots: now." : "");
   if (joint && joint.balance.some((balance) => balance.external.length)) {
-    return "Where the external torque equals minus the passive torque, ligaments carry the joint; muscles hold the difference." + end;
+    return `Where the external torque equals minus the passive torque, ligaments carry the joint; ${MUSCLES} hold the difference.` + end;
   }
   const place = MOVES ? "where the body went" : SEVERAL ? "in each posture" : "in this posture";
   const passive = joint && joint.balance.length
-    ? "Where it equals minus the passive torque, ligaments carry the joint; muscles hold the difference."
+    ? `Where it equals minus the passive torque, ligaments carry the joint; ${MUSCLES} hold the difference.`
     : "The passive torque of this joint is not known.";
   return `External torque ${place}. ${passive}${end}`;
 }
@@ -181,6 +195,7 @@ class Page {
     [this.frame, this.joint, this.measure, this.playing, this.wanted, this.body] = [0, report.main, measures.load, null, null, null];
     fillHeader();
     fillChooser();
+    if (report.motors) nameMotors();
     hideUnknown();
     this.fillList();
     fillTable();
@@ -238,7 +253,7 @@ class Page {
     const time = TIMES[this.frame] || 0, name = frameName(this.frame);
     find("slider").value = time;
     find("slider").setAttribute("aria-valuetext", name);
-    find("clock").textContent = `${name} of ${clock(END)}`;
+    find("clock").textContent = `${name} of ${duration(END)}`;
     press("#postures button", (_, i) => i === this.frame);
     this.paintBody();
     this.charts.drawFrame(this.frame);
@@ -257,9 +272,10 @@ class Page {
     const share = joint.groups ? ` (${percent(joint.load[i])} of strength)` : "";
     const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1);
     const shown = (value) => value.toFixed(joint.slides ? 3 : 1).replace("-", "−") + (joint.slides ? " m" : "°");
-    const value = shown(joint.angle[i]) + (joint.coordinate && Math.abs(joint.coordinate[i] - joint.angle[i]) >= 0.05 ? ` about its axis (${joint.name} = ${shown(joint.coordinate[i])})` : "");
+    const value = shown(joint.angle[i]) + (joint.about_axis ? " about its axis" : ""), differs = joint.coordinate && Math.abs(joint.coordinate[i] - joint.angle[i]) >= 0.05;
+    find("in-files").textContent = differs ? `In the files: ${joint.name} = ${shown(joint.coordinate[i])}, the coordinate of the model, which differs from the angle about the axis where the other axes of the joint are turned, too.` : "";
     find("now").textContent = `${name}, ${value}: weight and contact pull with ${signed(joint.external[i])} ${joint.torque}, ` +
-      `ligaments answer with ${signed(joint.passive[i])}, muscles with ${signed(joint.active[i])}${share}.`;
+      `ligaments answer with ${signed(joint.passive[i])}, ${MUSCLES} with ${signed(joint.active[i])}${share}.`;
   }
 
   // How far points of the body are from the targets that they miss.
@@ -285,10 +301,10 @@ class Page {
     });
   }
 
-  // A group that is tired and could hold its load without limit recovers at rest; under the load it tires no further.
+  // A group that is tired and could hold its load without limit recovers at rest; under the load it does not become more tired.
   whyTired(group, load, fatigue) {
     const easy = load < RESTING || group.left[this.frame] < 0;
-    return !easy || fatigue < TIRED ? "" : load < RESTING ? "; recovers" : "; tires no further";
+    return !easy || fatigue < TIRED ? "" : load < RESTING ? "; recovers" : "; gets no more tired";
   }
 
   // Groups with load or fatigue, the greatest load first.

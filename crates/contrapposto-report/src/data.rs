@@ -33,6 +33,7 @@ pub(crate) fn data(report: &Report) -> String {
         "headline": report.headline,
         "reasons": report.reasons,
         "figures": report.figures.iter().map(|f| json!([f.label, f.value, f.note])).collect::<Value>(),
+        "motors": report.motors,
         "frames": n,
         "times": times,
         "names": names,

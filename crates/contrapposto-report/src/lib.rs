@@ -26,6 +26,8 @@ pub struct Report {
     pub reasons: Vec<String>,
     /// The most important numbers.
     pub figures: Vec<Figure>,
+    /// Motors move the body, not muscles.
+    pub motors: bool,
     /// Meaning of the frames.
     pub moments: Moments,
     /// Number of the frame to show first.

@@ -66,7 +66,7 @@ impl Outcome {
     }
 
     fn without_posture(model: &Model, missing: Missing) -> Self {
-        Self { kind: Verdict::of_fall(model, missing).kind.word(), ..Self::default() }
+        Self { kind: Verdict::of_fall(model, missing, &[]).kind.word(), ..Self::default() }
     }
 
     fn answered(scenario: &Scenario, verdict: &Verdict) -> Self {

@@ -34,6 +34,7 @@ pub(crate) fn held(body: &Body, engine: &mut Engine<'_>, posture: &Posture, move
             missed,
             hazards: Hazard::all(&body.model, &numbers.angles, &numbers.external, &numbers.passive),
             hands: HandLoad::all(&body.model, &body.scenario.loads),
+            loads: body.scenario.loads.clone(),
         },
     );
     let contacts = (0..contact.supports().len()).map(|i| force(body, contact, torques.kinematics(), i)).collect();

@@ -14,7 +14,7 @@ use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto::suggestions::{Advice, Change, Job, Trial, Worked, changes, with_breaks};
-use contrapposto::verdict::Verdict;
+use contrapposto::verdict::{Verdict, muscles_or_motors};
 use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
@@ -113,7 +113,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
         folder.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
-    print(&if args.json { json } else { answer.first_lines() + &report(&text) })?;
+    print(&if args.json { json } else { muscles_or_motors(model, &(answer.first_lines() + &report(&text))) })?;
     answered(&answer.verdict)
 }
 

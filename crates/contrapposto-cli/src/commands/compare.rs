@@ -22,6 +22,7 @@ use crate::view::frame::Frame;
 use crate::view::report::comparison::report_of_comparison;
 use crate::view::stage::Stage;
 use crate::view::text::compare::{CompareText, ComparedPosture, report};
+use crate::view::words::how_long;
 
 const FILES: [&str; 4] = ["compare.json", "report.html", "compare.svg", "compare.png"];
 
@@ -77,7 +78,7 @@ pub(super) fn carry_out(path: &Path, letter: char) -> Result<ComparedPosture, Fa
     Ok(ComparedPosture {
         letter,
         title: title(&scenario.title, path),
-        how: format!("simulated, {:.0} s", frame.time),
+        how: format!("simulated, {}", how_long(frame.time)),
         verdict,
         posture: frame.posture.clone(),
         loads,

@@ -5,7 +5,7 @@ use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedPosture};
 use contrapposto::suggestions::{Advice, Change, Job, Trial, changes};
 use contrapposto::tasks::{PriorityLevel, Task};
-use contrapposto::verdict::{HandLoad, HeldPosture, Missed, Verdict};
+use contrapposto::verdict::{HandLoad, HeldPosture, Missed, Verdict, muscles_or_motors};
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
@@ -54,9 +54,13 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), files);
     let json = json_text("pose.json", &text)?;
     if let Some(folder) = &folder {
-        write(&scenario, &pose, (&text, &json, &answer), &figures, held, (folder, args.wooden))?;
+        write(&scenario, (&pose, kept_balance), (&text, &json, &answer), &figures, held, (folder, args.wooden))?;
     }
-    print(&if args.json { json } else { report(&scenario, &pose, &text, &answer, folder.as_ref()) })?;
+    print(&if args.json {
+        json
+    } else {
+        muscles_or_motors(&scenario.model, &report(&scenario, (&pose, kept_balance), &text, &answer, folder.as_ref()))
+    })?;
     exit(&pose, kept_balance, &answer.verdict)
 }
 
@@ -77,7 +81,7 @@ pub(crate) fn read(file: ScenarioFile) -> Result<PoseScenario, Fail> {
 /// Writes all files.
 fn write(
     scenario: &PoseScenario,
-    pose: &SolvedPosture,
+    (pose, kept_balance): (&SolvedPosture, bool),
     (text, json, answer): (&PoseText, &str, &Answer),
     figures: &[(String, Vec<u8>)],
     held: Held,
@@ -90,7 +94,7 @@ fn write(
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let page = report_of_pose(scenario, pose, (text, answer), held)?;
+    let page = report_of_pose(scenario, (pose, kept_balance), (text, answer), held)?;
     let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], &scenario.model, title, &rows, wooden)?;
     let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
     let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
@@ -248,11 +252,13 @@ pub(crate) fn verdict(scenario: &PoseScenario, pose: &SolvedPosture, held: &Held
         missed: Missed::of_levels(&scenario.model, &pose.posture, targets),
         hazards: held.hazards.clone(),
         hands: HandLoad::all(&scenario.model, &scenario.loads),
+        loads: scenario.loads.clone(),
     };
     Verdict::of_posture(&scenario.model, &posture)
 }
 
-/// A target of lower priority that is missed is no failure; the step limit of the scenario is one, that of the steps toward balance is not.
+/// A target of lower priority that is missed is no failure; the end of the steps of `[solver]` is one. That of the steps toward balance is
+/// not: the posture is in balance and is judged, and only its effort still fell.
 fn exit(pose: &SolvedPosture, kept_balance: bool, verdict: &Verdict) -> Result<(), Fail> {
     match pose.reason {
         Reason::StepLimit if !kept_balance => Err(Fail::Job(format!(

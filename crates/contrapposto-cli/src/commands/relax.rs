@@ -7,7 +7,7 @@ use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
 use contrapposto::suggestions::Advice;
-use contrapposto::verdict::{HeldPosture, Verdict};
+use contrapposto::verdict::{HeldPosture, Verdict, muscles_or_motors};
 use contrapposto_formats::motion::{csv_cell, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
@@ -76,7 +76,11 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
         write(&scenario, &found, &answer, (&text, &json), &figures, (folder, args.wooden))?;
     }
     let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
-    print(&if args.json { json } else { answer.first_lines() + &report(&text) + page.as_deref().unwrap_or_default() })?;
+    print(&if args.json {
+        json
+    } else {
+        answer.first_lines() + &muscles_or_motors(&scenario.model, &report(&text)) + page.as_deref().unwrap_or_default()
+    })?;
     answered(&answer.verdict)
 }
 

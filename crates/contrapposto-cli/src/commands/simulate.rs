@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
-use contrapposto::verdict::Verdict;
+use contrapposto::verdict::{Verdict, muscles_or_motors};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 use indicatif::ProgressBar;
@@ -24,6 +24,7 @@ use crate::view::figures::{figures_of_run, pictures_of_run};
 use crate::view::recording::Recording;
 use crate::view::report::run::report_of_run;
 use crate::view::text::simulate::report;
+use crate::view::words::how_long;
 use crate::view::{animation, tables};
 
 /// The scenarios of `contrapposto demo`: a person who waits, and the paper's Figure 8.
@@ -141,7 +142,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         None => summary_json(scenario, &summary, &answer, vec![])?,
     };
     let folder = files.as_ref().map(|files| &files.folder);
-    print(&if json { text } else { report(scenario, &summary, &answer, folder) })?;
+    print(&if json { text } else { muscles_or_motors(&scenario.model, &report(scenario, &summary, &answer, folder)) })?;
     match summary.reason == StopReason::Interrupted {
         true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
         false => answered(&answer.verdict),
@@ -180,7 +181,7 @@ fn interrupted(summary: &Summary, duration: f64, out: Option<&Path>) -> String {
     let files = out.map_or(String::new(), |out| {
         format!(": the results so far are in {}; the same command with --resume continues", out.display())
     });
-    format!("interrupted at {:.2} of {duration} s{files}", summary.end_time)
+    format!("interrupted at {} of {}{files}", how_long(summary.end_time), how_long(duration))
 }
 
 /// The text of `summary.json`.

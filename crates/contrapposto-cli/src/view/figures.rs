@@ -17,6 +17,7 @@ use super::scene::ANGLES;
 use super::selection::{main_coordinate, shown};
 use super::stage::Stage;
 use super::text::simulate::strategy_in_words;
+use super::words::how_long;
 use super::{body, words};
 use crate::fail::Fail;
 
@@ -220,20 +221,16 @@ fn moments(title: &str, model: &Model, stage: &Stage<'_>, frames: &[Frame]) -> R
     if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
         let still = |frame: &Frame| frame.posture.iter().zip(&first.posture).all(|(a, b)| (a - b).abs() < STILL);
         let throughout = last.time > first.time && frames.iter().all(still);
-        show(if throughout { format!("throughout, {}", seconds(last.time)) } else { "start".to_owned() }, first)?;
+        show(if throughout { format!("throughout, {}", how_long(last.time)) } else { "start".to_owned() }, first)?;
         let hardest = frames.iter().max_by(|a, b| a.effort().total_cmp(&b.effort()));
         if let Some(hardest) = hardest.filter(|h| h.effort() > HARDER * first.effort().max(last.effort())) {
-            show(format!("hardest moment, {}", seconds(hardest.time)), hardest)?;
+            show(format!("hardest moment, {}", how_long(hardest.time)), hardest)?;
         }
         if last.time > first.time && !throughout {
-            show(format!("end, {}", seconds(last.time)), last)?;
+            show(format!("end, {}", how_long(last.time)), last)?;
         }
     }
     Ok(body_figure(&BodyFigure { title: title.to_owned(), postures, ..BodyFigure::default() }))
-}
-
-fn seconds(time: f64) -> String {
-    if time < 10.0 { format!("{time:.1} s") } else { format!("{time:.0} s") }
 }
 
 /// The joints of which charts are drawn.

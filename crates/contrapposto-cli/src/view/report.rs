@@ -8,3 +8,19 @@ mod figure;
 mod narrative;
 pub(crate) mod pose;
 pub(crate) mod run;
+
+use contrapposto::model::Model;
+use contrapposto::verdict::{has_motors, muscles_or_motors};
+use contrapposto_report::Report;
+
+/// The text of a page, with the word for what moves the body.
+fn page(model: &Model, mut report: Report) -> String {
+    report.motors = has_motors(model);
+    let notes = report.figures.iter_mut().flat_map(|figure| [&mut figure.label, &mut figure.note]);
+    let listed = [&mut report.list.heading, &mut report.list.none].into_iter();
+    let entries = report.list.entries.iter_mut().map(|entry| &mut entry.text);
+    let columns = std::iter::once(&mut report.table.heading).chain(&mut report.table.columns);
+    let texts = notes.chain(&mut report.reasons).chain(listed).chain(entries).chain(columns);
+    texts.for_each(|text| *text = muscles_or_motors(model, text));
+    contrapposto_report::write(&report)
+}

@@ -17,6 +17,16 @@ pub(crate) fn joint(name: &str) -> String {
     if plain == name { plain } else { format!("{plain} ({name})") }
 }
 
+/// A moment of a motion or run, with a digit more than [`how_long`]: `0.52 s`, `52.0 s`, `7.95 min`, `1.667 h`. `clock` of the page does the same.
+pub(crate) fn moment_in_words(seconds: f64) -> String {
+    match seconds {
+        _ if seconds < 9.95 => format!("{seconds:.2}\u{a0}s"),
+        _ if seconds < 100.0 => format!("{seconds:.1}\u{a0}s"),
+        _ if seconds < 5970.0 => format!("{:.2}\u{a0}min", seconds / 60.0),
+        _ => format!("{:.3}\u{a0}h", seconds / 3600.0),
+    }
+}
+
 /// The first letter large.
 pub(crate) fn sentence(text: &str) -> String {
     let mut letters = text.chars();
@@ -51,9 +61,9 @@ pub(crate) fn metres(distance: f64) -> Option<String> {
     }
 }
 
-/// `70 %`, in one piece.
+/// `70 %`, in one piece; more than ten times is said so.
 pub(crate) fn percent(share: f64) -> String {
-    format!("{:.0}\u{a0}%", 100.0 * share)
+    if share > 10.0 { "more than 1000\u{a0}%".to_owned() } else { format!("{:.0}\u{a0}%", 100.0 * share) }
 }
 
 /// Shares of the weight of body and loads: each share of the body's weight as a share of what all supports carry.
@@ -71,6 +81,15 @@ mod tests {
         assert_eq!(metres(0.999), None);
         let shown = [1.0, 1.374, 12.34, 192.920_941].map(metres);
         assert_eq!(shown.map(Option::unwrap), ["1.00 m", "1.37 m", "12.3 m", "193 m"]);
+    }
+
+    #[test]
+    fn a_moment_has_a_digit_more_than_a_time() {
+        let shown = [0.52, 52.04, 477.0, 6001.2].map(|time| (how_long(time), moment_in_words(time)));
+        let expected = [("0.5 s", "0.52 s"), ("52 s", "52.0 s"), ("8.0 min", "7.95 min"), ("1.7 h", "1.667 h")];
+        for ((time, moment), expected) in shown.iter().zip(expected) {
+            assert_eq!((time.replace('\u{a0}', " ").as_str(), moment.replace('\u{a0}', " ").as_str()), expected);
+        }
     }
 
     #[test]

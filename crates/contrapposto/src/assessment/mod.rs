@@ -23,7 +23,7 @@ use nalgebra::Vector3;
 use crate::contact::{Condition, Missing};
 use crate::joint_torques::Hazard;
 use crate::kinematics::Kinematics;
-use crate::model::Model;
+use crate::model::{CoordinateKind, Model};
 use crate::posture::Posture;
 use crate::statics::Load;
 pub use acceleration::{FAST_SHARE, acceleration};
@@ -36,6 +36,10 @@ pub use settings::{ANGLE_ERROR, AssessSettings};
 /// Share of its weight above which a body lacks a force in every instant for nothing to carry it. Assumed: measured ground reaction of a
 /// walk leaves less in most of its instants, a motion without ground reaction leaves all of it.
 const UNCARRIED: f64 = 0.5;
+/// Share of the instants that counts as nearly all. Assumed.
+const NEARLY_ALL: f64 = 0.9;
+/// So far beyond a limit, rad or m, a coordinate is in its range.
+const SLACK: f64 = 1e-3;
 /// Longest motion, s: more than a day.
 const LONGEST_MOTION: f64 = 1e5;
 
@@ -61,7 +65,7 @@ pub fn assess(
     }
     let mut evaluation = Evaluation::new(model, settings)?;
     let mut groups = Groups::new(model);
-    let mut found = Assessment { dynamics: !settings.rates.is_empty(), ..Assessment::default() };
+    let mut found = Assessment::of_motion(model, motion, settings);
     let mut centers: Vec<Vector3<f64>> = vec![];
     let mut before: Option<f64> = None;
     let mut uncarried = 0;
@@ -103,7 +107,26 @@ pub fn assess(
     Ok(found)
 }
 
+/// The share of instants in which a coordinate lies outside of its range, where these are nearly all.
+fn out_of_range(model: &Model, motion: &[(f64, Posture)], i: usize) -> Option<f64> {
+    let coordinate = &model.coordinates()[i];
+    if coordinate.kind == CoordinateKind::Quaternion || model.is_dependent(i) {
+        return None;
+    }
+    let (min, max) = coordinate.range;
+    let is_outside = |value: f64| value < min - SLACK || value > max + SLACK;
+    let outside = motion.iter().filter(|(_, posture)| posture.values().get(i).is_some_and(|value| is_outside(*value)));
+    let share = outside.count() as f64 / motion.len().max(1) as f64;
+    (share >= NEARLY_ALL).then_some(share)
+}
+
 impl Assessment {
+    /// What is known before the first instant.
+    fn of_motion(model: &Model, motion: &[(f64, Posture)], settings: &AssessSettings) -> Self {
+        let out_of_range = (0..model.coordinates().len()).filter_map(|i| Some((i, out_of_range(model, motion, i)?)));
+        Self { dynamics: !settings.rates.is_empty(), out_of_range: out_of_range.collect(), ..Self::default() }
+    }
+
     /// Whether loads leave a body without supports more than half of its weight; takes in what the first such instant lacks.
     fn take_uncarried(&mut self, evaluation: &Evaluation<'_>) -> bool {
         let (force, moment) = evaluation.residual();

@@ -163,6 +163,8 @@ pub struct Assessment {
     pub groups: Vec<GroupAssessment>,
     /// Coordinates in hazard, each where passive tissue carries most.
     pub hazards: Vec<Hazard>,
+    /// Coordinates that lie outside of their ranges in nearly all instants, with the share of these.
+    pub out_of_range: Vec<(usize, f64)>,
     /// Greatest force that the root lacked, N: neither loads nor supports gave it.
     pub residual_force: Peak,
     /// Greatest moment that it lacked, N m.

@@ -67,7 +67,13 @@ impl fmt::Display for Missing {
             Condition::Friction => f.write_str("they slip, and with more friction they would hold it; ")?,
             Condition::Other => {}
         }
-        write!(f, "{force:.3} N and {moment:.3} N m are missing")
+        let small = |part: f64| part < 0.5;
+        match (small(*force), small(*moment)) {
+            (true, true) => write!(f, "{force:.3} N and {moment:.3} N m are missing"),
+            (false, true) => write!(f, "{force:.0} N are missing"),
+            (true, false) => write!(f, "{moment:.0} N m are missing"),
+            (false, false) => write!(f, "{force:.0} N and {moment:.0} N m are missing"),
+        }
     }
 }
 

@@ -60,11 +60,13 @@ impl Hazard {
         carried(self.external, self.passive).unwrap_or_default()
     }
 
-    /// `lumbar extension at −60.0° (74 % of 165 N m)`.
+    /// `lumbar extension at −60.0° (74 % of the torque of 165 N m there)`, `left knee at −5.0° (the whole torque of 37 N m there)`.
     pub fn in_words(&self, model: &Model) -> String {
         let name = plain_name(&model.coordinates()[self.coordinate].name);
         let angle = format!("{:.1}°", self.angle.to_degrees()).replace('-', "\u{2212}");
-        format!("{name} at {angle} ({:.0}\u{a0}% of {:.0} N m)", 100.0 * self.carried(), self.external.abs())
+        let share = format!("{:.0}\u{a0}% of the", 100.0 * self.carried());
+        let share = if share.starts_with("100") { "the whole" } else { share.as_str() };
+        format!("{name} at {angle} ({share} torque of {:.0} N m there)", self.external.abs())
     }
 }
 

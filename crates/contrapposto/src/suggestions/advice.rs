@@ -3,7 +3,10 @@
 use super::budget::{Budget, Trial, within};
 use super::change::{Change, Job};
 use super::trial::Suggestion;
-use crate::verdict::Verdict;
+use crate::verdict::{Verdict, has_motors};
+
+/// The sentence of a job with reserve. Fatigue of muscles is judged, and hazards are; ligaments and discs besides are not.
+const NOTHING: &str = "Nothing needs to change as to muscle fatigue";
 
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,7 +31,14 @@ impl Advice {
         trial: impl Fn(&Change) -> Trial + Sync,
     ) -> Self {
         if verdict.has_reserve() {
-            return Self { sentence: Some("Nothing needs to change.".to_owned()), ..Self::default() };
+            return Self {
+                sentence: Some(if has_motors(job.model) {
+                    "Nothing needs to change.".to_owned()
+                } else {
+                    format!("{NOTHING}.")
+                }),
+                ..Self::default()
+            };
         }
         let changes = changes();
         let trials = within(budget, &changes, trial);
@@ -65,7 +75,7 @@ fn sentence(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tri
         }
     };
     let left = (!not_tried.is_empty())
-        .then(|| format!("Not tried within the budget of solver steps: {}.", not_tried.join("; ")));
+        .then(|| format!("Not tried, to keep the computing time short: {}.", not_tried.join("; ")));
     let parts: Vec<String> = hazard.into_iter().chain(said).chain(left).collect();
     (!parts.is_empty()).then(|| parts.join(" "))
 }

@@ -3,9 +3,9 @@
 use super::trial::Suggestion;
 use crate::assessment::{Assessment, GroupAssessment};
 use crate::fatigue::{FatigueLaw, LoadHistory};
-use crate::model::{Model, Side};
+use crate::model::{Model, MuscleGroup, Side};
 use crate::simulation::{Scenario, Summary};
-use crate::verdict::{Verdict, VerdictKind};
+use crate::verdict::{self, A_DAY, Verdict, VerdictKind};
 
 /// A break comes after so much work, s.
 pub const BREAK_EVERY: f64 = 600.0;
@@ -15,14 +15,12 @@ pub const BREAK: f64 = 60.0;
 const WORK_PIECE: f64 = 1.0;
 /// Fatigue that grows by less from break to break under the last loads of a run has reached its steady state.
 const STEADY: f64 = 1e-6;
-/// A time from here on, s, counts as no limit: a day.
-const LONGEST: f64 = 86_400.0;
 
 /// The loads of a muscle group in a job.
 #[derive(Clone, Copy, Debug)]
 pub struct Worked<'a> {
-    /// Law of the group's fatigue.
-    pub law: &'a FatigueLaw,
+    /// Law and strength of the group.
+    pub muscles: &'a MuscleGroup,
     /// Relative load of the group.
     pub loads: &'a LoadHistory,
     /// Relative load of the group at the end.
@@ -38,7 +36,7 @@ impl<'a> Worked<'a> {
         for (i, coordinate) in scenario.model.coordinates().iter().enumerate() {
             let (Some(groups), course) = (&coordinate.groups, &summary.coordinates[i]) else { continue };
             all.extend(Side::BOTH.map(Side::index).map(|side| Self {
-                law: &groups[side].fatigue,
+                muscles: &groups[side],
                 loads: &course.loads[side],
                 end: course.final_groups[side].load,
                 start: scenario.start_fatigue[i][side],
@@ -51,8 +49,8 @@ impl<'a> Worked<'a> {
     pub fn in_motion(model: &'a Model, found: &'a Assessment) -> Vec<Self> {
         let worked = |group: &'a GroupAssessment| {
             let groups = model.coordinates()[group.coordinate].groups.as_ref()?;
-            let law = &groups[group.side.index()].fatigue;
-            Some(Self { law, loads: &group.loads, end: group.load, start: 0.0 })
+            let muscles = &groups[group.side.index()];
+            Some(Self { muscles, loads: &group.loads, end: group.load, start: 0.0 })
         };
         found.groups.iter().filter_map(worked).collect()
     }
@@ -70,14 +68,16 @@ pub fn with_breaks(
     if asked <= BREAK_EVERY {
         return None;
     }
-    let longest = LONGEST.max(asked);
-    let mut first = longest;
+    let longest = A_DAY.max(asked);
+    let (mut first, mut least) = (longest, longest);
     for group in groups {
-        if group.loads.pieces().iter().all(|(_, load)| *load <= 0.0) {
+        let course = Course { group, begin, end: end - begin };
+        first = first.min(course.failure(&group.muscles.fatigue, 1.0, first));
+        if group.end <= 0.0 {
             continue;
         }
-        let load_at = |work: f64| if work < end - begin { group.loads.at(begin + work) } else { group.end };
-        first = first.min(failure(group.law, load_at, group.start, (end - begin, first)));
+        let (laws, variation) = verdict::laws_and_variation(group.muscles);
+        least = laws.iter().fold(least, |least, law| least.min(course.failure(law, 1.0 - variation, least)));
     }
     let kind = if first >= asked { VerdictKind::Holds } else { VerdictKind::HeldUntil };
     Some(Suggestion {
@@ -85,34 +85,53 @@ pub fn with_breaks(
         kind,
         asked: Some(asked),
         seconds: (first < longest).then_some(first),
-        least: None,
+        least: Some(if least < longest { least } else { f64::INFINITY }),
         hazards: verdict.hazards.len(),
         hands: verdict.hands.len(),
         load: verdict.hardest.map(|group| group.load),
     })
 }
 
-/// Time at which a group fails, s of work and breaks; infinite if not until `longest`. Loads stay the same after `end` s of work.
-fn failure(law: &FatigueLaw, load_at: impl Fn(f64) -> f64, start: f64, (end, longest): (f64, f64)) -> f64 {
-    let (mut state, mut time, mut work) = (law.start(start, load_at(0.0)), 0.0, 0.0);
-    let (mut until_break, mut before_break) = (BREAK_EVERY, f64::NEG_INFINITY);
-    while time < longest {
-        if until_break <= 0.0 {
-            let level = state.level(load_at(work));
-            if work > end && level <= before_break + STEADY {
-                return f64::INFINITY;
-            }
-            state = law.advance(state, 0.0, BREAK);
-            time += BREAK;
-            (until_break, before_break) = (BREAK_EVERY, level);
-            continue;
-        }
-        let load = load_at(work);
-        state = law.advance(state, load, WORK_PIECE);
-        (time, work, until_break) = (time + WORK_PIECE, work + WORK_PIECE, until_break - WORK_PIECE);
-        if load > 0.0 && state.level(load) >= 1.0 {
-            return time;
-        }
+/// The loads of a group over work, which begins at `begin` and lasts `end` s; after that they stay the same.
+struct Course<'a> {
+    group: &'a Worked<'a>,
+    begin: f64,
+    end: f64,
+}
+
+impl Course<'_> {
+    fn load_at(&self, work: f64) -> f64 {
+        if work < self.end { self.group.loads.at(self.begin + work) } else { self.group.end }
     }
-    f64::INFINITY
+
+    /// Time at which the group fails by a law, with so many times the mean strength, s of work and breaks; infinite if not until `longest`.
+    fn failure(&self, law: &FatigueLaw, strength: f64, longest: f64) -> f64 {
+        let without_breaks = verdict::failure(law, self.group.loads, strength, self.group.start);
+        let never = self.group.loads.pieces().iter().all(|(_, load)| *load <= 0.0);
+        if never || without_breaks - self.begin >= longest {
+            return f64::INFINITY;
+        }
+        let load_at = |work: f64| self.load_at(work) / strength;
+        let (mut state, mut time, mut work) = (law.start(self.group.start, load_at(0.0)), 0.0, 0.0);
+        let (mut until_break, mut before_break) = (BREAK_EVERY, f64::NEG_INFINITY);
+        while time < longest {
+            if until_break <= 0.0 {
+                let level = state.level(load_at(work));
+                if work > self.end && level <= before_break + STEADY {
+                    return f64::INFINITY;
+                }
+                state = law.advance(state, 0.0, BREAK);
+                time += BREAK;
+                (until_break, before_break) = (BREAK_EVERY, level);
+                continue;
+            }
+            let load = load_at(work);
+            state = law.advance(state, load, WORK_PIECE);
+            (time, work, until_break) = (time + WORK_PIECE, work + WORK_PIECE, until_break - WORK_PIECE);
+            if load > 1.0 || load > 0.0 && state.level(load) >= 1.0 {
+                return time;
+            }
+        }
+        f64::INFINITY
+    }
 }

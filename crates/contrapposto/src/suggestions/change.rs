@@ -33,14 +33,25 @@ const AHEAD: f64 = 0.05;
 pub enum Change {
     /// All targets of segments that carry nothing are moved, ground, m.
     Targets(Vector3<f64>, &'static str),
-    /// Coordinates take these angles, rad, as far as the targets allow.
-    Joints(Vec<(usize, f64)>),
+    /// Coordinates take other angles, as far as the targets allow.
+    Joints(Vec<JointAngle>),
     /// All loads are so much of the given ones.
     Loads(f64),
     /// The whole body seeks relief by this strategy.
     Strategy(Strategy),
     /// Right and left change places at the start: the feet stand the other way round.
     OtherFoot,
+}
+
+/// Another angle of a coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointAngle {
+    /// The coordinate.
+    pub coordinate: usize,
+    /// Its angle in the job without the change, rad.
+    pub before: f64,
+    /// The angle that is asked for, rad.
+    pub angle: f64,
 }
 
 /// The parts of a job that changes concern.
@@ -97,15 +108,12 @@ impl<'a> From<&Search<'a>> for Job<'a> {
 
 /// The changes that make sense for a job that ends in these hazards, in a fixed order.
 pub fn changes(job: &Job<'_>, hazards: &[Hazard]) -> Vec<Change> {
-    let model = job.model;
     let mut changes = vec![];
-    let up = (-model.gravity()).try_normalize(1e-9);
-    if let (Some(&(_, target)), Some(up)) = (job.targets().first(), up) {
+    let up = job.up();
+    if let (Some(&(_, target, _)), Some(up)) = (job.targets().first(), up) {
         changes.push(Change::Targets(-MOVED * up, "10 cm lower"));
         changes.push(Change::Targets(MOVED * up, "10 cm higher"));
-        let mut kinematics = Kinematics::new(model);
-        let center = kinematics.update(model, job.start).ok().and_then(|()| kinematics.center_of_mass(model));
-        let toward = center.map(|center| center - target).map(|away| away - away.dot(&up) * up);
+        let toward = job.center_of_mass().map(|center| center - target).map(|away| away - away.dot(&up) * up);
         if let Some(toward) = toward.filter(|away| away.norm() > 2.0 * MOVED) {
             changes.push(Change::Targets(MOVED * toward.normalize(), "10 cm nearer"));
         }
@@ -121,20 +129,31 @@ pub fn changes(job: &Job<'_>, hazards: &[Hazard]) -> Vec<Change> {
             Strategy::Passive => Strategy::Active,
         })
     }));
-    changes.extend(job.one_foot_is_ahead().then_some(Change::OtherFoot));
+    changes.extend(job.feet().map(|_| Change::OtherFoot));
     changes
 }
 
 impl Job<'_> {
-    /// Segments that carry nothing and are asked to a place, and these places, ground, m.
-    fn targets(&self) -> Vec<(usize, Vector3<f64>)> {
+    /// Segments that carry nothing and are asked to a place, these places, ground, m, and the axes on which they are asked.
+    pub(super) fn targets(&self) -> Vec<(usize, Vector3<f64>, [bool; 3])> {
         let tasks = self.levels.iter().filter(|level| !level.hard).flat_map(|level| &level.tasks);
         let target = |task: &Task| match task {
-            Task::Point(point) => Some((point.segment, point.target)),
-            Task::Placement(placement) => Some((placement.segment, placement.target.translation.vector)),
+            Task::Point(point) => Some((point.segment, point.target, point.axes)),
+            Task::Placement(placement) => Some((placement.segment, placement.target.translation.vector, [true; 3])),
             _ => None,
         };
-        tasks.filter_map(target).filter(|(segment, _)| !self.carries(*segment)).collect()
+        tasks.filter_map(target).filter(|(segment, ..)| !self.carries(*segment)).collect()
+    }
+
+    /// Upward, of length 1; `None` without gravity.
+    pub(super) fn up(&self) -> Option<Vector3<f64>> {
+        (-self.model.gravity()).try_normalize(1e-9)
+    }
+
+    /// Centre of mass at the start, ground, m.
+    pub(super) fn center_of_mass(&self) -> Option<Vector3<f64>> {
+        let mut kinematics = Kinematics::new(self.model);
+        kinematics.update(self.model, self.start).ok().and_then(|()| kinematics.center_of_mass(self.model))
     }
 
     /// The share of the loads that is tried: four fifths, or less where no hand could hold that. `None` without loads, and where a hand
@@ -153,12 +172,12 @@ impl Job<'_> {
     }
 
     /// Angles at which the coordinates in these hazards are in none; `None` without hazards, and where the posture is given.
-    fn out_of_hazard(&self, hazards: &[Hazard]) -> Option<Vec<(usize, f64)>> {
-        let angle = |hazard: &Hazard| {
-            let limit = hazard.row.limit(&self.model.coordinates()[hazard.coordinate], hazard.angle)?;
-            Some((hazard.coordinate, WITHIN_HAZARD * limit))
+    fn out_of_hazard(&self, hazards: &[Hazard]) -> Option<Vec<JointAngle>> {
+        let angle = |&Hazard { coordinate, angle: before, row, .. }: &Hazard| {
+            let limit = row.limit(&self.model.coordinates()[coordinate], before)?;
+            Some(JointAngle { coordinate, before, angle: WITHIN_HAZARD * limit })
         };
-        let angles: Vec<(usize, f64)> = hazards.iter().filter_map(angle).collect();
+        let angles: Vec<JointAngle> = hazards.iter().filter_map(angle).collect();
         (!angles.is_empty() && !self.levels.is_empty()).then_some(angles)
     }
 
@@ -166,19 +185,23 @@ impl Job<'_> {
         self.supports.iter().any(|support| support.segment == segment)
     }
 
-    /// Whether the body stands on two segments of both sides alone, one ahead of the other, and has a mirror image.
-    fn one_foot_is_ahead(&self) -> bool {
+    /// The foot that is ahead and the other one, of a body with a mirror image that stands on two segments of both sides alone, one ahead of
+    /// the other.
+    pub(super) fn feet(&self) -> Option<[String; 2]> {
         let model = self.model;
-        let [a, b] = self.supports else { return false };
+        let [a, b] = self.supports else { return None };
         let mut kinematics = Kinematics::new(model);
         if kinematics.update(model, self.start).is_err() || (a.share_max - b.share_max).abs() > 0.0 {
-            return false;
+            return None;
         }
         let place = |segment: usize| kinematics.placement(model, segment).translation.vector.x;
         let names = [a, b].map(|support| plain_name(&model.segments()[support.segment].name));
         let pair =
             names.iter().any(|name| name.starts_with("right ")) && names.iter().any(|name| name.starts_with("left "));
-        pair && (place(a.segment) - place(b.segment)).abs() > AHEAD && Mirror::of(model).is_some()
+        let ahead = place(a.segment) - place(b.segment);
+        let [a, b] = names;
+        let ordered = if ahead > 0.0 { [a, b] } else { [b, a] };
+        (pair && ahead.abs() > AHEAD && Mirror::of(model).is_some()).then_some(ordered)
     }
 }
 
@@ -220,7 +243,7 @@ impl Change {
         let rest = |task: &Task| matches!(task, Task::Effort(_) | Task::Posture(_));
         let place = job.levels.iter().position(|level| level.tasks.iter().any(rest)).unwrap_or(job.levels.len());
         let (mut target, mut weights) = (job.start.clone(), vec![0.0; job.model.rates().len()]);
-        for &(i, angle) in angles {
+        for &JointAngle { coordinate: i, angle, .. } in angles {
             target.values_mut()[i] = angle;
             job.model.coordinates()[i].rate.iter().for_each(|&rate| weights[rate] = 1.0);
         }
@@ -257,34 +280,6 @@ impl Change {
     pub fn start(&self, job: &Job<'_>) -> Posture {
         let mirror = if matches!(self, Self::OtherFoot) { Mirror::of(job.model) } else { None };
         mirror.map_or_else(|| job.start.clone(), |mirror| legs_of(job.model, job.start, &mirror.posture(job.start)))
-    }
-
-    /// `the target of right hand 10 cm lower`.
-    pub fn in_words(&self, job: &Job<'_>) -> String {
-        match self {
-            Self::Targets(_, how) => {
-                let mut names: Vec<String> = vec![];
-                for (segment, _) in job.targets() {
-                    let name = plain_name(&job.model.segments()[segment].name);
-                    if !names.contains(&name) {
-                        names.push(name);
-                    }
-                }
-                format!("the target of {} {how}", names.join(" and "))
-            }
-            Self::Joints(angles) => {
-                let coordinates = job.model.coordinates();
-                let at = |&(i, angle): &(usize, f64)| {
-                    let degrees = format!("{:.0}", angle.to_degrees()).replace('-', "\u{2212}");
-                    format!("{} at {degrees}°", plain_name(&coordinates[i].name))
-                };
-                angles.iter().map(at).collect::<Vec<_>>().join(" and ")
-            }
-            Self::Loads(share) => format!("{:.0}\u{a0}% less load", 100.0 * (1.0 - share)),
-            Self::Strategy(Strategy::Active) => "relief by the active strategy".to_owned(),
-            Self::Strategy(Strategy::Passive) => "relief by the passive strategy".to_owned(),
-            Self::OtherFoot => "the other foot ahead".to_owned(),
-        }
     }
 }
 

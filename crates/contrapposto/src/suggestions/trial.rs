@@ -5,7 +5,7 @@ use super::change::{Change, Job};
 use crate::equilibria::{Search, SearchError, equilibria};
 use crate::posture_solver::Options;
 use crate::simulation::{Run, Scenario, ScenarioError, StopReason};
-use crate::verdict::{Verdict, VerdictKind, how_long};
+use crate::verdict::{Verdict, VerdictKind};
 
 /// A time counts as longer from this factor on.
 const LONGER: f64 = 1.05;
@@ -22,7 +22,7 @@ pub struct Suggestion {
     /// Time for which the job can be done with the change, s: until a group fails; of a job that holds, with the posture of its end held on. `None`
     /// where no muscle sets a limit, or where it cannot be done.
     pub seconds: Option<f64>,
-    /// Least of that time for two of three people, s.
+    /// Least time until any group fails, s, as [`Verdict::least`].
     pub least: Option<f64>,
     /// Number of coordinates that ligaments carry in hazard at the end.
     pub hazards: usize,
@@ -39,7 +39,7 @@ pub fn try_run(scenario: &Scenario, change: &Change, go_on: impl Fn() -> bool) -
     let mut run = match Run::new(&changed) {
         Ok(run) => run,
         Err(ScenarioError::CannotStand(missing)) => {
-            return Trial { verdict: Some(Verdict::of_fall(&changed.model, missing)), steps: 0 };
+            return Trial { verdict: Some(Verdict::of_fall(&changed.model, missing, &changed.loads)), steps: 0 };
         }
         Err(_) => return Trial::default(),
     };
@@ -81,7 +81,7 @@ pub fn try_search(search: &Search<'_>, options: Options, change: &Change) -> Tri
     match equilibria(&search, options) {
         Ok(found) => Trial { verdict: Verdict::of_equilibria(&search, &found), steps: found.steps },
         Err(SearchError::CannotStand(missing)) => {
-            Trial { verdict: Some(Verdict::of_fall(search.model, missing)), steps: 0 }
+            Trial { verdict: Some(Verdict::of_fall(search.model, missing, search.loads)), steps: 0 }
         }
         Err(SearchError::Relax(_)) => Trial::default(),
     }
@@ -100,7 +100,7 @@ impl Suggestion {
             kind: verdict.kind,
             asked: job.asked,
             seconds: verdict.seconds,
-            least: verdict.range.map(|(least, _)| least),
+            least: verdict.least,
             hazards: verdict.hazards.len(),
             hands: verdict.hands.len(),
             load: verdict.hardest.map(|group| group.load),
@@ -116,7 +116,7 @@ impl Suggestion {
     /// hands with much weight or for longer; where no muscle
     /// limits the mean person before or after, longer for weaker ones.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
-        let (before, least_before) = times(verdict.seconds, verdict.range.map(|(least, _)| least));
+        let (before, least_before) = times(verdict.seconds, verdict.least);
         let longer = |one: &Self| {
             let (after, least_after) = times(one.seconds, one.least);
             after > LONGER * before || (after.is_infinite() && least_after > LONGER * least_before)
@@ -143,37 +143,5 @@ impl Suggestion {
     /// Whether fewer joints than before, but some, are carried by ligaments in hazard.
     pub(super) fn lessens_hazards(&self, before: &Verdict) -> bool {
         (1..before.hazards.len()).contains(&self.hazards)
-    }
-
-    /// `with the target of right hand 10 cm lower it holds through the run (5.0 min), about 11.2 min in all`,
-    /// `with 20 % less load it can be held 11 s of the 30 s asked (weaker people: 5.0 s)`; beside the verdict on the job without the change.
-    pub fn in_words(&self, before: &Verdict) -> String {
-        let change = &self.change;
-        let shorter = times(self.seconds, None).0 < times(before.seconds, None).0;
-        let but = if shorter { ", but for a shorter time" } else { "" };
-        let hazard = match (before.hazards.len(), self.hazards) {
-            (0, 0) => String::new(),
-            (_, 0) => format!(", without ligaments in hazard{but}"),
-            (joints, left) if left < joints => format!(", with ligaments in hazard at {left} of {joints} joints{but}"),
-            _ => ", with ligaments in hazard".to_owned(),
-        };
-        let grip = match (before.hands.len(), self.hands) {
-            (0, 0) => "",
-            (_, 0) => ", with less than half of the strength of the grip",
-            _ => ", with half of the strength of a grip or more",
-        };
-        let weaker = self.least.filter(|least| self.asked.is_some_and(|asked| *least < asked));
-        let weaker = weaker.map_or_else(String::new, |least| format!(" (weaker people: {})", how_long(least)));
-        let held = || how_long(self.seconds.unwrap_or(0.0));
-        let time = match (self.kind, self.asked.map(how_long), self.seconds) {
-            (VerdictKind::Holds, Some(asked), Some(time)) => {
-                format!("it holds through the run ({asked}), about {} in all", how_long(time))
-            }
-            (VerdictKind::Holds, Some(asked), None) => format!("it holds through the run ({asked}) without a limit"),
-            (VerdictKind::Holds, None, _) => "it holds without a limit by muscles".to_owned(),
-            (_, Some(asked), _) => format!("it can be held {} of the {asked} asked", held()),
-            (_, None, _) => format!("it can be held {}", held()),
-        };
-        format!("with {change} {time}{weaker}{hazard}{grip}")
     }
 }

@@ -16,6 +16,11 @@ pub(super) fn failures(model: &Model, groups: &[GroupLoad]) -> Vec<Failure> {
     groups.iter().filter_map(failure).collect()
 }
 
+/// Least time of all failures, s; infinite of none.
+pub(super) fn least<'a>(failures: impl IntoIterator<Item = &'a Failure>) -> f64 {
+    failures.into_iter().map(|failure| failure.range.0).fold(f64::INFINITY, f64::min)
+}
+
 /// A muscle group at the end of a run or motion.
 pub(super) struct GroupAtEnd<'a> {
     /// The group, with its load at the end.
@@ -46,9 +51,15 @@ impl GroupAtEnd<'_> {
 }
 
 impl Findings {
-    /// Takes in how long the posture of the end could be held on; `span` is the start and the end of the job, s.
+    /// Takes in how long the posture of the end could be held on; `span` is the start and the end of the job, s. Of a job in which a group
+    /// fails only the least time.
     pub(super) fn take_end(&mut self, groups: &[GroupAtEnd<'_>], span: (f64, f64)) {
-        self.later = groups.iter().filter_map(|group| group.failure(span)).collect();
+        let later: Vec<Failure> = groups.iter().filter_map(|group| group.failure(span)).collect();
+        self.least = Some(least(later.iter().chain(&self.fails)));
+        if self.fails.is_some() {
+            return;
+        }
+        self.later = later;
         let most = groups.iter().max_by(|a, b| a.fatigue.total_cmp(&b.fatigue));
         self.tired =
             most.map(|group| Tired { who: group.who, fatigue: group.fatigue, lasts: group.seconds_left.is_none() });

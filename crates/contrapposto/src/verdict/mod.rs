@@ -16,24 +16,31 @@
 //!
 //! A time comes with its spread ([`spread`]): over published laws of fatigue and over people of different strength.
 
+mod amounts;
 mod hands;
 mod holding;
 mod missed;
 mod motion;
+mod motors;
 mod posture;
 mod run;
 mod spread;
 mod words;
 
+pub(crate) use amounts::{Amount, MOST_AMOUNTS, amounts, amounts_in_words};
 pub use hands::HandLoad;
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest};
+pub use motors::{has_motors, muscles_or_motors};
 pub use posture::HeldPosture;
 pub use spread::spread;
+pub(crate) use spread::{failure, laws_and_variation};
+pub(crate) use words::A_DAY;
 pub use words::{error_in_words, how_long, slip_in_words};
 
 use crate::contact::{Missing, Slip};
 use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Side;
+use crate::statics::Load;
 
 /// The kinds of verdicts, the first that applies first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -138,6 +145,9 @@ pub struct Verdict {
     pub seconds: Option<f64>,
     /// Least and greatest time until `who` fails, s, over published laws and two of three people; infinite where it never fails.
     pub range: Option<(f64, f64)>,
+    /// Least time until any group fails, s, over published laws and two of three people; infinite where none ever fails. `None` where the
+    /// job cannot be done, and of a fast motion.
+    pub least: Option<f64>,
     /// The muscle group that is too weak or fails first; where none does, the one with the greatest load.
     pub who: Option<Who>,
     /// The group with the greatest load.
@@ -195,6 +205,8 @@ pub(crate) struct Findings {
     pub(crate) fails: Option<Failure>,
     /// Time at which every group that works at the end would fail, were the posture of the end held on.
     pub(crate) later: Vec<Failure>,
+    /// Least time until any group fails, s, over published laws and two of three people; infinite where none fails.
+    pub(crate) least: Option<f64>,
     /// The group with the greatest fatigue at the end.
     pub(crate) tired: Option<Tired>,
     /// Coordinates in hazard.
@@ -203,6 +215,10 @@ pub(crate) struct Findings {
     pub(crate) passed: Vec<PassedHazard>,
     /// Weights in hands that are much for the grip, the heaviest first.
     pub(crate) hands: Vec<HandLoad>,
+    /// Loads on the body, where the supports do not hold it.
+    pub(crate) loads: Vec<Load>,
+    /// Coordinates of a motion that lie outside of their ranges in nearly all instants, with the share of these.
+    pub(crate) out_of_range: Vec<(usize, f64)>,
     /// Share of the instants of a motion whose acceleration a posture at rest leaves out, where the motion is fast.
     pub(crate) fast: Option<f64>,
     /// Inertia of the motion counts.

@@ -2,7 +2,7 @@
 
 use super::holding::GroupAtEnd;
 use super::spread::spread;
-use super::{Failure, Findings, HandLoad, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, HandLoad, Verdict, Who};
 use crate::assessment::{Assessment, FAST_SHARE, GroupAssessment};
 use crate::joint_torques::GroupLoad;
 use crate::model::Model;
@@ -37,13 +37,15 @@ impl Verdict {
                 .or(found.uncarried.map(|missing| (missing, None))),
             fast: Some(found.fast_share).filter(|share| *share > FAST_SHARE && !found.dynamics),
             dynamics: found.dynamics,
+            out_of_range: found.out_of_range.clone(),
             fails,
             hazards: found.hazards.clone(),
             hands: HandLoad::all(model, held),
+            loads: held.to_vec(),
             ..Findings::default()
         };
         // The posture at the end of a fast motion is not held on.
-        if findings.kind() == VerdictKind::Holds && found.fast_share <= FAST_SHARE {
+        if findings.kind().is_done() && found.fast_share <= FAST_SHARE {
             let groups: Vec<_> = found.groups.iter().filter_map(|group| at_end(model, group)).collect();
             findings.take_end(&groups, (start, start + seconds));
         }

@@ -1,12 +1,13 @@
 //! Judges one posture that is held.
 
-use super::holding::failures;
+use super::holding::{failures, least};
 use super::{Findings, HandLoad, Missed, Verdict};
 use crate::assessment::Assessment;
 use crate::contact::{Missing, Slip};
 use crate::equilibria::{Equilibria, RelaxedPosture, Search, Work};
 use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Model;
+use crate::statics::Load;
 
 /// A posture that is held, everybody rested at first.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +24,8 @@ pub struct HeldPosture {
     pub hazards: Vec<Hazard>,
     /// Weights in hands that are much for the grip.
     pub hands: Vec<HandLoad>,
+    /// Loads on the body, which the sentence names where the supports do not hold it.
+    pub loads: Vec<Load>,
 }
 
 impl HeldPosture {
@@ -81,10 +84,12 @@ impl Verdict {
             slip: Some((posture.slip, None)),
             slides: posture.slip.exceeds(Slip::GREATEST).then_some((posture.slip, None)),
             missed: posture.missed.clone(),
+            least: Some(least(&later)),
             fails: first.filter(|failure| failure.time.is_finite()).copied(),
             later,
             hazards: posture.hazards.clone(),
             hands: posture.hands.clone(),
+            loads: posture.loads.clone(),
             ..Findings::default()
         }
         .verdict(model)
@@ -105,8 +110,9 @@ impl Verdict {
         Some(Self::of_posture(model, &posture))
     }
 
-    /// Of a body for which no posture was found in which its supports hold it.
-    pub fn of_fall(model: &Model, missing: Missing) -> Self {
-        Findings { missing: Some((missing, None)), ..Findings::default() }.verdict(model)
+    /// Of a body for which no posture was found in which its supports hold it under these loads.
+    pub fn of_fall(model: &Model, missing: Missing, loads: &[Load]) -> Self {
+        let loads = loads.to_vec();
+        Findings { missing: Some((missing, None)), loads, ..Findings::default() }.verdict(model)
     }
 }

@@ -2,11 +2,12 @@
 
 use super::holding::GroupAtEnd;
 use super::spread::spread;
-use super::{Failure, Findings, HandLoad, LEAST_HAZARD, Missed, PassedHazard, Verdict, VerdictKind, Who};
+use super::{Failure, Findings, HandLoad, LEAST_HAZARD, Missed, PassedHazard, Verdict, Who};
 use crate::joint_torques::Hazard;
 use crate::model::Side;
 use crate::posture::Posture;
 use crate::simulation::{CoordinateSummary, Scenario, StopReason, Summary};
+use crate::statics::Load;
 
 impl Verdict {
     /// Of a run, whether it went to its end or not.
@@ -26,10 +27,11 @@ impl Verdict {
             passed: passed(scenario, summary, &hazards),
             hazards,
             hands: hands(scenario),
+            loads: summary.fall.map_or_else(Vec::new, |fall| loads_at(scenario, fall.time).to_vec()),
             interrupted: interrupted.then_some(summary.end_time),
             ..Findings::default()
         };
-        if findings.kind() == VerdictKind::Holds {
+        if findings.kind().is_done() {
             findings.take_end(&groups_at_end(scenario, summary), (0.0, summary.end_time));
         }
         findings.verdict(&scenario.model)
@@ -56,6 +58,12 @@ fn hands(scenario: &Scenario) -> Vec<HandLoad> {
     }
     hands.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     hands
+}
+
+/// The loads at a time of a run.
+fn loads_at(scenario: &Scenario, time: f64) -> &[Load] {
+    let changed = scenario.events.iter().filter(|event| event.time <= time).filter_map(|event| event.loads.as_deref());
+    changed.last().unwrap_or(&scenario.loads)
 }
 
 /// Hazards of a run that are none of those `at_end`.

@@ -15,18 +15,24 @@ const HALVINGS: usize = 20;
 /// Least and greatest time (s) at which a group fails under the loads of `history`, with fatigue `start` (0..=1) at first;
 /// the last load lasts for ever.
 pub fn spread(group: &MuscleGroup, history: &LoadHistory, start: f64) -> (f64, f64) {
-    let library = library();
-    let variation = library.strength_variation(&group.name).map_or(0.0, |(coefficient, _)| coefficient);
-    let mut laws = library.published_laws(&group.name);
-    laws.push(group.fatigue.clone());
+    let (laws, variation) = laws_and_variation(group);
     let times = laws
         .iter()
         .flat_map(|law| [1.0 - variation, 1.0, 1.0 + variation].map(|strength| failure(law, history, strength, start)));
     times.fold((f64::INFINITY, 0.0), |(least, greatest), time| (time.min(least), time.max(greatest)))
 }
 
+/// Published laws of a group and its own, and the standard deviation of its strength between people over the mean.
+pub(crate) fn laws_and_variation(group: &MuscleGroup) -> (Vec<FatigueLaw>, f64) {
+    let library = library();
+    let variation = library.strength_variation(&group.name).map_or(0.0, |(coefficient, _)| coefficient);
+    let mut laws = library.published_laws(&group.name);
+    laws.push(group.fatigue.clone());
+    (laws, variation)
+}
+
 /// Time at which a group of `strength` times the mean fails, s; infinite if never.
-fn failure(law: &FatigueLaw, history: &LoadHistory, strength: f64, start: f64) -> f64 {
+pub(crate) fn failure(law: &FatigueLaw, history: &LoadHistory, strength: f64, start: f64) -> f64 {
     let pieces: Vec<(f64, f64)> = history.pieces().iter().map(|(from, load)| (*from, load / strength)).collect();
     let Some(&(_, first)) = pieces.first() else { return f64::INFINITY };
     let mut state = law.start(start, first);

@@ -1,15 +1,23 @@
 //! Says a verdict in one sentence.
 
 use super::missed::unit;
-use super::{Failure, Findings, HandLoad, Missed, Nearest, PassedHazard, TIRED, Verdict, VerdictKind, Who};
+use super::{
+    Failure, Findings, HandLoad, MOST_AMOUNTS, Missed, Nearest, PassedHazard, TIRED, Verdict, VerdictKind, Who,
+    amounts, amounts_in_words, muscles_or_motors,
+};
 use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
+use crate::statics::{Load, LoadKind};
 use crate::tasks::{PriorityLevel, Unit};
 
 /// A direction with less than this share of a distance is not named.
 const LEAST_PART: f64 = 0.05;
+/// A load beyond so many times the strength is told in words: nobody is so weak, and angles or loads are wrong. Assumed.
+const FAR_TOO_MUCH: f64 = 10.0;
+/// Most coordinates out of range that a sentence names.
+const MOST_DOUBTS: usize = 3;
 /// A time from here on, s, is said as no limit: longer than a day.
-const A_DAY: f64 = 86_400.0;
+pub(crate) const A_DAY: f64 = 86_400.0;
 
 impl Findings {
     /// The verdict, with its sentence.
@@ -17,7 +25,7 @@ impl Findings {
         let kind = self.kind();
         let sentence = match kind {
             VerdictKind::CannotBeDone => self.too_weak(model),
-            VerdictKind::CannotStand => self.falls(),
+            VerdictKind::CannotStand => self.falls(model),
             VerdictKind::NotReached => self.not_reached(),
             VerdictKind::HeldUntil => self.held_until(model),
             VerdictKind::Holds => self.holds(model),
@@ -46,6 +54,7 @@ impl Findings {
             asked: self.asked,
             seconds: fails.map(|failure| failure.time).filter(|time| time.is_finite()),
             range: fails.map(|failure| failure.range),
+            least: self.least.filter(|_| kind.is_done()),
             who: fails.map(|failure| failure.who).or(hardest.filter(|_| names_hardest)),
             hardest,
             tired: self.tired,
@@ -54,7 +63,7 @@ impl Findings {
             slip: self.slip.filter(|(slip, _)| slip.exceeds(Slip::NOTICED)),
             passed: self.passed,
             hands: self.hands,
-            sentence,
+            sentence: muscles_or_motors(model, &sentence),
             missed: self.missed,
         }
     }
@@ -65,18 +74,38 @@ impl Findings {
             return format!("Cannot be done: {}.", hand.too_heavy_in_words(model));
         }
         let Some((group, time)) = self.hardest else { return String::new() };
-        let when = time.filter(|time| *time > 0.0).map(|time| format!(" at {}", how_long(time)));
+        let when = time.filter(|time| *time > 0.0).map(|time| format!(" at {}", how_long(time))).unwrap_or_default();
+        let (who, torque) = (Who::from(group).name(model), group.torque.abs());
+        let strength = torque / group.load;
+        if group.load <= FAR_TOO_MUCH {
+            let share = percent(group.load);
+            return format!(
+                "Cannot be done: {who} would need {share} of its strength{when} ({torque:.0} of {strength:.0} N m)."
+            );
+        }
+        let doubt = self.doubt(model);
         format!(
-            "Cannot be done: {} would need {} of its strength{} ({:.0} of {:.0} N m).",
-            Who::from(group).name(model),
-            percent(group.load),
-            when.unwrap_or_default(),
-            group.torque.abs(),
-            group.torque.abs() / group.load
+            "Cannot be done: {who} would need far more than its strength{when}: {torque:.0} N m, and has {strength:.1} N m there; {doubt}."
         )
     }
 
-    fn falls(&self) -> String {
+    /// `check the sign of right knee (knee_angle_r), which is outside of its range in 100 % of the frames`, or what else to check.
+    fn doubt(&self, model: &Model) -> String {
+        let name = |i: usize| {
+            let name = &model.coordinates()[i].name;
+            format!("{} ({name})", plain_name(name))
+        };
+        let outside = |&(i, share): &(usize, f64)| {
+            format!("{}, which is outside of its range in {} of the frames", name(i), percent(share))
+        };
+        let all: Vec<String> = self.out_of_range.iter().take(MOST_DOUBTS).map(outside).collect();
+        match all.as_slice() {
+            [] => "check the signs and units of angles and loads".to_owned(),
+            all => format!("check the sign of {}", all.join("; and of ")),
+        }
+    }
+
+    fn falls(&self, model: &Model) -> String {
         let when =
             |time: Option<f64>| time.filter(|time| *time > 0.0).map(|time| format!(" from {} on", how_long(time)));
         if let Some((slip, time)) = self.slides {
@@ -84,8 +113,21 @@ impl Findings {
             return format!("Cannot stand: supports slide by {}{when}.", slip_in_words(slip));
         }
         let Some((missing, time)) = self.missing else { return String::new() };
-        let when = when(time);
-        format!("Cannot stand: the supports do not hold the body{}; {missing}.", when.unwrap_or_default())
+        let (when, loads) = (when(time).unwrap_or_default(), amounts(&self.loads));
+        let under = if (1..=MOST_AMOUNTS).contains(&loads.len()) {
+            format!(" under its load of {}", amounts_in_words(&loads, 1.0))
+        } else {
+            String::new()
+        };
+        let doubt = self.heavier_than_the_body(model).unwrap_or_default();
+        format!("Cannot stand: the supports do not hold the body{under}{when}; {missing}.{doubt}")
+    }
+
+    /// ` The body weighs 75 kg: are kilograms meant?`, of weights that are heavier than the body.
+    fn heavier_than_the_body(&self, model: &Model) -> Option<String> {
+        let weight = |load: &Load| if let LoadKind::Weight(mass) = load.kind { mass } else { 0.0 };
+        let held: f64 = self.loads.iter().map(weight).sum();
+        (held > model.mass()).then(|| format!(" The body weighs {:.0} kg: are kilograms meant?", model.mass()))
     }
 
     fn not_reached(&self) -> String {
@@ -161,19 +203,19 @@ impl Findings {
         });
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
         let tired = tired.map(|tired| {
-            let lasts = if tired.lasts { " (but tires no further under its load there)" } else { "" };
+            let lasts = if tired.lasts { " (under its load there it does not become more tired)" } else { "" };
             format!("{} is {} tired at the end{lasts}", tired.who.name(model), percent(tired.fatigue))
         });
         weaker.into_iter().chain(tired).chain(self.ligaments(model)).chain(self.passed(model)).collect()
     }
 
-    /// `ligaments hold lumbar extension at −60.0° (74 % of 165 N m)`.
+    /// `ligaments hold lumbar extension at −60.0° (74 % of the torque of 165 N m there)`.
     fn ligaments(&self, model: &Model) -> Option<String> {
         let list: Vec<String> = self.hazards.iter().map(|hazard| hazard.in_words(model)).collect();
         (!list.is_empty()).then(|| format!("ligaments hold {}", enumerated(&list)))
     }
 
-    /// `ligaments held for 40 s lumbar extension at −60.0° (74 % of 165 N m)`.
+    /// `ligaments held for 40 s lumbar extension at −60.0° (74 % of the torque of 165 N m there)`.
     fn passed(&self, model: &Model) -> Option<String> {
         let sentence =
             |passed: &PassedHazard| format!("for {} {}", how_long(passed.seconds), passed.hazard.in_words(model));
@@ -199,15 +241,23 @@ impl Findings {
         )
     }
 
-    /// `Hardest worked: right shoulder flexion at 17 % of its strength.`
+    /// `Hardest worked: right shoulder flexion at 17 % of its strength.`, or `... of its strength at 7.9 min (11 % at the end).`
     fn hardest_worked(&self, model: &Model) -> String {
-        let hardest = self.hardest.filter(|(group, _)| group.load >= 0.005);
-        hardest.map_or_else(
-            || "No muscle works.".to_owned(),
-            |(group, _)| {
-                format!("Hardest worked: {} at {} of its strength.", Who::from(group).name(model), percent(group.load))
-            },
-        )
+        let Some((group, time)) = self.hardest.filter(|(group, _)| group.load >= 0.005) else {
+            return "No muscle works.".to_owned();
+        };
+        let greatest = percent(group.load);
+        let is_it = |who: &Who| (who.coordinate, who.side) == (group.coordinate, group.side);
+        let end = self.later.iter().find(|failure| is_it(&failure.who)).map(|failure| percent(failure.who.load));
+        let end = time.zip(end.filter(|end| *end != greatest));
+        let end = end.map(|(time, end)| match how_long(time) {
+            at if self.asked.map(how_long).as_ref() == Some(&at) => {
+                format!(" shortly before the end ({end} at the end)")
+            }
+            at => format!(" at {at} ({end} at the end)"),
+        });
+        let name = Who::from(group).name(model);
+        format!("Hardest worked: {name} at {greatest} of its strength{}.", end.unwrap_or_default())
     }
 }
 

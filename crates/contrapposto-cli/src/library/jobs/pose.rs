@@ -18,6 +18,7 @@ use crate::view::report::pose::report_of_pose;
 pub struct Posed {
     scenario: PoseScenario,
     pose: SolvedPosture,
+    kept_balance: bool,
     answer: Answer,
     json: String,
     frames: Frames,
@@ -33,12 +34,12 @@ impl Posed {
             let file = source.open()?;
             let name = file.name.clone();
             let mut scenario = read(file)?;
-            let crate::commands::pose::Posed { pose, held, .. } = solve(&name, &mut scenario)?;
+            let crate::commands::pose::Posed { pose, held, kept_balance, .. } = solve(&name, &mut scenario)?;
             let answer = answer(&scenario, &pose, &held, SuggestArgs::default());
             let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), vec![]);
             let json = json_text("pose.json", &text)?;
             let frames = Frames::of(&scenario.model, &[held.frame]);
-            Ok(Self { scenario, pose, answer, json, frames })
+            Ok(Self { scenario, pose, kept_balance, answer, json, frames })
         })
     }
 
@@ -58,10 +59,10 @@ impl Posed {
     /// [`Failure`] where the page cannot be drawn.
     pub fn report(&self) -> Result<String, Failure> {
         let page = || -> Result<String, Fail> {
-            let Self { scenario, pose, answer, .. } = self;
+            let Self { scenario, pose, kept_balance, answer, .. } = self;
             let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
             let text = PoseText::new(scenario, pose, (&answer.verdict, &answer.advice), vec![]);
-            report_of_pose(scenario, pose, (&text, answer), held)
+            report_of_pose(scenario, (pose, *kept_balance), (&text, answer), held)
         };
         page().map_err(Failure::from)
     }

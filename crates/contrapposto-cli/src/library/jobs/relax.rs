@@ -37,7 +37,7 @@ impl Relaxed {
             match find(&mut scenario) {
                 Ok(found) => Self::of(scenario, found),
                 Err(SearchError::CannotStand(missing)) => {
-                    let verdict = Verdict::of_fall(&scenario.model, missing);
+                    let verdict = Verdict::of_fall(&scenario.model, missing, &scenario.loads);
                     let advice = advice_without(&scenario, &verdict, SuggestArgs::default());
                     let answer = (&verdict, &advice);
                     let json = text_without_posture("relax.json", &scenario.title, &scenario.model, answer)?;

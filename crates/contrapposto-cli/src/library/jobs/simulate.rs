@@ -51,7 +51,7 @@ impl Simulated {
         let mut under_way = match Run::new(scenario) {
             Ok(under_way) => under_way,
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
-                let verdict = Verdict::of_fall(&scenario.model, missing);
+                let verdict = Verdict::of_fall(&scenario.model, missing, &scenario.loads);
                 let advice = advice_without_posture(&verdict, scenario, trials, &go_on);
                 let answer = (&verdict, &advice);
                 let json = text_without_posture("summary.json", &scenario.title, &scenario.model, answer)?;

@@ -12,6 +12,7 @@ use contrapposto_formats::tissue::SourcedModel;
 use contrapposto_report::{Entry, Figure, List, Moments, Table};
 use nalgebra::Vector3;
 
+use super::page;
 use crate::fail::Fail;
 use crate::view::answer::{Answer, group_of_title};
 use crate::view::decision::answer;
@@ -23,7 +24,7 @@ use crate::view::selection::shown;
 use crate::view::stage::Stage;
 use crate::view::text::assess::times_from;
 use crate::view::text::sources::StrengthAtText;
-use crate::view::words::{MOST_ROWS, group, percent, plain, sentence, value};
+use crate::view::words::{MOST_ROWS, group, how_long, moment_in_words, percent, plain, sentence, value};
 
 /// Moments of a motion, as many as a page shows.
 pub(crate) struct AssessedFrames<'a> {
@@ -148,7 +149,7 @@ pub(crate) fn report_of_assessment(
     };
     add_reasons(&mut report, hazards(model, frames, true));
     report.table = table(assessed_frames.opened, &working);
-    Ok(contrapposto_report::write(&report))
+    Ok(page(model, report))
 }
 
 /// The time that the verdict is about, s.
@@ -171,7 +172,7 @@ fn figures(
 ) -> Vec<Figure> {
     let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
     let failed: Vec<f64> = found.groups.iter().filter_map(|group| group.exhausted_at).collect();
-    let earliest = failed.first().map_or_else(String::new, |time| format!("the first at {time:.1} s"));
+    let earliest = failed.first().map_or_else(String::new, |time| format!("the first at {}", how_long(*time)));
     let mut figures =
         vec![figure("Muscle groups that fail", format!("{} of {}", failed.len(), working.len()), earliest)];
     // Of equals the first to fail.
@@ -179,10 +180,10 @@ fn figures(
         figures.push(figure("Greatest fatigue", percent(tired.peak_fatigue.value), name(model, tired)));
     }
     if let Some(hard) = working.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value)) {
-        let note = format!("{}, at {:.1} s", name(model, hard), hard.peak_load.time);
+        let note = format!("{}, at {}", name(model, hard), moment_in_words(hard.peak_load.time));
         figures.push(figure("Greatest load", percent(hard.peak_load.value), note));
     }
-    figures.push(figure("The motion lasts", format!("{span:.1} s"), postures));
+    figures.push(figure("The motion lasts", how_long(span), postures));
     figures
 }
 
@@ -191,10 +192,10 @@ fn table(opened: &SourcedModel, working: &[&GroupAssessment]) -> Table {
         vec![
             name(&opened.model, group),
             percent(group.peak_load.value),
-            format!("{:.2}\u{a0}s", group.peak_load.time),
+            moment_in_words(group.peak_load.time),
             StrengthAtText::new(opened, group).map(|strength| strength.words()).unwrap_or_default(),
             percent(group.fatigue),
-            group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at\u{a0}{time:.1}\u{a0}s")),
+            group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at\u{a0}{}", how_long(time))),
         ]
     };
     Table {

@@ -3,6 +3,7 @@
 use contrapposto_report::{Entry, List, Moments, Report, Table};
 
 use super::figure::figure;
+use super::page;
 use crate::fail::Fail;
 use crate::view::frame::Frame;
 use crate::view::muscles::hardest;
@@ -55,7 +56,7 @@ pub(crate) fn report_of_comparison(postures: &[ComparedPosture], text: &CompareT
         none: String::new(),
     };
     report.table = table(postures);
-    Ok(contrapposto_report::write(&report))
+    Ok(page(&first.model, report))
 }
 
 fn table(postures: &[ComparedPosture]) -> Table {

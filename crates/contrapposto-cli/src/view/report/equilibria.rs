@@ -9,6 +9,7 @@ use contrapposto_formats::RelaxScenario;
 use contrapposto_report::{Entry, List, Moments, Table};
 
 use super::figure::{carriers, figure, figures_of, weight};
+use super::page;
 use crate::fail::Fail;
 use crate::view::answer::{Answer, also_missed, also_slid};
 use crate::view::figures::figures_of_postures;
@@ -64,7 +65,7 @@ pub(crate) fn report_of_equilibria(
         none: String::new(),
     };
     let Some((best, frame)) = found.postures.first().zip(frames.first()) else {
-        return Ok(contrapposto_report::write(&report));
+        return Ok(page(model, report));
     };
     let more = found.postures.get(1).map(|next| percent(next.relaxed.effort / best.relaxed.effort - 1.0));
     report.headline.clone_from(&verdict.sentence);
@@ -95,7 +96,7 @@ pub(crate) fn report_of_equilibria(
         rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
     };
     add_reasons(&mut report, hazards(model, &frames, false));
-    Ok(contrapposto_report::write(&report))
+    Ok(page(model, report))
 }
 
 /// The fate of the starts.

@@ -32,7 +32,8 @@ pub(super) fn write(
     let of_title = group_of_title(&answer.verdict).filter(|_| excerpt.happened == 0).map(|group| group.coordinate);
     let main = of_title.unwrap_or_else(|| main_coordinate(scenario, summary));
     let ligaments = answer.verdict.hazards.first().map_or(main, |hazard| hazard.coordinate);
-    let narrative = Narrative { scenario, names, first, last, main, ligaments };
+    let in_hazard = !answer.verdict.hazards.is_empty();
+    let narrative = Narrative { scenario, names, first, last, main, ligaments, in_hazard };
     let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
@@ -83,6 +84,8 @@ struct Narrative<'a> {
     main: usize,
     /// The coordinate whose passive torque is reported: the first in hazard, or `main`.
     ligaments: usize,
+    /// That coordinate is in hazard.
+    in_hazard: bool,
 }
 
 impl Narrative<'_> {
@@ -109,11 +112,19 @@ impl Narrative<'_> {
         let [from, to] =
             [self.first, self.last].map(|frame| value(&self.scenario.model, self.main, frame.angles[self.main]));
         let [before, after] = [self.first, self.last].map(|frame| frame.active(self.main).abs());
+        let axis = self.about_axis();
         if self.moved().abs() < STAYED {
-            return format!("{name} stayed at {to}: its muscles hold {after:.1} N m.");
+            return format!("{name} stayed at {to}{axis}: its muscles hold {after:.1} N m.");
         }
         let verb = if after > before { "more" } else { "less" };
-        format!("{name} moved from {from} to {to}: its muscles hold {verb}, {after:.1} N m instead of {before:.1}.")
+        format!(
+            "{name} moved from {from} to {to}{axis}: its muscles hold {verb}, {after:.1} N m instead of {before:.1}."
+        )
+    }
+
+    /// The name of the angle of a joint of three axes.
+    fn about_axis(&self) -> &'static str {
+        if self.scenario.model.three_axis_joint_of(self.main).is_some() { " about its axis" } else { "" }
     }
 
     fn moved(&self) -> f64 {
@@ -142,8 +153,9 @@ impl Narrative<'_> {
             let [from, to] = [first, last].map(|frame| value(&scenario.model, main, frame.angles[main]));
             let [before, after] = [first, last].map(|frame| frame.active(main).abs());
             reasons.push(format!(
-                "{} moved from {from} to {to}; its muscles hold {after:.1} N m, at the start {before:.1}.",
-                sentence(&name)
+                "{} moved from {from} to {to}{}; its muscles hold {after:.1} N m, at the start {before:.1}.",
+                sentence(&name),
+                self.about_axis()
             ));
         }
         reasons.extend(self.of_ligaments());
@@ -184,8 +196,8 @@ impl Narrative<'_> {
         let support = plain(&model.segments()[self.scenario.supports[step.support].segment].name);
         let ([from_x, _, from_z], [x, _, z]) = step.place;
         format!(
-            "At {:.0} s {support} was put elsewhere, {:.0} cm away, to relieve {}: effort {:.4} before, {:.4} after.",
-            step.time.0,
+            "At {} {support} was put elsewhere, {:.0} cm away, to relieve {}: effort {:.4} before, {:.4} after.",
+            how_long(step.time.0),
             100.0 * (x - from_x).hypot(z - from_z),
             plain(&model.coordinates()[step.coordinate].name),
             step.effort.0,
@@ -207,11 +219,11 @@ impl Narrative<'_> {
             0 => String::new(),
             more => format!(" Of {} decisions the first {listed} are listed; {more} more follow.", excerpt.happened),
         };
-        format!("The run ended after {:.0} s: {how}.{why}{more}", summary.end_time)
+        format!("The run ended after {}: {how}.{why}{more}", how_long(summary.end_time))
     }
 
     fn figures(&self, standing: Option<(f64, f64)>, summary: &Summary) -> Vec<Figure> {
-        let Self { scenario, names, first, last, main, ligaments } = *self;
+        let Self { scenario, names, first, last, main, ligaments, .. } = *self;
         let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
         let mut figures = vec![];
         if let Some((before, after)) = standing {
@@ -244,7 +256,12 @@ impl Narrative<'_> {
         let carried = last.carried(ligaments).filter(|share| *share >= NOTHING && !last.against_muscles(ligaments));
         if let Some(share) = carried {
             let name = plain(&scenario.model.coordinates()[ligaments].name);
-            figures.push(figure("Ligaments carry", percent(share), format!("of the external torque at {name}")));
+            let judged = if self.in_hazard { "" } else { "; for how long they may is not judged" };
+            figures.push(figure(
+                "Ligaments carry",
+                percent(share),
+                format!("of the external torque at {name}{judged}"),
+            ));
         }
         let [before, after] = [first, last].map(Frame::effort);
         let change =

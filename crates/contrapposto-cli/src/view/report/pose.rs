@@ -6,6 +6,7 @@ use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 use contrapposto_report::{Moments, Table};
 
 use super::figure::{carriers, figure, figures_of};
+use super::page;
 use crate::fail::Fail;
 use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
@@ -14,13 +15,13 @@ use crate::view::scene::Scene;
 use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::stage::Stage;
 use crate::view::targets::targets;
-use crate::view::text::pose::{mark, reached, tasks as tasks_of};
+use crate::view::text::pose::{IN_BALANCE, mark, reached, tasks as tasks_of};
 use crate::view::words::{list, metres, plain};
 
 /// The page of a solved pose.
 pub(crate) fn report_of_pose(
     scenario: &PoseScenario,
-    pose: &SolvedPosture,
+    (pose, kept_balance): (&SolvedPosture, bool),
     (text, answer): (&PoseText, &Answer),
     held: Held,
 ) -> Result<String, Fail> {
@@ -46,7 +47,7 @@ pub(crate) fn report_of_pose(
     let missing: Vec<String> =
         missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), remaining(entries))).collect();
     report.headline.clone_from(&text.verdict.sentence);
-    report.reasons = reasons(pose.reason, &missing, done == all.len());
+    report.reasons = reasons((pose.reason, kept_balance), &missing, done == all.len());
     report.reasons.splice(0..0, answer.advice.sentence.clone());
     let nothing = scenario.supports.is_empty() && !root_rates(model).is_empty();
     if unheld.is_some() || nothing {
@@ -64,11 +65,11 @@ pub(crate) fn report_of_pose(
         rows: all.iter().map(row).collect(),
     };
     add_reasons(&mut report, hazards(model, &frames, false));
-    Ok(contrapposto_report::write(&report))
+    Ok(page(model, report))
 }
 
 /// Whether the tasks are reached, and why not. `missing`: the targets that are missed; `all`: nothing at all is left.
-fn reasons(reason: Reason, missing: &[String], all: bool) -> Vec<String> {
+fn reasons((reason, kept_balance): (Reason, bool), missing: &[String], all: bool) -> Vec<String> {
     let targets = match (missing.is_empty(), all) {
         (true, true) => "All tasks are reached.".to_owned(),
         (true, false) => {
@@ -78,12 +79,13 @@ fn reasons(reason: Reason, missing: &[String], all: bool) -> Vec<String> {
     };
     let why = match reason {
         Reason::Converged if !missing.is_empty() => {
-            Some("The remaining errors are the smallest that tasks of higher priority allow.")
+            Some("The remaining errors are the smallest that tasks of higher priority allow.".to_owned())
         }
-        Reason::StepLimit => Some("The step limit was reached before the posture converged."),
+        Reason::StepLimit if kept_balance => Some(format!("The posture is {IN_BALANCE}.")),
+        Reason::StepLimit => Some("The step limit was reached before the posture converged.".to_owned()),
         Reason::Reached | Reason::Converged => None,
     };
-    std::iter::once(targets).chain(why.map(str::to_owned)).collect()
+    std::iter::once(targets).chain(why).collect()
 }
 
 /// `--figures` of a solved pose.

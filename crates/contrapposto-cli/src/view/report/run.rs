@@ -6,7 +6,7 @@ use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::Thing;
 use contrapposto_report::{Entry, List, Moments};
 
-use super::narrative;
+use super::{narrative, page};
 use crate::fail::Fail;
 use crate::view::answer::{Answer, group_of_title};
 use crate::view::decision::{alike, merged};
@@ -49,15 +49,16 @@ pub(crate) fn report_of_run(
     let hazards = hazards(&scenario.model, &excerpt.frames, true);
     narrative::write((scenario, &scene.names_of_supports()), &excerpt, summary, answer, &mut report);
     add_reasons(&mut report, hazards);
-    Ok(contrapposto_report::write(&report))
+    Ok(page(&scenario.model, report))
 }
 
-/// The time that the verdict is about, s.
+/// The time that the verdict is about, s: of a job that holds the end, from which its minutes are counted, and not the hardest moment, which
+/// may be one of a motion between two postures.
 fn moment(verdict: &Verdict, summary: &Summary) -> f64 {
     match verdict.kind {
-        VerdictKind::CannotBeDone | VerdictKind::Holds => summary.hardest.map_or(summary.end_time, |(_, time)| time),
+        VerdictKind::CannotBeDone => summary.hardest.map_or(summary.end_time, |(_, time)| time),
         VerdictKind::HeldUntil => verdict.seconds.unwrap_or(summary.end_time),
-        VerdictKind::CannotStand | VerdictKind::NotReached => summary.end_time,
+        VerdictKind::Holds | VerdictKind::CannotStand | VerdictKind::NotReached => summary.end_time,
     }
 }
 

@@ -14,7 +14,7 @@ use super::group::GroupName;
 use super::plain_table;
 use super::sources::StrengthAtText;
 use crate::view::answer::Answer;
-use crate::view::words::MOST_ROWS;
+use crate::view::words::{MOST_ROWS, how_long, moment_in_words, percent};
 
 /// Most groups whose relief is listed.
 const RELIEVED: usize = 3;
@@ -209,7 +209,10 @@ impl ProposalText {
 /// The note about times of a motion that does not begin at 0.
 pub(crate) fn times_from(start: f64) -> Option<String> {
     (start.abs() > 0.0).then(|| {
-        format!("Times are those of the file, which begins at {start:.2} s; the first sentence counts from there.")
+        format!(
+            "Times are those of the file, which begins at {}; the first sentence counts from there.",
+            moment_in_words(start)
+        )
     })
 }
 
@@ -220,11 +223,11 @@ pub(crate) fn report(text: &AssessText) -> String {
     for group in working.iter().take(MOST_ROWS) {
         table.add_row([
             group.name.to_string(),
-            format!("{:.0} %", 100.0 * group.peak_load.value),
-            format!("{:.2} s", group.peak_load.at_s),
+            percent(group.peak_load.value),
+            moment_in_words(group.peak_load.at_s),
             group.strength_at_peak.as_ref().map(StrengthAtText::words).unwrap_or_default(),
             format!("{:.2}", group.fatigue_at_end),
-            group.exhausted_at_s.map_or_else(|| "holds".to_owned(), |time| format!("at {time:.1} s")),
+            group.exhausted_at_s.map_or_else(|| "holds".to_owned(), |time| format!("at {}", how_long(time))),
         ]);
     }
     let mut out = format!("{table}\n");
@@ -244,7 +247,8 @@ pub(crate) fn report(text: &AssessText) -> String {
             let sentences = sentences(peak);
             if sentences != previous {
                 let ProposalText { at, time_s, angle_deg, .. } = peak[0];
-                let _ = writeln!(out, "{}, greatest {at} at {time_s:.2} s, {angle_deg:.1} deg:", group.name);
+                let _ =
+                    writeln!(out, "{}, greatest {at} at {}, {angle_deg:.1} deg:", group.name, moment_in_words(time_s));
                 for sentence in &sentences {
                     let _ = writeln!(out, "  {sentence}");
                 }
@@ -254,8 +258,10 @@ pub(crate) fn report(text: &AssessText) -> String {
     }
     let first = working.first().and_then(|group| Some((group, group.exhausted_at_s?)));
     let _ = match first {
-        Some((group, time)) => writeln!(out, "\nfails first: {} at {time:.1} s", group.name),
-        None => writeln!(out, "\nno group fails from {} s to {} s", text.start_s, text.end_s),
+        Some((group, time)) => writeln!(out, "\nfails first: {} at {}", group.name, how_long(time)),
+        None => {
+            writeln!(out, "\nno group fails from {} to {}", moment_in_words(text.start_s), moment_in_words(text.end_s))
+        }
     };
     out
 }

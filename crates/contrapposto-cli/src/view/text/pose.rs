@@ -63,9 +63,12 @@ fn unbalanced(scenario: &PoseScenario, verdict: &Verdict) -> String {
         .to_owned()
 }
 
+/// The end of the steps toward a posture in balance.
+pub(crate) const IN_BALANCE: &str = "in balance; its effort still fell when the steps toward balance ended";
+
 pub(crate) fn report(
     scenario: &PoseScenario,
-    pose: &SolvedPosture,
+    (pose, kept_balance): (&SolvedPosture, bool),
     text: &PoseText,
     answer: &Answer,
     folder: Option<&ResultSet>,
@@ -83,6 +86,7 @@ pub(crate) fn report(
     let reason = match pose.reason {
         Reason::Reached => "all tasks are reached",
         Reason::Converged => "converged: the remaining errors are the smallest that tasks of higher priority allow",
+        Reason::StepLimit if kept_balance => IN_BALANCE,
         Reason::StepLimit => "the step limit was reached before the posture converged",
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };

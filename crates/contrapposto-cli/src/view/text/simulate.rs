@@ -11,7 +11,7 @@ use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
-use crate::view::words::{MOST_ROWS, joint, plain, shares_of_all};
+use crate::view::words::{MOST_ROWS, how_long, joint, percent, plain, shares_of_all};
 
 /// m or rad. A task whose error is smaller counts as kept in the table of a run.
 const REACHED: f64 = 1e-3;
@@ -32,6 +32,15 @@ pub(crate) fn strategy_in_words(scenario: &Scenario, summary: &CoordinateSummary
     };
     let relief = if summary.case_changes == 0 { "no relief needed" } else { "tired joints seek relief" };
     format!("{kind} strategy: {relief}")
+}
+
+/// `none needed`, `sought`; of a single joint the cases of its decisions.
+fn relief_in_words(scenario: &Scenario, summary: &CoordinateSummary) -> String {
+    match summary.case_changes {
+        0 => "none needed".to_owned(),
+        _ if scenario.has_supports_or_tasks() => "sought".to_owned(),
+        _ => cases(summary),
+    }
 }
 
 /// `active, R_min 0.2: cases 3.1 x6, 3.3 x33, 2.1 x1`.
@@ -64,7 +73,7 @@ pub(crate) fn cases(summary: &CoordinateSummary) -> String {
 /// The table of the coordinates with the greatest loads, and the notes below it.
 fn coordinates(scenario: &Scenario, summary: &Summary) -> (comfy_table::Table, String) {
     let mut table = plain_table();
-    table.set_header(["joint", "end", "external", "passive", "active, N m", "peak load", "fatigue +/-", "cases"]);
+    table.set_header(["joint", "end", "external", "passive", "active, N m", "peak load", "peak fatigue +/-", "relief"]);
     let last: Vec<f64> = summary.coordinates.iter().map(|coordinate| coordinate.final_value).collect();
     let angles = angles(&scenario.model, &last);
     let all = scenario.model.coordinates().iter().zip(&angles).zip(&summary.coordinates).zip(&scenario.free);
@@ -91,9 +100,9 @@ fn coordinates(scenario: &Scenario, summary: &Summary) -> (comfy_table::Table, S
             format!("{external:.2}"),
             format!("{passive:.2}"),
             format!("{active:.2}"),
-            if known { format!("{:.0} %", 100.0 * summary.peak_load) } else { String::new() },
+            if known { percent(summary.peak_load) } else { String::new() },
             if known { format!("{positive:.2} / {negative:.2}") } else { String::new() },
-            if *free { cases(summary) } else { String::new() },
+            if *free { relief_in_words(scenario, summary) } else { String::new() },
         ]);
     }
     let more = match more {
@@ -120,10 +129,10 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
         format!("report: {}\npictures: {}, {}\n", page.display(), first.display(), second.display())
     });
     format!(
-        "{}{}\n{table}\n{notes}{standing}{reason} after {:.2} s ({} samples)\n{files}",
+        "{}{}\n{table}\n{notes}{standing}{reason} after {} ({} samples)\n{files}",
         answer.first_lines(),
         scenario.title,
-        summary.end_time,
+        how_long(summary.end_time),
         summary.samples,
     )
 }
@@ -162,9 +171,12 @@ fn standing_text(scenario: &Scenario, summary: &Summary, standing: &Standing) ->
         let relieved = plain(&scenario.model.coordinates()[step.coordinate].name);
         let ([x, y, z], [to_x, to_y, to_z]) = step.place;
         text += &format!(
-            "{segment} was put elsewhere from {:.1} s to {:.1} s, from ({x:.2}, {y:.2}, {z:.2}) to ({to_x:.2}, {to_y:.2}, {to_z:.2}) m, \
+            "{segment} was put elsewhere at {}, within {}, from ({x:.2}, {y:.2}, {z:.2}) to ({to_x:.2}, {to_y:.2}, {to_z:.2}) m, \
              to relieve {relieved}: effort {:.4} before, {:.4} after\n",
-            step.time.0, step.time.1, step.effort.0, step.effort.1
+            how_long(step.time.0),
+            how_long(step.time.1 - step.time.0),
+            step.effort.0,
+            step.effort.1
         );
     }
     text
