@@ -15,12 +15,14 @@ pub(crate) type Amount = (f64, &'static str);
 /// The sum of all weights, and the forces and couples: those of one direction as their sum.
 pub(crate) fn amounts(loads: &[Load]) -> Vec<Amount> {
     let mass: f64 = loads.iter().map(|load| if let LoadKind::Weight(mass) = load.kind { mass } else { 0.0 }).sum();
-    let vectors = |of: fn(&LoadKind) -> Option<(Vector3<f64>, FixedIn)>| -> Vec<(Vector3<f64>, FixedIn)> {
-        loads.iter().filter_map(|load| of(&load.kind)).collect()
-    };
-    let forces = vectors(|kind| if let LoadKind::Force(force, frame) = kind { Some((*force, *frame)) } else { None });
-    let couples =
-        vectors(|kind| if let LoadKind::Couple(couple, frame) = kind { Some((*couple, *frame)) } else { None });
+    let (mut forces, mut couples) = (vec![], vec![]);
+    for load in loads {
+        match load.kind {
+            LoadKind::Weight(_) => {}
+            LoadKind::Force(force, frame) => forces.push((force, frame)),
+            LoadKind::Couple(couple, frame) => couples.push((couple, frame)),
+        }
+    }
     let weight = (mass > 0.0).then_some((mass, "kg"));
     weight.into_iter().chain(sizes(&forces, "N")).chain(sizes(&couples, "N m")).collect()
 }

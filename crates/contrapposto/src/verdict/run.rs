@@ -62,8 +62,9 @@ fn hands(scenario: &Scenario) -> Vec<HandLoad> {
 
 /// The loads at a time of a run.
 fn loads_at(scenario: &Scenario, time: f64) -> &[Load] {
-    let changed = scenario.events.iter().filter(|event| event.time <= time).filter_map(|event| event.loads.as_deref());
-    changed.last().unwrap_or(&scenario.loads)
+    let mut changed =
+        scenario.events.iter().filter(|event| event.time <= time).filter_map(|event| event.loads.as_deref());
+    changed.next_back().unwrap_or(&scenario.loads)
 }
 
 /// Hazards of a run that are none of those `at_end`.
