@@ -121,7 +121,7 @@ fn out_of_range(model: &Model, motion: &[(f64, Posture)], i: usize) -> Option<f6
 }
 
 impl Assessment {
-    /// What is known before the first instant.
+    /// The findings before the first instant.
     fn of_motion(model: &Model, motion: &[(f64, Posture)], settings: &AssessSettings) -> Self {
         let out_of_range = (0..model.coordinates().len()).filter_map(|i| Some((i, out_of_range(model, motion, i)?)));
         Self { dynamics: !settings.rates.is_empty(), out_of_range: out_of_range.collect(), ..Self::default() }

@@ -48,7 +48,7 @@ pub enum Change {
 pub struct JointAngle {
     /// The coordinate.
     pub coordinate: usize,
-    /// Its angle in the job without the change, rad.
+    /// The angle in the job without the change, rad.
     pub before: f64,
     /// The angle that is asked for, rad.
     pub angle: f64,

@@ -76,7 +76,7 @@ impl Suggestion {
         format!(" (weaker people: {now}{})", instead(&now, limit(before.least)))
     }
 
-    /// Where no muscle of the mean person fails with or without the change: what weaker people gain.
+    /// The time of weaker people, where no muscle of the mean person fails with or without the change.
     fn gain_of_weaker(&self, before: &Verdict) -> String {
         let go_on = if self.asked.is_some() { "go on" } else { "hold it" };
         let Some(least) = self.least else { return "it stays without a limit".to_owned() };

@@ -4,7 +4,7 @@ use crate::fatigue::FatigueLaw;
 use crate::model::Model;
 
 /// Words about muscles, and those about motors.
-const WORDS: [[&str; 2]; 4] =
+const MOTOR_WORDS: [[&str; 2]; 4] =
     [["muscle group", "motor"], ["Muscle group", "Motor"], ["muscle", "motor"], ["Muscle", "Motor"]];
 
 /// Whether motors move the body: it has groups of known strength, and none of them tires. The strength of such a body comes from the limits of
@@ -17,6 +17,6 @@ pub fn has_motors(model: &Model) -> bool {
 
 /// A text about the muscles of a body, with the word for what moves this one.
 pub fn muscles_or_motors(model: &Model, text: &str) -> String {
-    let words: &[[&str; 2]] = if has_motors(model) { &WORDS } else { &[] };
+    let words: &[[&str; 2]] = if has_motors(model) { &MOTOR_WORDS } else { &[] };
     words.iter().fold(text.to_owned(), |text, [muscle, motor]| text.replace(muscle, motor))
 }
