@@ -47,7 +47,7 @@ fn what_is_compared_is_what_simulate_and_pose_find() {
     let call = contrapposto(["pose", "--json"]).arg(shelf()).arg("--out").arg(folder.path().join("posed"));
     let posed = json(&call.run().stdout);
     let [a, b] = [&found["postures"][0], &found["postures"][1]];
-    assert_eq!((a["how"].as_str(), b["how"].as_str()), (Some("simulated, 10 s"), Some("posed")));
+    assert_eq!((a["how"].as_str(), b["how"].as_str()), (Some("simulated, 10\u{a0}s"), Some("posed")));
     assert_eq!(a["effort"], simulated["standing"]["effort"]);
     assert_eq!(b["coordinates"], posed["coordinates"]);
     // Both feet carry the weight, and nothing else.

@@ -65,20 +65,33 @@ fn a_motion_with_the_opposite_sign_is_warned_of_first_and_in_the_json() {
     assert!(!support::run(&["assess", &woman(), &good]).stderr.contains("knee_angle_r` lies outside"));
 }
 
-/// The knees are held far beyond their straight end, as of a model that counts them the other way: the answer itself says which joint to check.
+/// A weight of tonnes in a hand, with the right knee far beyond its straight end, as of a model that counts it the other way: the answer says in
+/// words that the load is too great, and which joint to check.
 #[test]
 fn a_load_of_many_times_the_strength_is_told_in_words_with_the_joints_out_of_range() {
     let folder = tempfile::tempdir().unwrap();
-    let bent = write(folder.path(), "bent.csv", "time,knee_angle_r_deg\n0,-60\n1,-70\n2,-66\n");
-    let run = run(&["assess", "adult", &bent, "--fixed-root", "--no-suggest"]);
-    let first = run.stdout.lines().next().unwrap();
-    assert_eq!(run.code, 1, "{first}");
-    assert!(first.starts_with("Cannot be done: right knee"), "{first}");
-    assert!(first.contains(" would need far more than its strength"), "{first}");
-    let check =
-        "check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the frames";
-    assert!(first.contains(check), "{first}");
-    assert!(!first.contains("000\u{a0}%") && run.stdout.contains("more than 1000\u{a0}%"), "{}", run.stdout);
+    let assess = |knee: &str| {
+        let text = format!("time,knee_angle_r_deg,elbow_flex_r_deg\n0,{knee},90\n1,{knee},90\n");
+        let held = write(folder.path(), "held.csv", &text);
+        run(&["assess", "adult", &held, "--fixed-root", "--no-suggest", "--load", "hand_r 3000kg"])
+    };
+    for (knee, doubt) in [
+        (
+            "-60",
+            "check the sign of right knee (knee_angle_r), which is outside of its range in 100\u{a0}% of the frames.",
+        ),
+        ("60", "check the signs and units of angles and loads."),
+    ] {
+        let run = assess(knee);
+        let first = run.stdout.lines().next().unwrap();
+        assert_eq!(run.code, 1, "{first}");
+        assert!(
+            first.starts_with("Cannot be done: right ") && first.contains(" would need far more than its strength: "),
+            "{first}"
+        );
+        assert!(first.ends_with(doubt) && !first.contains("000\u{a0}%"), "{first}");
+        assert!(run.stdout.contains("more than 1000\u{a0}%"), "{}", run.stdout);
+    }
 }
 
 /// At 0 degrees the adult's ligaments bend the knee, and nothing else loads it: the leg hangs.

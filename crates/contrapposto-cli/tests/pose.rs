@@ -136,7 +136,9 @@ fn out_of_reach_the_hand_gives_way_and_the_feet_do_not() {
 fn steps_that_run_out_are_a_failure_and_steps_toward_balance_are_not() {
     let folder = tempfile::tempdir().unwrap();
     let few = folder.path().join("few.toml");
-    std::fs::write(&few, std::fs::read_to_string(shelf()).unwrap() + "\n[solver]\nmax_steps = 2\n").unwrap();
+    let arm = "format = 1\n[model]\nadult = { sex = \"male\", stature_m = 1.75, mass_kg = 75, part = \"right_arm\" }\n[[task]]\nkind = \"point\"\n\
+               segment = \"hand_r\"\ntarget_m = [0.45, 1.3, 0.2]\n[solver]\nmax_steps = 1\n";
+    std::fs::write(&few, arm).unwrap();
     let run = pose(&few, folder.path(), &["--no-suggest"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
     assert!(
@@ -144,9 +146,7 @@ fn steps_that_run_out_are_a_failure_and_steps_toward_balance_are_not() {
         "{}",
         run.stderr
     );
-    let lift = folder.path().join("lift.toml");
-    assert_eq!(contrapposto(["new", "lift", "--out", lift.to_str().unwrap()]).run().code, 0);
-    let run = pose(&lift, folder.path(), &["--no-suggest"]);
+    let run = pose(&scenarios().join("push.toml"), folder.path(), &["--no-suggest"]);
     let found: Value = serde_json::from_slice(&std::fs::read(folder.path().join("pose.json")).unwrap()).unwrap();
     assert_eq!((run.code, found["reason"].as_str()), (0, Some("steps")), "{}", run.stderr);
     assert!(
