@@ -88,6 +88,7 @@ fn report() -> Report {
             columns: vec!["a column".to_owned(); 6],
             rows: vec![vec![HOSTILE.to_owned(); 6]],
         },
+        motors: false,
         moments: Moments::Times(times),
     }
 }
