@@ -35,6 +35,7 @@ class Body {
   makeMeshes() {
     const { gl, painter } = this;
     this.parts = report.segments.map((segment) => painter.hullMesh(segment.balls));
+    this.skin = report.skin && new Skin(report.skin, painter);
     this.ball = painter.hullMesh([[0, 0, 0, 1]]);
     this.shaft = painter.hullMesh([[0, 0, 0, 0.012], [0, 1, 0, 0.012]]);
     this.tip = painter.hullMesh([[0, -ARROW_HEAD, 0, 0.034], [0, -0.002, 0, 0.002]]);
@@ -98,11 +99,12 @@ class Body {
   drawSegments(frame, measure) {
     const unknown = styleColor("--none"), hazard = styleColor("--hazard");
     this.painter.flatness(0);
-    report.segments.forEach((segment, i) => {
+    const color = (segment) => {
       const share = measure.of(segment, frame);
-      const color = inHazard(segment, frame) ? hazard : share === null ? unknown : colorOf(measure, share);
-      this.painter.hull(this.parts[i], placement(segment.places, frame), color);
-    });
+      return inHazard(segment, frame) ? hazard : share === null ? unknown : colorOf(measure, share);
+    };
+    if (this.skin && !this.wooden) return this.skin.draw(frame, measure, color);
+    report.segments.forEach((segment, i) => this.painter.hull(this.parts[i], placement(segment.places, frame), color(segment)));
   }
 
   drawThings(frame) {
@@ -122,6 +124,10 @@ class Body {
     painter.flatness(0);
     for (const visible of [false, true]) {
       gl.colorMask(visible, visible, visible, visible);
+      if (this.skin && !this.wooden) {
+        painter.painted(this.skin.ghost, color, 0.24);
+        continue;
+      }
       report.segments.forEach((segment, i) => painter.hull(this.parts[i], placement(segment.start, 0), color, 0.24));
     }
     gl.colorMask(true, true, true, true);

@@ -19,6 +19,10 @@ const report = (() => {
     segment.places = segment.places.map(list);
     segment.start = segment.start.map((value) => [value]);
   }
+  for (const segment of read.skin ? read.skin.segments : []) {
+    segment.places = segment.places && segment.places.map(list);
+    segment.start = segment.start && segment.start.map((value) => [value]);
+  }
   for (const thing of read.things) thing.places = thing.places.map(list);
   for (const push of [...read.supports, ...read.loads]) {
     push.force = push.force.map(list);

@@ -113,7 +113,7 @@ function hideUnknown() {
   const known = {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
     "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-solid": report.solid, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
-    postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
+    figure: report.skin, postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
     scene: report.segments.length, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
@@ -395,7 +395,17 @@ class Page {
     for (const button of document.querySelectorAll("[data-view]")) {
       button.addEventListener("click", () => this.body && this.body.lookFrom(button.dataset.view));
     }
+    for (const button of document.querySelectorAll("[data-figure]")) {
+      button.addEventListener("click", () => this.chooseFigure(button.dataset.figure));
+    }
     document.addEventListener("keydown", (event) => this.pressKey(event));
+  }
+
+  // Shows the body with its skin, or as a wooden figure.
+  chooseFigure(figure) {
+    press("[data-figure]", (button) => button.dataset.figure === figure);
+    if (this.body) this.body.wooden = figure === "wooden";
+    this.paintBody();
   }
 
   // Shows the last of all times that the slider sends before the next picture.

@@ -1,9 +1,10 @@
 // Draws meshes with WebGL: one shader program, one light, and a little light from everywhere.
 const VERTEX_SHADER = `
-  attribute vec3 point, normal;
+  attribute vec3 point, normal, paint;
   uniform mat4 place, view;
-  varying vec3 facing;
+  varying vec3 facing, painted;
   void main() {
+    painted = paint;
     facing = mat3(place) * normal;
     gl_Position = view * place * vec4(point, 1.0);
   }`;
@@ -12,12 +13,12 @@ const FRAGMENT_SHADER = `
   uniform vec4 color;
   uniform vec3 light, eye;
   uniform float flatness;
-  varying vec3 facing;
+  varying vec3 facing, painted;
   void main() {
     vec3 n = normalize(facing);
     float shade = 0.58 + 0.2 * n.y + 0.34 * max(dot(n, light), 0.0);
     shade *= 0.72 + 0.28 * smoothstep(0.0, 0.55, abs(dot(n, eye)));
-    gl_FragColor = vec4(color.rgb * mix(shade, 1.0, flatness), color.a);
+    gl_FragColor = vec4(color.rgb * painted * mix(shade, 1.0, flatness), color.a);
   }`;
 
 // Red, green and blue of a colour of the style sheet, each 0 to 1.
@@ -61,6 +62,22 @@ class Painter {
     return { kind, count: points.length / 6, data: this.buffer(this.gl.ARRAY_BUFFER, new Float32Array(points)) };
   }
 
+  // A mesh of triangles whose points and colours change, for `fillPoints`, `fillPaint` and `painted`.
+  paintedMesh(triangles, count) {
+    const gl = this.gl, empty = (size) => this.buffer(gl.ARRAY_BUFFER, new Float32Array(size * count));
+    return { count: triangles.length, triangles: this.buffer(gl.ELEMENT_ARRAY_BUFFER, triangles), points: empty(6), paint: empty(3) };
+  }
+
+  fillPoints(mesh, points) {
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, mesh.points);
+    this.gl.bufferSubData(this.gl.ARRAY_BUFFER, 0, points);
+  }
+
+  fillPaint(mesh, paint) {
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, mesh.paint);
+    this.gl.bufferSubData(this.gl.ARRAY_BUFFER, 0, paint);
+  }
+
   start() {
     const gl = this.gl;
     gl.useProgram(this.program);
@@ -68,9 +85,10 @@ class Painter {
     for (const name of ["place", "view", "color", "light", "eye", "flatness"]) {
       this.uniforms[name] = gl.getUniformLocation(this.program, name);
     }
-    [this.point, this.normal] = ["point", "normal"].map((name) => gl.getAttribLocation(this.program, name));
+    [this.point, this.normal, this.paint] = ["point", "normal", "paint"].map((name) => gl.getAttribLocation(this.program, name));
     gl.enableVertexAttribArray(this.point);
     gl.enableVertexAttribArray(this.normal);
+    gl.vertexAttrib3f(this.paint, 1, 1, 1);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -97,6 +115,20 @@ class Painter {
   hull(mesh, matrix, color, alpha = 1) {
     this.use(mesh, matrix, color, alpha);
     this.gl.drawElements(this.gl.TRIANGLES, this.hullTriangles.count, this.gl.UNSIGNED_SHORT, 0);
+  }
+
+  // A mesh with a colour for every vertex, times `color`.
+  painted(mesh, color, alpha) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, mesh.paint);
+    gl.enableVertexAttribArray(this.paint);
+    gl.vertexAttribPointer(this.paint, 3, gl.FLOAT, false, 12, 0);
+    this.use(mesh.points, IDENTITY, color, alpha);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.triangles);
+    gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_SHORT, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.hullTriangles.data);
+    gl.disableVertexAttribArray(this.paint);
+    gl.vertexAttrib3f(this.paint, 1, 1, 1);
   }
 
   list(mesh, color, alpha, matrix = IDENTITY) {

@@ -3,8 +3,10 @@
 use serde_json::{Value, json};
 
 use crate::column::{column, columns};
+use crate::skin::mesh;
 use crate::{
-    Balance, Entry, ForceSolid, Group, Joint, Moments, Push, Report, Segment, Support, Surface, Target, Thing,
+    Balance, Bone, Entry, Followed, ForceSolid, Group, Joint, Moments, Push, Report, Segment, Skin, Support, Surface,
+    Target, Thing,
 };
 
 /// Steps to which numbers are rounded: the smallest visible differences.
@@ -39,6 +41,7 @@ pub(crate) fn data(report: &Report) -> String {
         "names": names,
         "open": report.open.min(n.saturating_sub(1)),
         "segments": report.segments.iter().map(|s| segment(s, n)).collect::<Value>(),
+        "skin": report.skin.as_ref().map(|s| skin(s, report, n)),
         "joints": report.joints.iter().map(|j| joint(j, n)).collect::<Value>(),
         "main": report.main,
         "levels": report.levels,
@@ -80,6 +83,29 @@ fn segment(segment: &Segment, n: usize) -> Value {
         "places": places(&segment.places, n),
         "start": short(&segment.start, METRES),
     })
+}
+
+/// A segment of the skin that is drawn as a solid, too, names that part instead of its places.
+fn skin(skin: &Skin, report: &Report, n: usize) -> Value {
+    let mut value = mesh(skin);
+    let part = |followed: &Followed| {
+        report.segments.iter().position(|part| part.places == followed.places && part.start == followed.start)
+    };
+    let followed = |followed: &Followed| {
+        let part = part(followed);
+        let own = part.is_none();
+        json!({
+            "joints": followed.joints,
+            "rest": followed.rest,
+            "part": part,
+            "places": own.then(|| places(&followed.places, n)),
+            "start": own.then(|| short(&followed.start, METRES)),
+        })
+    };
+    value["segments"] = skin.segments.iter().map(followed).collect();
+    let bone = |bone: &Bone| json!([bone.from, bone.to, bone.axis, bone.shares]);
+    value["nodes"] = skin.nodes.iter().map(bone).collect();
+    value
 }
 
 fn joint(joint: &Joint, n: usize) -> Value {

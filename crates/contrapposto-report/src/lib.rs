@@ -2,7 +2,7 @@
 //! over time or in a few postures, charts of every joint, and decisions in plain words. The page needs no network, and its content
 //! security policy allows none. Parts of the page about which nothing is known are hidden.
 //!
-//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `data` (the input of the page's script), `page` (the file). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
+//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `skin` (its mesh), `data` (the input of the page's script), `page` (the file). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
 //!
 //! Every function takes any input without panicking: numbers that are not finite count as 0, lists that are too short as if
 //! their last number went on. The same input gives the same bytes. Texts may come from strangers: they reach the page as text.
@@ -10,6 +10,7 @@
 mod column;
 mod data;
 mod page;
+mod skin;
 
 pub use page::write;
 
@@ -34,6 +35,8 @@ pub struct Report {
     pub open: usize,
     /// Segments of the body.
     pub segments: Vec<Segment>,
+    /// The skin that is shown in place of the segments; they remain as a choice.
+    pub skin: Option<Skin>,
     /// Coordinates of the body that carry a torque.
     pub joints: Vec<Joint>,
     /// Index in `joints` of the joint to show first.
@@ -113,6 +116,51 @@ pub struct Segment {
     /// Placement in every frame: origin, m, and unit quaternion `w x y z`.
     pub places: Vec<[f64; 7]>,
     /// Placement at the start, drawn as a ghost.
+    pub start: [f64; 7],
+}
+
+/// A mesh that follows segments.
+#[derive(Clone, Debug, Default)]
+pub struct Skin {
+    /// Vertices in the rest posture, m.
+    pub vertices: Vec<[f64; 3]>,
+    /// Corners of triangles, counterclockwise seen from outside; those with an index out of range are left out.
+    pub triangles: Vec<[u16; 3]>,
+    /// Colour of each vertex, sRGB. The page shows by its brightness that cloth is no skin, a little only.
+    pub colors: Vec<[u8; 3]>,
+    /// Bones that move each vertex, as indices in `nodes`; those out of range count as the first one.
+    pub bones: Vec<[u8; 4]>,
+    /// Weights of these bones, as shares of 255.
+    pub weights: Vec<[u8; 4]>,
+    /// Bones.
+    pub nodes: Vec<Bone>,
+    /// Segments that bones follow, with or without a solid of their own.
+    pub segments: Vec<Followed>,
+}
+
+/// A bone of a skin. Its head is the joint of a segment, and it turns by a part of what that segment turns from another one.
+#[derive(Clone, Debug, Default)]
+pub struct Bone {
+    /// Index in [`Skin::segments`] of the segment from which the turn counts.
+    pub from: usize,
+    /// Index of the segment; the same for a bone that turns as its segment does.
+    pub to: usize,
+    /// Axis of twist in the rest posture, a unit vector; zero where only the whole turn counts.
+    pub axis: [f64; 3],
+    /// Shares of swing and twist.
+    pub shares: [f64; 2],
+}
+
+/// A segment that bones follow.
+#[derive(Clone, Debug, Default)]
+pub struct Followed {
+    /// Indices in [`Report::joints`] of the coordinates that join the segment to its parent.
+    pub joints: Vec<usize>,
+    /// Placement in the rest posture: origin, m, and unit quaternion `w x y z`.
+    pub rest: [f64; 7],
+    /// Placement in every frame.
+    pub places: Vec<[f64; 7]>,
+    /// Placement at the start.
     pub start: [f64; 7],
 }
 

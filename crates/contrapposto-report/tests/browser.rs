@@ -61,6 +61,7 @@ fn report() -> Report {
             places: times.iter().map(place).collect(),
             start: place(&0.0),
         }],
+        skin: None,
         joints: vec![joint(HOSTILE, 1.0), joint("second", 2.0)],
         main: 0,
         open: 49,

@@ -1,6 +1,7 @@
 //! The numbers that all pages share: the body, its joints and its supports in every moment.
 
 pub(crate) mod hazard;
+mod skin;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, Side};
@@ -11,6 +12,7 @@ use contrapposto_report::{Balance, Group, Joint, Moments, Push, Report, Segment,
 use nalgebra::Vector3;
 
 use self::hazard::hazard;
+use self::skin::{Course, skin};
 use super::axes::{Turn, turn, visible};
 use super::charts::Sweep;
 use super::frame::Frame;
@@ -66,6 +68,7 @@ impl<'a> Scene<'a> {
             body: model.name().to_owned(),
             moments,
             segments: self.segments(&shown, &turn)?,
+            skin: skin(&Course { model, start: self.start, frames: self.frames }, &shown, &turn)?,
             joints: shown.iter().map(|&i| self.joint(i, &balanced)).collect::<Result<_, _>>()?,
             main: shown.iter().position(|&i| i == main).unwrap_or(0),
             supports: self.supports(&turn),

@@ -1,0 +1,83 @@
+//! Tests the skin of the page in a real browser: its bones follow segments, and the wooden figure is a choice.
+
+#![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
+
+#[allow(dead_code, reason = "each test uses a part")]
+mod support;
+
+use std::path::PathBuf;
+
+use contrapposto_report::{Bone, Followed, Moments, Report, Segment, Skin, write};
+use serde_json::json;
+use support::chromium::Chromium;
+
+const PICTURE: &str = "document.getElementById('body').toDataURL()";
+
+/// Points and normals of the skin in the second frame.
+const POINTS: &str = "(() => {
+  const skin = new Skin(report.skin, { paintedMesh() {}, fillPoints() {}, fillPaint() {} });
+  skin.fill(null, (segment) => segment.places.map((column) => column[1]));
+  return Array.from(skin.points);
+})()";
+
+/// A rod of two segments whose lower half has turned by 1 rad about its own axis, in the second frame.
+fn report() -> Report {
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let (rest, turned) = ([0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.5, 0.0, cos, 0.0, sin, 0.0]);
+    let segment = |places: [[f64; 7]; 2]| Segment {
+        name: "rod".to_owned(),
+        balls: vec![[0.0, 0.0, 0.0, 0.1], [0.0, -0.4, 0.0, 0.1]],
+        places: places.to_vec(),
+        start: rest,
+        ..Segment::default()
+    };
+    let followed =
+        |places: [[f64; 7]; 2]| Followed { rest, places: places.to_vec(), start: rest, ..Followed::default() };
+    let bone = |from, to, twist| Bone { from, to, axis: [0.0, 1.0, 0.0], shares: [1.0, twist] };
+    let skin = Skin {
+        vertices: vec![[0.2, 0.1, 0.0], [0.2, 0.5, 0.0], [0.2, 0.9, 0.1], [-0.2, 0.5, 0.0]],
+        triangles: vec![[0, 1, 3], [1, 2, 3], [2, 1, 3], [1, 0, 3]],
+        colors: vec![[200, 180, 160]; 4],
+        bones: vec![[2, 0, 0, 0], [1, 0, 0, 0], [0, 0, 0, 0], [1, 0, 0, 0]],
+        weights: vec![[255, 0, 0, 0]; 4],
+        nodes: vec![bone(0, 0, 1.0), bone(0, 1, 0.5), bone(1, 1, 1.0)],
+        segments: vec![followed([rest, rest]), followed([rest, turned])],
+    };
+    Report {
+        segments: vec![segment([rest, rest]), segment([rest, rest])],
+        skin: Some(skin),
+        moments: Moments::Times(vec![0.0, 1.0]),
+        ..Report::default()
+    }
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn bones_turn_by_their_shares_and_the_wooden_figure_is_a_choice() {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("skin.html");
+    std::fs::write(&path, write(&report())).unwrap();
+    let mut page = Chromium::start();
+    page.open(&path);
+    let points = page.evaluate(POINTS);
+    // Corners of the mesh: at the whole turn, at half of it, and unmoved.
+    for (vertex, angle) in [(0, 1.0_f64), (1, 0.5), (2, 0.0)] {
+        let [x, z] = [0, 2].map(|k| points[6 * vertex + k].as_f64().unwrap());
+        let z0 = if vertex == 2 { 0.1 } else { 0.0 };
+        let wanted = [0.2 * angle.cos() + z0 * angle.sin(), z0 * angle.cos() - 0.2 * angle.sin()];
+        assert!((x - wanted[0]).hypot(z - wanted[1]) < 1e-3, "vertex {vertex}: {x} {z}, not {wanted:?}");
+    }
+    let skin = page.evaluate(PICTURE);
+    page.evaluate("document.querySelector('[data-figure=wooden]').click()");
+    let wooden = page.evaluate(PICTURE);
+    assert_ne!(skin, wooden);
+    let pressed = "[...document.querySelectorAll('[data-figure]')].map((button) => button.ariaPressed)";
+    assert_eq!(page.evaluate(pressed), json!(["false", "true"]));
+    page.evaluate("document.querySelector('[data-figure=skin]').click()");
+    assert_eq!(page.evaluate(PICTURE), skin);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+
+    std::fs::write(&path, write(&Report { skin: None, ..report() })).unwrap();
+    page.open(&path);
+    assert_eq!(page.evaluate("document.getElementById('figure').hidden"), true);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
