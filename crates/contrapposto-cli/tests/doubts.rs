@@ -99,7 +99,7 @@ fn a_load_of_many_times_the_strength_is_told_in_words_with_the_joints_out_of_ran
 fn a_knee_that_is_held_straight_against_its_ligaments_is_warned_of_with_its_strength() {
     let folder = tempfile::tempdir().unwrap();
     let straight = write(folder.path(), "straight.csv", "time,knee_angle_r_deg\n0,0\n1,0\n");
-    let report = json(&["assess", "adult", &straight, "--fixed-root", "--json"]);
+    let report = json(&["assess", "adult", &straight, "--fixed-root", "--angle-error", "0", "--json"]);
     let knee =
         |group: &&Value| group["coordinate"] == "knee_angle_r" && group["peak_load"]["value"].as_f64().unwrap() > 0.0;
     let knee = report["groups"].as_array().unwrap().iter().find(knee).unwrap();
