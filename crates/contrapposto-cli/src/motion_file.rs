@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use contrapposto::assessment::{NEARLY_ALL, share_outside};
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -174,12 +175,8 @@ fn first_of(names: &[String]) -> String {
     format!("{}{more}", names.iter().take(12).map(String::as_str).collect::<Vec<_>>().join(", "))
 }
 
-/// Beyond a limit of a range without a word, rad or m.
-const SLACK: f64 = 1e-3;
 /// A hinge that lies so far beyond its range, rad, is an error of the file: a quarter of a turn (assumed).
 const FAR: f64 = std::f64::consts::FRAC_PI_2;
-/// Share of the frames that counts as nearly all.
-const NEARLY_ALL: f64 = 0.9;
 
 /// Notes the coordinates that leave their range, and those that leave the range of their built-in curve. Gives a warning for each whose
 /// values lie outside its range in nearly all frames: a wrong sign, unit or zero.
@@ -196,7 +193,7 @@ pub(crate) fn note_values_out_of_range(
             continue;
         }
         let values: Vec<f64> = frames.iter().map(|(_, posture)| posture.values()[index]).collect();
-        let outside = share_outside(&values, coordinate.range, 1.0);
+        let outside = share_outside(values.iter().copied(), coordinate.range);
         if outside >= NEARLY_ALL {
             warnings.push(out_of_range(coordinate, &values, outside));
         } else if let Some(far) = far_outside(coordinate, frames, index) {
@@ -204,7 +201,7 @@ pub(crate) fn note_values_out_of_range(
         } else if outside > 0.0 {
             beyond.push(format!("`{}`", coordinate.name));
         }
-        if ranges[index].is_some_and(|range| share_outside(&values, range, 1.0) > 0.0) {
+        if ranges[index].is_some_and(|range| share_outside(values.iter().copied(), range) > 0.0) {
             held.push(format!("`{}`", coordinate.name));
         }
     }
@@ -240,12 +237,6 @@ fn far_outside(coordinate: &Coordinate, frames: &[(f64, Posture)], index: usize)
     })
 }
 
-/// The share of values that lie outside a range after a multiplication with `sign`.
-fn share_outside(values: &[f64], (min, max): (f64, f64), sign: f64) -> f64 {
-    let outside = values.iter().filter(|value| sign * **value < min - SLACK || sign * **value > max + SLACK).count();
-    outside as f64 / values.len().max(1) as f64
-}
-
 /// The warning about a coordinate whose values lie outside its range in a share `outside` of the frames.
 fn out_of_range(coordinate: &Coordinate, values: &[f64], outside: f64) -> String {
     let (scale, unit) =
@@ -254,7 +245,7 @@ fn out_of_range(coordinate: &Coordinate, values: &[f64], outside: f64) -> String
     let (least, greatest) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
     let [min, max] = [coordinate.range.0, coordinate.range.1].map(shown);
-    let fits = 1.0 - share_outside(values, coordinate.range, -1.0);
+    let fits = 1.0 - share_outside(values.iter().map(|value| -value), coordinate.range);
     let opposite = if fits >= NEARLY_ALL {
         format!("; opposite sign? With it {:.0} % of the frames lie inside", 100.0 * fits)
     } else {

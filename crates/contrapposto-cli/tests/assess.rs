@@ -241,6 +241,22 @@ fn ground_reaction_and_supports_give_the_same_torques() {
     }
 }
 
+/// A table may say one time twice; the film shows it once.
+#[test]
+fn a_motion_with_a_time_twice_has_all_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = write(folder.path(), "twice.csv", "time,elbow_flex_r_deg\n0,90\n1,80\n1,70\n2,60\n");
+    let out = folder.path().join("out");
+    let answer = run(&["assess", "adult", &motion, "--fixed-root", "--out", out.to_str().unwrap()]);
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    let gltf = std::fs::read(out.join("motion.glb")).unwrap();
+    let length = u32::from_le_bytes(gltf[12..16].try_into().unwrap()) as usize;
+    let scene: Value = serde_json::from_slice(&gltf[20..20 + length]).unwrap();
+    let samplers = scene["animations"][0]["samplers"].as_array().unwrap();
+    let frames = |sampler: &Value| scene["accessors"][sampler["input"].as_u64().unwrap() as usize]["count"].as_u64();
+    assert_eq!(samplers.iter().map(frames).max(), Some(Some(3)), "0, 1 and 2 s; {samplers:?}");
+}
+
 #[test]
 fn files_are_those_of_torques_and_json_is_what_is_printed() {
     let folder = tempfile::tempdir().unwrap();

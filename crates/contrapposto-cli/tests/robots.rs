@@ -71,6 +71,26 @@ fn motors_are_called_motors_and_muscles_muscles() {
     assert!(shown.contains("muscle") && !shown.contains("motor"), "{shown}");
 }
 
+/// The words of the user stay as they are: a title and a folder that say "muscle" are not those of the program.
+#[test]
+fn titles_and_folders_of_a_robot_keep_the_words_of_the_user() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(biped(), folder.path().join("biped.urdf")).unwrap();
+    let lines = "format = 1\ntitle = \"muscle test\"\n[model]\nfile = \"biped.urdf\"\nroot = \"free\"\n\
+                 [[support]]\nsegment = \"left_foot\"\n[[support]]\nsegment = \"right_foot\"\n\
+                 [[task]]\nkind = \"effort\"\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n";
+    let scenario = write(folder.path(), "stand.toml", lines);
+    for command in ["simulate", "pose", "relax"] {
+        let out = folder.path().join(format!("muscle-{command}"));
+        let run = run(&[command, &scenario, "--out", out.to_str().unwrap()]);
+        let page = run.stdout.lines().find_map(|line| line.strip_prefix("report: ")).unwrap();
+        assert!(Path::new(page).is_file() && page.contains("muscle-"), "{command}: {page}");
+        let mine = run.stdout.lines().filter(|line| !line.contains("muscle-") && *line != "muscle test");
+        assert!(mine.clone().all(|line| !line.contains("muscle")), "{command}: {}", run.stdout);
+        assert!(command == "relax" || run.stdout.lines().any(|line| line == "muscle test"), "{}", run.stdout);
+    }
+}
+
 #[test]
 fn without_the_strength_of_the_file_a_robot_is_not_assessed() {
     let folder = tempfile::tempdir().unwrap();

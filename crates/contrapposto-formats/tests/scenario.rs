@@ -263,7 +263,7 @@ fn a_whole_body_is_read() {
     }
     let tasks: Vec<(usize, bool)> =
         scenario.tasks.iter().map(|task| (task.goal.tasks.len(), task.above_relief)).collect();
-    assert_eq!(tasks, [(1, true), (2, false)]);
+    assert_eq!(tasks, [(1, true), (2, false), (1, false)], "`head level` is added to the gaze");
     // A coordinate's own word, then its region's, then that of the whole body.
     let strategy = |list: &[Strategy], name: &str| list[model.coordinate(name).unwrap()];
     for (name, start, later) in [

@@ -52,7 +52,6 @@ fn upright_false_or_a_task_of_head_or_trunk_leaves_it_out() {
     without("upright = false", FEET);
     for task in [
         "kind = \"orientation\"\nsegment = \"torso\"\ntarget = \"start\"\n",
-        "kind = \"look_at\"\ntarget_m = [2, 1.4, 0]\n",
         "kind = \"distance\"\na = { segment = \"hand_r\" }\nb = { segment = \"head\" }\ndistance_m = 0.3\n",
         "kind = \"posture\"\n",
         // A hand at work below the hips.
@@ -62,10 +61,47 @@ fn upright_false_or_a_task_of_head_or_trunk_leaves_it_out() {
     }
     without("", &format!("{FEET}[coordinates]\nlocked = [\"neck_extension\", \"neck_bending\"]\n"));
     without("", &format!("{FEET}[[support]]\nsegment = \"head\"\ncorners_m = [[0, 0.2, 0]]\n"));
+    // A gaze of the trunk says where the head is; beside another task of the head the gaze is not all.
+    let gaze = "[[task]]\nkind = \"look_at\"\ntarget_m = [2, 1.4, 0]\n";
+    without("", &format!("{FEET}{gaze}segment = \"torso\"\n"));
+    let point = "[[task]]\nkind = \"point\"\nsegment = \"head\"\ntarget = \"start\"\n";
+    assert_eq!(labels("", &format!("{FEET}{gaze}{point}")), ["look_at head", "point head", "effort"]);
     // Told so, it stands beside a task of the trunk, without a note.
     let torso = "[[task]]\nkind = \"orientation\"\nsegment = \"torso\"\ntarget = \"start\"\n";
     assert_eq!(labels("upright = true", &format!("{FEET}{torso}")), ["orientation torso", "head upright", "effort"]);
     assert!(relax("upright = true", FEET).notes.is_empty());
+}
+
+/// A gaze leaves the roll of the head free: the eyes are level all the same, whatever the trunk does.
+#[test]
+fn a_gaze_keeps_the_eyes_level() {
+    let gaze = "[[task]]\nkind = \"look_at\"\ntarget_m = [1.5, 1.2, 0.6]\n";
+    assert_eq!(labels("", &format!("{FEET}{gaze}{EFFORT}")), ["look_at head", "head level", "effort"]);
+    assert_eq!(labels("upright = false", &format!("{FEET}{gaze}{EFFORT}")), ["look_at head", "effort"]);
+    assert_eq!(labels("upright = true", &format!("{FEET}{gaze}{EFFORT}")), ["look_at head", "head upright", "effort"]);
+    // On the work of a hand, or far from it.
+    let at = |x: &str| labels("", &format!("{FEET}{HAND}{}", gaze.replace("[1.5, 1.2, 0.6]", x)));
+    assert_eq!(at("[0.5, 1.3, 0.2]"), ["point hand_r", "look_at head", "effort"]);
+    assert_eq!(at("[0.9, 1.3, 0.2]"), ["point hand_r", "look_at head", "head level", "effort"]);
+    let bent = "[posture]\nlumbar_bending_deg = 15\nneck_bending_deg = -20\nneck_rotation_deg = 20\n";
+    let tilt = |top: &str| {
+        let text = format!("format = 1\n{top}\n{FEET}{gaze}{bent}");
+        let scenario = read_pose("a.toml", text.as_bytes(), None).unwrap();
+        let model = &scenario.model;
+        let mut engine = Engine::new(model, scenario.goals.clone(), &scenario.loads, scenario.options).unwrap();
+        let pose = engine.solve(&scenario.start).unwrap();
+        let mut kinematics = Kinematics::new(model);
+        kinematics.update(model, &pose.posture).unwrap();
+        let head = model.segment("head").unwrap();
+        let across = kinematics.direction(model, head, nalgebra::Vector3::z());
+        let ahead = kinematics.direction(model, head, nalgebra::Vector3::x());
+        let eye = kinematics.station(model, head, nalgebra::Vector3::new(0.1, 0.1, 0.0));
+        let line = (nalgebra::Vector3::new(1.5, 1.2, 0.6) - eye).normalize();
+        (across.y.asin().to_degrees(), ahead.angle(&line).to_degrees())
+    };
+    let ((level, miss), (free, _)) = (tilt(""), tilt("upright = false"));
+    assert!(level.abs() < 1e-3 && free.abs() > 2.0, "{level} and {free} deg");
+    assert!(miss < 5.0, "the gaze comes first: {miss} deg");
 }
 
 /// Without supports a coordinate finds relief on its own, and stays so.

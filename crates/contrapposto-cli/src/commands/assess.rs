@@ -14,7 +14,7 @@ use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto::suggestions::{Advice, Change, Job, Trial, Worked, changes, with_breaks};
-use contrapposto::verdict::{Verdict, muscles_or_motors};
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
@@ -40,6 +40,7 @@ use crate::view::torque_rows::{Frame, Order};
 const ASSESS_FILES: [&str; 5] = ["assess.json", "torques.sto", "fatigue.sto", "report.html", "motion.glb"];
 /// Friction of a support: shoe on floor, as in scenarios.
 const FRICTION: f64 = 0.6;
+
 /// The motion and its loads, checked.
 struct Given {
     /// Times (s) and postures.
@@ -113,7 +114,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
         folder.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
-    print(&if args.json { json } else { muscles_or_motors(model, &(answer.first_lines() + &report(&text))) })?;
+    print(&if args.json { json } else { answer.in_words(model, "", &report(&text)) })?;
     answered(&answer.verdict)
 }
 

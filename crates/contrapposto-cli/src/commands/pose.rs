@@ -5,7 +5,7 @@ use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedPosture};
 use contrapposto::suggestions::{Advice, Change, Job, Trial, changes};
 use contrapposto::tasks::{PriorityLevel, Task};
-use contrapposto::verdict::{HandLoad, HeldPosture, Missed, Verdict, muscles_or_motors};
+use contrapposto::verdict::{HandLoad, HeldPosture, Missed, Verdict};
 use contrapposto_formats::motion::{write_csv, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{PoseScenario, PoseText, read_pose};
@@ -14,7 +14,7 @@ use contrapposto_plot::body_figure;
 use super::relax::{MOST_STRENGTH_ROUNDS, SAME_STRENGTH, unsettled};
 use crate::args::{PoseArgs, SuggestArgs};
 use crate::fail::Fail;
-use crate::output::{ResultSet, json_text, print, print_note};
+use crate::output::{ResultSet, json_text, print, print_note, report_line};
 use crate::progress::{TRYING_CHANGES, spinner};
 use crate::scenario_file::ScenarioFile;
 use crate::view::animation::steps;
@@ -59,7 +59,8 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     print(&if args.json {
         json
     } else {
-        muscles_or_motors(&scenario.model, &report(&scenario, (&pose, kept_balance), &text, &answer, folder.as_ref()))
+        let tables = report(&scenario, (&pose, kept_balance), &text, &answer.verdict);
+        answer.in_words(&scenario.model, &scenario.title, &tables) + &report_line(folder.as_ref())
     })?;
     exit(&pose, kept_balance, &answer.verdict)
 }

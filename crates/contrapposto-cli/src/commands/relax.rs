@@ -7,7 +7,7 @@ use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::posture_solver::Options;
 use contrapposto::suggestions::Advice;
-use contrapposto::verdict::{HeldPosture, Verdict, muscles_or_motors};
+use contrapposto::verdict::{HeldPosture, Verdict};
 use contrapposto_formats::motion::{csv_cell, write_sto};
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
@@ -16,7 +16,7 @@ use contrapposto_plot::{BodyFigure, body_figure};
 use super::trials::advice_of_search;
 use crate::args::{RelaxArgs, SuggestArgs};
 use crate::fail::Fail;
-use crate::output::{ResultSet, json_text, print, print_note};
+use crate::output::{ResultSet, json_text, print, print_note, report_line};
 use crate::progress::{TRYING_CHANGES, spinner};
 use crate::scenario_file::ScenarioFile;
 use crate::view::animation::steps;
@@ -75,11 +75,10 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     if let Some(folder) = &folder {
         write(&scenario, &found, &answer, (&text, &json), &figures, (folder, args.wooden))?;
     }
-    let page = folder.map(|folder| format!("report: {}\n", folder.path("report.html").display()));
     print(&if args.json {
         json
     } else {
-        answer.first_lines() + &muscles_or_motors(&scenario.model, &report(&text)) + page.as_deref().unwrap_or_default()
+        answer.in_words(&scenario.model, "", &report(&text)) + &report_line(folder.as_ref())
     })?;
     answered(&answer.verdict)
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
-use contrapposto::verdict::{Verdict, muscles_or_motors};
+use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 use indicatif::ProgressBar;
@@ -23,7 +23,7 @@ use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::figures::{figures_of_run, pictures_of_run};
 use crate::view::recording::Recording;
 use crate::view::report::run::report_of_run;
-use crate::view::text::simulate::report;
+use crate::view::text::simulate::{files_of_run, report};
 use crate::view::words::how_long;
 use crate::view::{animation, tables};
 
@@ -142,7 +142,12 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         None => summary_json(scenario, &summary, &answer, vec![])?,
     };
     let folder = files.as_ref().map(|files| &files.folder);
-    print(&if json { text } else { muscles_or_motors(&scenario.model, &report(scenario, &summary, &answer, folder)) })?;
+    print(&if json {
+        text
+    } else {
+        let files = folder.map_or(String::new(), |folder| files_of_run(scenario, folder));
+        answer.in_words(&scenario.model, &scenario.title, &report(scenario, &summary)) + &files
+    })?;
     match summary.reason == StopReason::Interrupted {
         true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
         false => answered(&answer.verdict),

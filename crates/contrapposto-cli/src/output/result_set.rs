@@ -70,6 +70,11 @@ impl ResultSet {
     }
 }
 
+/// The line on the terminal that names the page of a set; empty without a set.
+pub(crate) fn report_line(folder: Option<&ResultSet>) -> String {
+    folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path("report.html").display()))
+}
+
 /// Refuses a folder whose manifest is not ours, and one in which a file of the set would replace an input of this job. A file of the older
 /// set that nobody has changed may be both.
 fn check<'a>(path: &Path, mut names: impl Iterator<Item = &'a str>) -> Result<(), Fail> {

@@ -42,7 +42,7 @@ pub(crate) fn steps(
     Ok([gltf(gltf_name, &clip, wooden)?, bvh_text(bvh_name, &clip)?])
 }
 
-/// A recorded motion as glTF.
+/// A recorded motion as glTF. Of frames with one time the first is shown.
 pub(crate) fn motion(
     name: &str,
     model: &Model,
@@ -50,8 +50,10 @@ pub(crate) fn motion(
     motion: &[(f64, Posture)],
     wooden: bool,
 ) -> Result<Vec<u8>, Fail> {
-    let times: Vec<f64> = motion.iter().map(|(time, _)| *time).collect();
-    let postures: Vec<&[f64]> = motion.iter().map(|(_, posture)| posture.values()).collect();
+    let mut shown: Vec<&(f64, Posture)> = motion.iter().collect();
+    shown.dedup_by_key(|frame| frame.0);
+    let times: Vec<f64> = shown.iter().map(|frame| frame.0).collect();
+    let postures: Vec<&[f64]> = shown.iter().map(|frame| frame.1.values()).collect();
     gltf(name, &clip(model, title, &times, &postures), wooden)
 }
 

@@ -5,7 +5,7 @@ use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::statics::Load;
 use contrapposto::suggestions::Advice;
-use contrapposto::verdict::{Verdict, VerdictKind, Who, how_long, slip_in_words};
+use contrapposto::verdict::{Verdict, VerdictKind, Who, how_long, muscles_or_motors, slip_in_words};
 use contrapposto_formats::{AdviceText, VerdictText};
 use serde::Serialize;
 
@@ -47,6 +47,13 @@ impl Answer {
         let more: String =
             self.also_cut().iter().chain(&self.advice.sentence).map(|line| format!("{line}\n")).collect();
         first_lines(&self.verdict) + &more
+    }
+
+    /// The first lines of a body's job, its title, and the tables below them, with the word for what moves the body: muscles or motors. The
+    /// title is the user's own text, and stays as it is.
+    pub(crate) fn in_words(&self, model: &Model, title: &str, tables: &str) -> String {
+        let title = if title.is_empty() { String::new() } else { format!("{title}\n") };
+        muscles_or_motors(model, &self.first_lines()) + &title + &muscles_or_motors(model, tables)
     }
 
     /// A search that ended at its budget is no proof that the body has no easier posture.

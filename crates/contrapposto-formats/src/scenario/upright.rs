@@ -1,12 +1,17 @@
-//! Adds the task `head upright` where a scenario says nothing of head and trunk.
+//! Adds the task `head upright` where a scenario says nothing of head and trunk, and `head level` where it says only the gaze.
 //!
 //! A person who stands, sits or leans looks ahead unless a task turns the head elsewhere. The task asks the head's up axis (that which
 //! points up in the body's default posture) to point along minus gravity: two rows, above effort and below all other tasks. A person
 //! whose hand is at work below the hips bends and looks there: with the head upright the neck would be at the end of its range.
+//!
+//! A gaze (`look_at`) leaves the roll of the head free, and least effort lets it hang to one side on the ligaments of the neck. A person
+//! keeps the eyes level. The task asks the line from eye to eye to be horizontal: one row, above effort and below all other tasks. Who looks
+//! at the own hands at work tilts the head as the trunk is tilted: with level eyes the neck would be bent sideways to the end of its range
+//! above a trunk that leans, so nothing is added there.
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
-use contrapposto::tasks::{LookAt, LookAtGoal, Task};
+use contrapposto::tasks::{Bounds, Carried, Component, LookAt, LookAtGoal, Task};
 use nalgebra::{Unit, UnitVector3, Vector3};
 
 use super::levels::Level;
@@ -23,11 +28,14 @@ const HEAD_AND_TRUNK: [&str; 3] = [HEAD, "torso", "abdomen"];
 const NECK: [&str; 2] = ["neck_extension", "neck_bending"];
 /// Segments of a hand at work.
 const HANDS: [&str; 6] = ["hand_r", "hand_l", "radius_r", "radius_l", "ulna_r", "ulna_l"];
+/// A gaze that meets its target nearer than this to the target of a hand, m, is on the work of that hand (assumed: a tool's length).
+const AT_WORK: f64 = 0.4;
 /// Segments whose joints are the hips.
 const THIGHS: [&str; 2] = ["femur_r", "femur_l"];
 /// Note for the reader where the task was added by default.
-const NOTE: &str =
+const UPRIGHT_NOTE: &str =
     "no task names head or trunk; `head upright` was added just above effort (`upright = false` leaves it out)";
+const LEVEL_NOTE: &str = "a gaze leaves the tilt of the head free; `head level` was added just above effort (`upright = false` leaves it out)";
 
 /// Adds the task, if the file asks for it or leaves it to the default. Returns a note for the reader where the file says nothing.
 pub(super) fn add_upright(
@@ -36,36 +44,69 @@ pub(super) fn add_upright(
     levels: &mut Vec<Level>,
 ) -> Result<Option<&'static str>, InputError> {
     let Stage { at, model, .. } = *stage;
-    let wanted = match text.upright {
-        Some(wanted) => wanted,
-        None => is_default(stage, text, levels)?,
+    let (task, note) = match text.upright {
+        Some(true) => {
+            let task = upright(model).ok_or_else(|| {
+                let help = "leave it out; a task of kind `look_at` or `orientation` turns any segment".to_owned();
+                at.error(&["upright"], "the body has no segment `head`, or no gravity says where up is", Some(help))
+            })?;
+            (task, None)
+        }
+        Some(false) => return Ok(None),
+        None => match default_task(stage, text, levels)? {
+            Some((task, note)) => (task, Some(note)),
+            None => return Ok(None),
+        },
     };
-    if !wanted {
-        return Ok(None);
-    }
-    let task = task(model).ok_or_else(|| {
-        let help = "leave it out; a task of kind `look_at` or `orientation` turns any segment".to_owned();
-        at.error(&["upright"], "the body has no segment `head`, or no gravity says where up is", Some(help))
-    })?;
     let effort = |level: &Level| level.tasks.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
     let place = levels.iter().position(effort).unwrap_or(levels.len());
     let labels = vec![task.label(model)];
     levels.insert(place, Level { tasks: task.into(), labels, above_relief: false, added: true });
-    Ok(text.upright.is_none().then_some(NOTE))
+    Ok(note)
 }
 
-/// Whether the default asks for it: the built-in adult on supports, with a neck that is free, without a task of head or trunk, without
-/// a support of the head, and without a hand at work below the hips. A posture task names the head if it weighs a coordinate of the
-/// neck.
-fn is_default(stage: &Stage<'_>, text: &ScenarioText, levels: &[Level]) -> Result<bool, InputError> {
+/// The content of tasks about head and trunk, the least first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Said {
+    Nothing,
+    /// A direction of the head, about which it may roll.
+    Gaze,
+    All,
+}
+
+/// The default of the built-in adult on supports, with a neck that is free, without a support of the head, and without a hand at work
+/// below the hips: `head upright` where no task says anything of head and trunk, `head level` where tasks say only the gaze and it is not
+/// on a hand at work. A posture task says all if it weighs a coordinate of the neck.
+fn default_task(
+    stage: &Stage<'_>,
+    text: &ScenarioText,
+    levels: &[Level],
+) -> Result<Option<(Task, &'static str)>, InputError> {
     let (model, supports) = (stage.model, stage.supports);
-    if text.model.file.is_some() || supports.is_empty() || task(model).is_none() {
-        return Ok(false);
+    if text.model.file.is_some() || supports.is_empty() {
+        return Ok(None);
     }
     let free = free(stage.at, model, text, |_| true)?;
     let neck: Vec<usize> = NECK.iter().filter_map(|name| model.coordinate(name)).filter(|&i| free[i]).collect();
+    let lies = supports.iter().any(|&segment| model.segments()[segment].name == HEAD);
+    let tasks = || levels.iter().flat_map(|level| &level.tasks.tasks);
+    if neck.is_empty() || lies || tasks().any(|task| works_below_the_hips(stage, task)) {
+        return Ok(None);
+    }
+    Ok(match tasks().map(|task| said(model, &neck, task)).max() {
+        None | Some(Said::Nothing) => upright(model).map(|task| (task, UPRIGHT_NOTE)),
+        Some(Said::Gaze) if !tasks().any(|gaze| tasks().any(|work| is_on_work(stage, gaze, work))) => {
+            level(model).map(|task| (task, LEVEL_NOTE))
+        }
+        Some(Said::Gaze | Said::All) => None,
+    })
+}
+
+/// The content of one task about head and trunk.
+fn said(model: &Model, neck: &[usize], task: &Task) -> Said {
     let named = |segment: usize| HEAD_AND_TRUNK.contains(&model.segments()[segment].name.as_str());
-    let says = |task: &Task| match task {
+    let says = match task {
+        Task::LookAt(task) if model.segments()[task.segment].name == HEAD => return Said::Gaze,
         Task::Point(task) => named(task.segment),
         Task::Orientation(task) => named(task.segment),
         Task::Placement(task) => named(task.segment),
@@ -77,15 +118,27 @@ fn is_default(stage: &Stage<'_>, text: &ScenarioText, levels: &[Level]) -> Resul
         }
         Task::CenterOfMass(_) | Task::Clearance(_) | Task::Effort(_) => false,
     };
-    let lies = supports.iter().any(|&segment| model.segments()[segment].name == HEAD);
-    let mut tasks = levels.iter().flat_map(|level| &level.tasks.tasks);
-    Ok(!neck.is_empty() && !lies && !tasks.any(|task| says(task) || works_below_the_hips(stage, task)))
+    if says { Said::All } else { Said::Nothing }
 }
 
 /// Whether a task takes a hand to a place that is lower than the hips are at the start.
 fn works_below_the_hips(stage: &Stage<'_>, task: &Task) -> bool {
     let model = stage.model;
     let height = |place: &Vector3<f64>| -model.gravity().dot(place);
+    let hips = THIGHS.iter().filter_map(|name| model.segment(name));
+    let mut hips = hips.map(|thigh| stage.kinematics.placement(model, thigh).translation.vector);
+    hand_target(stage, task).is_some_and(|target| hips.all(|hip| height(&target) < height(&hip)))
+}
+
+/// Whether a gaze meets its target where a task takes a hand.
+fn is_on_work(stage: &Stage<'_>, gaze: &Task, work: &Task) -> bool {
+    let Task::LookAt(LookAt { goal: LookAtGoal::Place(place), .. }) = gaze else { return false };
+    hand_target(stage, work).is_some_and(|target| (target - place).norm() < AT_WORK)
+}
+
+/// The place to which a task takes a hand, ground, m; `None` of other tasks.
+fn hand_target(stage: &Stage<'_>, task: &Task) -> Option<Vector3<f64>> {
+    let model = stage.model;
     let (segment, target) = match task {
         Task::Point(task) => {
             let mut target = stage.kinematics.station(model, task.segment, task.point);
@@ -93,17 +146,29 @@ fn works_below_the_hips(stage: &Stage<'_>, task: &Task) -> bool {
             (task.segment, target)
         }
         Task::Placement(task) => (task.segment, task.target.translation.vector),
-        _ => return false,
+        _ => return None,
     };
-    let hips = THIGHS.iter().filter_map(|name| model.segment(name));
-    let mut hips = hips.map(|thigh| stage.kinematics.placement(model, thigh).translation.vector);
-    HANDS.contains(&model.segments()[segment].name.as_str()) && hips.all(|hip| height(&target) < height(&hip))
+    HANDS.contains(&model.segments()[segment].name.as_str()).then_some(target)
 }
 
 /// The head's up axis along minus gravity; `None` for a body without head or gravity.
-fn task(model: &Model) -> Option<Task> {
+fn upright(model: &Model) -> Option<Task> {
+    let (segment, up, direction) = up_axis(model)?;
+    Some(Task::LookAt(LookAt { segment, eye: Vector3::zeros(), direction, goal: LookAtGoal::Direction(up) }))
+}
+
+/// The head's axis from one side to the other square to gravity; `None` for a body without head or gravity.
+fn level(model: &Model) -> Option<Task> {
+    let (segment, up, direction) = up_axis(model)?;
+    // The head of the built-in adult looks along its x.
+    let across = Unit::try_new(Vector3::x().cross(&direction), 1e-9)?;
+    let component = Component { of: Carried::Direction(across), along: up, limits: (0.0, 0.0) };
+    Some(Task::Bounds(Bounds { segment, components: vec![component] }))
+}
+
+/// The head, upward in ground, and the head's axis that points there in the default posture.
+fn up_axis(model: &Model) -> Option<(usize, UnitVector3<f64>, UnitVector3<f64>)> {
     let segment = model.segment(HEAD)?;
     let up: UnitVector3<f64> = Unit::try_new(-model.gravity(), 1e-9)?;
-    let direction = Kinematics::new(model).placement(model, segment).rotation.inverse() * up;
-    Some(Task::LookAt(LookAt { segment, eye: Vector3::zeros(), direction, goal: LookAtGoal::Direction(up) }))
+    Some((segment, up, Kinematics::new(model).placement(model, segment).rotation.inverse() * up))
 }

@@ -15,6 +15,7 @@ mod acceleration;
 mod error;
 mod evaluation;
 mod groups;
+mod range;
 mod result;
 mod settings;
 
@@ -30,16 +31,13 @@ pub use acceleration::{FAST_SHARE, acceleration};
 pub use error::AssessError;
 use evaluation::Evaluation;
 use groups::Groups;
+pub use range::{NEARLY_ALL, share_outside};
 pub use result::{AngleInDoubt, Assessment, GroupAssessment, Instant, Peak, PeakKind, PeakTorques, Proposal};
 pub use settings::{ANGLE_ERROR, AssessSettings};
 
 /// Share of its weight above which a body lacks a force in every instant for nothing to carry it. Assumed: measured ground reaction of a
 /// walk leaves less in most of its instants, a motion without ground reaction leaves all of it.
 const UNCARRIED: f64 = 0.5;
-/// Share of the instants that counts as nearly all. Assumed.
-const NEARLY_ALL: f64 = 0.9;
-/// So far beyond a limit, rad or m, a coordinate is in its range.
-const SLACK: f64 = 1e-3;
 /// Longest motion, s: more than a day.
 const LONGEST_MOTION: f64 = 1e5;
 
@@ -113,10 +111,8 @@ fn out_of_range(model: &Model, motion: &[(f64, Posture)], i: usize) -> Option<f6
     if coordinate.kind == CoordinateKind::Quaternion || model.is_dependent(i) {
         return None;
     }
-    let (min, max) = coordinate.range;
-    let is_outside = |value: f64| value < min - SLACK || value > max + SLACK;
-    let outside = motion.iter().filter(|(_, posture)| posture.values().get(i).is_some_and(|value| is_outside(*value)));
-    let share = outside.count() as f64 / motion.len().max(1) as f64;
+    let values = motion.iter().filter_map(|(_, posture)| posture.values().get(i).copied());
+    let share = share_outside(values, coordinate.range);
     (share >= NEARLY_ALL).then_some(share)
 }
 

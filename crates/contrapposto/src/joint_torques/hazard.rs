@@ -64,8 +64,8 @@ impl Hazard {
     pub fn in_words(&self, model: &Model) -> String {
         let name = plain_name(&model.coordinates()[self.coordinate].name);
         let angle = format!("{:.1}°", self.angle.to_degrees()).replace('-', "\u{2212}");
-        let share = format!("{:.0}\u{a0}% of the", 100.0 * self.carried());
-        let share = if share.starts_with("100") { "the whole" } else { share.as_str() };
+        let percent = (100.0 * self.carried()).round();
+        let share = if percent < 100.0 { format!("{percent:.0}\u{a0}% of the") } else { "the whole".to_owned() };
         format!("{name} at {angle} ({share} torque of {:.0} N m there)", self.external.abs())
     }
 }

@@ -42,6 +42,11 @@ pub enum Carried {
 }
 
 impl Component {
+    /// Whether a direction has to be square to the direction of ground.
+    pub(super) fn is_level(&self) -> bool {
+        matches!(self.of, Carried::Direction(_)) && self.limits == (0.0, 0.0)
+    }
+
     /// The component in the posture of `body`.
     fn value(&self, segment: usize, model: &Model, body: &JointTorques) -> f64 {
         let kinematics = body.kinematics();

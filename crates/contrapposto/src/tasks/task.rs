@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::bounds::{Bounds, Carried};
+use super::bounds::{Bounds, Carried, Component};
 use super::center_of_mass::{CenterOfMass, CenterOfMassGoal};
 use super::check::{Check, TaskError};
 use super::clearance::Clearance;
@@ -101,8 +101,8 @@ impl Task {
         true
     }
 
-    /// The kind and the segments that it moves, e.g. `point hand_r`; `head upright` for a direction of the head against gravity. The
-    /// task must have passed [`Task::check`].
+    /// The kind and the segments that it moves, e.g. `point hand_r`; `head upright` for a direction of the head against gravity, `head
+    /// level` for one that has to be square to another. The task must have passed [`Task::check`].
     pub fn label(&self, model: &Model) -> String {
         let name = |segment: usize| &model.segments()[segment].name;
         let kind = self.kind();
@@ -110,6 +110,9 @@ impl Task {
             Self::LookAt(LookAt { segment, goal: LookAtGoal::Direction(wanted), .. }) => {
                 let upright = (wanted.into_inner() + model.gravity().normalize()).norm() < UPRIGHT;
                 if upright { format!("{} upright", name(*segment)) } else { format!("direction {}", name(*segment)) }
+            }
+            Self::Bounds(Bounds { segment, components }) if components.iter().all(Component::is_level) => {
+                format!("{} level", name(*segment))
             }
             Self::Point(Point { segment, .. })
             | Self::Orientation(Orientation { segment, .. })

@@ -70,14 +70,11 @@ fn against_ligaments(opened: &SourcedModel, found: &Assessment) -> Option<String
         )
     };
     let groups: Vec<&GroupAssessment> = found.groups.iter().filter(worked).collect();
-    let listed: Vec<String> = groups.iter().take(MOST_LIGAMENTS).map(in_words).collect();
-    let more = groups.len().saturating_sub(MOST_LIGAMENTS);
-    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
     (!groups.is_empty()).then(|| {
         format!(
             "muscles work against the ligaments of their own joint; usually the zero of the angle is offset in the motion, or the joint is \
-             hyperextended: {}{more}",
-            listed.join("; ")
+             hyperextended: {}",
+            listed(&groups, in_words)
         )
     })
 }
@@ -98,17 +95,21 @@ fn angles_in_doubt(opened: &SourcedModel, error: f64, found: &Assessment) -> Opt
             tenths(doubt.judged_torque),
         )
     };
-    let listed: Vec<String> = doubts.iter().take(MOST_LIGAMENTS).map(in_words).collect();
-    let more = doubts.len().saturating_sub(MOST_LIGAMENTS);
-    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
     (!doubts.is_empty()).then(|| {
         format!(
             "muscles that work against the ligaments of their own joint are judged at the angle within {} deg of the given one where that is \
-             least, since angles are measured no better (--angle-error 0 takes them as exact): {}{more}",
+             least, since angles are measured no better (--angle-error 0 takes them as exact): {}",
             tenths(error.to_degrees()),
-            listed.join("; ")
+            listed(&doubts, in_words)
         )
     })
+}
+
+/// The first groups in words, and the number of the others.
+fn listed<T>(groups: &[T], in_words: impl Fn(&T) -> String) -> String {
+    let more = groups.len().saturating_sub(MOST_LIGAMENTS);
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    groups.iter().take(MOST_LIGAMENTS).map(in_words).collect::<Vec<_>>().join("; ") + &more
 }
 
 /// One decimal, without the sign of -0.

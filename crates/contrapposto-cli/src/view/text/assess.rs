@@ -205,7 +205,6 @@ impl ProposalText {
     }
 }
 
-/// The worst groups, their relief, and the group that fails first.
 /// The note about times of a motion that does not begin at 0.
 pub(crate) fn times_from(start: f64) -> Option<String> {
     (start.abs() > 0.0).then(|| {
@@ -216,6 +215,7 @@ pub(crate) fn times_from(start: f64) -> Option<String> {
     })
 }
 
+/// The worst groups, their relief, and the group that fails first.
 pub(crate) fn report(text: &AssessText) -> String {
     let working: Vec<&AssessedGroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
     let mut table = plain_table();

@@ -3,7 +3,7 @@
 use contrapposto_formats::{CapacityText, ForceText};
 
 use super::plain_table;
-use crate::output::ResultSet;
+use crate::output::{ResultSet, report_line};
 use crate::view::capacity::{newtons, range};
 
 /// Most limits of a direction that are listed, each with at least this share of the first one's share.
@@ -26,7 +26,7 @@ pub(crate) fn report(text: &CapacityText, folder: Option<&ResultSet>) -> String 
     let table = if text.main.is_empty() { String::new() } else { format!("{table}\n") };
     let title = if text.title.is_empty() { String::new() } else { format!("{} ({})\n", text.title, text.posture) };
     let assumed: String = text.assumptions.iter().map(|sentence| format!("{sentence}\n")).collect();
-    let page = folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path("report.html").display()));
+    let page = report_line(folder);
     format!("{}\n{title}{table}{assumed}{page}", text.sentence)
 }
 

@@ -6,8 +6,6 @@ use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::{PoseLevelText, PoseScenario, PoseText};
 
 use super::plain_table;
-use crate::output::ResultSet;
-use crate::view::answer::Answer;
 use crate::view::words::metres;
 
 /// `remaining: look_at head 3.100 deg; posture 80.500 mm, 2.000 deg`.
@@ -66,12 +64,12 @@ fn unbalanced(scenario: &PoseScenario, verdict: &Verdict) -> String {
 /// The end of the steps toward a posture in balance.
 pub(crate) const IN_BALANCE: &str = "in balance; its effort still fell when the steps toward balance ended";
 
+/// The table of tasks, below the first lines and the title.
 pub(crate) fn report(
     scenario: &PoseScenario,
     (pose, kept_balance): (&SolvedPosture, bool),
     text: &PoseText,
-    answer: &Answer,
-    folder: Option<&ResultSet>,
+    verdict: &Verdict,
 ) -> String {
     let mut table = plain_table();
     table.set_header(["priority", "task", "remaining error", ""]);
@@ -90,10 +88,5 @@ pub(crate) fn report(
         Reason::StepLimit => "the step limit was reached before the posture converged",
     };
     let steps = if pose.steps == 1 { "1 step".to_owned() } else { format!("{} steps", pose.steps) };
-    let title = if scenario.title.is_empty() { String::new() } else { format!("{}\n", scenario.title) };
-    let page = folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path("report.html").display()));
-    format!(
-        "{first}{title}{table}\n{reason} ({steps})\n{page}",
-        first = answer.first_lines() + &unbalanced(scenario, &answer.verdict)
-    )
+    format!("{}{table}\n{reason} ({steps})\n", unbalanced(scenario, verdict))
 }

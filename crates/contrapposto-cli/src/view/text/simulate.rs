@@ -9,7 +9,6 @@ use contrapposto::verdict::error_in_words;
 
 use super::plain_table;
 use crate::output::ResultSet;
-use crate::view::answer::Answer;
 use crate::view::three_axis::angles;
 use crate::view::words::{MOST_ROWS, how_long, joint, percent, plain, shares_of_all};
 
@@ -112,7 +111,8 @@ fn coordinates(scenario: &Scenario, summary: &Summary) -> (comfy_table::Table, S
     (table, if about_axes { more + ABOUT_AXES } else { more })
 }
 
-pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, folder: Option<&ResultSet>) -> String {
+/// The tables of a run, below its first lines and its title.
+pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> String {
     let (table, notes) = coordinates(scenario, summary);
     let reason = match summary.reason {
         StopReason::Settled => "settled",
@@ -121,20 +121,17 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary, answer: &Answer, fo
         StopReason::Fell => "fell",
         StopReason::Slid => "stopped because the supports slid,",
     };
-    let picture = if scenario.has_supports_or_tasks() { "postures.svg" } else { "torque-balance.svg" };
     let standing =
         summary.standing.as_ref().map_or(String::new(), |standing| standing_text(scenario, summary, standing));
-    let files = folder.map_or(String::new(), |folder| {
-        let [page, first, second] = ["report.html", picture, "time-line.svg"].map(|name| folder.path(name));
-        format!("report: {}\npictures: {}, {}\n", page.display(), first.display(), second.display())
-    });
-    format!(
-        "{}{}\n{table}\n{notes}{standing}{reason} after {} ({} samples)\n{files}",
-        answer.first_lines(),
-        scenario.title,
-        how_long(summary.end_time),
-        summary.samples,
-    )
+    let (end, samples) = (how_long(summary.end_time), summary.samples);
+    format!("{table}\n{notes}{standing}{reason} after {end} ({samples} samples)\n")
+}
+
+/// The lines that name the page and the pictures of a run.
+pub(crate) fn files_of_run(scenario: &Scenario, folder: &ResultSet) -> String {
+    let picture = if scenario.has_supports_or_tasks() { "postures.svg" } else { "torque-balance.svg" };
+    let [page, first, second] = ["report.html", picture, "time-line.svg"].map(|name| folder.path(name));
+    format!("report: {}\npictures: {}, {}\n", page.display(), first.display(), second.display())
 }
 
 /// `right foot carries 85.0 %, left foot carries 15.0 % of body and loads; effort (sum of squared shares of strength) 0.097 at the start, 0.059
