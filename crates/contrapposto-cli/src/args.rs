@@ -5,6 +5,7 @@ mod dynamics;
 mod joint;
 mod model;
 mod muscles;
+mod population;
 mod scenario;
 mod studio;
 mod sweep;
@@ -21,6 +22,7 @@ pub(crate) use model::{
     RuleChoice, TorquesArgs,
 };
 pub(crate) use muscles::use_muscles;
+pub(crate) use population::PopulationArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;
 pub(crate) use sweep::SweepArgs;
@@ -59,6 +61,8 @@ pub(crate) enum Verb {
     Compare(CompareArgs),
     /// Run a scenario for many bodies, loads or other values, as a plan says, on all cores; the answers as a table.
     Sweep(SweepArgs),
+    /// The percent of women and of men who can hold a job for the asked time, who fails first, and what the answer hangs on.
+    Population(PopulationArgs),
     /// The greatest force at a hand in every direction: by joint strength, balance, friction and, held for a time, fatigue.
     Capacity(CapacityArgs),
     /// Draw Figures 1 and 7-14 of Rodriguez & Boulic 2007.

@@ -10,6 +10,7 @@ pub(crate) mod minimize;
 pub(crate) mod muscles;
 pub(crate) mod new;
 pub(crate) mod passive;
+pub(crate) mod population;
 pub(crate) mod pose;
 pub(crate) mod relax;
 pub(crate) mod simulate;

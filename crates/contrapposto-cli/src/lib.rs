@@ -23,8 +23,8 @@ use clap::Parser;
 
 use args::{Args, Verb};
 use commands::{
-    assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, pose, relax, simulate,
-    studio, sweep, torques,
+    assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, population, pose, relax,
+    simulate, studio, sweep, torques,
 };
 use output::Notes;
 
@@ -54,6 +54,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Compare(args) => compare::compare(&args),
         Verb::Capacity(args) => capacity::capacity(&args),
         Verb::Sweep(args) => sweep::sweep(&args),
+        Verb::Population(args) => population::population(&args),
         Verb::Figures(args) => figures::figures(&args),
         Verb::Minimize(args) => minimize::minimize(&args),
         Verb::Passive(args) => passive::passive(&args),

@@ -14,6 +14,7 @@ pub(crate) mod frame;
 pub(crate) mod held;
 pub(crate) mod moment;
 pub(crate) mod muscles;
+pub(crate) mod population;
 pub(crate) mod pose_picture;
 pub(crate) mod recording;
 pub(crate) mod report;

@@ -1,18 +1,28 @@
 //! Computes the rows of a plan of many runs: which values every parameter has in every row, the answer of its run, and the text of a
-//! part, some rows together.
+//! part, some rows together. Counts the answers of a population of women and men.
 //!
 //! A row depends on the plan, the scenario and its own number alone, so any thread or machine can compute any part, with the same bytes.
 
+mod interval;
 mod normal;
 mod outcome;
 mod part;
+mod population;
 mod random;
+mod rank_regression;
 mod sampler;
 mod sobol;
 mod sobol_table;
+mod table;
 
+pub use interval::{CONFIDENCE, wilson};
 pub use normal::{cumulative, quantile};
 pub use outcome::Outcome;
 pub use part::{COLUMNS, Study};
+pub use population::{
+    HangsOn, LEAST_FOR_INDICES, MOST_BODIES, PARAMETERS, People, Population, QUANTILES, SEXES, population,
+};
+pub use rank_regression::{RankCoefficient, RankRegression, ranks};
 pub use sampler::Sampler;
 pub use sobol::{MOST_DIMENSIONS, sobol};
+pub use table::{Answer, read_part};

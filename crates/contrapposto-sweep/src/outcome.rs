@@ -1,10 +1,12 @@
 //! Carries out one row: the run of a scenario, and what counts of its answer.
 
-use contrapposto::contact::Missing;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError};
 use contrapposto::verdict::{Verdict, Who};
 use contrapposto_formats::read_run;
+
+/// Kind of a row whose scenario is refused.
+pub(crate) const REFUSED: &str = "refused";
 
 /// The answer of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,14 +34,11 @@ impl Outcome {
     pub fn of(name: &str, text: &str, go_on: impl Fn() -> bool) -> Option<Self> {
         let scenario = match read_run(name, text.as_bytes(), None) {
             Ok(run) => run.scenario,
-            Err(error) => return Some(Self { kind: "refused", note: Some(error.to_string()), ..Self::default() }),
+            Err(error) => return Some(Self { kind: REFUSED, note: Some(error.to_string()), ..Self::default() }),
         };
         let mut run = match Run::new(&scenario) {
             Ok(run) => run,
-            Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
-                return Some(Self::without_posture(&scenario.model, missing));
-            }
-            Err(error) => return Some(Self::refused(&error)),
+            Err(error) => return Some(Self::without_run(&scenario.model, error)),
         };
         let mut loads = vec![];
         loop {
@@ -52,7 +51,7 @@ impl Outcome {
                     loads.extend_from_slice(sample.load);
                 }
                 Ok(None) => break,
-                Err(error) => return Some(Self::refused(&error)),
+                Err(error) => return Some(Self::without_run(&scenario.model, error)),
             }
         }
         let summary = run.summary();
@@ -61,12 +60,14 @@ impl Outcome {
         Some(Self { effort: Some(effort), seconds: Some(summary.end_time), ..Self::answered(&scenario, &verdict) })
     }
 
-    fn refused(error: &ScenarioError) -> Self {
-        Self { kind: "refused", note: Some(error.to_string()), ..Self::default() }
-    }
-
-    fn without_posture(model: &Model, missing: Missing) -> Self {
-        Self { kind: Verdict::of_fall(model, missing, &[]).kind.word(), ..Self::default() }
+    /// Of a run that ended with an error: a body that its supports do not hold cannot stand, whether before the first sample or in it.
+    fn without_run(model: &Model, error: ScenarioError) -> Self {
+        match error {
+            ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. }) => {
+                Self { kind: Verdict::of_fall(model, missing, &[]).kind.word(), ..Self::default() }
+            }
+            error => Self { kind: REFUSED, note: Some(error.to_string()), ..Self::default() },
+        }
     }
 
     fn answered(scenario: &Scenario, verdict: &Verdict) -> Self {

@@ -1,5 +1,7 @@
 //! Writes a part of a plan, some rows together, as the text of a table, and the key that tells whether a part on a disk is this one.
 
+use std::ops::Range;
+
 use contrapposto_formats::motion::csv_cell;
 use contrapposto_formats::{InputError, Plan, Template, Value};
 use sha2::{Digest, Sha256};
@@ -25,12 +27,13 @@ pub const COLUMNS: [(&str, &str); 8] = [
 /// Characters of a key: 64 bits of a hash, two of which meet by chance once in four thousand million parts.
 const KEY_CHARACTERS: usize = 16;
 
-/// A plan with its base scenario, ready to compute any part.
+/// Plans of the same keys over one base scenario, ready to compute any part. Their rows take turns: of two plans the first has rows 0, 2,
+/// 4, ..., so that more rows of the same plans begin with the same rows.
 #[derive(Clone, Debug)]
 pub struct Study {
     name: String,
     template: Template,
-    sampler: Sampler,
+    samplers: Vec<Sampler>,
 }
 
 impl Study {
@@ -39,18 +42,72 @@ impl Study {
     /// # Errors
     /// [`InputError`] where the scenario is not TOML, or a parameter's path leads nowhere in it.
     pub fn new(name: &str, base: &[u8], plan: &Plan) -> Result<Self, InputError> {
-        let keys = plan.parameters.iter().map(|parameter| parameter.key.as_str());
-        Ok(Self { name: name.to_owned(), template: Template::new(name, base, keys)?, sampler: Sampler::new(plan) })
+        Self::in_turn(name, base, std::slice::from_ref(plan))
     }
 
-    /// The plan.
-    pub fn plan(&self) -> &Plan {
-        self.sampler.plan()
+    /// Plans with the same keys, rows and rows of a part, whose rows take turns.
+    ///
+    /// # Errors
+    /// [`InputError`] where the scenario is not TOML, or a parameter's path leads nowhere in it.
+    pub fn in_turn(name: &str, base: &[u8], plans: &[Plan]) -> Result<Self, InputError> {
+        let keys = plans.iter().take(1).flat_map(|plan| &plan.parameters).map(|parameter| parameter.key.as_str());
+        let template = Template::new(name, base, keys)?;
+        Ok(Self { name: name.to_owned(), template, samplers: plans.iter().map(Sampler::new).collect() })
+    }
+
+    /// The plans in turn.
+    pub fn plans(&self) -> impl Iterator<Item = &Plan> {
+        self.samplers.iter().map(Sampler::plan)
+    }
+
+    /// Keys of the parameters.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.plans().take(1).flat_map(|plan| &plan.parameters).map(|parameter| parameter.key.as_str())
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.plans().map(|plan| plan.rows).sum()
+    }
+
+    /// Number of parts.
+    pub fn parts(&self) -> usize {
+        self.rows().div_ceil(self.rows_per_part())
+    }
+
+    /// Number of rows of every part but the last one.
+    pub fn rows_per_part(&self) -> usize {
+        self.plans().next().map_or(1, |plan| plan.rows_per_part.max(1))
+    }
+
+    /// The rows of a part.
+    pub fn rows_of(&self, part: usize) -> Range<usize> {
+        let first = part * self.rows_per_part();
+        first..(first + self.rows_per_part()).min(self.rows())
+    }
+
+    /// Number of the plan that a row belongs to.
+    pub fn plan_of(&self, row: usize) -> usize {
+        row % self.samplers.len().max(1)
+    }
+
+    /// Independent points of the unit interval of a row, before correlation.
+    pub fn point(&self, row: usize) -> Vec<f64> {
+        self.of_row(row, Sampler::point)
+    }
+
+    fn values(&self, row: usize) -> Vec<Value> {
+        self.of_row(row, Sampler::values)
+    }
+
+    fn of_row<T: Default>(&self, row: usize, take: impl Fn(&Sampler, usize) -> T) -> T {
+        let sampler = self.samplers.get(self.plan_of(row));
+        sampler.map_or_else(T::default, |sampler| take(sampler, row / self.samplers.len()))
     }
 
     /// The text of the scenario of a row.
     pub fn scenario(&self, row: usize) -> String {
-        self.template.text(&self.sampler.values(row))
+        self.template.text(&self.values(row))
     }
 
     /// Key of a part: a hash of this program's version, the names of the columns, and the scenarios of all rows.
@@ -58,7 +115,7 @@ impl Study {
         let mut hash = Sha256::new();
         hash.update(concat!("contrapposto ", env!("CARGO_PKG_VERSION"), "\n"));
         hash.update(self.header());
-        for row in self.plan().rows_of(part) {
+        for row in self.rows_of(part) {
             let text = self.scenario(row);
             hash.update((row as u64).to_le_bytes());
             hash.update((text.len() as u64).to_le_bytes());
@@ -72,8 +129,8 @@ impl Study {
     /// The text of a part, while `go_on` says yes; `None` where it says no. `done` is called after every row.
     pub fn part(&self, part: usize, go_on: impl Fn() -> bool, done: impl Fn()) -> Option<String> {
         let mut text = self.header();
-        for row in self.plan().rows_of(part) {
-            let values = self.sampler.values(row);
+        for row in self.rows_of(part) {
+            let values = self.values(row);
             let outcome = Outcome::of(&self.name, &self.template.text(&values), &go_on)?;
             text += &line(row, &values, &outcome);
             done();
@@ -83,8 +140,7 @@ impl Study {
 
     /// The first line of every part: names of the columns.
     fn header(&self) -> String {
-        let parameters = self.plan().parameters.iter().map(|parameter| parameter.key.as_str());
-        let names = ["row"].into_iter().chain(parameters).chain(COLUMNS.iter().map(|(name, _)| *name));
+        let names = ["row"].into_iter().chain(self.keys()).chain(COLUMNS.iter().map(|(name, _)| *name));
         names.map(csv_cell).collect::<Vec<_>>().join(",") + "\n"
     }
 }

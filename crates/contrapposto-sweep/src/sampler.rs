@@ -7,10 +7,12 @@ use contrapposto_formats::{Design, Distribution, Parameter, Plan, Value};
 
 use super::normal::{cumulative, quantile};
 use super::random::{permutation, uniform};
-use super::sobol::sobol;
+use super::sobol::{shifted_sobol, sobol};
 
 /// Streams of the places within strata lie behind those of the permutations.
 const WITHIN_STRATA: usize = 1 << 20;
+/// Streams of the shifts of a Sobol sequence lie behind those.
+const SHIFTS: usize = 2 << 20;
 /// Nearest a probability comes to 0 and 1, so that every quantile is finite.
 const LEAST_PROBABILITY: f64 = 1e-15;
 
@@ -44,6 +46,7 @@ impl Sampler {
         let Plan { seed, rows, design, .. } = self.plan;
         let place = |parameter: usize| match design {
             Design::Sobol => sobol(row as u32 + 1, parameter),
+            Design::ShiftedSobol => shifted_sobol(row as u32, parameter, uniform(seed, SHIFTS + parameter, 0)),
             Design::Random => uniform(seed, parameter, row),
             Design::LatinHypercube => {
                 let within = uniform(seed, WITHIN_STRATA + parameter, row);

@@ -11,6 +11,18 @@ const BITS: u32 = 30;
 
 /// Coordinate `dimension` (below [`MOST_DIMENSIONS`]) of point `index` (below 2^30), at least 0 and below 1. Beyond both limits it is 0.
 pub fn sobol(index: u32, dimension: usize) -> f64 {
+    f64::from(digits(index, dimension)) / f64::from(1u32 << BITS)
+}
+
+/// The same with a digital shift: the binary digits of `shift`, at least 0 and below 1, are added to those of the coordinate without
+/// carry, so that points stay as even and each is uniform. Above 0 and below 1.
+pub(crate) fn shifted_sobol(index: u32, dimension: usize, shift: f64) -> f64 {
+    let shift = (shift * f64::from(1u32 << BITS)) as u32;
+    (f64::from(digits(index, dimension) ^ shift) + 0.5) / f64::from(1u32 << BITS)
+}
+
+/// The binary digits of a coordinate of a point, as a whole number.
+fn digits(index: u32, dimension: usize) -> u32 {
     let numbers = if dimension == 0 {
         std::array::from_fn(|_| 1)
     } else {
@@ -18,7 +30,7 @@ pub fn sobol(index: u32, dimension: usize) -> f64 {
     };
     let gray = index ^ (index >> 1);
     let bits = (0..BITS).filter(|bit| gray >> bit & 1 == 1).map(|bit| numbers[bit as usize] << (BITS - 1 - bit));
-    f64::from(bits.fold(0, |sum, bits| sum ^ bits)) / f64::from(1u32 << BITS)
+    bits.fold(0, |sum, bits| sum ^ bits)
 }
 
 /// All direction numbers of a dimension, by the recurrence of its primitive polynomial.

@@ -23,6 +23,8 @@ pub(crate) struct Folder {
     temporary: PathBuf,
     /// Names of a set are changing: the temporary folder tells the next program which.
     changing: Cell<bool>,
+    /// Leftovers were looked for: once, since a folder of many parts is long to list.
+    cleaned: Cell<bool>,
     /// Held while the program lives: tells others that the temporary folder is in use.
     _lock: File,
 }
@@ -62,7 +64,14 @@ impl Folder {
         let lock = File::create_new(temporary.join(LOCK)).map_err(refused)?;
         // Where files cannot be locked, leftovers cannot be distinguished from folders in use, and stay.
         let _ = lock.try_lock();
-        Ok(Self { path: path.to_owned(), made, temporary, changing: Cell::new(false), _lock: lock })
+        Ok(Self {
+            path: path.to_owned(),
+            made,
+            temporary,
+            changing: Cell::new(false),
+            cleaned: Cell::new(false),
+            _lock: lock,
+        })
     }
 
     /// Begins a file of that name; what stands before a `/` is a folder.
@@ -96,6 +105,9 @@ impl Folder {
             file.persist(&path).map_err(|error| Fail::job(path.display(), error.error))?;
         }
         self.sync();
+        if self.cleaned.replace(true) {
+            return Ok(());
+        }
         for leftover in leftovers(&self.path, &self.temporary) {
             if leftover.files.is_empty() {
                 leftover.remove();

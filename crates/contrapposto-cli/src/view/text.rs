@@ -7,6 +7,7 @@ mod group;
 pub(crate) mod inspect;
 mod joint;
 pub(crate) mod muscles;
+pub(crate) mod population;
 pub(crate) mod pose;
 pub(crate) mod relax;
 pub(crate) mod simulate;

@@ -22,7 +22,7 @@ const MOST_PARAMETERS: usize = 64;
 pub struct Plan {
     /// Path of the base scenario, as seen from the plan's folder.
     pub base: String,
-    /// Seed of the designs `latin_hypercube` and `random`.
+    /// Seed of the designs `shifted_sobol`, `latin_hypercube` and `random`.
     pub seed: u32,
     /// Choice of the rows.
     pub design: Design,
@@ -54,12 +54,27 @@ impl Plan {
 pub enum Design {
     /// The unscrambled Sobol sequence, without its first point, the origin.
     Sobol,
+    /// The Sobol sequence with the digits of every coordinate changed by random ones of the seed.
+    ShiftedSobol,
     /// All combinations of the values of the parameters.
     Grid,
     /// One value of every parameter in each of as many equally likely strata as there are rows.
     LatinHypercube,
     /// Independent values.
     Random,
+}
+
+impl Design {
+    /// `sobol`, `shifted_sobol`, `grid`, `latin_hypercube`, `random`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Sobol => "sobol",
+            Self::ShiftedSobol => "shifted_sobol",
+            Self::Grid => "grid",
+            Self::LatinHypercube => "latin_hypercube",
+            Self::Random => "random",
+        }
+    }
 }
 
 /// A key of the scenario that varies.
@@ -136,6 +151,7 @@ fn plan(at: &Located, text: &PlanText) -> Result<Plan, InputError> {
     }
     let design = match text.design {
         DesignText::Sobol => Design::Sobol,
+        DesignText::ShiftedSobol => Design::ShiftedSobol,
         DesignText::Grid => Design::Grid,
         DesignText::LatinHypercube => Design::LatinHypercube,
         DesignText::Random => Design::Random,

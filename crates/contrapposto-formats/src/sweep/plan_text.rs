@@ -23,6 +23,7 @@ pub(super) struct PlanText {
 #[serde(rename_all = "snake_case")]
 pub(super) enum DesignText {
     Sobol,
+    ShiftedSobol,
     Grid,
     LatinHypercube,
     Random,

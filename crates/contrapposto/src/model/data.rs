@@ -9,6 +9,7 @@ mod fatigue_rows;
 mod grip_rows;
 mod hazard_rows;
 mod passive_rows;
+mod people_rows;
 mod reference;
 mod shape_rows;
 mod strength_rows;
@@ -26,6 +27,7 @@ use hazard_rows::HazardFile;
 pub use hazard_rows::HazardRow;
 use passive_rows::PassiveFile;
 pub use passive_rows::{CurveRow, reshaped};
+pub use people_rows::{Lognormal, PeopleOfSex, PeopleRow};
 pub use reference::{Reference, Status};
 use shape_rows::ShapeFile;
 pub(super) use shape_rows::ShapeRow;
@@ -44,6 +46,7 @@ pub struct Library {
     pub(super) shapes: ShapeFile,
     hazards: HazardFile,
     grip: GripRow,
+    people: PeopleRow,
 }
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
@@ -60,6 +63,7 @@ static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
         shapes: parse("shapes", include_str!("../../data/shapes.toml")),
         hazards: parse("hazards", include_str!("../../data/hazards.toml")),
         grip: parse("grip", include_str!("../../data/grip.toml")),
+        people: parse("people", include_str!("../../data/people.toml")),
     }
 });
 
@@ -100,6 +104,11 @@ impl Library {
     /// Strength of the grip of a hand.
     pub fn grip(&self) -> &GripRow {
         &self.grip
+    }
+
+    /// Sizes of people, and the spread of their passive torque.
+    pub fn people(&self) -> &PeopleRow {
+        &self.people
     }
 
     /// Strength of a movement for an adult, with its sources; `sign` -1 where the coordinate runs against the data.

@@ -1,0 +1,91 @@
+//! `contrapposto population`: a scenario in, the share of women and of men who can hold it out.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use contrapposto_formats::{MOST_BYTES, read_run, scenario_model};
+use contrapposto_sweep::{Answer, Population, Study, population as plans, read_part};
+
+use super::sweep::parts::{compute, fill};
+use crate::args::PopulationArgs;
+use crate::fail::Fail;
+use crate::input::read;
+use crate::output::{ResultSet, json_text, print};
+use crate::view::population::{Asked, PopulationText};
+use crate::view::text::population::report;
+
+const POPULATION_FILES: [&str; 2] = ["population.json", "population.csv"];
+/// The folder of the parts, inside that of the results.
+const ROWS: &str = "rows";
+/// A file that folders of parts have once they are whole; a population has none, since its results say so.
+const NO_LIST: &str = "sweep.json";
+
+pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
+    let (study, asked) = open(args)?;
+    let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POPULATION_FILES)).transpose()?;
+    let parts = match &args.out {
+        Some(out) => kept(&study, out, args)?,
+        None => computed(&study, args)?,
+    };
+    let mut answers: Vec<Answer> = vec![];
+    for part in &parts {
+        answers.extend(read_part(part).ok_or_else(|| Fail::job(ROWS, "a part of the table cannot be read back"))?);
+    }
+    let found = Population::new(&study, &answers, asked.seconds / 60.0, args.seed);
+    let files = folder.as_ref().map_or(vec![], |_| POPULATION_FILES.map(str::to_owned).to_vec());
+    let text = PopulationText::new(&asked, &study, &found, args.seed, files);
+    let json = json_text(POPULATION_FILES[0], &text)?;
+    if let Some(folder) = &folder {
+        folder.write(&[(POPULATION_FILES[0], json.as_bytes()), (POPULATION_FILES[1], table(&parts).as_bytes())])?;
+    }
+    print(&if args.json { json } else { report(&text, &found, folder.as_ref()) })
+}
+
+/// The plans of the population over the scenario. The body of the first row is read, so that a scenario that is none ends the command before
+/// anything is written.
+fn open(args: &PopulationArgs) -> Result<(Study, Asked), Fail> {
+    let (name, bytes) = (args.scenario.display().to_string(), read(&args.scenario, MOST_BYTES)?);
+    if let Some(file) = scenario_model(&name, &bytes)? {
+        let why = "a population takes scenarios of the built-in adult, `adult = { ... }` in [model], whose size, strength and passive torque \
+            are known for women and men";
+        return Err(Fail::Refused(format!("{name}: [model] names the model file {:?}; {why}", file.file)));
+    }
+    let study = Study::in_turn(&name, &bytes, &plans(&name, args.rows, args.seed))?;
+    let scenario = read_run(&name, study.scenario(0).as_bytes(), None)?.scenario;
+    let asked = Asked { scenario: name, title: scenario.title, seconds: scenario.run.duration };
+    Ok((study, asked))
+}
+
+/// The texts of all parts, which are kept in a folder.
+fn kept(study: &Study, out: &Path, args: &PopulationArgs) -> Result<Vec<String>, Fail> {
+    let whole = fill(study, (&out.join(ROWS), NO_LIST), args.resume, args.threads)?;
+    let text = |name: &String| {
+        let path = whole.folder.path(name);
+        std::fs::read_to_string(&path).map_err(|error| Fail::job(path.display(), error))
+    };
+    whole.names.iter().map(text).collect()
+}
+
+/// The texts of all parts, of which nothing is written.
+fn computed(study: &Study, args: &PopulationArgs) -> Result<Vec<String>, Fail> {
+    let all: Vec<usize> = (0..study.parts()).collect();
+    let mut texts = BTreeMap::new();
+    let done = compute(study, &all, args.threads, |part, text| {
+        texts.insert(part, text);
+        Ok(())
+    })?;
+    if done < all.len() {
+        let why = "nothing was written; with --out DIR the bodies that are done are kept, and --resume continues";
+        return Err(Fail::Job(format!("interrupted: {done} of {} parts were done; {why}", all.len())));
+    }
+    Ok(texts.into_values().collect())
+}
+
+/// One table of all parts: the first line of each but the first is left out.
+fn table(parts: &[String]) -> String {
+    let rows = |(i, part): (usize, &String)| match part.split_once('\n') {
+        Some((_, rows)) if i > 0 => rows.to_owned(),
+        _ => part.clone(),
+    };
+    parts.iter().enumerate().map(rows).collect()
+}

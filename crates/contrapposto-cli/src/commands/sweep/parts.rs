@@ -1,0 +1,173 @@
+//! Computes the parts of a study in threads, and keeps them in a folder, from which a later command takes those that agree.
+
+use std::collections::BTreeSet;
+use std::fs::{File, TryLockError};
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{SyncSender, sync_channel};
+
+use contrapposto_sweep::Study;
+
+use crate::fail::Fail;
+use crate::interruption;
+use crate::output::Folder;
+use crate::progress::{Progress, rows_bar};
+
+/// The file that is locked while a sweep writes into a folder, so that a second one is refused.
+const SWEEP_LOCK: &str = "sweep.lock";
+/// Most threads.
+const MOST_THREADS: usize = 256;
+
+/// A folder with all parts of a study.
+pub(crate) struct WholeParts {
+    /// Goes before the folder, which is removed where nothing is in it.
+    _lock: Lock,
+    pub(crate) folder: Folder,
+    /// Names of the parts in their order.
+    pub(crate) names: Vec<String>,
+    /// Number of parts that were there before.
+    pub(crate) kept: usize,
+}
+
+/// Computes the parts of a study that the folder `out` lacks, and removes parts of other studies and the file `list`, without which a sweep is
+/// not whole.
+///
+/// # Errors
+/// A folder that has parts, without `resume`; and the user's interruption.
+pub(crate) fn fill(
+    study: &Study,
+    (out, list): (&Path, &str),
+    resume: bool,
+    threads: Option<NonZero<usize>>,
+) -> Result<WholeParts, Fail> {
+    let parts = study.parts();
+    let there = parts_in(out)?;
+    if !there.is_empty() && !resume {
+        let out = out.display();
+        let why = "has parts of a sweep; --resume keeps those of this plan and removes the others";
+        return Err(Fail::Refused(format!("--out {out}: {why}")));
+    }
+    let names: Vec<String> = (0..parts).map(|part| part_name(part, &study.key(part))).collect();
+    let folder = Folder::open(out)?;
+    let lock = Lock::of(&folder)?;
+    folder.remove(list)?;
+    let wanted: BTreeSet<&String> = names.iter().collect();
+    there.iter().filter(|name| !wanted.contains(name)).try_for_each(|name| folder.remove(name))?;
+    let missing: Vec<usize> = (0..parts).filter(|part| !there.contains(&names[*part])).collect();
+    let written = compute(study, &missing, threads, |part, text| folder.write(&[(names[part].as_str(), text)]))?;
+    let kept = parts - missing.len();
+    if written < missing.len() {
+        let (whole, out) = (kept + written, out.display());
+        let more = "the same command with --resume continues";
+        return Err(Fail::Job(format!("interrupted: {whole} of {parts} parts are in {out}: {more}")));
+    }
+    Ok(WholeParts { _lock: lock, folder, names, kept })
+}
+
+/// The lock of a folder for one sweep; its file goes with it.
+struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Lock {
+    /// Locks a folder, or refuses it while another sweep has it. Where files cannot be locked, nothing is refused.
+    fn of(folder: &Folder) -> Result<Self, Fail> {
+        let path = folder.path(SWEEP_LOCK);
+        let failed = |error| Fail::job(path.display().to_string(), error);
+        let file = File::options().write(true).create(true).truncate(false).open(&path).map_err(failed)?;
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let why = "another sweep writes into this folder; wait for its end or name another folder";
+            return Err(Fail::Refused(format!("--out {}: {why}", path.parent().unwrap_or(&path).display())));
+        }
+        Ok(Self { path, _file: file })
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+/// Computes parts in threads, as many as there are cores where their number is not given, and gives each to `write` in this thread; gives
+/// the number of parts that were written, fewer than asked for where the user interrupts.
+pub(crate) fn compute(
+    study: &Study,
+    parts: &[usize],
+    threads: Option<NonZero<usize>>,
+    mut write: impl FnMut(usize, String) -> Result<(), Fail>,
+) -> Result<usize, Fail> {
+    interruption::watch();
+    let threads = threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
+    let threads = threads.min(parts.len()).clamp(1, MOST_THREADS);
+    let rows = parts.iter().map(|part| study.rows_of(*part).len()).sum::<usize>();
+    let bar = rows_bar(rows as u64);
+    let work = Work { study, parts, bar, next: AtomicUsize::new(0), stop: AtomicBool::new(false) };
+    // A thread that is ahead waits, so that no more parts are in memory than two for each thread.
+    let (sender, finished) = sync_channel(threads);
+    let mut written = 0;
+    let result = std::thread::scope(|scope| {
+        for _ in 0..threads {
+            let (sender, work) = (sender.clone(), &work);
+            scope.spawn(move || work.carry_out(&sender));
+        }
+        drop(sender);
+        // The receiver ends with this block: a thread that waits to send goes on and ends.
+        for (part, text) in finished {
+            write(part, text).inspect_err(|_| work.stop.store(true, Ordering::Relaxed))?;
+            written += 1;
+        }
+        Ok(())
+    });
+    work.bar.finish();
+    result.map(|()| written)
+}
+
+/// The parts that threads share.
+struct Work<'a> {
+    study: &'a Study,
+    parts: &'a [usize],
+    bar: Progress,
+    /// Place in `parts` of the next part that no thread has taken.
+    next: AtomicUsize,
+    /// A part could not be written.
+    stop: AtomicBool,
+}
+
+impl Work<'_> {
+    /// Computes one part after another until none is left, or the user interrupts.
+    fn carry_out(&self, finished: &SyncSender<(usize, String)>) {
+        let go_on = || !interruption::is_requested() && !self.stop.load(Ordering::Relaxed);
+        while let Some(&part) = self.parts.get(self.next.fetch_add(1, Ordering::Relaxed)) {
+            let Some(text) = self.study.part(part, go_on, || self.bar.inc(1)) else { break };
+            if finished.send((part, text)).is_err() {
+                break;
+            }
+        }
+    }
+}
+
+/// `part-00012-1f0c9a7be2d34455.csv`.
+fn part_name(part: usize, key: &str) -> String {
+    format!("part-{part:05}-{key}.csv")
+}
+
+/// Names of the parts that a folder has.
+fn parts_in(folder: &Path) -> Result<BTreeSet<String>, Fail> {
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(BTreeSet::new()),
+        Err(error) => return Err(Fail::Refused(format!("--out {}: {error}", folder.display()))),
+    };
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    Ok(names.filter(|name| is_part(name)).collect())
+}
+
+fn is_part(name: &str) -> bool {
+    let Some(middle) = name.strip_prefix("part-").and_then(|name| name.strip_suffix(".csv")) else { return false };
+    let Some((part, key)) = middle.split_once('-') else { return false };
+    let hexadecimal = |c: char| c.is_ascii_digit() || ('a'..='f').contains(&c);
+    part.len() >= 5 && part.chars().all(|c| c.is_ascii_digit()) && key.len() == 16 && key.chars().all(hexadecimal)
+}

@@ -1,0 +1,206 @@
+//! Makes the plans of a population, and counts its answers: the share of women and of men who can hold a job, the times, who fails first,
+//! and what the answer hangs on.
+
+use contrapposto::model::Sex;
+use contrapposto::model::data::{PeopleOfSex, library};
+use contrapposto::verdict::VerdictKind;
+use contrapposto_formats::{Design, Distribution, Parameter, Plan, Value};
+
+use super::interval::wilson;
+use super::outcome::{Outcome, REFUSED};
+use super::part::Study;
+use super::rank_regression::RankRegression;
+use super::table::Answer;
+
+/// Most bodies of a population.
+pub const MOST_BODIES: usize = 100_000;
+/// Rows of a part: a kill loses at most so many runs of each thread.
+const BODIES_PER_PART: usize = 4;
+/// Fewest bodies of which it is said what the answer hangs on.
+pub const LEAST_FOR_INDICES: usize = 40;
+/// Shares of people of the quantiles that are given.
+pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
+/// Names of the parameters in words, in the order of the plan; sex, which stands last in it, comes first here.
+pub const PARAMETERS: [&str; 5] =
+    ["sex", "stature", "mass for that stature", "strength", "stiffness of passive tissue"];
+/// The sexes in the order of rows.
+pub const SEXES: [Sex; 2] = [Sex::Female, Sex::Male];
+
+/// Plans of as many women as men, `bodies` in all.
+pub fn population(base: &str, bodies: usize, seed: u32) -> [Plan; 2] {
+    SEXES.map(|sex| {
+        let people = library().people().of_sex(sex);
+        // Each sex has its own shift.
+        let seed = seed.wrapping_mul(2).wrapping_add(u32::from(sex == Sex::Male));
+        Plan {
+            base: base.to_owned(),
+            seed,
+            design: Design::ShiftedSobol,
+            rows: bodies / 2,
+            rows_per_part: BODIES_PER_PART,
+            parameters: parameters(sex, people),
+            mixing: Some(mixing(people.correlation)),
+        }
+    })
+}
+
+fn parameters(sex: Sex, people: &PeopleOfSex) -> Vec<Parameter> {
+    let spread = &library().people().passive_spread;
+    let (stature, mass) = (people.stature_m, people.mass_kg);
+    let name = if sex == Sex::Female { "female" } else { "male" };
+    let lognormal = |median, deviation| Distribution::Lognormal { median, deviation };
+    let all = [
+        ("model.adult.stature_m", Distribution::Normal { mean: stature.mean, deviation: stature.deviation }),
+        ("model.adult.mass_kg", lognormal(mass.median, mass.deviation_of_logarithm)),
+        ("strength.deviations", Distribution::Normal { mean: 0.0, deviation: 1.0 }),
+        ("passive.spread", lognormal(spread.median, spread.deviation_of_logarithm)),
+        ("model.adult.sex", Distribution::List(vec![Value::Text(name.to_owned())])),
+    ];
+    all.map(|(key, distribution)| Parameter { key: key.to_owned(), distribution, levels: 0 }).to_vec()
+}
+
+/// Cholesky factor of the correlation of stature and mass; all others are independent.
+fn mixing(correlation: f64) -> Vec<Vec<f64>> {
+    let mut rows: Vec<Vec<f64>> =
+        (0..PARAMETERS.len()).map(|i| (0..PARAMETERS.len()).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    rows[1][0] = correlation;
+    rows[1][1] = (1.0 - correlation * correlation).sqrt();
+    rows
+}
+
+/// The answers of a population.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Population {
+    /// Women and men.
+    pub sexes: [People; 2],
+    /// The shares of the parameters in the answer; `None` where they are not known.
+    pub hangs_on: Option<HangsOn>,
+}
+
+/// The answers of people of one sex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct People {
+    /// Number of people whose body and job the reader of scenarios takes.
+    pub number: usize,
+    /// Number of others; they are in no other number.
+    pub refused: usize,
+    /// Number who can hold the job for the asked time.
+    pub can: usize,
+    /// 95 % interval of the share who can.
+    pub interval: [f64; 2],
+    /// Minutes in rising order: 0 of those who cannot do it at all, infinite where muscles set no limit.
+    pub minutes: Vec<f64>,
+    /// The muscle groups or other causes that end the job of those who cannot hold it, with the number of people; the most frequent first.
+    pub fails: Vec<(String, usize)>,
+}
+
+/// The shares of the parameters in the answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HangsOn {
+    /// The answer is the load of the hardest worked group, since all have the same time; else it is the time, at most the asked one.
+    pub of_load: bool,
+    /// One coefficient for each of [`PARAMETERS`].
+    pub regression: RankRegression,
+}
+
+impl Population {
+    /// Of the answers to a job that is asked for `asked` minutes.
+    pub fn new(study: &Study, answers: &[Answer], asked: f64, seed: u32) -> Self {
+        let of = |sex: usize| answers.iter().filter(move |answer| study.plan_of(answer.row) == sex);
+        let sexes = [0, 1].map(|sex| People::new(of(sex).map(|answer| &answer.outcome), asked));
+        Self { sexes, hangs_on: hangs_on(study, answers, asked, seed) }
+    }
+}
+
+impl People {
+    fn new<'a>(outcomes: impl Iterator<Item = &'a Outcome>, asked: f64) -> Self {
+        let mut people = Self::default();
+        for outcome in outcomes {
+            let Some(minutes) = minutes(outcome) else {
+                people.refused += 1;
+                continue;
+            };
+            people.minutes.push(minutes);
+            if holds(outcome, asked) {
+                people.can += 1;
+                continue;
+            }
+            let end = end(outcome);
+            match people.fails.iter_mut().find(|(name, _)| *name == end) {
+                Some((_, count)) => *count += 1,
+                None => people.fails.push((end, 1)),
+            }
+        }
+        people.number = people.minutes.len();
+        people.interval = wilson(people.can, people.number);
+        people.minutes.sort_by(f64::total_cmp);
+        people.fails.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+        people
+    }
+
+    /// Share who can hold the job for the asked time; `None` of nobody.
+    pub fn share(&self) -> Option<f64> {
+        (self.number > 0).then(|| self.can as f64 / self.number as f64)
+    }
+
+    /// The least minutes that at least this share of people do not exceed; `None` of nobody.
+    pub fn quantile(&self, share: f64) -> Option<f64> {
+        let place = (share * self.number as f64).ceil() as usize;
+        self.minutes.get(place.max(1) - 1).or(self.minutes.last()).copied()
+    }
+}
+
+/// Minutes for which the job can be done; `None` of a body that was refused.
+fn minutes(outcome: &Outcome) -> Option<f64> {
+    match outcome.kind {
+        REFUSED => None,
+        _ if is_done(outcome) => Some(outcome.minutes.unwrap_or(f64::INFINITY)),
+        _ => Some(0.0),
+    }
+}
+
+fn is_done(outcome: &Outcome) -> bool {
+    VerdictKind::ALL.into_iter().any(|kind| kind.is_done() && kind.word() == outcome.kind)
+}
+
+/// Whether the job is held for `asked` minutes. A run that settles before has the time of its posture held on.
+fn holds(outcome: &Outcome, asked: f64) -> bool {
+    outcome.kind == VerdictKind::Holds.word() && outcome.minutes.is_none_or(|minutes| minutes >= asked)
+}
+
+/// The muscle group, or another cause, that ends the job of a body.
+fn end(outcome: &Outcome) -> String {
+    let kind = |kind: VerdictKind| outcome.kind == kind.word();
+    let words = if kind(VerdictKind::CannotStand) {
+        "balance (the supports do not hold the body)"
+    } else if kind(VerdictKind::NotReached) {
+        "reach (the target is missed)"
+    } else if kind(VerdictKind::CannotBeDone) && outcome.load.is_some_and(|load| load <= 1.0) {
+        // No muscle group of the model is too weak: the weight is more than a hand can hold.
+        "grip of a hand"
+    } else {
+        outcome.who.as_deref().unwrap_or("unknown")
+    };
+    words.to_owned()
+}
+
+fn hangs_on(study: &Study, answers: &[Answer], asked: f64, seed: u32) -> Option<HangsOn> {
+    let known: Vec<(&Answer, f64)> =
+        answers.iter().filter_map(|answer| Some((answer, minutes(&answer.outcome)?.min(asked)))).collect();
+    if known.len() < LEAST_FOR_INDICES {
+        return None;
+    }
+    let mut parameters = vec![vec![]; PARAMETERS.len()];
+    for (answer, _) in &known {
+        let point = study.point(answer.row);
+        parameters[0].push(study.plan_of(answer.row) as f64);
+        parameters[1..].iter_mut().zip(point).for_each(|(list, value)| list.push(value));
+    }
+    let times: Vec<f64> = known.iter().map(|(_, minutes)| *minutes).collect();
+    if let Some(regression) = RankRegression::new(&times, &parameters, seed) {
+        return Some(HangsOn { of_load: false, regression });
+    }
+    let loads: Option<Vec<f64>> = known.iter().map(|(answer, _)| answer.outcome.load).collect();
+    let regression = RankRegression::new(&loads?, &parameters, seed)?;
+    Some(HangsOn { of_load: true, regression })
+}
