@@ -55,4 +55,5 @@ pub mod statics;
 pub mod strength;
 pub mod suggestions;
 pub mod tasks;
+pub mod tracking;
 pub mod verdict;

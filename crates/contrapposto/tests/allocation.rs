@@ -18,6 +18,7 @@ use contrapposto::tasks::{
     CenterOfMass, CenterOfMassGoal as Place, Clearance, Distance, Effort, LookAt, LookAtGoal, Placement, Point,
     Posture, Task, Thing,
 };
+use contrapposto::tracking::{Goals, MarkerGoal, Tracker};
 use hierarchical_least_squares::Level;
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -73,6 +74,29 @@ fn loads(model: &Model) -> [Load; 2] {
 fn the_counter_counts() {
     let made = allocation_counter::measure(|| drop(std::hint::black_box(vec![1.0; 10]))).count_total;
     assert_eq!(made, 1);
+}
+
+#[test]
+fn marker_tracking_allocates_nothing() {
+    let (model, postures) = body();
+    let place = |segment| MarkerGoal { segment, point: V::new(0.03, -0.1, 0.05), weight: 2.0 };
+    let markers: Vec<MarkerGoal> = (0..model.segments().len()).map(place).collect();
+    let limits = (6..model.coordinates().len()).map(|c| (c, model.coordinates()[c].range)).collect();
+    let goals = Goals { markers, limits, ..Goals::default() };
+    let mut kinematics = Kinematics::new(&model);
+    let frames: Vec<Vec<Option<V>>> = postures
+        .iter()
+        .map(|posture| {
+            kinematics.update(&model, posture).unwrap();
+            let station =
+                |m: &MarkerGoal| Some(kinematics.station(&model, m.segment, m.point) + V::new(0.01, 0.0, 0.0));
+            goals.markers.iter().map(station).collect()
+        })
+        .collect();
+    let (mut tracker, mut posture) = (Tracker::new(&model, goals).unwrap(), model.default_posture());
+    assert_silent("marker tracking", 0, |call| {
+        assert!(tracker.solve(&model, &mut posture, &frames[call]).unwrap().steps > 0);
+    });
 }
 
 #[test]

@@ -5,8 +5,8 @@ use syn::spanned::Spanned;
 use super::sources::{Source, crates, sources};
 
 /// Rooms of the science crate whose constants are tolerances or limits of a solver or a search.
-const ROOMS: [&str; 8] =
-    ["math", "muscle", "contact", "effort", "posture_solver", "equilibria", "simulation", "capacity"];
+const ROOMS: [&str; 9] =
+    ["math", "muscle", "contact", "effort", "posture_solver", "equilibria", "simulation", "capacity", "tracking"];
 
 /// The page `docs/tolerances.md`.
 pub(super) fn page() -> String {

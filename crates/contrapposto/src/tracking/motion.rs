@@ -1,0 +1,85 @@
+//! Tracks a motion: every frame from the posture of the one before.
+
+use nalgebra::Vector3;
+
+use super::goals::{Goals, GoalsError};
+use super::starts::first_posture;
+use super::tracker::{Solved, Tracker};
+use crate::model::Model;
+use crate::posture::{Posture, PostureError};
+
+/// The answer of one frame of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackedFrame {
+    /// The posture.
+    pub posture: Posture,
+    /// Objective and optimality.
+    pub solved: Solved,
+    /// Number of markers that the frame has.
+    pub seen: usize,
+    /// Sum of their squared distances, without weights, m^2.
+    pub total_squared_error: f64,
+    /// The marker with the largest distance, by index, and the distance, m; `None` without markers.
+    pub largest: Option<(usize, f64)>,
+}
+
+impl TrackedFrame {
+    /// Root mean square of the distances, m; 0 without markers.
+    pub fn root_mean_square(&self) -> f64 {
+        if self.seen == 0 { 0.0 } else { (self.total_squared_error / self.seen as f64).sqrt() }
+    }
+}
+
+/// The reason for which a motion cannot be tracked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrackingError {
+    /// Goals do not fit the model.
+    #[error(transparent)]
+    Goals(#[from] GoalsError),
+    /// The start does not fit the model.
+    #[error(transparent)]
+    Posture(#[from] PostureError),
+}
+
+/// Tracks frames, each given by the places of all markers of the goals (m, ground; `None` for a gap). A frame without a marker keeps the
+/// posture of the one before, but for wanted values of coordinates; the first frame with one begins at `start` ([`first_posture`]).
+///
+/// # Errors
+/// [`TrackingError`] when goals or start do not fit the model.
+///
+/// # Panics
+/// Unless every frame has one place a marker.
+pub fn track<'f>(
+    model: &Model,
+    goals: Goals,
+    start: &Posture,
+    frames: impl IntoIterator<Item = &'f [Option<Vector3<f64>>]>,
+) -> Result<Vec<TrackedFrame>, TrackingError> {
+    let mut tracker = Tracker::new(model, goals)?;
+    let mut posture = start.clone();
+    let mut tracked = vec![];
+    let mut begun = false;
+    for observed in frames {
+        let seen = observed.iter().flatten().count();
+        let solved = if seen > 0 && !begun {
+            begun = true;
+            let (first, solved) = first_posture(&mut tracker, model, start, observed)?;
+            posture = first;
+            solved
+        } else {
+            tracker.solve(model, &mut posture, observed)?
+        };
+        let mut total_squared_error = 0.0;
+        let mut largest: Option<(usize, f64)> = None;
+        for (index, error) in tracker.errors().enumerate() {
+            let Some(error) = error else { continue };
+            total_squared_error += error * error;
+            if largest.is_none_or(|(_, most)| error > most) {
+                largest = Some((index, error));
+            }
+        }
+        tracked.push(TrackedFrame { posture: posture.clone(), solved, seen, total_squared_error, largest });
+    }
+    Ok(tracked)
+}

@@ -1,0 +1,71 @@
+//! Finds the posture of the first frame, also of a body that faces another way than its default posture.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::tolerances::{BETTER_START, TURNED_STARTS_FROM};
+use super::tracker::{Solved, Tracker};
+use crate::model::{CoordinateKind, Model};
+use crate::posture::{Posture, PostureError};
+
+/// The posture of a first frame from `start`. Where its markers stay far, the root begins turned by quarters of a turn about up to three
+/// of its coordinates, too, and the least objective is taken; an answer from `start` that is as good within 1 % stays.
+///
+/// # Errors
+/// [`PostureError`] when the start does not fit the model.
+pub fn first_posture(
+    tracker: &mut Tracker,
+    model: &Model,
+    start: &Posture,
+    observed: &[Option<Vector3<f64>>],
+) -> Result<(Posture, Solved), PostureError> {
+    let mut best = start.clone();
+    let mut solved = tracker.solve(model, &mut best, observed)?;
+    let squares = tracker.errors().flatten().map(|error| error * error);
+    let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    if count == 0.0 || f64::sqrt(sum / count) < TURNED_STARTS_FROM {
+        return Ok((best, solved));
+    }
+    for turned in turned_roots(tracker, model, start) {
+        let mut posture = turned;
+        let other = tracker.solve(model, &mut posture, observed)?;
+        if other.objective < BETTER_START * solved.objective {
+            (best, solved) = (posture, other);
+        }
+    }
+    let solved = tracker.solve(model, &mut best, observed)?;
+    Ok((best, solved))
+}
+
+/// Copies of `start` with the root turned.
+fn turned_roots(tracker: &Tracker, model: &Model, start: &Posture) -> Vec<Posture> {
+    let roots = model.segments().iter().filter(|segment| segment.parent.is_none());
+    let coordinates: Vec<usize> = roots.flat_map(|segment| segment.coordinates.clone()).collect();
+    let movable = |c: &usize| !tracker.goals().fixed.contains(c) && !model.is_dependent(*c);
+    let of_kind =
+        |kind| coordinates.iter().copied().filter(movable).filter(move |&c| model.coordinates()[c].kind == kind);
+    let angles: Vec<usize> = of_kind(CoordinateKind::Rotation).take(3).collect();
+    let ball = of_kind(CoordinateKind::Quaternion).next();
+    let axes = if ball.is_some() { 3 } else { angles.len() };
+    let mut turned = vec![];
+    for choice in 1..4_usize.pow(axes as u32) {
+        let quarter = |axis: usize| ((choice / 4_usize.pow(axis as u32)) % 4) as f64 * FRAC_PI_2;
+        let mut posture = start.clone();
+        let values = posture.values_mut();
+        match ball {
+            Some(first) => {
+                let q = UnitQuaternion::from_euler_angles(quarter(0), quarter(1), quarter(2));
+                values[first..first + 4].copy_from_slice(&[q.w, q.i, q.j, q.k]);
+            }
+            None => angles.iter().enumerate().for_each(|(axis, &c)| values[c] += signed(quarter(axis))),
+        }
+        turned.push(posture);
+    }
+    turned
+}
+
+/// Three quarters forward are one back.
+fn signed(turn: f64) -> f64 {
+    if turn > 2.5 * FRAC_PI_2 { turn - 4.0 * FRAC_PI_2 } else { turn }
+}
