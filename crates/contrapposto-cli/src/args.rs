@@ -9,6 +9,7 @@ mod population;
 mod scenario;
 mod studio;
 mod sweep;
+mod track;
 
 use std::path::PathBuf;
 
@@ -26,6 +27,7 @@ pub(crate) use population::PopulationArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;
 pub(crate) use sweep::SweepArgs;
+pub(crate) use track::TrackArgs;
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.
 #[derive(Debug, Parser)]
@@ -78,6 +80,8 @@ pub(crate) enum Verb {
     Torques(TorquesArgs),
     /// Path, forces and moment arms of every muscle of an OpenSim or MJCF model, and the strength of its joints, for one posture or a motion.
     Muscles(MusclesArgs),
+    /// Find the motion of an OpenSim model whose markers lie nearest to measured ones (.trc): inverse kinematics.
+    Track(TrackArgs),
     /// Find the muscle group that fails first in a recorded motion, when, and which change of posture would relieve it.
     Assess(AssessArgs),
     /// Write a model in another format: OpenSim, URDF or MJCF.

@@ -17,4 +17,5 @@ pub(crate) mod simulate;
 pub(crate) mod studio;
 pub(crate) mod sweep;
 pub(crate) mod torques;
+pub(crate) mod track;
 pub(crate) mod trials;

@@ -24,7 +24,7 @@ use clap::Parser;
 use args::{Args, Verb};
 use commands::{
     assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, population, pose, relax,
-    simulate, studio, sweep, torques,
+    simulate, studio, sweep, torques, track,
 };
 use output::Notes;
 
@@ -61,6 +61,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Inspect(args) => inspect::inspect(&args),
         Verb::Torques(args) => torques::torques(&args),
         Verb::Muscles(args) => muscles::muscles(&args),
+        Verb::Track(args) => track::track(&args),
         Verb::Assess(args) => assess::assess(&args),
         Verb::Convert(args) => convert::convert(&args),
         Verb::Studio(args) => studio::studio(&args),

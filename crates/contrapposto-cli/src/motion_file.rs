@@ -118,7 +118,8 @@ pub(crate) fn read_whole_motion(
         other => other,
     })?;
     if holds_markers(&name, &bytes) {
-        let why = "is a marker file; run OpenSim's inverse kinematics first, and give the motion that it writes (.mot)";
+        let why =
+            "is a marker file; `contrapposto track MODEL FILE.trc --out DIR` makes a motion of it: give DIR/motion.mot";
         return Err(Fail::Refused(format!("{name}: {why}")));
     }
     let table = read_table(&name, &bytes)?;

@@ -5,6 +5,7 @@
 
 pub mod animation;
 pub mod loads;
+pub mod markers;
 pub mod mjcf;
 pub mod model_ir;
 pub mod motion;

@@ -11,12 +11,17 @@ use nalgebra::Unit;
 
 use super::sole::with_soles;
 use super::{CoordinateIr, CoordinateKind, Drive, ModelIr, MotionIr, MuscleTally, PassiveLawIr, SegmentIr, StrengthIr};
+use crate::markers::ModelMarker;
 
 /// A model, and notes on its file.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// The model.
     pub model: Model,
+    /// Markers and sites of the file.
+    pub markers: Vec<ModelMarker>,
+    /// Coordinates of the model whose range is a hard limit of the file, with it, rad or m.
+    pub hard_limits: Vec<(usize, (f64, f64))>,
     /// Muscles of the model.
     pub muscles: Musculature,
     /// Numbers of the file's muscles that were read, left out and refused.
@@ -65,14 +70,31 @@ impl ModelIr {
         let model = if self.strength.is_empty() { model } else { model.by_coordinates() };
         let (muscles, muscle_tally) = (self.musculature(&model), self.muscles.tally.clone());
         let model = with_soles(model, &self.solids);
+        let (markers, hard_limits) = (self.markers(), self.hard_limits(&model));
         Ok(Imported {
             model,
+            markers,
+            hard_limits,
             muscles,
             muscle_tally,
             left_out: self.ignored.clone(),
             credits: self.credits.clone(),
             notes,
         })
+    }
+
+    fn markers(&self) -> Vec<ModelMarker> {
+        let marker = |(name, segment, point): &(String, usize, _)| ModelMarker {
+            name: name.clone(),
+            segment: *segment,
+            point: *point,
+        };
+        self.stations.iter().map(marker).collect()
+    }
+
+    fn hard_limits(&self, model: &Model) -> Vec<(usize, (f64, f64))> {
+        let limited = self.coordinates.iter().filter(|c| c.clamped && c.kind != CoordinateKind::Quaternion);
+        limited.filter_map(|c| Some((model.coordinate(&c.name)?, c.range))).collect()
     }
 
     /// The two groups of a coordinate that a motor drives; none of one that follows another coordinate.

@@ -22,6 +22,7 @@ use contrapposto::muscle::Musculature;
 
 use crate::adult_text::credited;
 use crate::input_error::InputError;
+use crate::markers::ModelMarker;
 use crate::model_file::{ModelFileError, ModelFormat, read_model, read_model_with};
 use crate::model_ir::{Imported, MuscleTally, RootAttachment};
 use crate::overlay::overlay;
@@ -37,6 +38,10 @@ pub struct SourcedModel {
     pub sex: Option<Sex>,
     /// The size of the built-in adult that the file says it holds.
     pub credited: Option<Adult>,
+    /// Markers and sites of its file.
+    pub markers: Vec<ModelMarker>,
+    /// Coordinates whose range is a hard limit of the file, with it, rad or m.
+    pub hard_limits: Vec<(usize, (f64, f64))>,
     /// The muscles of its file.
     pub muscles: Musculature,
     /// The fate of the file's muscles.
@@ -99,9 +104,10 @@ impl SourcedModel {
         let mut notes = imported.notes;
         notes.splice(0..0, left_out_note(&imported.left_out));
         notes.extend(strength_note(&imported.model, format));
-        let Imported { model, muscles, muscle_tally, left_out, credits, .. } = imported;
+        let Imported { model, markers, hard_limits, muscles, muscle_tally, left_out, credits, .. } = imported;
         let credited = credits.as_deref().and_then(credited);
-        Self { model, muscles, muscle_tally, format, credited, sex: None, origins, left_out, notes }
+        let sex = None;
+        Self { model, markers, hard_limits, muscles, muscle_tally, format, credited, sex, origins, left_out, notes }
     }
 
     /// The model without the strength that its file gives to motors; its notes no longer tell of it. For a model file as it was read.
@@ -137,7 +143,8 @@ impl SourcedModel {
         let (sex, credited, left_out, notes) = (Some(size.sex), None, vec![], vec![]);
         let (muscles, muscle_tally) = (Musculature::default(), MuscleTally::default());
         let format = ModelFormat::Adult;
-        Ok(Self { origins, model, muscles, muscle_tally, format, credited, sex, left_out, notes })
+        let (markers, hard_limits) = (vec![], vec![]);
+        Ok(Self { origins, model, markers, hard_limits, muscles, muscle_tally, format, credited, sex, left_out, notes })
     }
 
     /// Lays the overlay in `bytes` over the model: [`overlay`].

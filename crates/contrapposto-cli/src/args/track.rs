@@ -1,0 +1,59 @@
+//! Arguments of marker tracking.
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use contrapposto_formats::markers::MarkerUnit;
+
+use super::model::ModelArgs;
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  contrapposto track subject.osim walk.trc --out out\n  \
+    contrapposto track subject.osim walk.trc --tasks Setup_IK.xml --out out\n  \
+    contrapposto assess subject.osim out/motion.mot --out report\n\n\
+    The weighted squared distances of the markers, and the weighted squared errors of coordinates with a task, are least in every frame, as in \
+    OpenSim's inverse kinematics. Locked coordinates keep their default, and ranges of clamped ones are hard limits. Writes motion.mot \
+    and marker-errors.sto into DIR.")]
+pub(crate) struct TrackArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Measured markers (.trc).
+    pub(crate) markers: PathBuf,
+    /// OpenSim's IKTaskSet, or the setup file (.xml) that holds one: weights of markers, and coordinates with wanted values. Without it
+    /// every marker that file and model have counts the same.
+    #[arg(long, value_name = "SET.xml")]
+    pub(crate) tasks: Option<PathBuf>,
+    /// Unit of the markers, whatever the file says.
+    #[arg(long, value_enum)]
+    pub(crate) units: Option<UnitChoice>,
+    /// Leave out the frames before this time, s; as the setup file says when left out.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// Leave out the frames after this time, s; as the setup file says when left out.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+}
+
+/// Unit of markers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum UnitChoice {
+    /// Millimetres.
+    Mm,
+    /// Centimetres.
+    Cm,
+    /// Metres.
+    M,
+}
+
+impl UnitChoice {
+    pub(crate) fn unit(self) -> MarkerUnit {
+        match self {
+            Self::Mm => MarkerUnit::Millimetre,
+            Self::Cm => MarkerUnit::Centimetre,
+            Self::M => MarkerUnit::Metre,
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! `contrapposto track`: the motion of a model whose markers lie nearest to measured ones.
+
+mod doubts;
+mod matching;
+
+use contrapposto::model::{CoordinateKind, Model};
+use contrapposto::tracking::{self, TrackedFrame};
+use contrapposto_formats::markers::{Markers, TrackingTasks, read_trc, tracking_tasks};
+use contrapposto_formats::motion::{MOST_TABLE_BYTES, UnwritableTable, write_sto};
+use contrapposto_formats::xml::Limits;
+
+use crate::args::TrackArgs;
+use crate::fail::Fail;
+use crate::input::read;
+use crate::model_file::open;
+use crate::output::{ResultSet, print, print_note};
+use matching::{Matched, Observed, length};
+
+/// The motion that is written.
+const MOTION: &str = "motion.mot";
+/// The errors of its markers.
+const ERRORS: &str = "marker-errors.sto";
+/// Times of a setup file and of a marker file are the same up to this, s: both are rounded to a millisecond.
+const SAME_TIME: f64 = 5e-4;
+
+pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
+    let out = ResultSet::open(&args.out, &[MOTION, ERRORS])?;
+    let opened = open(&args.model, false)?;
+    let model = &opened.model;
+    let name = args.markers.display().to_string();
+    let markers = read_trc(&name, &read(&args.markers, MOST_TABLE_BYTES as u64)?, args.units.map(|unit| unit.unit()))?;
+    let tasks = tasks(args)?;
+    tasks.iter().flat_map(|tasks| &tasks.notes).for_each(|note| print_note("note", note));
+    markers.warnings.iter().for_each(|warning| print_note("warning", warning));
+    let matched = Matched::new(&opened, &markers, tasks.as_ref(), (args, &name))?;
+    matched.warnings.iter().for_each(|warning| print_note("warning", warning));
+    matched.notes.iter().for_each(|note| print_note("note", note));
+    let (times, frames) = frames(args, &name, &markers, &matched, tasks.as_ref())?;
+    let start = model.default_posture();
+    let tracked = tracking::track(model, matched.goals.clone(), &start, frames.iter().map(Vec::as_slice))
+        .map_err(|error| Fail::Refused(format!("{}: {error}", args.model.model.display())))?;
+    for warning in doubts::doubts(model, &matched, markers.unit, (&times, &frames, &tracked)) {
+        print_note("warning", &warning);
+    }
+    let motion = motion(model, &times, &tracked).map_err(|error| Fail::job(MOTION, error))?;
+    let errors = errors(&times, &tracked).map_err(|error| Fail::job(ERRORS, error))?;
+    out.write(&[(MOTION, motion), (ERRORS, errors)])?;
+    print(&answer(&matched, &times, &tracked))?;
+    print(&format!("{} and {ERRORS} beside it\n", out.path(MOTION).display()))
+}
+
+fn tasks(args: &TrackArgs) -> Result<Option<TrackingTasks>, Fail> {
+    let Some(path) = &args.tasks else { return Ok(None) };
+    let bytes = read(path, Limits::default().file_bytes as u64)?;
+    let tasks = tracking_tasks(&path.display().to_string(), &bytes);
+    tasks.map(Some).map_err(|error| Fail::Refused(error.to_string()))
+}
+
+/// Times and places of the frames that are asked for.
+fn frames(
+    args: &TrackArgs,
+    name: &str,
+    markers: &Markers,
+    matched: &Matched,
+    tasks: Option<&TrackingTasks>,
+) -> Result<(Vec<f64>, Vec<Observed>), Fail> {
+    let (first, last) = tasks.and_then(|tasks| tasks.time_range).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let (from, to) = (args.from.unwrap_or(first - SAME_TIME), args.to.unwrap_or(last + SAME_TIME));
+    let rows = markers.times.iter().zip(&markers.places).filter(|(time, _)| (from..=to).contains(time));
+    let place = |row: &Observed| matched.columns.iter().map(|&column| row[column]).collect::<Observed>();
+    let (times, frames): (Vec<f64>, Vec<Observed>) = rows.map(|(time, row)| (*time, place(row))).unzip();
+    let ends = markers.times.first().zip(markers.times.last());
+    match ends {
+        Some((first, last)) if times.is_empty() => Err(Fail::Refused(format!(
+            "{name}: no frame lies between {from} s and {to} s; it goes from {first} s to {last} s"
+        ))),
+        _ if frames.iter().flatten().flatten().next().is_none() => Err(Fail::Refused(format!(
+            "{name}: none of the {} markers that are tracked has a place in any of the {} frames",
+            matched.columns.len(),
+            frames.len()
+        ))),
+        _ => Ok((times, frames)),
+    }
+}
+
+fn motion(model: &Model, times: &[f64], tracked: &[TrackedFrame]) -> Result<String, UnwritableTable> {
+    let columns: Vec<(&str, CoordinateKind)> = model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
+    let rows: Vec<&[f64]> = tracked.iter().map(|frame| frame.posture.values()).collect();
+    write_sto("Coordinates", &columns, true, times, &rows)
+}
+
+/// The table that OpenSim's tool writes.
+fn errors(times: &[f64], tracked: &[TrackedFrame]) -> Result<String, UnwritableTable> {
+    let names = ["total_squared_error", "marker_error_RMS", "marker_error_max"];
+    let columns = names.map(|name| (name, CoordinateKind::Translation));
+    let row = |frame: &TrackedFrame| {
+        let most = frame.largest.map_or(0.0, |(_, error)| error);
+        [frame.total_squared_error, frame.root_mean_square(), most]
+    };
+    let rows: Vec<[f64; 3]> = tracked.iter().map(row).collect();
+    write_sto("Model Marker Errors from IK", &columns, false, times, &rows)
+}
+
+/// The first line.
+fn answer(matched: &Matched, times: &[f64], tracked: &[TrackedFrame]) -> String {
+    let (first, last) = (times[0], times[times.len() - 1]);
+    let frames = match tracked.len() {
+        1 => format!("1 frame at {first} s"),
+        count => format!("{count} frames from {first} s to {last} s"),
+    };
+    let largest = doubts::largest(times, tracked).map_or_else(String::new, |(time, index, error)| {
+        format!(", the largest {} (`{}` at {time} s)", length(error), matched.names[index])
+    });
+    let rms = length(doubts::root_mean_square(tracked));
+    let markers = matched.names.len();
+    format!("Tracked {frames} by {markers} markers: their error is {rms} in the root mean square{largest}.\n")
+}

@@ -1,0 +1,20 @@
+//! Reads measured markers (`.trc`) and the tasks of marker tracking (OpenSim's IKTaskSet).
+
+mod tasks;
+mod trc;
+
+pub use tasks::{CoordinateTask, MarkerTask, TaskFileError, TaskValue, TrackingTasks, tracking_tasks};
+pub use trc::{MarkerUnit, Markers, read_trc};
+
+use nalgebra::Vector3;
+
+/// A marker of a model file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelMarker {
+    /// Unique name.
+    pub name: String,
+    /// Index of the segment that carries it.
+    pub segment: usize,
+    /// Place in the segment's frame, m.
+    pub point: Vector3<f64>,
+}
