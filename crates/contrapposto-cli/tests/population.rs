@@ -88,8 +88,14 @@ fn one_thread_two_threads_and_a_resumption_give_the_same_bytes() {
     };
     let (text, one) = run("one", &["--threads", "1"]);
     assert!(text.contains("Fails first: of women who cannot"), "{text}");
-    assert_eq!(one.len(), 11 + 3, "eleven parts, the results and their manifest");
+    assert_eq!(one.len(), 11 + 4, "eleven parts, the results and their manifest");
     assert!(one == run("two", &["--threads", "2"]).1);
+    // The page has the answer and three pictures, and no script.
+    let page = String::from_utf8(one[Path::new("population.html")].clone()).unwrap().replace('\u{a0}', " ");
+    let first = text.lines().next().unwrap();
+    assert!(page.contains(&format!("<h1>{first}</h1>")), "{first}");
+    assert!(page.matches("<svg").count() == 3 && !page.contains("<script") && page.contains("default-src 'none'"));
+    assert!(page.contains(">right shoulder flexion<") && page.contains(">strength<") && page.contains("ANSUR II"));
     // Two parts are lost, and another one is foreign.
     let rows = out("two").join("rows");
     let names: Vec<PathBuf> = std::fs::read_dir(&rows).unwrap().map(|entry| entry.unwrap().path()).collect();

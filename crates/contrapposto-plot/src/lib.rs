@@ -7,6 +7,7 @@
 //! | Bodies | [`body_figure()`] | one posture from three sides, or several side by side: load colours, contact forces, loads, centre of mass, targets, surfaces and things, the start as a ghost |
 //! | Body with names | [`body_map()`] | joints with their coordinates, frames of segments, patches |
 //! | Greatest forces | [`force_figure()`] | the greatest forces at a point of a body in three sections, coloured by their limits |
+//! | People | [`holding_curve()`], [`bar_chart()`] | the share of people who still hold a posture against time; shares as bars |
 //! | Time line | [`time_line()`] | angle, torques and fatigue of one coordinate against time |
 //!
 //! Every function takes any input without panicking: numbers that are not finite (or beyond 1e9 in size) leave a gap
@@ -20,6 +21,7 @@
 //! file for each picture.
 
 mod axes;
+mod bar_chart;
 mod body;
 mod body_figure;
 mod body_legend;
@@ -33,6 +35,7 @@ mod figure;
 mod font;
 mod force_figure;
 mod geometry;
+mod holding_curve;
 mod outline;
 mod passive_chart;
 mod path;
@@ -45,11 +48,13 @@ mod text;
 mod time_line;
 mod torque_balance;
 
+pub use bar_chart::{BarChart, bar_chart};
 pub use body::{BodyFigure, BodyForce, BodyPart, BodyPosture, BodyThing};
 pub use body_figure::body_figure;
 pub use body_map::{BodyMap, MapFrame, MapJoint, body_map};
 pub use figure::{Figure, PlotError};
 pub use force_figure::{ForceFigure, Spoke, force_figure};
+pub use holding_curve::{HoldingCurve, holding_curve};
 pub use passive_chart::{PassiveChart, passive_curve};
 pub use tags::{PostureSketch, SketchRole};
 pub use time_line::{TimeLine, time_line};

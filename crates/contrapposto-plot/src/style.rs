@@ -140,6 +140,9 @@ pub(crate) const PLUMB_PEN: Pen = Pen::dashed(CENTER, 1.2, 4.0, 3.0);
 pub(crate) const TARGET_PEN: Pen = Pen::solid(EXTERNAL, 2.4);
 pub(crate) const GAZE_PEN: Pen = Pen::dashed(PASSIVE, 1.2, 5.0, 4.0);
 
+/// Curves and bars of groups of people, told apart by colour and dashes.
+pub(crate) const SERIES_PENS: [Pen; 2] = [Pen::solid(LIMITS[3], 2.2), Pen::dashed(LIMITS[4], 2.2, 7.0, 4.0)];
+
 #[cfg(test)]
 mod tests {
     use super::*;

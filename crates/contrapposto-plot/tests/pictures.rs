@@ -1,7 +1,8 @@
 //! Checks the charts: hostile numbers and texts, the same bytes twice, the marks that must be there.
 
 use contrapposto_plot::{
-    Figure, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, passive_curve, time_line, torque_balance,
+    BarChart, Figure, HoldingCurve, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, bar_chart,
+    holding_curve, passive_curve, time_line, torque_balance,
 };
 
 const HOSTILE_TEXT: &str = "<script>alert(\"&'\")</script> $\\frac{a}{b}$ \u{0} \u{ffff} 関節 \u{202e}";
@@ -94,8 +95,48 @@ fn line(xs: &[f64], ys: &[f64], text: &str) -> TimeLine {
     }
 }
 
-fn all_pictures(xs: &[f64], ys: &[f64], text: &str) -> [Figure; 3] {
-    [torque_balance(&[balance(xs, ys, text)]), passive_curve(&passive(xs, ys, text)), time_line(&line(xs, ys, text))]
+fn holding(xs: &[f64], ys: &[f64], text: &str) -> HoldingCurve {
+    HoldingCurve {
+        title: text.to_owned(),
+        subtitle: text.to_owned(),
+        end_min: xs.last().copied().unwrap_or(f64::NAN),
+        groups: [xs, ys, xs].map(|times| (text.to_owned(), times.to_vec())).to_vec(),
+    }
+}
+
+fn bars(xs: &[f64], ys: &[f64], text: &str) -> BarChart {
+    let row = |share: &f64| (text.to_owned(), [&[*share], ys].concat());
+    BarChart {
+        title: text.to_owned(),
+        subtitle: text.to_owned(),
+        series: vec![text.to_owned(); xs.len().min(4)],
+        rows: xs.iter().take(100).map(row).collect(),
+    }
+}
+
+fn all_pictures(xs: &[f64], ys: &[f64], text: &str) -> [Figure; 5] {
+    [
+        torque_balance(&[balance(xs, ys, text)]),
+        passive_curve(&passive(xs, ys, text)),
+        time_line(&line(xs, ys, text)),
+        holding_curve(&holding(xs, ys, text)),
+        bar_chart(&bars(xs, ys, text)),
+    ]
+}
+
+#[test]
+fn bars_are_as_long_as_their_shares_and_a_share_is_written_beside_each() {
+    let chart = BarChart {
+        series: vec!["women".to_owned(), "men".to_owned()],
+        rows: vec![("knee".to_owned(), vec![0.5, 1.0]), ("hip".to_owned(), vec![0.0, f64::NAN])],
+        ..BarChart::default()
+    };
+    let svg = bar_chart(&chart).svg();
+    // A bar of 100 % is 450 px long; the grey ground of a row has that length, too.
+    assert_eq!((count(&svg, "width=\"225\""), count(&svg, "width=\"450\"")), (1, 3));
+    for words in [">50 %<", ">100 %<", ">0 %<", ">unknown<", ">women<", ">men<", ">knee<", ">hip<"] {
+        assert_eq!(count(&svg, words), 1, "{words}");
+    }
 }
 
 fn ramp() -> (Vec<f64>, Vec<f64>) {

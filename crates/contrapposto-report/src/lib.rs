@@ -2,16 +2,18 @@
 //! over time or in a few postures, charts of every joint, and decisions in plain words. The page needs no network, and its content
 //! security policy allows none. Parts of the page about which nothing is known are hidden.
 //!
-//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `skin` (its mesh), `data` (the input of the page's script), `page` (the file). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
+//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `skin` (its mesh), `data` (the input of the page's script), `page` (the file), `document` (a page of words, pictures and tables alone). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
 //!
 //! Every function takes any input without panicking: numbers that are not finite count as 0, lists that are too short as if
 //! their last number went on. The same input gives the same bytes. Texts may come from strangers: they reach the page as text.
 
 mod column;
 mod data;
+mod document;
 mod page;
 mod skin;
 
+pub use document::{Document, Picture, write_document};
 pub use page::write;
 
 /// Everything a page shows. Ground axes: x forward, y up, z to the right; m, s, N, N m, degrees.

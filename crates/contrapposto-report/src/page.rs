@@ -8,7 +8,7 @@ use crate::Report;
 use crate::data::data;
 
 const PAGE: &str = include_str!("../page/page.html");
-const STYLE: &str = include_str!("../page/style.css");
+pub(crate) const STYLE: &str = include_str!("../page/style.css");
 /// In this order they form one script.
 const SCRIPTS: [&str; 8] = [
     include_str!("../page/data.js"),
@@ -68,7 +68,7 @@ fn hash(script: &str) -> String {
 }
 
 /// The text with the characters escaped that begin elements and entities.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

@@ -12,9 +12,10 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::output::{ResultSet, json_text, print};
 use crate::view::population::{Asked, PopulationText};
+use crate::view::report::population::report_of_population;
 use crate::view::text::population::report;
 
-const POPULATION_FILES: [&str; 2] = ["population.json", "population.csv"];
+const POPULATION_FILES: [&str; 3] = ["population.json", "population.csv", "population.html"];
 /// The folder of the parts, inside that of the results.
 const ROWS: &str = "rows";
 /// A file that folders of parts have once they are whole; a population has none, since its results say so.
@@ -36,7 +37,9 @@ pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
     let text = PopulationText::new(&asked, &study, &found, args.seed, files);
     let json = json_text(POPULATION_FILES[0], &text)?;
     if let Some(folder) = &folder {
-        folder.write(&[(POPULATION_FILES[0], json.as_bytes()), (POPULATION_FILES[1], table(&parts).as_bytes())])?;
+        let (table, page) = (table(&parts), report_of_population(&text, &found));
+        let contents = [json.as_bytes(), table.as_bytes(), page.as_bytes()];
+        folder.write(&POPULATION_FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
     }
     print(&if args.json { json } else { report(&text, &found, folder.as_ref()) })
 }

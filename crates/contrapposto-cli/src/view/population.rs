@@ -42,7 +42,7 @@ pub(crate) struct PopulationText {
     pub(crate) men: PeopleText,
     /// `null` of too few bodies, or where no answer differs.
     pub(crate) hangs_on: Option<HangsOnText>,
-    parameters: Vec<ParameterText>,
+    pub(crate) parameters: Vec<ParameterText>,
     /// The rules of counting, and the assumptions, a sentence each.
     pub(crate) notes: Vec<String>,
     files: Vec<String>,
@@ -110,12 +110,12 @@ pub(crate) struct ShareText {
 
 /// A parameter of the plan.
 #[derive(Serialize)]
-struct ParameterText {
-    key: String,
-    women: String,
-    men: String,
-    status: String,
-    source: String,
+pub(crate) struct ParameterText {
+    pub(crate) key: String,
+    pub(crate) women: String,
+    pub(crate) men: String,
+    pub(crate) status: String,
+    pub(crate) source: String,
 }
 
 impl PopulationText {

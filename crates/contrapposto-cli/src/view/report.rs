@@ -6,6 +6,7 @@ pub(crate) mod comparison;
 pub(crate) mod equilibria;
 mod figure;
 mod narrative;
+pub(crate) mod population;
 pub(crate) mod pose;
 pub(crate) mod run;
 

@@ -5,7 +5,8 @@ use contrapposto_sweep::{People, Population, QUANTILES};
 use super::plain_table;
 use crate::output::ResultSet;
 use crate::view::population::PopulationText;
-use crate::view::words::{how_long, percent};
+use crate::view::report::population::time;
+use crate::view::words::percent;
 
 /// The answer, its reasons, a table of women and men, and what is counted how.
 pub(crate) fn report(text: &PopulationText, found: &Population, folder: Option<&ResultSet>) -> String {
@@ -17,7 +18,8 @@ pub(crate) fn report(text: &PopulationText, found: &Population, folder: Option<&
     let reasons: String = text.reasons.iter().map(|reason| format!("{reason}\n")).collect();
     let title = if text.title.is_empty() { String::new() } else { format!("{}\n", text.title) };
     let notes: String = text.notes.iter().map(|note| format!("{note}\n")).collect();
-    let files = folder.map_or(String::new(), |folder| format!("table: {}\n", folder.path("population.csv").display()));
+    let files =
+        folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path("population.html").display()));
     format!("{}\n{reasons}{title}{table}\n{notes}{files}", text.sentence)
 }
 
@@ -26,13 +28,4 @@ fn row(name: &str, people: &People) -> [String; 6] {
     let [p5, p50, p95] = QUANTILES.map(|share| people.quantile(share).map_or("unknown".to_owned(), time));
     let share = people.share().map_or("unknown".to_owned(), percent);
     [name.to_owned(), share, format!("{low} to {high}"), p5, p50, p95]
-}
-
-/// `3.4 min`, `no limit`, `not at all`.
-pub(crate) fn time(minutes: f64) -> String {
-    match minutes {
-        f64::INFINITY => "no limit".to_owned(),
-        0.0 => "not at all".to_owned(),
-        minutes => how_long(60.0 * minutes),
-    }
 }
