@@ -91,10 +91,10 @@ class Objective:
         applied = lambda kind: [t for t in tasks.iter(kind) if t.findtext("apply", "true").strip() == "true"]
         markers = self.model.getMarkerSet()
         known = {markers.get(i).getName() for i in range(markers.getSize())}
-        weights = {t.get("name"): float(t.findtext("weight", "1")) for t in applied("IKMarkerTask")}
+        weights = {t.get("name"): float(t.findtext("weight", "0")) for t in applied("IKMarkerTask")}
         self.markers = [(markers.get(n), names.index(n), w) for n, w in weights.items() if n in known and n in names]
         self.coordinates = [
-            (t.get("name"), float(t.findtext("weight", "1")), self.wanted(t)) for t in applied("IKCoordinateTask")
+            (t.get("name"), float(t.findtext("weight", "0")), self.wanted(t)) for t in applied("IKCoordinateTask")
         ]
 
     def wanted(self, task):

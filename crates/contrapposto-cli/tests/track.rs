@@ -84,6 +84,20 @@ fn trc(read: &SourcedModel, postures: &[Posture], rename: impl Fn(&str) -> Strin
     text + "\n"
 }
 
+/// The places (x, y, z) of a file as (x, -z, y).
+fn z_up(text: &str) -> String {
+    let turned = |(i, line): (usize, &str)| {
+        let cells: Vec<&str> = line.split('\t').collect();
+        if i < 5 {
+            return line.to_owned() + "\n";
+        }
+        let places =
+            cells[2..].chunks_exact(3).map(|p| format!("\t{}\t{}\t{}", p[0], -p[2].parse::<f64>().unwrap(), p[1]));
+        format!("{}\t{}{}\n", cells[0], cells[1], places.collect::<String>())
+    };
+    text.lines().enumerate().map(turned).collect()
+}
+
 struct Bench {
     folder: tempfile::TempDir,
     read: SourcedModel,
@@ -179,6 +193,10 @@ fn units_sides_pairs_names_and_gaps_that_are_wrong_are_told_by_name() {
     let misspelt = bench.track(&plain.replace("R.tibia1", "R.tibbia1"), &[]);
     assert!(misspelt.stderr.contains("the marker `R.tibbia1` of"), "{}", misspelt.stderr);
     assert!(misspelt.stderr.contains("is it `R.tibia1` there?"), "{}", misspelt.stderr);
+    // The same walk in a laboratory whose z axis points up.
+    let upright = bench.track(&z_up(&plain), &[]);
+    assert!(upright.stderr.contains("the body lies in 12 of 12 frames"), "{}", upright.stderr);
+    assert!(upright.stdout.contains("0.00 mm"), "{}", upright.stdout);
     let gap = plain.lines().enumerate().map(|(i, line)| {
         let mut cells: Vec<&str> = line.split('\t').collect();
         if i == 7 {
@@ -196,8 +214,12 @@ fn tasks_choose_weights_and_values_and_refusals_have_places() {
     let bench = Bench::new();
     let plain = trc(&bench.read, &bench.walk, str::to_owned);
     let setup = |coordinate: &str| {
-        let markers: String =
-            bench.read.markers.iter().map(|m| format!("<IKMarkerTask name=\"{}\"/>", m.name)).collect();
+        let markers: String = bench
+            .read
+            .markers
+            .iter()
+            .map(|m| format!("<IKMarkerTask name=\"{}\"><weight>1</weight></IKMarkerTask>", m.name))
+            .collect();
         format!(
             "<OpenSimDocument><InverseKinematicsTool><IKTaskSet><objects>{markers}\n<IKCoordinateTask name=\"{coordinate}\">\
              <weight>1e6</weight><value_type>manual_value</value_type><value>0.5</value></IKCoordinateTask></objects></IKTaskSet>\
@@ -232,7 +254,10 @@ fn tasks_choose_weights_and_values_and_refusals_have_places() {
     let said = refused(&["track", "adult", &trc, "--out", &bench.out()]);
     assert!(said.contains("adult: holds no markers"), "{said}");
     let said = refused(&["track", &bench.model, &trc, "--from", "9", "--out", &bench.out()]);
-    assert!(said.contains("no frame lies between 9 s and"), "{said}");
+    assert!(said.contains("no frame lies in the time that is asked for (from 9 s)"), "{said}");
+    let weightless = write(bench.folder.path(), "none.xml", &setup("elbow_flex_r").replace("<weight>1</weight>", ""));
+    let said = refused(&["track", &bench.model, &trc, "--tasks", &weightless, "--out", &bench.out()]);
+    assert!(said.contains("all 36 markers that are in both files have the weight 0"), "{said}");
     let strangers = write(
         bench.folder.path(),
         "strangers.trc",

@@ -39,6 +39,9 @@ fn units_gaps_and_names_of_a_file_are_read() {
     assert_eq!(read.places[0][0], Some(first));
     assert_eq!((read.places[1][0], read.places[1][1], read.places[2][1]), (None, None, None));
     assert_eq!(read.warnings, ["walk.trc: 1 places of markers are 0, 0, 0, which are read as gaps"]);
+    // An empty cell of the header does not move the others.
+    let empty = read_trc("walk.trc", WALK.replace("60.00\t60.00\t", "60.00\t\t").as_bytes(), None).unwrap();
+    assert_eq!(empty, read);
     let metres = read_trc("walk.trc", WALK.as_bytes(), Some(MarkerUnit::Metre)).unwrap();
     assert_eq!(metres.places[0][0], Some(first * 1e3));
     for (unit, length) in [("cm", 1e-2), ("m", 1.0), ("Meters", 1.0), ("millimeters", 1e-3)] {
@@ -53,6 +56,13 @@ fn files_with_blanks_in_place_of_tabs_and_other_line_ends_are_read() {
     let plain = read_trc("walk.trc", dense.as_bytes(), None).unwrap();
     let spaced = read_trc("walk.trc", dense.replace('\t', "   ").as_bytes(), None).unwrap();
     assert_eq!((&plain.names, &plain.places), (&spaced.names, &spaced.places));
+    // A marker that is left out of a row would give its place to the next one.
+    let short = WALK.replace('\t', "   ");
+    let (said, line) = refused(&short);
+    assert!(
+        said.contains("the row has 3 places of markers, its 2 markers need 6") && line == Some(8),
+        "{line:?} {said}"
+    );
     let windows = read_trc("walk.trc", format!("\u{feff}{}", dense.replace('\n', "\r\n")).as_bytes(), None).unwrap();
     assert_eq!(plain, windows);
 }
@@ -92,7 +102,7 @@ fn faults_are_refused_with_their_place() {
 }
 
 const SETUP: &str = "<OpenSimDocument Version=\"30000\"><InverseKinematicsTool name=\"walk\">\
-    <constraint_weight>20</constraint_weight>\
+    <constraint_weight>20</constraint_weight><marker_file>walk.trc</marker_file>\
     <IKTaskSet><objects>\
     <IKMarkerTask name=\"R.ASIS\"><apply>true</apply><weight> 10 </weight></IKMarkerTask>\
     <IKMarkerTask name=\"L.ASIS\"/>\
@@ -105,11 +115,13 @@ const SETUP: &str = "<OpenSimDocument Version=\"30000\"><InverseKinematicsTool n
 fn tasks_of_a_setup_file_and_of_a_set_alone_are_read() {
     let read = tracking_tasks("setup.xml", SETUP.as_bytes()).unwrap();
     let markers: Vec<(&str, f64)> = read.markers.iter().map(|task| (task.name.as_str(), task.weight)).collect();
-    assert_eq!(markers, [("R.ASIS", 10.0), ("L.ASIS", 1.0)]);
+    // OpenSim 4.6: `IKMarkerTask().getWeight()` and `IKCoordinateTask().getWeight()` are 0.
+    assert_eq!(markers, [("R.ASIS", 10.0), ("L.ASIS", 0.0)]);
+    assert_eq!(read.weightless, ["L.ASIS", "hip"]);
     let coordinates: Vec<_> =
         read.coordinates.iter().map(|task| (task.name.as_str(), task.weight, task.value)).collect();
-    assert_eq!(coordinates, [("knee", 1000.0, TaskValue::Default), ("hip", 1.0, TaskValue::Manual(0.25))]);
-    assert_eq!((read.time_range, read.notes.len()), (Some((0.5, 2.5)), 1));
+    assert_eq!(coordinates, [("knee", 1000.0, TaskValue::Default), ("hip", 0.0, TaskValue::Manual(0.25))]);
+    assert_eq!((read.time_range, read.notes.len()), (Some((0.5, 2.5)), 2), "{:?}", read.notes);
     let from = SETUP.find("<IKTaskSet>").unwrap();
     let set = &SETUP[from..SETUP.find("<time_range>").unwrap()];
     for text in [set.to_owned(), format!("<OpenSimDocument>{set}</OpenSimDocument>")] {
@@ -156,6 +168,18 @@ fn markers_and_clamped_ranges_of_both_forms_of_models_are_kept() {
         let clamped = text.matches("<clamped>true</clamped>").count();
         assert_eq!(read.hard_limits.len(), clamped, "{name}");
     }
+}
+
+#[test]
+fn the_range_of_an_overlay_is_the_limit_of_a_clamped_coordinate() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/joints_4x.osim");
+    let read = SourcedModel::read("j.osim", &std::fs::read(path).unwrap(), None, &mut |_| Err(String::new())).unwrap();
+    let pin = read.model.coordinate("pin_angle").unwrap();
+    let limit = |read: &SourcedModel| read.hard_limits.iter().find(|limit| limit.0 == pin).unwrap().1;
+    assert_eq!(limit(&read), (-1.5, 2.0));
+    let overlay = "[coordinates.pin_angle]\nrange_deg = [-45, 90]\n";
+    let (low, high) = limit(&read.lay_over("o.toml", overlay.as_bytes()).unwrap());
+    assert!((low.to_degrees() + 45.0).abs() < 1e-12 && (high.to_degrees() - 90.0).abs() < 1e-12, "{low} {high}");
 }
 
 /// A text with a few bytes or lines changed.

@@ -203,6 +203,52 @@ fn bodies_that_face_another_way_are_found() {
     }
 }
 
+/// Two markers say little of the way that a body faces; the first frame with more of them decides, also after a pause.
+#[test]
+fn a_body_that_enters_turned_away_is_found() {
+    let model = adult(&Adult::default()).unwrap();
+    let mut rng = random();
+    let goals = Goals { markers: markers(&model, &mut rng), ..Goals::default() };
+    let rotation = model.coordinate("pelvis_rotation").unwrap();
+    let mut posture = inside(&mut rng, &model);
+    posture.values_mut()[rotation] = 3.0;
+    let whole = places(&model, &goals, &posture);
+    posture.values_mut()[rotation] = 0.1;
+    let back = places(&model, &goals, &posture);
+    let few = |all: &Places| -> Places { all.iter().enumerate().map(|(i, place)| place.filter(|_| i < 2)).collect() };
+    let (few, nothing) = (few(&whole), vec![None; goals.markers.len()]);
+    let frames: [&[_]; 5] = [&few, &whole, &nothing, &nothing, &back];
+    let answers = track(&model, goals.clone(), &model.default_posture(), frames).unwrap();
+    for (frame, answer) in answers.iter().enumerate() {
+        let error = answer.root_mean_square();
+        assert!(answer.solved.converged && error < 1e-8, "frame {frame}: {error} m, {:?}", answer.solved);
+    }
+}
+
+/// A marker on the axis of a joint tells nothing of it: its change there is rounding, which is no direction that is left to go.
+#[test]
+fn a_marker_at_the_centre_of_a_joint_leaves_the_joint_solved() {
+    let model = two_links();
+    let marker = |segment, point| MarkerGoal { segment, point, weight: 1.0 };
+    // In the frame of the lower link the joint is at (1e-17, 0, 0) by rounding.
+    let goals = Goals { markers: vec![marker(0, V::x() * 0.3), marker(1, V::x() * 1e-17)], ..Goals::default() };
+    let observed: Places = vec![Some(V::new(0.2, 0.3, 0.05)), Some(V::new(0.3, 0.35, -0.02))];
+    let answer = track(&model, goals, &model.default_posture(), [observed.as_slice()]).unwrap();
+    assert!(answer[0].solved.converged && answer[0].root_mean_square() > 0.02, "{:?}", answer[0].solved);
+}
+
+/// Markers whose errors are reported only move nothing, and wanted values move no body that is not seen.
+#[test]
+fn markers_without_a_weight_move_nothing() {
+    let model = two_links();
+    let marker = MarkerGoal { segment: 1, point: V::x(), weight: 0.0 };
+    let wanted = CoordinateGoal { coordinate: 0, value: 1.0, weight: 1.0 };
+    let goals = Goals { markers: vec![marker], coordinates: vec![wanted], ..Goals::default() };
+    let observed: Places = vec![Some(V::new(0.5, 0.5, 0.0))];
+    let answer = track(&model, goals, &model.default_posture(), [observed.as_slice()]).unwrap();
+    assert_eq!((&answer[0].posture, answer[0].seen), (&model.default_posture(), 1));
+}
+
 #[test]
 fn a_frame_without_markers_keeps_the_posture_and_all_is_deterministic() {
     let model = adult(&Adult::default()).unwrap();

@@ -22,6 +22,8 @@ const MOTION: &str = "motion.mot";
 const ERRORS: &str = "marker-errors.sto";
 /// Times of a setup file and of a marker file are the same up to this, s: both are rounded to a millisecond.
 const SAME_TIME: f64 = 5e-4;
+/// Most values of the motion that is written: `assess` and `torques` read tables of 64 MiB.
+const MOST_VALUES: usize = 3_000_000;
 
 pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let out = ResultSet::open(&args.out, &[MOTION, ERRORS])?;
@@ -35,7 +37,7 @@ pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let matched = Matched::new(&opened, &markers, tasks.as_ref(), (args, &name))?;
     matched.warnings.iter().for_each(|warning| print_note("warning", warning));
     matched.notes.iter().for_each(|note| print_note("note", note));
-    let (times, frames) = frames(args, &name, &markers, &matched, tasks.as_ref())?;
+    let (times, frames) = frames(args, &name, &markers, (&matched, model.coordinates().len()), tasks.as_ref())?;
     let start = model.default_posture();
     let tracked = tracking::track(model, matched.goals.clone(), &start, frames.iter().map(Vec::as_slice))
         .map_err(|error| Fail::Refused(format!("{}: {error}", args.model.model.display())))?;
@@ -61,10 +63,11 @@ fn frames(
     args: &TrackArgs,
     name: &str,
     markers: &Markers,
-    matched: &Matched,
+    (matched, coordinates): (&Matched, usize),
     tasks: Option<&TrackingTasks>,
 ) -> Result<(Vec<f64>, Vec<Observed>), Fail> {
-    let (first, last) = tasks.and_then(|tasks| tasks.time_range).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let limits = tasks.and_then(|tasks| tasks.time_range);
+    let (first, last) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let (from, to) = (args.from.unwrap_or(first - SAME_TIME), args.to.unwrap_or(last + SAME_TIME));
     let rows = markers.times.iter().zip(&markers.places).filter(|(time, _)| (from..=to).contains(time));
     let place = |row: &Observed| matched.columns.iter().map(|&column| row[column]).collect::<Observed>();
@@ -72,14 +75,29 @@ fn frames(
     let ends = markers.times.first().zip(markers.times.last());
     match ends {
         Some((first, last)) if times.is_empty() => Err(Fail::Refused(format!(
-            "{name}: no frame lies between {from} s and {to} s; it goes from {first} s to {last} s"
+            "{name}: no frame lies in the time that is asked for ({}); it goes from {first} s to {last} s",
+            asked(args.from.or(limits.map(|limits| limits.0)), args.to.or(limits.map(|limits| limits.1)))
         ))),
         _ if frames.iter().flatten().flatten().next().is_none() => Err(Fail::Refused(format!(
             "{name}: none of the {} markers that are tracked has a place in any of the {} frames",
             matched.columns.len(),
             frames.len()
         ))),
+        _ if frames.len().saturating_mul(coordinates) > MOST_VALUES => Err(Fail::Refused(format!(
+            "{name}: {} frames of {coordinates} coordinates are more than {MOST_VALUES} values; take a part of them with --from and --to",
+            frames.len()
+        ))),
         _ => Ok((times, frames)),
+    }
+}
+
+/// `from 1 s`, `up to 2 s`, `from 1 s to 2 s`.
+fn asked(from: Option<f64>, to: Option<f64>) -> String {
+    match (from, to) {
+        (Some(from), Some(to)) => format!("from {from} s to {to} s"),
+        (Some(from), None) => format!("from {from} s"),
+        (None, Some(to)) => format!("up to {to} s"),
+        (None, None) => "all of the file".to_owned(),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::xml::{self, Limits, Node, Position, XmlError};
 pub struct MarkerTask {
     /// Name of the marker.
     pub name: String,
-    /// Weight of its squared distance.
+    /// Weight of its squared distance; 0 where the file gives none.
     pub weight: f64,
     /// Place in the file.
     pub place: Position,
@@ -42,6 +42,8 @@ pub struct TrackingTasks {
     pub markers: Vec<MarkerTask>,
     /// Coordinates.
     pub coordinates: Vec<CoordinateTask>,
+    /// Names of tasks without a weight, which is 0 then, as in OpenSim.
+    pub weightless: Vec<String>,
     /// First and last time of a setup file, s; infinite where it has none.
     pub time_range: Option<(f64, f64)>,
     /// Things of the file that are done otherwise here, a sentence each.
@@ -97,6 +99,13 @@ pub fn tracking_tasks(file: &str, bytes: &[u8]) -> Result<TrackingTasks, TaskFil
         reader.task(node, &mut tasks)?;
     }
     if let Some(tool) = tool {
+        for element in ["model_file", "marker_file"] {
+            if let Some(named) = text(tool, element) {
+                let named = xml::shorten(&named);
+                let said = "is not used: model and markers are those of the command line";
+                tasks.notes.push(format!("{file}: <{element}> {named} {said}"));
+            }
+        }
         tasks.time_range = reader.time_range(tool)?;
         let weight = text(tool, "constraint_weight").map(|weight| weight.to_ascii_lowercase());
         if weight.is_some_and(|weight| weight.parse::<f64>().is_ok_and(f64::is_finite)) {
@@ -136,7 +145,12 @@ impl Reader<'_> {
         if taken {
             return Err(self.error(node, format!("two tasks are named `{name}`; each may stand once")));
         }
-        let weight = self.number(node, "weight")?.unwrap_or(1.0);
+        // OpenSim's own default: such a task pulls at nothing.
+        let given = self.number(node, "weight")?;
+        let weight = given.unwrap_or(0.0);
+        if given.is_none() {
+            tasks.weightless.push(name.clone());
+        }
         if !(0.0..=1e12).contains(&weight) {
             let problem = format!("`{name}`: the weight is {weight}; it must be between 0 and 1e12");
             return Err(self.error(node, problem));

@@ -166,7 +166,12 @@ impl<'a> File<'a> {
         let keys =
             lines.iter().position(|line| line.1.split_whitespace().any(|word| word == "Units" || word == "NumMarkers"));
         let Some((keys, values)) = keys.and_then(|at| Some((lines[at], *lines.get(at + 1)?))) else { return header };
-        for (key, value) in keys.1.split_whitespace().zip(values.1.split_whitespace()) {
+        let by_tabs = |line: &'a str| line.split('\t').map(trimmed).collect::<Vec<_>>();
+        let by_blanks = |line: &'a str| line.split_whitespace().collect::<Vec<_>>();
+        // Cells apart by tabs may be empty; where keys and values are not apart alike, blanks tell them.
+        let tabs = keys.1.contains('\t') && by_tabs(keys.1).len() == by_tabs(values.1).len();
+        let pairs = if tabs { [keys.1, values.1].map(by_tabs) } else { [keys.1, values.1].map(by_blanks) };
+        for (&key, &value) in pairs[0].iter().zip(&pairs[1]).filter(|(_, value)| !value.is_empty()) {
             let count = || value.parse().ok().map(|count| (count, values.0));
             match key {
                 "Units" => header.unit = Some(value),
@@ -279,7 +284,14 @@ impl<'a> Rows<'_, 'a> {
             let help = "decimals need a point; every marker needs a name".to_owned();
             return Err(file.error(more, message, Some(help)));
         }
-        if found < 3 * self.columns.len() {
+        let needed = 3 * self.columns.len();
+        if found < needed && !file.tabs {
+            // Which marker is missing cannot be told: all that follow it stand under other names.
+            let message = format!("the row has {found} places of markers, its {} markers need {needed}", needed / 3);
+            let help = "in a file whose cells are apart by blanks a gap must be NaN".to_owned();
+            return Err(file.error(line.1, message, Some(help)));
+        }
+        if found < needed {
             self.ragged.get_or_insert(line.0 + 1);
         }
         self.times.push(time);

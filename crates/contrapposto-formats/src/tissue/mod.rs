@@ -154,6 +154,10 @@ impl SourcedModel {
     pub fn lay_over(mut self, name: &str, bytes: &[u8]) -> Result<Self, InputError> {
         let laid = overlay(name, bytes, self.model)?;
         for change in laid.changes {
+            let limit = self.hard_limits.iter_mut().find(|(index, _)| *index == change.coordinate && change.range);
+            if let Some((index, range)) = limit {
+                *range = laid.model.coordinates()[*index].range;
+            }
             let origins = &mut self.origins[change.coordinate];
             for (changed, origin) in [
                 (change.range, &mut origins.range),

@@ -42,8 +42,12 @@ pub enum TrackingError {
     Posture(#[from] PostureError),
 }
 
-/// Tracks frames, each given by the places of all markers of the goals (m, ground; `None` for a gap). A frame without a marker keeps the
-/// posture of the one before, but for wanted values of coordinates; the first frame with one begins at `start` ([`first_posture`]).
+/// Markers with weights that tell which way a body faces: fewer of them fit it turned, too.
+const ENOUGH_MARKERS: usize = 4;
+
+/// Tracks frames, each given by the places of all markers of the goals (m, ground; `None` for a gap). A frame without a marker that has a
+/// weight keeps the posture of the one before. The body is sought in other directions, too ([`first_posture`]), in the first frame with
+/// markers, in the first one with four of them, and in such frames after one without a marker.
 ///
 /// # Errors
 /// [`TrackingError`] when goals or start do not fit the model.
@@ -56,16 +60,21 @@ pub fn track<'f>(
     start: &Posture,
     frames: impl IntoIterator<Item = &'f [Option<Vector3<f64>>]>,
 ) -> Result<Vec<TrackedFrame>, TrackingError> {
+    let weighted: Vec<bool> = goals.markers.iter().map(|marker| marker.weight > 0.0).collect();
     let mut tracker = Tracker::new(model, goals)?;
     let mut posture = start.clone();
     let mut tracked = vec![];
-    let mut begun = false;
+    let (mut begun, mut sure) = (false, false);
     for observed in frames {
         let seen = observed.iter().flatten().count();
-        let solved = if seen > 0 && !begun {
-            begun = true;
-            let (first, solved) = first_posture(&mut tracker, model, start, observed)?;
+        let pulling = observed.iter().zip(&weighted).filter(|(place, weighted)| place.is_some() && **weighted).count();
+        let solved = if pulling == 0 {
+            (begun, sure) = (false, false);
+            tracker.stay(model, &posture, observed)?
+        } else if !begun || (!sure && pulling >= ENOUGH_MARKERS) {
+            let (first, solved) = first_posture(&mut tracker, model, &posture, observed)?;
             posture = first;
+            (begun, sure) = (true, pulling >= ENOUGH_MARKERS);
             solved
         } else {
             tracker.solve(model, &mut posture, observed)?

@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::tolerances::{BETTER_START, TURNED_STARTS_FROM};
+use super::tolerances::{BETTER_START, SAME_TURN, TURNED_STARTS_FROM};
 use super::tracker::{Solved, Tracker};
 use crate::model::{CoordinateKind, Model};
 use crate::posture::{Posture, PostureError};
@@ -22,9 +22,10 @@ pub fn first_posture(
 ) -> Result<(Posture, Solved), PostureError> {
     let mut best = start.clone();
     let mut solved = tracker.solve(model, &mut best, observed)?;
-    let squares = tracker.errors().flatten().map(|error| error * error);
-    let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
-    if count == 0.0 || f64::sqrt(sum / count) < TURNED_STARTS_FROM {
+    let weights = tracker.goals().markers.iter().map(|marker| marker.weight);
+    let pulls = weights.zip(tracker.errors()).filter_map(|(weight, error)| Some((weight, error?)));
+    let (sum, all) = pulls.fold((0.0, 0.0), |(sum, all), (weight, error)| (sum + weight * error * error, all + weight));
+    if all == 0.0 || f64::sqrt(sum / all) < TURNED_STARTS_FROM {
         return Ok((best, solved));
     }
     for turned in turned_roots(tracker, model, start) {
@@ -48,14 +49,22 @@ fn turned_roots(tracker: &Tracker, model: &Model, start: &Posture) -> Vec<Postur
     let angles: Vec<usize> = of_kind(CoordinateKind::Rotation).take(3).collect();
     let ball = of_kind(CoordinateKind::Quaternion).next();
     let axes = if ball.is_some() { 3 } else { angles.len() };
-    let mut turned = vec![];
+    let mut turned: Vec<Posture> = vec![];
+    let mut tried = vec![UnitQuaternion::identity()];
     for choice in 1..4_usize.pow(axes as u32) {
         let quarter = |axis: usize| ((choice / 4_usize.pow(axis as u32)) % 4) as f64 * FRAC_PI_2;
         let mut posture = start.clone();
         let values = posture.values_mut();
         match ball {
             Some(first) => {
-                let q = UnitQuaternion::from_euler_angles(quarter(0), quarter(1), quarter(2));
+                let turn = UnitQuaternion::from_euler_angles(quarter(0), quarter(1), quarter(2));
+                // Of the 64 choices 24 are different.
+                if tried.iter().any(|other| other.angle_to(&turn) < SAME_TURN) {
+                    continue;
+                }
+                tried.push(turn);
+                let [w, i, j, k] = [0, 1, 2, 3].map(|part| values[first + part]);
+                let q = turn * UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k));
                 values[first..first + 4].copy_from_slice(&[q.w, q.i, q.j, q.k]);
             }
             None => angles.iter().enumerate().for_each(|(axis, &c)| values[c] += signed(quarter(axis))),

@@ -3,6 +3,8 @@
 /// First-order optimality from which on a frame is solved: the greatest cosine between the weighted residual and its change along a
 /// coordinate.
 pub(super) const OPTIMALITY: f64 = 1e-8;
+/// Change of all markers along a coordinate, as a share of the greatest one, that is rounding: markers on the axis of a joint.
+pub(super) const NO_CHANGE: f64 = 1e-10;
 /// Decrease of the objective that the next step predicts, as a share of it, below which a frame is solved.
 pub(super) const PREDICTED_DECREASE: f64 = 1e-10;
 /// Weighted residual, m, below which residuals count as this one: positions have no more digits.
@@ -33,3 +35,5 @@ pub(super) const NO_MULTIPLIER: f64 = 1e-13;
 pub(super) const TURNED_STARTS_FROM: f64 = 0.03;
 /// Share of the objective that another start must save to be taken.
 pub(super) const BETTER_START: f64 = 0.99;
+/// Angle between two turns of the body, rad, below which they are one.
+pub(super) const SAME_TURN: f64 = 1e-6;

@@ -7,7 +7,7 @@ use super::limited_step::LimitedStep;
 use super::objective::Objective;
 use super::tolerances::{
     ACCEPTED_DECREASE, DAMPING_FACTOR, FIRST_DAMPING, GOOD_DECREASE, LEAST_DAMPING, LEAST_DIAGONAL, LEAST_RESIDUAL,
-    LONGEST_TURN, MOST_DAMPING, MOST_STEPS_A_FRAME, OPTIMALITY, PREDICTED_DECREASE, ROUNDED_CHANGE,
+    LONGEST_TURN, MOST_DAMPING, MOST_STEPS_A_FRAME, NO_CHANGE, OPTIMALITY, PREDICTED_DECREASE, ROUNDED_CHANGE,
 };
 use crate::model::Model;
 use crate::posture::{Part, Posture, PostureError, parts};
@@ -131,6 +131,26 @@ impl Tracker {
         Ok(Solved { objective, optimality, steps, converged: optimality <= OPTIMALITY })
     }
 
+    /// The answer of a frame that keeps its posture. Does not allocate.
+    ///
+    /// # Errors
+    /// [`PostureError`] when the posture does not fit the model.
+    ///
+    /// # Panics
+    /// Unless there is one observation a marker.
+    pub fn stay(
+        &mut self,
+        model: &Model,
+        posture: &Posture,
+        observed: &[Option<Vector3<f64>>],
+    ) -> Result<Solved, PostureError> {
+        assert_eq!(observed.len(), self.goals.markers.len(), "one observation a marker");
+        posture.check(model)?;
+        self.objective.observe(&self.goals, observed);
+        let objective = self.objective.evaluate(model, &self.goals, posture, observed)?;
+        Ok(Solved { objective, optimality: 0.0, steps: 0, converged: true })
+    }
+
     /// Error of each marker in the posture of the last frame, m; `None` for gaps.
     pub fn errors(&self) -> impl Iterator<Item = Option<f64>> {
         self.objective.errors.iter().map(|error| error.map(|error| error.norm()))
@@ -148,7 +168,11 @@ impl Tracker {
         let before = self.objective.value;
         let at_end = self.optimality() <= OPTIMALITY;
         while *steps < MOST_STEPS_A_FRAME && *damping <= MOST_DAMPING {
-            let predicted = self.quadratic_step(*damping);
+            let Some(predicted) = self.quadratic_step(*damping) else {
+                *steps += 1;
+                *damping = (*damping * DAMPING_FACTOR).max(FIRST_DAMPING);
+                continue;
+            };
             if predicted <= 0.0 || (at_end && predicted <= PREDICTED_DECREASE * before) {
                 return Ok(Move::Done);
             }
@@ -176,15 +200,15 @@ impl Tracker {
         Ok(Move::Last)
     }
 
-    /// The step to the least point of the damped quadratic function; answers the predicted decrease.
-    fn quadratic_step(&mut self, damping: f64) -> f64 {
+    /// The step to the least point of the damped quadratic function; answers the predicted decrease, `None` where the matrix is singular.
+    fn quadratic_step(&mut self, damping: f64) -> Option<f64> {
         self.fill_matrix(damping, 1.0);
         let objective = &self.objective;
         if let Some(predicted) = self.quadratic.solve(&self.matrix, &objective.gradient, &self.room) {
-            return predicted;
+            return Some(predicted);
         }
         self.fill_matrix(damping, 0.0);
-        self.quadratic.solve(&self.matrix, &self.objective.gradient, &self.room).unwrap_or(0.0)
+        self.quadratic.solve(&self.matrix, &self.objective.gradient, &self.room)
     }
 
     /// `J^T W J + share curvature + damping`.
@@ -235,12 +259,13 @@ impl Tracker {
     fn optimality(&self) -> f64 {
         let n = self.objective.free.len();
         let residual = (2.0 * self.objective.value).sqrt().max(LEAST_RESIDUAL);
+        let change = |i: usize| self.objective.matrix[i * n + i].sqrt();
+        let greatest = (0..n).map(change).fold(0.0, f64::max);
         let mut worst: f64 = 0.0;
         for (i, (slope, (low, high))) in self.objective.gradient.iter().zip(&self.room).enumerate() {
             let held = (*low >= 0.0 && *slope >= 0.0) || (*high <= 0.0 && *slope <= 0.0);
-            let change = self.objective.matrix[i * n + i].sqrt();
-            if !held && change > 0.0 {
-                worst = worst.max(slope.abs() / (change * residual));
+            if !held && change(i) > NO_CHANGE * greatest {
+                worst = worst.max(slope.abs() / (change(i) * residual));
             }
         }
         worst

@@ -1,5 +1,6 @@
 //! Warnings about a tracked motion: units, sides that are swapped, gaps, frames that are not solved.
 
+use contrapposto::assessment::NEARLY_ALL;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::tracking::{Goals, TrackedFrame, track};
@@ -14,6 +15,8 @@ const OTHER_UNIT: f64 = 5.0;
 const LOST_MARKER: f64 = 0.5;
 /// Root mean square of all errors, m, from which on left and right are swapped for a trial.
 const DOUBTFUL: f64 = 0.03;
+/// cos 60 deg. A root that is turned farther from its default direction against gravity lies (assumed).
+const LYING: f64 = 0.5;
 /// Number of frames of the trial.
 const TRIALS: usize = 3;
 /// Share of the error that is left when names that were swapped are swapped back: half of the root mean square.
@@ -31,6 +34,7 @@ pub(crate) fn doubts(model: &Model, matched: &Matched, unit: MarkerUnit, motion:
         warnings.extend(swapped_pairs(model, matched, motion));
         warnings.extend(far(matched, motion));
     }
+    warnings.extend(lying(model, motion));
     warnings.extend(gaps(matched, motion));
     let open = motion.2.iter().filter(|frame| !frame.solved.converged).count();
     if open > 0 {
@@ -157,6 +161,32 @@ fn far(matched: &Matched, (times, _, tracked): Motion<'_>) -> Option<String> {
             length(error)
         )
     })
+}
+
+/// The warning about a body that lies in nearly all frames: markers of a laboratory whose z axis points up turn the whole body.
+fn lying(model: &Model, (_, _, tracked): Motion<'_>) -> Option<String> {
+    let up = (-model.gravity()).try_normalize(1e-9)?;
+    let root = model.segments().iter().position(|segment| segment.parent.is_none())?;
+    let mut body = Kinematics::new(model);
+    let carried = body.placement(model, root).rotation.inverse() * up;
+    let is_lying = |frame: &&TrackedFrame| {
+        body.update(model, &frame.posture).is_ok() && (body.placement(model, root).rotation * carried).dot(&up) < LYING
+    };
+    let count = tracked.iter().filter(is_lying).count();
+    (count as f64 >= NEARLY_ALL * tracked.len() as f64 && count > 0).then(|| {
+        format!(
+            "the body lies in {count} of {} frames; does the vertical axis of the markers point along z? Gravity acts along {}: turn the \
+             markers first",
+            tracked.len(),
+            axis_of(&-up)
+        )
+    })
+}
+
+/// `-y`: the axis nearest to a direction.
+fn axis_of(direction: &Vector3<f64>) -> String {
+    let axis = direction.iamax();
+    format!("{}{}", if direction[axis] < 0.0 { "-" } else { "+" }, ["x", "y", "z"][axis])
 }
 
 /// Numbers of gaps, and of frames without a marker.

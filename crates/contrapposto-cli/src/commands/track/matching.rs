@@ -64,6 +64,18 @@ impl Matched {
             let why = format!("no marker{tasks} is in both files; {shown} has {model}, {name} has {file}");
             return Err(Fail::Refused(format!("{name}: {why}")));
         }
+        if matched.goals.markers.iter().all(|marker| marker.weight == 0.0) {
+            let count = matched.names.len();
+            let why = format!(
+                "all {count} markers that are in both files have the weight 0 in the tasks; one must have more"
+            );
+            return Err(Fail::Refused(format!("{name}: {why}")));
+        }
+        let weightless = tasks.map_or(&[][..], |tasks| &tasks.weightless);
+        if !weightless.is_empty() {
+            let list = listed(&weightless.iter().map(String::as_str).collect::<Vec<_>>());
+            matched.warnings.push(format!("{} tasks give no weight, which is 0: {list}", weightless.len()));
+        }
         matched.compare(&of_model, &of_file, tasks, (&shown, name));
         matched.coordinate_goals(&opened.model, tasks, args)?;
         matched.goals.limits.clone_from(&opened.hard_limits);
@@ -135,6 +147,7 @@ pub(crate) fn listed(names: &[&str]) -> String {
 pub(crate) fn length(metres: f64) -> String {
     match metres {
         m if m < 1e-3 => format!("{:.2} mm", 1e3 * m),
+        m if m < 0.1 => format!("{:.1} mm", 1e3 * m),
         m if m < 1.0 => format!("{:.1} cm", 1e2 * m),
         m => format!("{m:.1} m"),
     }
