@@ -315,6 +315,15 @@ fn a_change_that_ends_one_of_two_hazards_for_a_shorter_time_says_both() {
         let words = one(hazards, seconds).in_words(&before);
         assert!(words.ends_with(end), "{words}");
     }
+    // Also where the time before has a limit of its own.
+    let limited = Verdict { seconds: Some(120.0), ..before };
+    let words = one(0, Some(102.0)).in_words(&limited);
+    assert!(
+        words.contains("instead of 2.0") && words.ends_with("without ligaments in hazard, but for a shorter time"),
+        "{words}"
+    );
+    let words = one(0, Some(180.0)).in_words(&limited);
+    assert!(words.ends_with("without ligaments in hazard"), "{words}");
 }
 
 /// The load, the place and the strategy that a change starts from stand beside those that it leads to.

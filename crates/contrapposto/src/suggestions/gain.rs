@@ -18,8 +18,8 @@ impl Suggestion {
     /// people: 8.1 min instead of 3.9 min)`; beside the verdict on the job without the change.
     pub fn in_words(&self, before: &Verdict) -> String {
         let (change, gain) = (&self.change, self.gain(before));
-        // A shorter time stands beside the one before, but where that is no limit.
-        let shorter = limit(self.seconds).is_some() && limit(before.seconds).is_none();
+        let last = |seconds: Option<f64>| seconds.filter(|seconds| *seconds < A_DAY).unwrap_or(f64::INFINITY);
+        let shorter = last(self.seconds) < last(before.seconds) && limit(self.seconds) != limit(before.seconds);
         let but = if shorter { ", but for a shorter time" } else { "" };
         let hazard = match (before.hazards.len(), self.hazards) {
             (0, 0) => String::new(),

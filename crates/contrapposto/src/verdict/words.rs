@@ -194,16 +194,17 @@ impl Findings {
         format!("{head}{but}.{} {}", self.goes_on(model), self.hardest_worked(model))
     }
 
-    /// `some people fail before`, `right shoulder flexion is 82 % tired at the end`.
+    /// `weaker people (one in six) fail after 3.9 min`, `right shoulder flexion is 82 % tired at the end`.
     fn reservations(&self, model: &Model) -> Vec<String> {
         let weaker = self.fails_weaker().map(|failure| {
             let first = self.fails_later().is_some_and(|other| other.who == failure.who);
             let who = if first { String::new() } else { format!(" ({})", failure.who.name(model)) };
-            format!("some people fail before{who}")
+            // Two of three people lie within the range: one in six below it.
+            format!("weaker people (one in six) fail after {}{who}", how_long(failure.range.0))
         });
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
         let tired = tired.map(|tired| {
-            let lasts = if tired.lasts { " (under its load there it does not become more tired)" } else { "" };
+            let lasts = if tired.lasts { " (at that load it does not become more tired)" } else { "" };
             format!("{} is {} tired at the end{lasts}", tired.who.name(model), percent(tired.fatigue))
         });
         weaker.into_iter().chain(tired).chain(self.ligaments(model)).chain(self.passed(model)).collect()
