@@ -23,7 +23,7 @@ const ERRORS: &str = "marker-errors.sto";
 /// Times of a setup file and of a marker file are the same up to this, s: both are rounded to a millisecond.
 const SAME_TIME: f64 = 5e-4;
 /// Most values of the motion that is written: `assess` and `torques` read tables of 64 MiB.
-const MOST_VALUES: usize = 3_000_000;
+const MOST_MOTION_VALUES: usize = 3_000_000;
 
 pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let out = ResultSet::open(&args.out, &[MOTION, ERRORS])?;
@@ -83,8 +83,8 @@ fn frames(
             matched.columns.len(),
             frames.len()
         ))),
-        _ if frames.len().saturating_mul(coordinates) > MOST_VALUES => Err(Fail::Refused(format!(
-            "{name}: {} frames of {coordinates} coordinates are more than {MOST_VALUES} values; take a part of them with --from and --to",
+        _ if frames.len().saturating_mul(coordinates) > MOST_MOTION_VALUES => Err(Fail::Refused(format!(
+            "{name}: {} frames of {coordinates} coordinates are more than {MOST_MOTION_VALUES} values; take a part of them with --from and --to",
             frames.len()
         ))),
         _ => Ok((times, frames)),
