@@ -63,7 +63,7 @@ pub(crate) enum Verb {
     Compare(CompareArgs),
     /// Run a scenario for many bodies, loads or other values, as a plan says, on all cores; the answers as a table.
     Sweep(SweepArgs),
-    /// The percent of women and of men who can hold a job for the asked time, who fails first, and what the answer hangs on.
+    /// The percent of women and of men who can hold a job for the asked time, who fails first, and the parameters that count most.
     Population(PopulationArgs),
     /// The greatest force at a hand in every direction: by joint strength, balance, friction and, held for a time, fatigue.
     Capacity(CapacityArgs),

@@ -12,7 +12,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use contrapposto_formats::escaped_lines;
 
 pub(crate) use self::folder::{Folder, Pending, folder_and_name};
-pub(crate) use self::result_set::{ResultSet, report_line};
+pub(crate) use self::result_set::{ResultSet, page_line, report_line};
 use crate::fail::Fail;
 
 /// Writes text to standard output.

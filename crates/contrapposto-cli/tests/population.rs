@@ -68,7 +68,7 @@ fn all_can_hold_a_hanging_arm_and_nobody_can_hold_a_ton() {
     let found = json(&ton, &["--rows", "4"]);
     for people in [&found["women"], &found["men"]] {
         assert_eq!(
-            (&people["share"], &people["cannot"], &people["minutes"]["p95"]),
+            (&people["share"], &people["not_done"], &people["minutes"]["p95"]),
             (&0.0.into(), &2.into(), &0.0.into())
         );
     }
@@ -96,14 +96,76 @@ fn one_thread_two_threads_and_a_resumption_give_the_same_bytes() {
     assert!(page.contains(&format!("<h1>{first}</h1>")), "{first}");
     assert!(page.matches("<svg").count() == 3 && !page.contains("<script") && page.contains("default-src 'none'"));
     assert!(page.contains(">right shoulder flexion<") && page.contains(">strength<") && page.contains("ANSUR II"));
-    // Two parts are lost, and another one is foreign.
+    // Two parts are lost.
     let rows = out("two").join("rows");
     let names: Vec<PathBuf> = std::fs::read_dir(&rows).unwrap().map(|entry| entry.unwrap().path()).collect();
     names[..2].iter().for_each(|path| std::fs::remove_file(path).unwrap());
-    std::fs::write(rows.join("part-00000-0123456789abcdef.csv"), "").unwrap();
     assert!(one == run("two", &["--resume"]).1);
     let (code, _, notes) = population(&job, &["--out", out("two").to_str().unwrap()]);
-    assert!(code == 2 && notes.contains("--resume keeps those of this plan"), "{notes}");
+    assert!(code == 2 && notes.contains("--resume keeps them and computes those that are missing"), "{notes}");
+}
+
+#[test]
+fn a_resumption_with_other_numbers_of_bodies_removes_none_and_one_with_other_bodies_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = job(folder.path(), "", "");
+    let out = folder.path().join("out");
+    let run = |out: &Path, more: &[&str]| population(&path, &[&["--out", out.to_str().unwrap()], more].concat());
+    let rows = || files(&out.join("rows"));
+    assert_eq!(run(&out, &["--rows", "42"]).0, 0);
+    let first = rows();
+    // Fewer bodies, and more of them: no part is lost, and the results are those of a folder of their own.
+    for (bodies, parts) in [("20", 11), ("18", 12), ("50", 15), ("42", 15)] {
+        let (code, _, notes) = run(&out, &["--rows", bodies, "--resume"]);
+        assert_eq!((code, rows().len()), (0, parts), "{bodies}: {notes}");
+        assert!(first.iter().all(|(name, bytes)| rows().get(name) == Some(bytes)), "{bodies}");
+        let fresh = folder.path().join(bodies);
+        assert_eq!(run(&fresh, &["--rows", bodies]).0, 0);
+        for name in ["population.csv", "population.html", "population.json"] {
+            assert!(files(&out)[Path::new(name)] == files(&fresh)[Path::new(name)], "{bodies} {name}");
+        }
+    }
+    let all = files(&out);
+    let words = "rows: holds bodies of another scenario, seed or version";
+    let (code, _, notes) = run(&out, &["--rows", "20", "--resume", "--seed", "3"]);
+    assert!(code == 2 && notes.contains(words) && notes.contains("name another folder"), "{notes}");
+    job(folder.path(), "mass_kg = 1\n", "mass_kg = 1.5\n");
+    let (code, _, notes) = run(&out, &["--rows", "60", "--resume"]);
+    assert!(code == 2 && notes.contains(words), "{notes}");
+    assert!(files(&out) == all, "nothing was changed");
+}
+
+#[test]
+fn a_part_that_was_cut_off_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = job(folder.path(), "", "");
+    let out = folder.path().join("out");
+    let more = ["--rows", "8", "--out", out.to_str().unwrap()];
+    assert_eq!(population(&path, &more).0, 0);
+    let (name, bytes) = files(&out.join("rows")).pop_last().unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let cut: String = text.split_inclusive('\n').take(3).collect();
+    std::fs::write(out.join("rows").join(&name), cut).unwrap();
+    let (code, _, notes) = population(&path, &[&more[..], &["--resume"]].concat());
+    assert!(
+        code == 1 && notes.contains(name.to_str().unwrap()) && notes.contains("rows 4 to 7 are expected"),
+        "{notes}"
+    );
+    std::fs::remove_file(out.join("rows").join(&name)).unwrap();
+    assert_eq!(population(&path, &[&more[..], &["--resume"]].concat()).0, 0);
+    assert_eq!(files(&out.join("rows"))[&name], text.as_bytes());
+}
+
+#[test]
+fn a_wrong_scenario_is_quoted_as_its_author_wrote_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let wrong = job(folder.path(), "part = \"right_arm\"", "part = \"third_arm\"");
+    let (code, _, notes) = population(&wrong, &["--rows", "4"]);
+    assert!(code == 2 && notes.contains("stature_m = 1.75, mass_kg = 75") && notes.contains("third_arm"), "{notes}");
+    // A value that every body replaces is judged, too.
+    let tall = job(folder.path(), "stature_m = 1.75", "stature_m = 17.5");
+    let (code, _, notes) = population(&tall, &["--rows", "4"]);
+    assert!(code == 2 && notes.contains("17.5"), "{notes}");
 }
 
 #[test]
@@ -147,9 +209,10 @@ fn the_numbers_follow_from_the_table_and_another_seed_gives_other_people() {
             people["fails_first"].as_array().unwrap().iter().map(|fails| fails["bodies"].as_u64().unwrap()).sum();
         assert_eq!(fails as usize, 30 - can);
     }
-    let hangs_on = &found["hangs_on"];
-    let first: Vec<&str> = (0..2).map(|place| hangs_on["parameters"][place]["parameter"].as_str().unwrap()).collect();
-    assert!(first.contains(&"sex") && first.contains(&"strength"), "{hangs_on}");
+    let sensitivity = &found["sensitivity"];
+    let first: Vec<&str> =
+        (0..2).map(|place| sensitivity["parameters"][place]["parameter"].as_str().unwrap()).collect();
+    assert!(first.contains(&"sex") && first.contains(&"strength"), "{sensitivity}");
     let other = json(&job, &["--rows", "60", "--seed", "1"]);
     assert_ne!(other["women"]["minutes"], found["women"]["minutes"]);
 }

@@ -11,6 +11,7 @@ mod population;
 mod random;
 mod rank_regression;
 mod sampler;
+mod sensitivity;
 mod sobol;
 mod sobol_table;
 mod table;
@@ -19,10 +20,9 @@ pub use interval::{CONFIDENCE, wilson};
 pub use normal::{cumulative, quantile};
 pub use outcome::Outcome;
 pub use part::{COLUMNS, Study};
-pub use population::{
-    HangsOn, LEAST_FOR_INDICES, MOST_BODIES, PARAMETERS, People, Population, QUANTILES, SEXES, population,
-};
+pub use population::{MOST_BODIES, People, Population, QUANTILES, SEXES, population};
 pub use rank_regression::{RankCoefficient, RankRegression, ranks};
 pub use sampler::Sampler;
+pub use sensitivity::{LEAST_FOR_SENSITIVITY, NoSensitivity, PARAMETERS, Sensitivity};
 pub use sobol::{MOST_DIMENSIONS, sobol};
 pub use table::{Answer, read_part};

@@ -5,13 +5,13 @@ use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError};
 use contrapposto::verdict::{Verdict, Who};
 use contrapposto_formats::read_run;
 
-/// Kind of a row whose scenario is refused.
+/// Kind of a row whose scenario is refused, or whose run ends with an error.
 pub(crate) const REFUSED: &str = "refused";
 
 /// The answer of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Kind of the verdict; `refused` where the reader refuses the scenario with these values.
+    /// Kind of the verdict; `refused` where the reader refuses the scenario with these values, or the run ends with an error.
     pub kind: &'static str,
     /// Time for which the job can be done, min; `None` where muscles set no limit, and where the job cannot be done.
     pub minutes: Option<f64>,
@@ -25,7 +25,7 @@ pub struct Outcome {
     pub effort: Option<f64>,
     /// Simulated time, s.
     pub seconds: Option<f64>,
-    /// The reason for which the scenario is refused.
+    /// The reason for which it is refused.
     pub note: Option<String>,
 }
 

@@ -13,7 +13,7 @@ use super::sampler::Sampler;
 pub const COLUMNS: [(&str, &str); 8] = [
     (
         "kind",
-        "verdict: cannot_be_done, cannot_stand, not_reached, held_until or holds; refused: not a scenario with these values",
+        "verdict: cannot_be_done, cannot_stand, not_reached, held_until or holds; refused: no scenario with these values, or an error in the run",
     ),
     ("minutes", "min; how long the job can be done; empty: muscles set no limit, or it cannot be done"),
     ("who", "muscle group that is too weak or fails first; where none does, the one with the greatest load"),
@@ -21,7 +21,7 @@ pub const COLUMNS: [(&str, &str); 8] = [
     ("load", "1; active torque of `hardest` over its strength"),
     ("effort", "1; sum of (active torque / strength)^2 at the end"),
     ("seconds", "s; simulated time"),
-    ("note", "why the scenario is refused"),
+    ("note", "why the row is refused"),
 ];
 
 /// Characters of a key: 64 bits of a hash, two of which meet by chance once in four thousand million parts.
@@ -112,10 +112,25 @@ impl Study {
 
     /// Key of a part: a hash of this program's version, the names of the columns, and the scenarios of all rows.
     pub fn key(&self, part: usize) -> String {
+        self.key_of(self.rows_of(part))
+    }
+
+    /// Keys of the parts that begin with the same row in studies of the same plans with fewer or more rows.
+    pub fn keys_of_other_lengths(&self, part: usize) -> Vec<String> {
+        let rows = self.rows_of(part);
+        let is_open = self.samplers.iter().all(Sampler::is_open);
+        let most = if is_open { self.rows_per_part() } else { rows.len() };
+        (1..=most)
+            .filter(|length| *length != rows.len())
+            .map(|length| self.key_of(rows.start..rows.start + length))
+            .collect()
+    }
+
+    fn key_of(&self, rows: Range<usize>) -> String {
         let mut hash = Sha256::new();
         hash.update(concat!("contrapposto ", env!("CARGO_PKG_VERSION"), "\n"));
         hash.update(self.header());
-        for row in self.rows_of(part) {
+        for row in rows {
             let text = self.scenario(row);
             hash.update((row as u64).to_le_bytes());
             hash.update((text.len() as u64).to_le_bytes());

@@ -1,5 +1,5 @@
 //! Makes the plans of a population, and counts its answers: the share of women and of men who can hold a job, the times, who fails first,
-//! and what the answer hangs on.
+//! and how much the answer depends on each parameter.
 
 use contrapposto::model::Sex;
 use contrapposto::model::data::{PeopleOfSex, library};
@@ -9,20 +9,15 @@ use contrapposto_formats::{Design, Distribution, Parameter, Plan, Value};
 use super::interval::wilson;
 use super::outcome::{Outcome, REFUSED};
 use super::part::Study;
-use super::rank_regression::RankRegression;
+use super::sensitivity::{Body, NoSensitivity, PARAMETERS, Sensitivity};
 use super::table::Answer;
 
 /// Most bodies of a population.
 pub const MOST_BODIES: usize = 100_000;
 /// Rows of a part: a kill loses at most so many runs of each thread.
 const BODIES_PER_PART: usize = 4;
-/// Fewest bodies of which it is said what the answer hangs on.
-pub const LEAST_FOR_INDICES: usize = 40;
 /// Shares of people of the quantiles that are given.
 pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
-/// Names of the parameters in words, in the order of the plan; sex, which stands last in it, comes first here.
-pub const PARAMETERS: [&str; 5] =
-    ["sex", "stature", "mass for that stature", "strength", "stiffness of passive tissue"];
 /// The sexes in the order of rows.
 pub const SEXES: [Sex; 2] = [Sex::Female, Sex::Male];
 
@@ -73,34 +68,28 @@ fn mixing(correlation: f64) -> Vec<Vec<f64>> {
 pub struct Population {
     /// Women and men.
     pub sexes: [People; 2],
-    /// The shares of the parameters in the answer; `None` where they are not known.
-    pub hangs_on: Option<HangsOn>,
+    /// The shares of the parameters in the answer, or the reason for which there are none.
+    pub sensitivity: Result<Sensitivity, NoSensitivity>,
+    /// The reason for which the first of the bodies that could not be judged was not.
+    pub first_note: Option<String>,
 }
 
 /// The answers of people of one sex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct People {
-    /// Number of people whose body and job the reader of scenarios takes.
+    /// Number of people whose run has a verdict.
     pub number: usize,
-    /// Number of others; they are in no other number.
-    pub refused: usize,
+    /// Number of others, whose scenario is refused or whose run ends with an error; they are in no other number.
+    pub not_judged: usize,
     /// Number who can hold the job for the asked time.
     pub can: usize,
     /// 95 % interval of the share who can.
     pub interval: [f64; 2],
-    /// Minutes in rising order: 0 of those who cannot do it at all, infinite where muscles set no limit.
+    /// Minutes in rising order: 0 of those who do not do the job to its end for another reason than fatigue, whenever that is; infinite where
+    /// muscles set no limit.
     pub minutes: Vec<f64>,
     /// The muscle groups or other causes that end the job of those who cannot hold it, with the number of people; the most frequent first.
     pub fails: Vec<(String, usize)>,
-}
-
-/// The shares of the parameters in the answer.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HangsOn {
-    /// The answer is the load of the hardest worked group, since all have the same time; else it is the time, at most the asked one.
-    pub of_load: bool,
-    /// One coefficient for each of [`PARAMETERS`].
-    pub regression: RankRegression,
 }
 
 impl Population {
@@ -108,7 +97,17 @@ impl Population {
     pub fn new(study: &Study, answers: &[Answer], asked: f64, seed: u32) -> Self {
         let of = |sex: usize| answers.iter().filter(move |answer| study.plan_of(answer.row) == sex);
         let sexes = [0, 1].map(|sex| People::new(of(sex).map(|answer| &answer.outcome), asked));
-        Self { sexes, hangs_on: hangs_on(study, answers, asked, seed) }
+        let body = |answer: &Answer| {
+            let minutes = minutes(&answer.outcome)?.min(asked);
+            Some(Body { row: answer.row, minutes, load: answer.outcome.load })
+        };
+        let bodies: Vec<Body> = answers.iter().filter_map(body).collect();
+        let not_judged = answers.iter().find(|answer| answer.outcome.kind == REFUSED);
+        Self {
+            sexes,
+            sensitivity: Sensitivity::new(study, &bodies, seed),
+            first_note: not_judged.and_then(|answer| answer.outcome.note.clone()),
+        }
     }
 }
 
@@ -117,7 +116,7 @@ impl People {
         let mut people = Self::default();
         for outcome in outcomes {
             let Some(minutes) = minutes(outcome) else {
-                people.refused += 1;
+                people.not_judged += 1;
                 continue;
             };
             people.minutes.push(minutes);
@@ -150,7 +149,8 @@ impl People {
     }
 }
 
-/// Minutes for which the job can be done; `None` of a body that was refused.
+/// Minutes for which the job can be done, 0 where it is not done to its end for another reason than fatigue; `None` of a body that could not
+/// be judged.
 fn minutes(outcome: &Outcome) -> Option<f64> {
     match outcome.kind {
         REFUSED => None,
@@ -182,25 +182,4 @@ fn end(outcome: &Outcome) -> String {
         outcome.who.as_deref().unwrap_or("unknown")
     };
     words.to_owned()
-}
-
-fn hangs_on(study: &Study, answers: &[Answer], asked: f64, seed: u32) -> Option<HangsOn> {
-    let known: Vec<(&Answer, f64)> =
-        answers.iter().filter_map(|answer| Some((answer, minutes(&answer.outcome)?.min(asked)))).collect();
-    if known.len() < LEAST_FOR_INDICES {
-        return None;
-    }
-    let mut parameters = vec![vec![]; PARAMETERS.len()];
-    for (answer, _) in &known {
-        let point = study.point(answer.row);
-        parameters[0].push(study.plan_of(answer.row) as f64);
-        parameters[1..].iter_mut().zip(point).for_each(|(list, value)| list.push(value));
-    }
-    let times: Vec<f64> = known.iter().map(|(_, minutes)| *minutes).collect();
-    if let Some(regression) = RankRegression::new(&times, &parameters, seed) {
-        return Some(HangsOn { of_load: false, regression });
-    }
-    let loads: Option<Vec<f64>> = known.iter().map(|(answer, _)| answer.outcome.load).collect();
-    let regression = RankRegression::new(&loads?, &parameters, seed)?;
-    Some(HangsOn { of_load: true, regression })
 }

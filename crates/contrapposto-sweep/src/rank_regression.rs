@@ -4,6 +4,9 @@
 //! Answer and parameters are replaced by their ranks, equal values by the mean of theirs, and each is scaled to variance 1. Of independent
 //! parameters the squares of the coefficients add up to R^2, the share of the variance of the ranks that the regression explains. An answer
 //! that first rises and then falls with a parameter, or in which parameters work only together, is not explained: a small R^2 says so.
+//!
+//! Equal answers lower R^2, too: of n answers with groups of t equal ones a parameter without equal values, from which the answer follows
+//! without ever falling (or rising), has R^2 = 1 - sum(t^3 - t) / (n^3 - n), the `ceiling`.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -23,6 +26,9 @@ const DRAWN: usize = 3 << 20;
 pub struct RankRegression {
     /// Share of the variance of the ranks of the answer that is explained, 0 to 1.
     pub explained: f64,
+    /// Greatest share that one parameter without equal values can explain, above 0 to 1: less than 1 where answers are equal. A parameter with
+    /// equal values, and several together, can explain more.
+    pub ceiling: f64,
     /// Of each parameter.
     pub coefficients: Vec<RankCoefficient>,
 }
@@ -50,6 +56,11 @@ impl RankCoefficient {
 }
 
 impl RankRegression {
+    /// The explained share as one of the ceiling, at most 1.
+    pub fn of_ceiling(&self) -> f64 {
+        (self.explained / self.ceiling).min(1.0)
+    }
+
     /// Of answers on parameters, one list for each. `None` where the answer or a parameter has one value only, parameters follow from each
     /// other, or lists have different lengths.
     pub fn new(answers: &[f64], parameters: &[Vec<f64>], seed: u32) -> Option<Self> {
@@ -59,6 +70,7 @@ impl RankRegression {
         }
         let columns: Vec<Vec<f64>> = parameters.iter().map(Vec::as_slice).chain([answers]).map(ranks).collect();
         let (value, explained) = solved(&columns, 0..n)?;
+        let ceiling = columns.last().map_or(1.0, |ranks| ceiling(ranks));
         let mut drawn: Vec<Vec<f64>> = vec![vec![]; parameters.len()];
         for draw in 0..DRAWS {
             let row = |place: usize| (uniform(seed, DRAWN + draw, place) * n as f64) as usize;
@@ -71,7 +83,7 @@ impl RankRegression {
             let end = |share: f64| drawn.get((share * drawn.len() as f64) as usize).copied().unwrap_or(value);
             RankCoefficient { value, interval: ENDS.map(end) }
         });
-        Some(Self { explained, coefficients: coefficients.collect() })
+        Some(Self { explained, ceiling, coefficients: coefficients.collect() })
     }
 }
 
@@ -87,6 +99,14 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
         first += equal.len();
     }
     ranks
+}
+
+/// Variance of ranks over that of as many ranks without equal ones, (n^2 - 1) / 12.
+fn ceiling(ranks: &[f64]) -> f64 {
+    let n = ranks.len() as f64;
+    let middle = f64::midpoint(1.0, n);
+    let squares: f64 = ranks.iter().map(|rank| (rank - middle).powi(2)).sum();
+    (12.0 * squares / (n * (n * n - 1.0))).min(1.0)
 }
 
 /// Coefficients of the regression of the last column on the others in these rows, and R^2; `None` where there is none.

@@ -41,6 +41,11 @@ impl Sampler {
         &self.plan
     }
 
+    /// Whether the rows do not depend on their number, so that those behind the last one of the plan have values, too.
+    pub(crate) fn is_open(&self) -> bool {
+        matches!(self.plan.design, Design::Sobol | Design::ShiftedSobol | Design::Random)
+    }
+
     /// Independent points of the unit interval, one for each parameter, before correlation.
     pub fn point(&self, row: usize) -> Vec<f64> {
         let Plan { seed, rows, design, .. } = self.plan;

@@ -1,6 +1,7 @@
 //! Reads the text of a part back: the answer of every row.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use contrapposto::verdict::VerdictKind;
 
@@ -17,13 +18,15 @@ pub struct Answer {
     pub outcome: Outcome,
 }
 
-/// The rows of a part; `None` where the text is no part.
-pub fn read_part(text: &str) -> Option<Vec<Answer>> {
-    let mut lines = text.lines();
+/// The rows of a part; `None` where the text is no part, is cut off, or has other rows.
+pub fn read_part(text: &str, rows: Range<usize>) -> Option<Vec<Answer>> {
+    let mut lines = text.strip_suffix('\n')?.split('\n');
     let header = cells(lines.next()?);
     let columns: BTreeMap<&str, usize> = header.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
     let first = *columns.get("kind")?;
-    lines.map(|line| answer(&columns, first, cells(line))).collect()
+    let whole = |line: &str| Some(cells(line)).filter(|cells| cells.len() == header.len());
+    let answers: Vec<Answer> = lines.map(|line| answer(&columns, first, whole(line)?)).collect::<Option<_>>()?;
+    answers.iter().map(|answer| answer.row).eq(rows).then_some(answers)
 }
 
 fn answer(columns: &BTreeMap<&str, usize>, first: usize, mut cells: Vec<String>) -> Option<Answer> {
@@ -31,17 +34,19 @@ fn answer(columns: &BTreeMap<&str, usize>, first: usize, mut cells: Vec<String>)
         let cell = cells.get(*columns.get(name)?)?;
         (!cell.is_empty()).then(|| cell.clone())
     };
-    let number = |name: &str| text(name)?.parse::<f64>().ok();
+    // An empty cell is no number; another text than a number makes the row unreadable.
+    let number =
+        |name: &str| text(name).map(|text| text.parse::<f64>().ok()).map_or(Some(None), |number| number.map(Some));
     let word = text("kind")?;
     let kind = VerdictKind::ALL.into_iter().map(VerdictKind::word).chain([REFUSED]).find(|kind| *kind == word)?;
     let outcome = Outcome {
         kind,
-        minutes: number("minutes"),
+        minutes: number("minutes")?,
         who: text("who"),
         hardest: text("hardest"),
-        load: number("load"),
-        effort: number("effort"),
-        seconds: number("seconds"),
+        load: number("load")?,
+        effort: number("effort")?,
+        seconds: number("seconds")?,
         note: text("note"),
     };
     let row = cells.first()?.parse().ok()?;

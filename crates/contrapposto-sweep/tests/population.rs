@@ -6,8 +6,8 @@
 use std::f64::consts::PI;
 
 use contrapposto_sweep::{
-    Answer, MOST_DIMENSIONS, Outcome, Population, RankRegression, SEXES, Study, cumulative, population, quantile,
-    ranks, sobol, wilson,
+    Answer, MOST_DIMENSIONS, NoSensitivity, Outcome, PARAMETERS, Population, RankRegression, SEXES, Study, cumulative,
+    population, quantile, ranks, read_part, sobol, wilson,
 };
 
 const BASE: &str = "format = 1\n[coordinates]\nfree = [\"elbow_flex_r\"]\n\
@@ -86,6 +86,7 @@ fn the_coefficients_of_a_linear_model_of_normal_numbers_are_those_of_its_closed_
         assert!(coefficient.interval[0] <= coefficient.value && coefficient.value <= coefficient.interval[1]);
         assert!(coefficient.interval[1] - coefficient.interval[0] < 0.05);
     }
+    assert_eq!(regression.ceiling, 1.0, "no answers are equal");
     let sum: f64 = expected.map(|coefficient| coefficient * coefficient).iter().sum();
     assert!((regression.explained - sum).abs() < 0.005, "{}: {sum}", regression.explained);
     // Ranks do not change with the scale of the answer.
@@ -121,6 +122,27 @@ fn of_the_ishigami_function_a_small_r_squared_says_that_the_coefficients_are_not
     let shares: Vec<f64> = regression.coefficients.iter().map(|coefficient| coefficient.share()).collect();
     assert!(shares[0] > 0.1 && shares[1] < 0.01 && shares[2] < 0.01, "{shares:?}");
     assert!(regression.explained < 0.3, "{}", regression.explained);
+}
+
+#[test]
+fn one_parameter_that_decides_all_explains_the_ceiling_that_equal_answers_leave() {
+    let parameter: Vec<f64> = (0..1000).map(f64::from).collect();
+    for levels in [vec![100.0], vec![500.0], vec![900.0, 950.0], vec![10.0, 11.0, 400.0], vec![]] {
+        let level = |value: f64| levels.iter().filter(|level| value >= **level).count() as f64;
+        let answers: Vec<f64> =
+            parameter.iter().map(|value| if levels.is_empty() { *value } else { level(*value) }).collect();
+        let mut counts = vec![0.0; 1000];
+        answers.iter().for_each(|answer| counts[*answer as usize] += 1.0);
+        let ties: f64 = counts.iter().map(|t: &f64| t.powi(3) - t).sum();
+        let ceiling = 1.0 - ties / (1e9 - 1e3);
+        let regression = RankRegression::new(&answers, std::slice::from_ref(&parameter), 1).unwrap();
+        assert!((regression.ceiling - ceiling).abs() < 1e-12, "{levels:?}: {} {ceiling}", regression.ceiling);
+        assert!((regression.explained - ceiling).abs() < 1e-9 && regression.of_ceiling() > 0.999_999, "{levels:?}");
+    }
+    // A parameter with the same equal values explains more than that.
+    let regression = RankRegression::new(&[1.0, 2.0, 1.0, 2.0], &[vec![1.0, 2.0, 1.0, 2.0]], 1).unwrap();
+    assert!((regression.ceiling - 0.8).abs() < 1e-12 && (regression.explained - 1.0).abs() < 1e-12);
+    assert_eq!(regression.of_ceiling(), 1.0);
 }
 
 #[test]
@@ -215,7 +237,7 @@ fn counts_are_those_by_hand() {
     let found = Population::new(&study, &answers, 10.0, 0);
     let [women, men] = &found.sexes;
     assert_eq!(SEXES.len(), 2);
-    assert_eq!((women.number, women.refused, women.can), (7, 1, 2));
+    assert_eq!((women.number, women.not_judged, women.can), (7, 1, 2));
     assert_eq!(women.interval, wilson(2, 7));
     assert_eq!(women.minutes, [0.0, 0.0, 2.0, 4.0, 9.9, 10.0, f64::INFINITY]);
     assert_eq!(
@@ -225,21 +247,21 @@ fn counts_are_those_by_hand() {
     let balance = "balance (the supports do not hold the body)";
     let expected = [("elbow", 3), (balance, 1), ("knee", 1)].map(|(who, count)| (who.to_owned(), count));
     assert_eq!(women.fails, expected);
-    assert_eq!((men.number, men.refused, men.can, men.share()), (3, 0, 1, Some(1.0 / 3.0)));
+    assert_eq!((men.number, men.not_judged, men.can, men.share()), (3, 0, 1, Some(1.0 / 3.0)));
     let expected = ["grip of a hand", "reach (the target is missed)"].map(|who| (who.to_owned(), 1));
     assert_eq!(men.fails, expected);
-    assert!(found.hangs_on.is_none(), "too few bodies");
+    assert_eq!(found.sensitivity, Err(NoSensitivity::TooFew));
     let nobody = Population::new(&study, &[], 10.0, 0).sexes[0].clone();
     assert_eq!((nobody.share(), nobody.quantile(0.5), nobody.interval), (None, None, [0.0, 1.0]));
 }
 
 #[test]
-fn an_answer_that_follows_from_one_parameter_hangs_on_it_alone() {
+fn an_answer_that_follows_from_one_parameter_depends_on_it_alone() {
     let study = study(200, 2);
     // Stronger people hold it longer; nobody is asked for more than 90 minutes.
     let time = |row: usize| 100.0 * study.point(row)[2];
     let answers: Vec<Answer> = (0..200).map(|row| answer(row, "holds", Some(time(row)), None, 0.1)).collect();
-    let found = Population::new(&study, &answers, 90.0, 0).hangs_on.unwrap();
+    let found = Population::new(&study, &answers, 90.0, 0).sensitivity.unwrap();
     let shares: Vec<f64> = found.regression.coefficients.iter().map(|coefficient| coefficient.share()).collect();
     assert!(!found.of_load && shares[3] > 0.98, "{shares:?}");
     assert!(shares.iter().enumerate().all(|(i, share)| i == 3 || *share < 0.01), "{shares:?}");
@@ -247,9 +269,95 @@ fn an_answer_that_follows_from_one_parameter_hangs_on_it_alone() {
     // Where all have the same time their load is the answer; by sex it is women who carry more.
     let answers: Vec<Answer> =
         (0..200).map(|row| answer(row, "holds", None, None, if row % 2 == 0 { 0.3 } else { 0.2 })).collect();
-    let found = Population::new(&study, &answers, 90.0, 0).hangs_on.unwrap();
+    let found = Population::new(&study, &answers, 90.0, 0).sensitivity.unwrap();
     assert!(found.of_load && (found.regression.coefficients[0].value + 1.0).abs() < 1e-3, "{found:?}");
     let same: Vec<Answer> = (0..200).map(|row| answer(row, "holds", None, None, 0.3)).collect();
-    assert!(Population::new(&study, &same, 90.0, 0).hangs_on.is_none());
+    assert_eq!(Population::new(&study, &same, 90.0, 0).sensitivity, Err(NoSensitivity::SameAnswers));
     assert!((cumulative(0.0) - 0.5).abs() < 1e-15);
+}
+
+#[test]
+fn where_nearly_all_have_the_same_time_the_known_loads_are_the_answer_and_bodies_without_one_are_left_out() {
+    let study = study(200, 2);
+    let strength = |row: usize| study.point(row)[2];
+    let fails = |row: usize| if strength(row) < 0.1 { "cannot_stand" } else { "holds" };
+    let with_load = |load: fn(f64) -> Option<f64>| {
+        let answers = (0..200).map(|row| {
+            let answer = answer(row, fails(row), None, None, 0.0);
+            Answer { outcome: Outcome { load: load(strength(row)), ..answer.outcome }, ..answer }
+        });
+        Population::new(&study, &answers.collect::<Vec<_>>(), 90.0, 0).sensitivity
+    };
+    let few = (0..200).filter(|row| strength(*row) < 0.1).count();
+    assert!((15..25).contains(&few));
+    let found = with_load(|strength| (strength >= 0.1).then_some(2.0 - strength)).unwrap();
+    assert!(found.of_load && found.left_out == few && found.regression.ceiling == 1.0, "{found:?}");
+    assert_eq!(found.sorted()[0].0, "strength");
+    assert!(found.regression.coefficients[3].value < -0.98 && found.parameters == PARAMETERS, "{found:?}");
+    // Without loads the times are the answer: strength explains nearly all that their equality leaves.
+    let found = with_load(|_| None).unwrap();
+    assert!(!found.of_load && found.left_out == 0 && found.regression.explained < 0.3, "{found:?}");
+    assert!(found.regression.of_ceiling() > 0.95 && found.sorted()[0].0 == "strength", "{found:?}");
+}
+
+#[test]
+fn without_shares_the_reason_is_the_true_one_and_a_parameter_that_does_not_differ_is_left_out() {
+    let study = study(200, 2);
+    let of = |answers: Vec<Answer>| Population::new(&study, &answers, 90.0, 0);
+    let unknown = |row: usize| {
+        let answer = answer(row, "holds", None, None, 0.0);
+        Answer { outcome: Outcome { load: (row > 170).then_some(0.1 * row as f64), ..answer.outcome }, ..answer }
+    };
+    assert_eq!(of((0..200).map(unknown).collect()).sensitivity, Err(NoSensitivity::NotKnown), "29 loads are known");
+    // All women are refused: sex is one.
+    let time = |row: usize| 100.0 * study.point(row)[2];
+    let men = |row: usize| match row % 2 {
+        0 => Answer {
+            row,
+            cells: vec![],
+            outcome: Outcome { kind: "refused", note: Some(format!("no {row}")), ..Outcome::default() },
+        },
+        _ => answer(row, "holds", Some(time(row)), None, 0.1),
+    };
+    let found = of((0..200).map(men).collect());
+    assert_eq!(
+        (found.sexes[0].not_judged, found.sexes[1].number, found.first_note.as_deref()),
+        (100, 100, Some("no 0"))
+    );
+    let sensitivity = found.sensitivity.unwrap();
+    assert_eq!(sensitivity.parameters, PARAMETERS[1..]);
+    assert!(sensitivity.sorted()[0].0 == "strength" && sensitivity.regression.coefficients[2].value > 0.98);
+    assert_eq!(sensitivity.regression.coefficients.len(), 4);
+}
+
+#[test]
+fn a_part_is_read_whole_or_not_at_all() {
+    let study = study(8, 0);
+    let text = study.part(1, || true, || {}).unwrap();
+    assert_eq!(read_part(&text, 4..8).unwrap().iter().map(|answer| answer.row).collect::<Vec<_>>(), [4, 5, 6, 7]);
+    // A text that is cut off anywhere, at the end of a line, too.
+    for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
+        assert!(read_part(&text[..end], 4..8).is_none(), "{end}");
+    }
+    assert!(read_part(&text, 0..4).is_none() && read_part(&text, 4..7).is_none() && read_part(&text, 4..9).is_none());
+    let lines: Vec<&str> = text.lines().collect();
+    let swapped = [lines[0], lines[1], lines[3], lines[2], lines[4], ""].join("\n");
+    assert!(read_part(&swapped, 4..8).is_none());
+    let cells: Vec<&str> = lines[1].split(',').collect();
+    let minutes = lines[0].split(',').position(|name| name == "minutes").unwrap();
+    let broken: Vec<&str> = cells.iter().enumerate().map(|(i, cell)| if i == minutes { "4x" } else { *cell }).collect();
+    assert!(read_part(&text.replace(lines[1], &broken.join(",")), 4..8).is_none());
+}
+
+#[test]
+fn the_last_part_of_fewer_bodies_is_known_as_the_beginning_of_a_part_of_more() {
+    let [few, more, other] = [study(42, 0), study(100, 0), study(100, 1)];
+    assert_ne!(few.key(10), more.key(10));
+    assert!(few.keys_of_other_lengths(10).contains(&more.key(10)));
+    assert!(more.keys_of_other_lengths(10).contains(&few.key(10)));
+    assert!(
+        !more.keys_of_other_lengths(10).contains(&other.key(10))
+            && !more.keys_of_other_lengths(10).contains(&more.key(10))
+    );
+    assert!(other.keys_of_other_lengths(10).iter().all(|key| *key != few.key(10) && *key != more.key(10)));
 }

@@ -13,10 +13,10 @@ const MOST_SEED: i64 = 0x7fff_ffff;
 #[command(after_help = "Examples:\n  contrapposto population scenarios/hold-tool.toml --out out\n  \
     contrapposto population scenarios/overhead.toml --rows 60 --json\n\n\
     Runs the scenario for half women and half men whose stature, mass, strength and passive torque differ as those of people do, and says \
-    which percent of each can hold the job for the time of its [run], with 95 % intervals, who fails first, and which parameter the answer \
-    hangs on most. Writes population.json, population.csv (a row a body) and population.html into DIR; DIR/rows has the parts of the sweep. \
-    After Ctrl-C or a kill the same command with --resume continues. The bytes do not depend on the number of threads. Exit code 0 \
-    whatever the percent is.")]
+    which percent of each can hold the job for the time of its [run], with 95 % intervals, who fails first, and the parameters on \
+    which the answer depends most. Writes population.json, population.csv (a row a body) and population.html into DIR; DIR/rows has the \
+    parts of the sweep. After Ctrl-C or a kill the same command with --resume continues. The bytes do not depend on the number of threads. \
+    Exit code 0 whatever the percent is.")]
 pub(crate) struct PopulationArgs {
     /// Scenario file (TOML) of `simulate`, of the built-in adult; `-` reads standard input.
     pub(crate) scenario: PathBuf,

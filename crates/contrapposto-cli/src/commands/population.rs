@@ -6,7 +6,7 @@ use std::path::Path;
 use contrapposto_formats::{MOST_BYTES, read_run, scenario_model};
 use contrapposto_sweep::{Answer, Population, Study, population as plans, read_part};
 
-use super::sweep::parts::{compute, fill};
+use super::sweep::parts::{Others, compute, fill};
 use crate::args::PopulationArgs;
 use crate::fail::Fail;
 use crate::input::read;
@@ -18,8 +18,6 @@ use crate::view::text::population::report;
 const POPULATION_FILES: [&str; 3] = ["population.json", "population.csv", "population.html"];
 /// The folder of the parts, inside that of the results.
 const ROWS: &str = "rows";
-/// A file that folders of parts have once they are whole; a population has none, since its results say so.
-const NO_LIST: &str = "sweep.json";
 
 pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
     let (study, asked) = open(args)?;
@@ -29,8 +27,16 @@ pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
         None => computed(&study, args)?,
     };
     let mut answers: Vec<Answer> = vec![];
-    for part in &parts {
-        answers.extend(read_part(part).ok_or_else(|| Fail::job(ROWS, "a part of the table cannot be read back"))?);
+    for (i, part) in parts.iter().enumerate() {
+        let rows = study.rows_of(i);
+        let why = || {
+            format!(
+                "rows {} to {} are expected, each whole; remove this file and use --resume",
+                rows.start,
+                rows.end - 1
+            )
+        };
+        answers.extend(read_part(&part.text, rows.clone()).ok_or_else(|| Fail::job(&part.place, why()))?);
     }
     let found = Population::new(&study, &answers, asked.seconds / 60.0, args.seed);
     let files = folder.as_ref().map_or(vec![], |_| POPULATION_FILES.map(str::to_owned).to_vec());
@@ -44,8 +50,15 @@ pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
     print(&if args.json { json } else { report(&text, &found, folder.as_ref()) })
 }
 
-/// The plans of the population over the scenario. The body of the first row is read, so that a scenario that is none ends the command before
-/// anything is written.
+/// A part of the table.
+struct Part {
+    /// The path of the file, or a name for messages.
+    place: String,
+    text: String,
+}
+
+/// The plans of the population over the scenario. The scenario is read as it stands, so that one that is none ends the command before anything
+/// is written.
 fn open(args: &PopulationArgs) -> Result<(Study, Asked), Fail> {
     let (name, bytes) = (args.scenario.display().to_string(), read(&args.scenario, MOST_BYTES)?);
     if let Some(file) = scenario_model(&name, &bytes)? {
@@ -53,42 +66,43 @@ fn open(args: &PopulationArgs) -> Result<(Study, Asked), Fail> {
             are known for women and men";
         return Err(Fail::Refused(format!("{name}: [model] names the model file {:?}; {why}", file.file)));
     }
+    let scenario = read_run(&name, &bytes, None)?.scenario;
     let study = Study::in_turn(&name, &bytes, &plans(&name, args.rows, args.seed))?;
-    let scenario = read_run(&name, study.scenario(0).as_bytes(), None)?.scenario;
     let asked = Asked { scenario: name, title: scenario.title, seconds: scenario.run.duration };
     Ok((study, asked))
 }
 
-/// The texts of all parts, which are kept in a folder.
-fn kept(study: &Study, out: &Path, args: &PopulationArgs) -> Result<Vec<String>, Fail> {
-    let whole = fill(study, (&out.join(ROWS), NO_LIST), args.resume, args.threads)?;
-    let text = |name: &String| {
+/// All parts, which are kept in a folder.
+fn kept(study: &Study, out: &Path, args: &PopulationArgs) -> Result<Vec<Part>, Fail> {
+    let whole = fill(study, (&out.join(ROWS), Others::Kept), args.resume, args.threads)?;
+    let part = |name: &String| {
         let path = whole.folder.path(name);
-        std::fs::read_to_string(&path).map_err(|error| Fail::job(path.display(), error))
+        let text = std::fs::read_to_string(&path).map_err(|error| Fail::job(path.display(), error))?;
+        Ok(Part { place: path.display().to_string(), text })
     };
-    whole.names.iter().map(text).collect()
+    whole.names.iter().map(part).collect()
 }
 
-/// The texts of all parts, of which nothing is written.
-fn computed(study: &Study, args: &PopulationArgs) -> Result<Vec<String>, Fail> {
+/// All parts, of which nothing is written.
+fn computed(study: &Study, args: &PopulationArgs) -> Result<Vec<Part>, Fail> {
     let all: Vec<usize> = (0..study.parts()).collect();
-    let mut texts = BTreeMap::new();
+    let mut parts = BTreeMap::new();
     let done = compute(study, &all, args.threads, |part, text| {
-        texts.insert(part, text);
+        parts.insert(part, Part { place: format!("part {part}"), text });
         Ok(())
     })?;
     if done < all.len() {
         let why = "nothing was written; with --out DIR the bodies that are done are kept, and --resume continues";
         return Err(Fail::Job(format!("interrupted: {done} of {} parts were done; {why}", all.len())));
     }
-    Ok(texts.into_values().collect())
+    Ok(parts.into_values().collect())
 }
 
 /// One table of all parts: the first line of each but the first is left out.
-fn table(parts: &[String]) -> String {
-    let rows = |(i, part): (usize, &String)| match part.split_once('\n') {
+fn table(parts: &[Part]) -> String {
+    let rows = |(i, part): (usize, &Part)| match part.text.split_once('\n') {
         Some((_, rows)) if i > 0 => rows.to_owned(),
-        _ => part.clone(),
+        _ => part.text.clone(),
     };
     parts.iter().enumerate().map(rows).collect()
 }

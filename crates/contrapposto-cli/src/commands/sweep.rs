@@ -11,7 +11,7 @@ use contrapposto_sweep::{COLUMNS, Study};
 use serde::Serialize;
 use serde_json::json;
 
-use self::parts::fill;
+use self::parts::{Others, fill};
 use crate::args::SweepArgs;
 use crate::fail::Fail;
 use crate::input::{confined, read};
@@ -22,7 +22,7 @@ const LIST: &str = "sweep.json";
 
 pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Fail> {
     let (study, plan) = open(&args.plan)?;
-    let whole = fill(&study, (&args.out, LIST), args.resume, args.threads)?;
+    let whole = fill(&study, (&args.out, Others::Removed(LIST)), args.resume, args.threads)?;
     whole.folder.write(&[(LIST, list(&plan, &whole.names)?)])?;
     let kept = if whole.kept > 0 { format!(", {} of them kept", whole.kept) } else { String::new() };
     print(&format!("{} rows in {} parts{kept}: {}\n", plan.rows, whole.names.len(), args.out.display()))

@@ -72,7 +72,12 @@ impl ResultSet {
 
 /// The line on the terminal that names the page of a set; empty without a set.
 pub(crate) fn report_line(folder: Option<&ResultSet>) -> String {
-    folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path("report.html").display()))
+    page_line(folder, "report.html")
+}
+
+/// The same for a page of another name.
+pub(crate) fn page_line(folder: Option<&ResultSet>, page: &str) -> String {
+    folder.map_or(String::new(), |folder| format!("report: {}\n", folder.path(page).display()))
 }
 
 /// Refuses a folder whose manifest is not ours, and one in which a file of the set would replace an input of this job. A file of the older

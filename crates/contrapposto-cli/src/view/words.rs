@@ -66,6 +66,24 @@ pub(crate) fn percent(share: f64) -> String {
     if share > 10.0 { "more than 1000\u{a0}%".to_owned() } else { format!("{:.0}\u{a0}%", 100.0 * share) }
 }
 
+/// `70 %` of people or of a variance: a share other than 0 and 1 is never rounded to 0 % or 100 %.
+pub(crate) fn share_in_words(share: f64) -> String {
+    match 100.0 * share {
+        all if all > 0.0 && all <= 0.5 => "less than 1\u{a0}%".to_owned(),
+        all if all >= 99.5 && share < 1.0 => "more than 99\u{a0}%".to_owned(),
+        _ => percent(share),
+    }
+}
+
+/// The time of a body of a population: `3.4 min`, `no limit` by muscles, `not done` to the end for another reason than fatigue.
+pub(crate) fn holding_time(minutes: f64) -> String {
+    match minutes {
+        f64::INFINITY => "no limit".to_owned(),
+        0.0 => "not done".to_owned(),
+        minutes => how_long(60.0 * minutes),
+    }
+}
+
 /// Shares of the weight of body and loads: each share of the body's weight as a share of what all supports carry.
 pub(crate) fn shares_of_all(of_body: &[f64]) -> Vec<f64> {
     let all: f64 = of_body.iter().sum();
@@ -96,6 +114,17 @@ mod tests {
     fn a_joint_has_one_plain_name_with_the_coordinate_in_brackets() {
         assert_eq!(joint("hip_flexion_r"), "right hip flexion (hip_flexion_r)");
         assert_eq!(joint("q1"), "q1");
+    }
+
+    #[test]
+    fn only_nobody_is_0_percent_and_only_all_are_100_percent() {
+        let shown = [0.0, 0.003, 0.005, 0.0051, 0.5, 0.994, 0.995, 0.997, 1.0 - f64::EPSILON, 1.0].map(share_in_words);
+        let expected =
+            ["0", "less than 1", "less than 1", "1", "50", "99", "more than 99", "more than 99", "more than 99", "100"];
+        assert_eq!(shown, expected.map(|number| format!("{number}\u{a0}%")));
+        let percents = (0..=1000).map(|count| share_in_words(f64::from(count) / 1000.0).replace('\u{a0}', " "));
+        let named = percents.enumerate().filter(|(_, text)| text == "0 %" || text == "100 %");
+        assert_eq!(named.map(|(count, _)| count).collect::<Vec<_>>(), [0, 1000]);
     }
 
     #[test]

@@ -30,30 +30,45 @@ pub(crate) struct WholeParts {
     pub(crate) kept: usize,
 }
 
-/// Computes the parts of a study that the folder `out` lacks, and removes parts of other studies and the file `list`, without which a sweep is
-/// not whole.
+/// Parts in a folder that are none of a study.
+#[derive(Clone, Copy)]
+pub(crate) enum Others<'a> {
+    /// Such parts are removed, and so is the file of this name, which a sweep has once it is whole.
+    Removed(&'a str),
+    /// Parts behind the last one, and parts of the same bodies with fewer or more rows, stay; others are refused.
+    Kept,
+}
+
+/// Computes the parts of a study that the folder `out` lacks.
 ///
 /// # Errors
-/// A folder that has parts, without `resume`; and the user's interruption.
+/// A folder that has parts, without `resume`; parts that are refused; and the user's interruption.
 pub(crate) fn fill(
     study: &Study,
-    (out, list): (&Path, &str),
+    (out, others): (&Path, Others<'_>),
     resume: bool,
     threads: Option<NonZero<usize>>,
 ) -> Result<WholeParts, Fail> {
     let parts = study.parts();
     let there = parts_in(out)?;
     if !there.is_empty() && !resume {
-        let out = out.display();
-        let why = "has parts of a sweep; --resume keeps those of this plan and removes the others";
-        return Err(Fail::Refused(format!("--out {out}: {why}")));
+        let why = match others {
+            Others::Removed(_) => "has parts of a sweep; --resume keeps those of this plan and removes the others",
+            Others::Kept => "has bodies of a population; --resume keeps them and computes those that are missing",
+        };
+        return Err(Fail::Refused(format!("--out {}: {why}", out.display())));
     }
     let names: Vec<String> = (0..parts).map(|part| part_name(part, &study.key(part))).collect();
+    if let Others::Kept = others {
+        refuse_foreign(study, out, &there, &names)?;
+    }
     let folder = Folder::open(out)?;
     let lock = Lock::of(&folder)?;
-    folder.remove(list)?;
-    let wanted: BTreeSet<&String> = names.iter().collect();
-    there.iter().filter(|name| !wanted.contains(name)).try_for_each(|name| folder.remove(name))?;
+    if let Others::Removed(list) = others {
+        folder.remove(list)?;
+        let wanted: BTreeSet<&String> = names.iter().collect();
+        there.iter().filter(|name| !wanted.contains(name)).try_for_each(|name| folder.remove(name))?;
+    }
     let missing: Vec<usize> = (0..parts).filter(|part| !there.contains(&names[*part])).collect();
     let written = compute(study, &missing, threads, |part, text| folder.write(&[(names[part].as_str(), text)]))?;
     let kept = parts - missing.len();
@@ -63,6 +78,22 @@ pub(crate) fn fill(
         return Err(Fail::Job(format!("interrupted: {whole} of {parts} parts are in {out}: {more}")));
     }
     Ok(WholeParts { _lock: lock, folder, names, kept })
+}
+
+/// Refuses a folder with a part that should have the same bodies as one of the study, and has others.
+fn refuse_foreign(study: &Study, out: &Path, there: &BTreeSet<String>, names: &[String]) -> Result<(), Fail> {
+    let is_foreign = |name: &&String| {
+        let Some(part) = number_of(name).filter(|part| *part < names.len()) else { return false };
+        let is_other_length = |key: &String| part_name(part, key) == **name;
+        **name != names[part] && !study.keys_of_other_lengths(part).iter().any(is_other_length)
+    };
+    match there.iter().find(is_foreign) {
+        Some(name) => {
+            let why = "holds bodies of another scenario, seed or version";
+            Err(Fail::Refused(format!("--out {}: {why} ({name}); name another folder", out.display())))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The lock of a folder for one sweep; its file goes with it.
@@ -152,6 +183,11 @@ impl Work<'_> {
 /// `part-00012-1f0c9a7be2d34455.csv`.
 fn part_name(part: usize, key: &str) -> String {
     format!("part-{part:05}-{key}.csv")
+}
+
+/// Number of the part of that name; `None` of one beyond all numbers.
+fn number_of(name: &str) -> Option<usize> {
+    name.strip_prefix("part-")?.split('-').next()?.parse().ok()
 }
 
 /// Names of the parts that a folder has.

@@ -5,7 +5,7 @@ use contrapposto_report::{Document, Figure, Picture, Table, write_document};
 use contrapposto_sweep::{People, Population, QUANTILES};
 
 use crate::view::population::{PeopleText, PopulationText};
-use crate::view::words::{how_long, percent};
+use crate::view::words::{holding_time, how_long, share_in_words};
 
 /// The page: the answer, the holding curve, bars of failing groups and of parameters, and the same as tables.
 pub(crate) fn report_of_population(text: &PopulationText, found: &Population) -> String {
@@ -15,40 +15,33 @@ pub(crate) fn report_of_population(text: &PopulationText, found: &Population) ->
         headline: text.sentence.clone(),
         reasons: text.reasons.clone(),
         figures: found.sexes.iter().zip(["Women", "Men"]).flat_map(|(people, name)| figures(people, name)).collect(),
-        pictures: [holding(text, found, &asked), Some(failing(text)), hanging(text)].into_iter().flatten().collect(),
+        pictures: [holding(text, found, &asked), Some(failing(text)), depending(text)].into_iter().flatten().collect(),
         tables: [times(found), Some(fails(text)), shares(text), Some(people(text))].into_iter().flatten().collect(),
         notes: text.notes.clone(),
     })
 }
 
 fn figures(people: &People, name: &str) -> [Figure; 2] {
-    let [low, high] = people.interval.map(percent);
-    let value = people.share().map_or("unknown".to_owned(), percent);
-    let median = people.quantile(QUANTILES[1]).map_or("unknown".to_owned(), time);
+    let [low, high] = people.interval.map(share_in_words);
+    let value = people.share().map_or("unknown".to_owned(), share_in_words);
+    let median = people.quantile(QUANTILES[1]).map_or("unknown".to_owned(), holding_time);
     [
         Figure { label: format!("{name} who can hold it"), value, note: format!("95\u{a0}% interval {low} to {high}") },
         Figure { label: format!("{name}, median time"), value: median, note: format!("of {} bodies", people.number) },
     ]
 }
 
-/// `3.4 min`, `no limit`, `not at all`.
-pub(crate) fn time(minutes: f64) -> String {
-    match minutes {
-        f64::INFINITY => "no limit".to_owned(),
-        0.0 => "not at all".to_owned(),
-        minutes => how_long(60.0 * minutes),
-    }
-}
-
 fn holding(text: &PopulationText, found: &Population, asked: &str) -> Option<Picture> {
     let groups = [("women", &found.sexes[0]), ("men", &found.sexes[1])];
     let chart = HoldingCurve {
         title: "How many still hold it".to_owned(),
-        subtitle: format!("from the start to the {asked} asked; a body that cannot do it at all leaves at 0 min"),
+        subtitle: format!(
+            "up to the {asked} asked; 0 min: not done to the end (too weak, off balance, or target missed)"
+        ),
         end_min: text.asked_minutes,
         groups: groups.map(|(name, people)| (name.to_owned(), people.minutes.clone())).to_vec(),
     };
-    let at_end = |(name, people): (&str, &People)| Some(format!("{} of {name}", percent(people.share()?)));
+    let at_end = |(name, people): (&str, &People)| Some(format!("{} of {name}", share_in_words(people.share()?)));
     let at_end: Vec<String> = groups.into_iter().filter_map(at_end).collect();
     (!at_end.is_empty()).then(|| Picture {
         svg: holding_curve(&chart).svg(),
@@ -82,16 +75,18 @@ fn failing(text: &PopulationText) -> Picture {
     Picture { svg: bar_chart(&chart).svg(), words: "Bars of who fails first; the table below has the same.".to_owned() }
 }
 
-fn hanging(text: &PopulationText) -> Option<Picture> {
-    let hangs_on = text.hangs_on.as_ref()?;
+fn depending(text: &PopulationText) -> Option<Picture> {
+    let sensitivity = text.sensitivity.as_ref()?;
     let chart = BarChart {
-        title: "What it hangs on".to_owned(),
+        title: "Sensitivity".to_owned(),
         subtitle: format!(
-            "shares of the variance of ranks (squared coefficients of the rank regression); together {}",
-            percent(hangs_on.explained)
+            "shares of the variance of ranks of the {}; together {}, one alone {} at most",
+            sensitivity.answer,
+            share_in_words(sensitivity.explained),
+            share_in_words(sensitivity.ceiling)
         ),
         series: vec!["share".to_owned()],
-        rows: hangs_on.parameters.iter().map(|shown| (shown.parameter.to_owned(), vec![shown.share])).collect(),
+        rows: sensitivity.parameters.iter().map(|shown| (shown.parameter.to_owned(), vec![shown.share])).collect(),
     };
     let words = "Bars of the parameters; the table below has the same.".to_owned();
     Some(Picture { svg: bar_chart(&chart).svg(), words })
@@ -103,12 +98,12 @@ fn strings<const N: usize>(texts: [&str; N]) -> Vec<String> {
 
 fn times(found: &Population) -> Option<Table> {
     let row = |(people, name): (&People, &str)| {
-        let quantiles = QUANTILES.map(|share| people.quantile(share).map_or("unknown".to_owned(), time));
+        let quantiles = QUANTILES.map(|share| people.quantile(share).map_or("unknown".to_owned(), holding_time));
         let count = |is: fn(f64) -> bool| people.minutes.iter().filter(|minutes| is(**minutes)).count().to_string();
         let counts = [people.number.to_string(), count(|minutes| minutes == 0.0), count(f64::is_infinite)];
         [name.to_owned()].into_iter().chain(quantiles).chain(counts).collect()
     };
-    let columns = strings(["", "P5", "P50", "P95", "bodies", "not at all", "no limit"]);
+    let columns = strings(["", "P5", "P50", "P95", "bodies", "not done", "no limit"]);
     let rows = found.sexes.iter().zip(["women", "men"]).map(row).collect();
     Some(Table { heading: "Times".to_owned(), columns, rows })
 }
@@ -118,7 +113,7 @@ fn fails(text: &PopulationText) -> Table {
         people.fails_first.iter().find(|cause| cause.who == who).map_or(0, |cause| cause.bodies)
     };
     let row = |(who, [women, men]): (String, [f64; 2])| {
-        let cell = |people: &PeopleText, share: f64| format!("{} ({})", percent(share), count(people, &who));
+        let cell = |people: &PeopleText, share: f64| format!("{} ({})", share_in_words(share), count(people, &who));
         vec![who.clone(), cell(&text.women, women), cell(&text.men, men)]
     };
     let rows = causes(text).into_iter().map(row).collect();
@@ -131,12 +126,12 @@ fn fails(text: &PopulationText) -> Table {
 
 fn shares(text: &PopulationText) -> Option<Table> {
     let row = |shown: &crate::view::population::ShareText| {
-        let [low, high] = shown.interval_95.map(percent);
-        vec![shown.parameter.to_owned(), percent(shown.share), format!("{low} to {high}")]
+        let [low, high] = shown.interval_95.map(share_in_words);
+        vec![shown.parameter.to_owned(), share_in_words(shown.share), format!("{low} to {high}")]
     };
-    let rows = text.hangs_on.as_ref()?.parameters.iter().map(row).collect();
+    let rows = text.sensitivity.as_ref()?.parameters.iter().map(row).collect();
     let columns = strings(["parameter", "share of the variance of ranks", "95\u{a0}% interval"]);
-    Some(Table { heading: "What it hangs on".to_owned(), columns, rows })
+    Some(Table { heading: "Sensitivity".to_owned(), columns, rows })
 }
 
 fn people(text: &PopulationText) -> Table {
