@@ -55,7 +55,7 @@ fn changes_of_a_held_weight_give_the_minutes_of_the_changed_file(command: &str) 
     for (change, promised) in &all {
         let lower = [TARGET[0], TARGET[1] - 0.1, TARGET[2]];
         let text = match change.replace('\u{a0}', " ").as_str() {
-            "the target of right hand 10 cm lower (height 1.15 m instead of 1.25 m)" => held(lower, KILOGRAMS),
+            "target of right hand 10 cm lower (height 1.15 m instead of 1.25 m)" => held(lower, KILOGRAMS),
             "20 % less load (3.2 kg instead of 4 kg)" => held(TARGET, 0.8 * KILOGRAMS),
             // The direction of "nearer" is that of the centre of mass, which a file does not name.
             _ => continue,

@@ -51,6 +51,23 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     all
 }
 
+/// A foot on a step that is high enough for one tall man only: everybody else's foot hangs 5 cm or more below it.
+const TALL_STEP: &str = "format = 1\n[model]\nadult = { sex = \"male\", stature_m = 1.95, mass_kg = 90 }\n\
+    [posture]\nhip_flexion_r_deg = 55\nknee_angle_r_deg = 60\nankle_angle_r_deg = 5\n\
+    [[support]]\nsegment = \"calcn_r\"\nstep_m = 0.25\n[[support]]\nsegment = \"calcn_l\"\n[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n";
+
+#[test]
+fn a_job_of_which_no_body_can_be_judged_fails_with_the_reason_and_writes_no_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let (job, out) = (folder.path().join("job.toml"), folder.path().join("out"));
+    std::fs::write(&job, TALL_STEP).unwrap();
+    let (code, said, notes) = population(&job, &["--rows", "2", "--out", out.to_str().unwrap()]);
+    assert_eq!((code, said.as_str()), (1, ""), "{notes}");
+    assert!(notes.contains("none of the 2 bodies could be judged; the first: "), "{notes}");
+    assert!(notes.contains("step"), "{notes}");
+    assert!(!out.join("population.json").exists() && !out.join("population.html").exists());
+}
+
 #[test]
 fn all_can_hold_a_hanging_arm_and_nobody_can_hold_a_ton() {
     let folder = tempfile::tempdir().unwrap();

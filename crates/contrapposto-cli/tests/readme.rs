@@ -30,8 +30,15 @@ fn answer(template: &str, change: (&str, &str)) -> Vec<String> {
 fn answers_of_the_readme_are_those_of_the_program() {
     let readme = readme();
     let overhead = answer("overhead", ("mass_kg = 2", "mass_kg = 2"));
-    for line in &overhead[..2] {
-        assert!(readme.contains(&format!("`{line}`")), "README.md does not say: {line}");
+    assert!(readme.contains(&format!("`{}`", overhead[0])), "README.md does not say: {}", overhead[0]);
+    let rows = overhead[1..]
+        .iter()
+        .take_while(|line| line.starts_with(' '))
+        .map(|line| line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" | "));
+    let rows: Vec<String> = rows.collect();
+    assert!(rows.len() > 2, "{overhead:?}");
+    for row in rows {
+        assert!(readme.contains(&format!("| {row} |")), "README.md does not say: {row}");
     }
     let heavy = answer("lift", ("mass_kg = 10", "mass_kg = 45"));
     let shown = readme.split("`Cannot stand: ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();

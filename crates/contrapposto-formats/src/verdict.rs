@@ -4,7 +4,7 @@ use contrapposto::joint_torques::Hazard;
 use contrapposto::model::Model;
 use contrapposto::suggestions::{Advice, Suggestion};
 use contrapposto::tasks::Unit;
-use contrapposto::verdict::{HandLoad, Missed, Verdict};
+use contrapposto::verdict::{HandLoad, Line, Missed, Verdict};
 use serde::Serialize;
 
 /// The answer to a job.
@@ -37,8 +37,11 @@ pub struct VerdictText {
     /// Weights in hands from half of the strength of the grip on, the heaviest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hands: Vec<HandText>,
-    /// The same in one sentence.
+    /// The first line of every result.
     pub sentence: String,
+    /// The findings behind it, each with its name: `Hardest worked: ...`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lines: Vec<String>,
     /// Targets that are missed, the most important first.
     pub missed: Vec<MissedText>,
 }
@@ -62,7 +65,7 @@ impl HazardText {
             coordinate: model.coordinates()[hazard.coordinate].name.clone(),
             angle_deg: hazard.angle.to_degrees(),
             carried: hazard.carried(),
-            sentence: format!("ligaments hold {}; {}", hazard.in_words(model), hazard.row.finding),
+            sentence: format!("{}; {}", hazard.in_words(model), hazard.row.finding),
         }
     }
 }
@@ -214,6 +217,7 @@ impl VerdictText {
                 .collect(),
             hands: verdict.hands.iter().map(|hand| HandText::new(model, hand)).collect(),
             sentence: verdict.sentence.clone(),
+            lines: verdict.lines.iter().map(Line::in_words).collect(),
             missed: verdict.missed.iter().map(MissedText::from).collect(),
         }
     }

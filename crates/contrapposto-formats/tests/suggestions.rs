@@ -5,7 +5,8 @@
 use contrapposto::fatigue::FatigueLaw;
 use contrapposto::simulation::{Run, Scenario, Summary};
 use contrapposto::suggestions::{
-    Advice, BREAK, BREAK_EVERY, Budget, Change, Job, Suggestion, Worked, by_promise, changes, try_run, with_breaks,
+    Advice, BREAK, BREAK_EVERY, Budget, Change, Job, Suggestion, Trial, Worked, by_promise, changes, try_run,
+    with_breaks,
 };
 use contrapposto::verdict::{Verdict, VerdictKind, how_long};
 use contrapposto_formats::read_scenario;
@@ -110,26 +111,20 @@ fn every_change_gives_the_time_of_its_own_run(seconds: f64) -> Verdict {
     let helping = Suggestion::that_help(tried, &before);
     let advice = advised(&scenario, &summary, &before, usize::MAX, 2);
     assert_eq!((&advice.helping, advice.not_tried.len()), (&helping, 0));
-    let sentence = advice.sentence.unwrap();
-    assert!(sentence.starts_with("What would help most: with "), "{sentence}");
-    for one in &helping {
+    let gains = &advice.gains;
+    assert_eq!(gains.columns[0], "What would help, the most helpful first");
+    assert_eq!((gains.rows.len(), gains.rows[0][0].as_str()), (1 + helping.len(), "as it is"));
+    for (one, row) in helping.iter().zip(&gains.rows[1..]) {
         assert!(one.seconds.unwrap() > before.seconds.unwrap() || one.kind > before.kind, "{one:?}");
-        if one.kind == VerdictKind::HeldUntil {
-            assert!(
-                one.in_words(&before).contains(&in_place_of(one.seconds.unwrap(), before.seconds.unwrap())),
-                "{}",
-                one.in_words(&before)
-            );
-            let least = in_place_of(one.least.unwrap(), before.least.unwrap());
-            assert!(one.in_words(&before).ends_with(&format!("(weaker people: {least})")), "{}", one.in_words(&before));
-        }
+        let times = [one.seconds.unwrap(), one.least.unwrap()].map(|seconds| beside(seconds, before.asked.unwrap()));
+        assert_eq!([row[0].as_str(), &row[1], &row[2]], [one.change.as_str(), &times[0], &times[1]]);
     }
     before
 }
 
-/// `11.7 min instead of 6.5 min`.
-fn in_place_of(after: f64, before: f64) -> String {
-    format!("{} instead of {}", how_long(after), how_long(before))
+/// `6.5 min`, `2.0 min, too short` for a longer job.
+fn beside(seconds: f64, asked: f64) -> String {
+    if seconds < asked { format!("{}, too short", how_long(seconds)) } else { how_long(seconds) }
 }
 
 /// The advice on a run within so many solver steps, without breaks.
@@ -159,9 +154,8 @@ fn a_budget_that_is_used_up_leaves_the_changes_of_least_promise_which_are_named_
         assert_eq!(one.not_tried.len(), 4, "{:?}", one.not_tried);
         // A posture near the end of the job tells little apart, but the two that help most come first.
         assert!(whole.helping[..2].contains(&one.helping[0]), "{:?}", one.helping);
-        let sentence = one.sentence.unwrap();
         let end = format!("Not tried, to keep the computing time short: {}.", one.not_tried.join("; "));
-        assert!(sentence.starts_with("What would help: with ") && sentence.ends_with(&end), "{sentence}");
+        assert_eq!((one.gains.rows.len(), one.notes.as_slice()), (2, [end].as_slice()));
         let none = advised(&scenario, &summary, &before, 0, threads);
         assert_eq!((none.helping.len(), none.not_tried.len()), (0, 5));
     }
@@ -237,7 +231,7 @@ fn of_a_weight_that_no_hand_can_hold_less_load_is_suggested_that_a_hand_can_hold
         let words = format!("{:.0}\u{a0}% less load (", 100.0 * (1.0 - share));
         let (change, hands) = (&advice.helping[0].change, advice.helping[0].hands);
         assert!(change.starts_with(&words) && hands == 1, "{change}");
-        assert!(advice.sentence.unwrap().ends_with(", with half of the strength of a grip or more."));
+        assert_eq!(advice.gains.rows[1].last().unwrap(), "half or more", "{:?}", advice.gains);
     }
 }
 
@@ -251,7 +245,7 @@ fn a_weight_that_is_much_for_a_hand_is_helped_by_less_load_where_that_is_much_no
         let advice = advised(&scenario, &summary, &before, usize::MAX, 1);
         let eased = advice.helping.iter().find(|one| one.hands == 0);
         assert_eq!(eased.is_some(), helps, "{:?}", advice.helping);
-        let said = advice.sentence.is_some_and(|said| said.contains("with less than half of the strength of the grip"));
+        let said = advice.gains.rows.iter().any(|row| row.last().is_some_and(|grip| grip == "less than half"));
         assert_eq!(said, helps);
     }
 }
@@ -270,9 +264,9 @@ fn the_hazard_of_a_bent_spine_is_ended_by_changes_that_are_tried_for_it_and_thei
     let of_hazard: Vec<Change> =
         changes(&job, &before.hazards).into_iter().filter(|change| !changes(&job, &[]).contains(change)).collect();
     let words: Vec<String> = of_hazard.iter().map(|change| change.in_words(&job)).collect();
-    let height = "the target of right hand and left hand 30 cm higher (height 0.60\u{a0}m instead of 0.30\u{a0}m)";
+    let height = "targets of right hand and left hand 30 cm higher (height 0.60\u{a0}m instead of 0.30\u{a0}m)";
     let angle = before.hazards.iter().find(|hazard| hazard.coordinate == spine).unwrap().angle.to_degrees();
-    let straight = format!("lumbar extension at \u{2212}30° instead of \u{2212}{:.0}°", angle.abs());
+    let straight = format!("low back bent forward by 30° instead of {:.0}°", angle.abs());
     assert_eq!(words, [height, straight.as_str()]);
     let straight = "[[task]]\nkind = \"posture\"\ncoordinates = [\"lumbar_extension\"]\nvalues = { lumbar_extension_deg = -30 }\n\n\
                     [[task]]\nkind = \"effort\"";
@@ -284,46 +278,62 @@ fn the_hazard_of_a_bent_spine_is_ended_by_changes_that_are_tried_for_it_and_thei
     let (promised, found) = (promised.seconds.unwrap(), found.seconds.unwrap());
     assert!((promised - found).abs() < 1e-3 * found, "{promised} s promised, {found} s");
     let advice = advised(&scenario, &summary, &before, usize::MAX, 2);
-    println!("{}", advice.sentence.as_deref().unwrap_or_default());
+    println!("{:?}", advice.gains);
     let ended: Vec<&str> =
         advice.helping.iter().filter(|one| one.hazards == 0).map(|one| one.change.as_str()).collect();
     assert!(words.iter().all(|words| ended.contains(&words.as_str())), "{ended:?}");
     assert_eq!(advice.helping[0].hazards, 0);
 }
 
+/// The rows of a table of changes: hazards beside the times, which say whether weaker people reach the time that was asked.
 #[test]
-fn a_change_that_ends_one_of_two_hazards_for_a_shorter_time_says_both() {
+fn the_table_of_changes_has_hazards_and_the_times_of_weaker_people_beside_the_asked_one() {
     let text = include_str!("../../../scenarios/reach-floor.toml").replace("duration_s = 120", "duration_s = 1");
-    let (_, before) = ran(&read(&text));
-    assert_eq!((before.hazards.len(), before.seconds), (2, None), "{:?}", before.hazards);
-    let one = |hazards: usize, seconds: Option<f64>| Suggestion {
-        change: "it changed".to_owned(),
-        kind: VerdictKind::Holds,
-        asked: Some(1.0),
+    let scenario = read(&text);
+    let (_, found) = ran(&scenario);
+    assert_eq!((found.hazards.len(), found.seconds), (2, None), "{:?}", found.hazards);
+    let job = Job { asked: Some(100.0), ..Job::from(&scenario) };
+    let before = Verdict { asked: Some(100.0), least: Some(80.0), ..found };
+    let with = |kind: VerdictKind, hazards: usize, seconds: Option<f64>, least: f64| Verdict {
+        kind,
         seconds,
-        least: None,
-        hazards,
-        hands: 0,
-        load: None,
+        least: Some(least),
+        hazards: before.hazards[..hazards].to_vec(),
+        ..before.clone()
     };
-    for (hazards, seconds, end) in [
-        (2, None, "it stays without a limit, with ligaments in hazard"),
-        (1, None, "it stays without a limit, with ligaments in hazard at 1 of 2 joints"),
-        (1, Some(60.0), "in all, with ligaments in hazard at 1 of 2 joints, but for a shorter time"),
-        (0, Some(60.0), "in all, without ligaments in hazard, but for a shorter time"),
-    ] {
-        let words = one(hazards, seconds).in_words(&before);
-        assert!(words.ends_with(end), "{words}");
-    }
-    // Also where the time before has a limit of its own.
-    let limited = Verdict { seconds: Some(120.0), ..before };
-    let words = one(0, Some(102.0)).in_words(&limited);
-    assert!(
-        words.contains("instead of 2.0") && words.ends_with("without ligaments in hazard, but for a shorter time"),
-        "{words}"
+    let changes = [Change::Loads(0.9), Change::Loads(0.8), Change::Loads(0.7), Change::Loads(0.6)];
+    let verdicts = [
+        with(VerdictKind::Holds, 1, None, f64::INFINITY),
+        with(VerdictKind::Holds, 0, Some(200.0), 120.0),
+        with(VerdictKind::Holds, 2, Some(300.0), 20.0),
+        with(VerdictKind::HeldUntil, 0, Some(60.0), 0.0),
+    ];
+    let trial = |change: &Change| {
+        let place = changes.iter().position(|other| other == change).unwrap();
+        Trial { verdict: Some(verdicts[place].clone()), steps: 1 }
+    };
+    let budget = Budget { steps: usize::MAX, threads: 1 };
+    let advice = Advice::new(&before, &job, || changes.to_vec(), || None, budget, trial);
+    let rows: Vec<Vec<String>> =
+        advice.gains.rows.iter().map(|row| row.iter().map(|cell| cell.replace('\u{a0}', " ")).collect()).collect();
+    let percent = |i: usize| rows[i][0].split(" %").next().unwrap().to_owned();
+    assert_eq!(rows[0], ["as it is", "no limit", "80 s, too short", "2 joints"]);
+    assert_eq!(
+        (percent(1).as_str(), &rows[1][1..]),
+        ("20", ["3.3 min", "2.0 min", "none"].map(str::to_owned).as_slice())
     );
-    let words = one(0, Some(180.0)).in_words(&limited);
-    assert!(words.ends_with("without ligaments in hazard"), "{words}");
+    assert_eq!(
+        (percent(2).as_str(), &rows[2][1..]),
+        ("10", ["no limit", "no limit", "1 joint"].map(str::to_owned).as_slice())
+    );
+    // Neither a shorter time with both hazards nor a worse verdict helps.
+    assert_eq!(rows.len(), 3, "{rows:?}");
+    let weak = Verdict { hazards: vec![], ..with(VerdictKind::HeldUntil, 0, Some(60.0), 0.0) };
+    let longer = |_: &Change| Trial { verdict: Some(Verdict { seconds: Some(90.0), ..weak.clone() }), steps: 1 };
+    let advice = Advice::new(&weak, &job, || changes[..1].to_vec(), || None, budget, longer);
+    assert_eq!(advice.gains.columns.len(), 3, "{:?}", advice.gains);
+    let times: Vec<String> = advice.gains.rows.iter().map(|row| row[1..].join("|").replace('\u{a0}', " ")).collect();
+    assert_eq!(times, ["60 s, too short|too weak", "90 s, too short|too weak"]);
 }
 
 /// The load, the place and the strategy that a change starts from stand beside those that it leads to.
@@ -333,41 +343,15 @@ fn a_change_names_the_value_that_it_starts_from() {
     let job = Job::from(&scenario);
     let words: Vec<String> =
         changes(&job, &[]).iter().map(|change| change.in_words(&job).replace('\u{a0}', " ")).collect();
-    assert_eq!(words[0], "the target of right hand 10 cm lower (height 1.10 m instead of 1.20 m)");
-    assert_eq!(words[1], "the target of right hand 10 cm higher (height 1.30 m instead of 1.20 m)");
+    assert_eq!(words[0], "target of right hand 10 cm lower (height 1.10 m instead of 1.20 m)");
+    assert_eq!(words[1], "target of right hand 10 cm higher (height 1.30 m instead of 1.20 m)");
     // From the centre of mass, which the text does not name: 10 cm less of what there was.
-    let level = words[2].strip_prefix("the target of right hand 10 cm nearer (").unwrap();
+    let level = words[2].strip_prefix("target of right hand 10 cm nearer (").unwrap();
     let level = level.strip_suffix(" horizontally from the centre of mass)").unwrap();
     let metres: Vec<f64> = level.split(" instead of ").map(|far| far.trim_end_matches(" m").parse().unwrap()).collect();
     assert!((metres[1] - metres[0] - 0.1).abs() < 0.011, "{level}");
     assert_eq!(words[3], "20 % less load (4 kg instead of 5 kg)");
     assert_eq!(words[4], "relief by the passive strategy instead of the active one");
-}
-
-/// Of a job that the mean person does for ever, with and without a change, what changes is told of weaker people, with both times.
-#[test]
-fn of_a_job_without_a_limit_a_change_tells_what_weaker_people_gain() {
-    let (_, held) = ran(&read(&text(TARGET, 0.05 * KILOGRAMS, "active", 60.0)));
-    let asked = 7200.0;
-    let before = Verdict { asked: Some(asked), seconds: None, least: Some(2868.0), ..held };
-    let words = |seconds: Option<f64>, least: f64| {
-        let (kind, least) = (VerdictKind::Holds, Some(least));
-        let change = "it changed".to_owned();
-        let one = Suggestion { change, kind, asked: Some(asked), seconds, least, hazards: 0, hands: 0, load: None };
-        one.in_words(&before).replace('\u{a0}', " ")
-    };
-    assert_eq!(
-        words(None, 3624.0),
-        "with it changed weaker people can go on for 60.4 min at the least instead of 47.8 min"
-    );
-    assert_eq!(
-        words(None, f64::INFINITY),
-        "with it changed weaker people can go on without a limit, too, instead of 47.8 min at the least"
-    );
-    assert_eq!(
-        words(Some(9000.0), 3624.0),
-        "with it changed it can go on for about 2.5 h in all (weaker people: 60.4 min instead of 47.8 min)"
-    );
 }
 
 /// Beside the mean person's time with breaks stands that of weaker people: the same law with the load over 1 - cv, and the published laws.

@@ -166,10 +166,10 @@ fn the_same_weight_for_a_minute_holds_and_names_the_hardest_worked_group() {
     let greatest = summary.coordinates.iter().map(|coordinate| coordinate.peak_load).fold(0.0, f64::max);
     let hardest = verdict.hardest.unwrap();
     assert_eq!(hardest.load, greatest);
-    assert!(verdict.sentence.starts_with("Holds through the run (60\u{a0}s). "), "{}", verdict.sentence);
+    let (who, share) = (hardest.name(&scenario.model), 100.0 * greatest);
     let words =
-        format!("Hardest worked: {} at {:.0}\u{a0}% of its strength.", hardest.name(&scenario.model), 100.0 * greatest);
-    assert!(verdict.sentence.ends_with(&words), "{}", verdict.sentence);
+        format!("Holds through the run (60\u{a0}s), hardest worked: {who} at {share:.0}\u{a0}% of its strength.");
+    assert_eq!(verdict.sentence, words);
     assert!(verdict.has_reserve(), "{}", verdict.sentence);
 }
 
@@ -197,10 +197,16 @@ fn a_weight_that_holds_for_a_while_fails_in_a_longer_run_at_the_time_and_in_the_
         );
         assert!(least < fails && fails < greatest);
         assert_eq!(verdict.fails_weaker.is_some(), least < seconds, "{}", verdict.sentence);
-        let weaker = format!(", but weaker people (one in six) fail after {}", how_long(least));
+        let weaker =
+            format!(", but in weaker people (one in six) right elbow flexion fails within {}.", how_long(least));
         assert_eq!(verdict.sentence.contains(&weaker), least < seconds, "{}", verdict.sentence);
         let end = verdict.tired.unwrap();
-        assert_eq!((end.fatigue > 0.5, verdict.sentence.contains("tired at the end")), (tired, tired));
+        assert_eq!(
+            (end.fatigue > 0.5, verdict.in_words().contains("\nMost tired: right elbow flexion, ")),
+            (tired, tired)
+        );
+        let first = format!("\nFails first: right elbow flexion, after about {} in all", how_long(fails));
+        assert!(verdict.in_words().contains(&first), "{}", verdict.in_words());
         assert_eq!(verdict.has_reserve(), !tired && least >= seconds);
         let text = VerdictText::new(&shorter.model, &verdict);
         assert!((text.minutes.unwrap() - verdict.seconds.unwrap() / 60.0).abs() < 1e-12);
@@ -386,9 +392,12 @@ fn a_lumbar_spine_that_hangs_on_its_ligaments_holds_but_is_named_with_the_torque
     let share = (passive / torque).min(1.0);
     assert!(share > 0.5, "{passive} of {torque}");
     assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
-    let part = if share > 0.995 { "the whole".to_owned() } else { format!("{:.0}\u{a0}% of the", 100.0 * share) };
-    let words = format!("ligaments hold lumbar extension at \u{2212}60.0° ({part} torque of {torque:.0} N m there)");
-    assert!(verdict.sentence.contains(&words) && verdict.sentence.contains(", but "), "{words}: {}", verdict.sentence);
+    let part = if share > 0.995 { "its whole".to_owned() } else { format!("{:.0}\u{a0}% of its", 100.0 * share) };
+    let posture = "low back bent forward by 60°";
+    let words = format!("{posture}: ligaments carry {part} torque of {torque:.0}\u{a0}N\u{a0}m");
+    assert!(verdict.sentence.ends_with(&format!(" Hazard for ligaments: {posture}.")), "{}", verdict.sentence);
+    let line = format!("\nHazard: {words} for ");
+    assert!(verdict.in_words().contains(&line), "{line}: {}", verdict.in_words());
     assert!(!verdict.has_reserve());
     let text = VerdictText::new(model, &verdict);
     let hazard = &text.hazards[0];
@@ -425,8 +434,9 @@ fn a_hazard_that_an_event_ends_is_told_with_its_seconds_and_not_as_one_of_the_en
     assert!((passed.seconds - 12.0).abs() < 0.15 && passed.time < 12.0, "{passed:?}");
     // Torque and share are those of the same posture without the event.
     assert_eq!((held.hazards.len(), held.hazards[0].external), (1, passed.hazard.external));
-    let words = "ligaments held for 12\u{a0}s right knee at \u{2212}5.0°";
-    assert!(verdict.sentence.contains(words), "{}", verdict.sentence);
+    let said = verdict.in_words();
+    assert!(verdict.sentence.ends_with("Hazard for ligaments: right knee hyperextended by 5°."), "{said}");
+    assert!(said.contains(" for 12\u{a0}s, over at the end; knees that are hyperextended"), "{said}");
     // One that lasts less than 5 s is a motion.
     assert!(judged(Some(3.0)).passed.is_empty());
 }

@@ -1,6 +1,6 @@
 // Ties the page together: one frame, one joint, one measure; everything shown follows from these three.
 const HARDEST_GROUPS = 8, LONGEST_PLAY = 12, MOST_LOADS = 3; // rows; s; named in the key
-const MOST_REASONS = 4, MOST_ENTRIES = 6; // shown before the rest is folded
+const MOST_REASONS = 2, MOST_ENTRIES = 6; // shown before the rest is folded
 const NARROW = matchMedia("(max-width: 52rem)"), TOUCHED = matchMedia("(pointer: coarse)").matches;
 const SMALLEST_BODY = 300, LARGEST_BODY = 680; // px
 const RESTING = 0.005, TIRED = (report.levels || [0, 0.3])[1]; // load; fatigue
@@ -81,6 +81,14 @@ function fillHeader() {
   const end = report.headline.search(/\. (?=\p{Lu})/u) + 1 || report.headline.length;
   find("headline").textContent = report.headline.slice(0, end);
   find("headline").append(make("span", report.headline.slice(end)));
+  for (const [name, text] of report.facts) {
+    const fact = make("div");
+    fact.append(make("dt", name), make("dd", text));
+    find("facts").append(fact);
+  }
+  fillTable(find("changes"), report.changes);
+  find("facts").hidden = !report.facts.length;
+  find("changes").hidden = !report.changes.rows.length;
   report.reasons.forEach((reason, i) => {
     find(i < MOST_REASONS ? "reasons" : "more-reasons").append(make("p", reason));
   });
@@ -139,15 +147,19 @@ function fillChooser() {
   });
 }
 
-function fillTable() {
+function fillOverview() {
   find("overview-heading").textContent = report.table.heading;
+  fillTable(find("table"), report.table);
+}
+
+function fillTable(table, { columns, rows }) {
   const addRow = (part, kind, cells) => {
     const row = make("tr");
     row.append(...cells.map((text) => make(kind, text)));
     part.append(row);
   };
-  addRow(find("table").tHead, "th", report.table.columns);
-  for (const cells of report.table.rows) addRow(find("table").tBodies[0], "td", cells);
+  addRow(table.tHead, "th", columns);
+  for (const cells of rows) addRow(table.tBodies[0], "td", cells);
 }
 
 // The limits of a force with their colours.
@@ -198,7 +210,7 @@ class Page {
     if (report.motors) nameMotors();
     hideUnknown();
     this.fillList();
-    fillTable();
+    fillOverview();
     this.fillPostures();
     for (const fold of document.querySelectorAll(".fold")) fold.open = !NARROW.matches;
     this.charts = new Charts((time) => this.showFrame(frameAt(time)));
@@ -274,8 +286,9 @@ class Page {
     const shown = (value) => value.toFixed(joint.slides ? 3 : 1).replace("-", "−") + (joint.slides ? " m" : "°");
     const value = shown(joint.angle[i]) + (joint.about_axis ? " about its axis" : ""), differs = joint.coordinate && Math.abs(joint.coordinate[i] - joint.angle[i]) >= 0.05;
     find("in-files").textContent = differs ? `In the files: ${joint.name} = ${shown(joint.coordinate[i])}, the coordinate of the model, which differs from the angle about the axis where the other axes of the joint are turned, too.` : "";
+    const same = joint.external[i] * joint.passive[i] > 0;
     find("now").textContent = `${name}, ${value}: weight and contact pull with ${signed(joint.external[i])} ${joint.torque}, ` +
-      `ligaments answer with ${signed(joint.passive[i])}, ${MUSCLES} with ${signed(joint.active[i])}${share}.`;
+      `${same ? "ligaments pull the same way with" : "ligaments answer with"} ${signed(joint.passive[i])}, ${MUSCLES} ${same ? "answer " : ""}with ${signed(joint.active[i])}${share}.`;
   }
 
   // How far points of the body are from the targets that they miss.

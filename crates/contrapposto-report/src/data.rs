@@ -33,6 +33,8 @@ pub(crate) fn data(report: &Report) -> String {
         "title": report.title,
         "body": report.body,
         "headline": report.headline,
+        "facts": report.facts.iter().map(|f| json!([f.name, f.text])).collect::<Value>(),
+        "changes": { "columns": report.changes.columns, "rows": report.changes.rows },
         "reasons": report.reasons,
         "figures": report.figures.iter().map(|f| json!([f.label, f.value, f.note])).collect::<Value>(),
         "motors": report.motors,

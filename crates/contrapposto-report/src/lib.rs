@@ -25,6 +25,10 @@ pub struct Report {
     pub body: String,
     /// The finding in one plain sentence.
     pub headline: String,
+    /// The findings behind it.
+    pub facts: Vec<Fact>,
+    /// Changes and what each of them gives, in its first column the change; may be empty. It has no heading.
+    pub changes: Table,
     /// The reasons, a sentence each.
     pub reasons: Vec<String>,
     /// The most important numbers.
@@ -90,6 +94,15 @@ impl Moments {
             Self::Postures(names) => names.len(),
         }
     }
+}
+
+/// A finding with its name.
+#[derive(Clone, Debug, Default)]
+pub struct Fact {
+    /// Name of the finding.
+    pub name: String,
+    /// The finding, a sentence without a full stop.
+    pub text: String,
 }
 
 /// An important number.

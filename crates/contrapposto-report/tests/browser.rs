@@ -10,8 +10,8 @@ use std::path::PathBuf;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
-    Balance, Entry, Figure, ForceSolid, Group, Joint, List, Moments, Push, Report, Segment, Support, Surface, Table,
-    Target, Thing, write,
+    Balance, Entry, Fact, Figure, ForceSolid, Group, Joint, List, Moments, Push, Report, Segment, Support, Surface,
+    Table, Target, Thing, write,
 };
 use serde_json::json;
 use support::chromium::Chromium;
@@ -52,6 +52,12 @@ fn report() -> Report {
         title: HOSTILE.to_owned(),
         body: HOSTILE.to_owned(),
         headline: HOSTILE.to_owned(),
+        facts: vec![Fact { name: HOSTILE.to_owned(), text: HOSTILE.to_owned() }],
+        changes: Table {
+            heading: String::new(),
+            columns: vec![HOSTILE.to_owned(); 3],
+            rows: vec![vec![HOSTILE.to_owned(); 3]; 2],
+        },
         reasons: vec![HOSTILE.to_owned()],
         figures: vec![Figure { label: HOSTILE.to_owned(), value: HOSTILE.to_owned(), note: HOSTILE.to_owned() }],
         segments: vec![Segment {
@@ -320,7 +326,7 @@ fn words_body_slider_and_key_are_above_the_fold_at_1400_by_900() {
     let tall = "document.getElementById('body').getBoundingClientRect().height";
     assert!(page.evaluate(tall).as_f64().unwrap() >= 300.0);
     assert_eq!(page.evaluate("document.getElementById('slider').getBoundingClientRect().bottom <= 900"), true);
-    assert_eq!(page.evaluate("document.querySelector('#more-reasons summary').textContent"), "5 more");
+    assert_eq!(page.evaluate("document.querySelector('#more-reasons summary').textContent"), "7 more");
     assert_eq!(page.evaluate("document.querySelectorAll('#scale i').length"), 5);
     assert_eq!(page.complaints(), Vec::<String>::new());
 }

@@ -161,8 +161,8 @@ fn advice(given: &Motion<'_>, found: &Assessment, verdict: &Verdict, suggest: Su
     let frames = motion.len();
     let (Some((begin, end)), Some(budget)) = (ends, suggest.budget(frames)) else { return Advice::default() };
     if found.uncarried.is_some() {
-        let sentence = Some(format!("To say who carries it, {WHAT_CARRIES}."));
-        return Advice { sentence, ..Advice::default() };
+        let notes = vec![format!("To say who carries it, {WHAT_CARRIES}.")];
+        return Advice { notes, ..Advice::default() };
     }
     if found.fast_share > FAST_SHARE {
         return Advice::default();

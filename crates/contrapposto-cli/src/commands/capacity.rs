@@ -12,7 +12,7 @@ use super::compare::carry_out;
 use crate::args::CapacityArgs;
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print};
-use crate::view::answer::{answered, first_lines};
+use crate::view::answer::answered;
 use crate::view::capacity::{Forces, assumptions, finding};
 use crate::view::held::{Held, held};
 use crate::view::report::capacity::{picture_of_capacity, report_of_capacity};
@@ -142,6 +142,6 @@ fn without_force(hold: Option<f64>, verdict: &Verdict) -> String {
         Some(seconds) if verdict.kind.is_done() => {
             format!("No force can be held for {}, because the posture cannot. {}", how_long(seconds), verdict.sentence)
         }
-        _ => first_lines(verdict).trim_end().to_owned(),
+        _ => verdict.in_words().trim_end().to_owned(),
     }
 }

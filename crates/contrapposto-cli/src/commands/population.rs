@@ -39,6 +39,10 @@ pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
         answers.extend(read_part(&part.text, rows.clone()).ok_or_else(|| Fail::job(&part.place, why()))?);
     }
     let found = Population::new(&study, &answers, asked.seconds / 60.0, args.seed);
+    if found.sexes.iter().all(|people| people.number == 0) {
+        let why = found.first_note.as_deref().unwrap_or("no reason is known");
+        return Err(Fail::Job(format!("none of the {} bodies could be judged; the first: {why}", answers.len())));
+    }
     let files = folder.as_ref().map_or(vec![], |_| POPULATION_FILES.map(str::to_owned).to_vec());
     let text = PopulationText::new(&asked, &study, &found, args.seed, files);
     let json = json_text(POPULATION_FILES[0], &text)?;

@@ -5,12 +5,13 @@ use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::statics::Load;
 use contrapposto::suggestions::Advice;
-use contrapposto::verdict::{Verdict, VerdictKind, Who, how_long, muscles_or_motors, slip_in_words};
+use contrapposto::verdict::{Verdict, VerdictKind, Who, muscles_or_motors};
 use contrapposto_formats::{AdviceText, VerdictText};
 use serde::Serialize;
 
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print};
+use crate::view::text::plain_table;
 
 /// The file of a job for which there is no posture.
 #[derive(Serialize)]
@@ -44,9 +45,9 @@ impl Answer {
 
     /// The lines that everything begins with.
     pub(crate) fn first_lines(&self) -> String {
-        let more: String =
-            self.also_cut().iter().chain(&self.advice.sentence).map(|line| format!("{line}\n")).collect();
-        first_lines(&self.verdict) + &more
+        let notes: Vec<String> = self.also_cut().into_iter().chain(self.advice.notes.iter().cloned()).collect();
+        let notes: String = notes.iter().map(|line| format!("{line}\n")).collect();
+        self.verdict.in_words() + &gains(&self.advice) + &notes
     }
 
     /// The first lines of a body's job, its title, and the tables below them, with the word for what moves the body: muscles or motors. The
@@ -68,34 +69,17 @@ pub(crate) fn group_of_title(verdict: &Verdict) -> Option<Who> {
     verdict.hardest.filter(|_| verdict.kind == VerdictKind::Holds).or(verdict.who)
 }
 
-/// The sentence, and below it the findings of studies about its hazards, and the targets of lower priority that are missed.
-pub(crate) fn first_lines(verdict: &Verdict) -> String {
-    let mut findings: Vec<&str> = vec![];
-    let passed = verdict.passed.iter().map(|passed| &passed.hazard);
-    for finding in verdict.hazards.iter().chain(passed).map(|hazard| hazard.row.finding.as_str()) {
-        if !findings.contains(&finding) {
-            findings.push(finding);
-        }
+/// The table of the changes that help.
+fn gains(advice: &Advice) -> String {
+    if advice.gains.rows.is_empty() {
+        return String::new();
     }
-    let hazards: String = findings.iter().map(|finding| format!("Hazard: {finding}.\n")).collect();
-    let more: String = also_missed(verdict).into_iter().chain(also_slid(verdict)).map(|line| line + "\n").collect();
-    format!("{}\n{hazards}{more}", verdict.sentence)
-}
-
-/// `Missed besides, of lower priority: look at head by 3.4°.`
-pub(crate) fn also_missed(verdict: &Verdict) -> Option<String> {
-    // The sentence names the first that decides.
-    let named = verdict.missed.iter().position(|missed| missed.decides);
-    let lower = verdict.missed.iter().enumerate().filter(|(i, _)| Some(*i) != named).map(|(_, missed)| missed);
-    let list: Vec<String> = lower.map(|missed| format!("{} by {}", missed.task, missed.by())).collect();
-    (!list.is_empty()).then(|| format!("Missed besides, of lower priority: {}.", list.join(", ")))
-}
-
-/// `The supports slid by 0.2 cm and 0.3° (the greatest slip, at 12 s).`, of a job that is done all the same.
-pub(crate) fn also_slid(verdict: &Verdict) -> Option<String> {
-    let (slip, time) = verdict.slip.filter(|_| verdict.kind != VerdictKind::CannotStand)?;
-    let when = time.map_or(String::new(), |time| format!(" (the greatest slip, at {})", how_long(time)));
-    Some(format!("The supports slid by {}{when}.", slip_in_words(slip)))
+    let mut table = plain_table();
+    table.set_header(&advice.gains.columns);
+    advice.gains.rows.iter().for_each(|row| {
+        table.add_row(row);
+    });
+    format!("{table}\n")
 }
 
 /// Exit code 1 for a job that cannot be done.

@@ -11,8 +11,18 @@ pub(crate) mod pose;
 pub(crate) mod run;
 
 use contrapposto::model::Model;
-use contrapposto::verdict::{has_motors, muscles_or_motors};
-use contrapposto_report::Report;
+use contrapposto::suggestions::Advice;
+use contrapposto::verdict::{Verdict, has_motors, muscles_or_motors};
+use contrapposto_report::{Fact, Report, Table};
+
+/// Puts the verdict and the changes of the job at the head of a page.
+fn answer(report: &mut Report, verdict: &Verdict, advice: &Advice) {
+    report.headline.clone_from(&verdict.sentence);
+    report.facts.extend(verdict.lines.iter().map(|line| Fact { name: line.name.to_owned(), text: line.text.clone() }));
+    let (columns, rows) = (advice.gains.columns.clone(), advice.gains.rows.clone());
+    report.changes = Table { heading: String::new(), columns, rows };
+    report.reasons.extend(advice.notes.iter().cloned());
+}
 
 /// The text of a page, with the word for what moves the body.
 fn page(model: &Model, mut report: Report) -> String {

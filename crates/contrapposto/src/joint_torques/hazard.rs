@@ -1,7 +1,7 @@
 //! Finds coordinates that ligaments and relaxed muscles carry at an angle where that is a hazard (`data/hazards.toml`).
 
 use crate::model::data::{HazardRow, library};
-use crate::model::{Coordinate, Model, plain_name};
+use crate::model::{Coordinate, Model};
 
 /// External torque below which no hazard is reported, whatever tissue carries it, N m. Assumed.
 const SMALL_TORQUE: f64 = 0.5;
@@ -24,6 +24,12 @@ pub struct Hazard {
 /// Share of an external torque that passive tissue carries, 0..=1; `None` below 0.5 N m.
 pub fn carried(external: f64, passive: f64) -> Option<f64> {
     (external.abs() > SMALL_TORQUE).then(|| (-passive / external).clamp(0.0, 1.0))
+}
+
+/// `low back bent forward by 30°`: a coordinate for which a hazard is known, at an angle, rad; `None` of another coordinate.
+pub(crate) fn posture_in_words(coordinate: &str, angle: f64) -> Option<String> {
+    let mut rows = library().hazards().iter();
+    Some(rows.find(|row| row.concerns(coordinate))?.posture_in_words(coordinate, angle))
 }
 
 impl Hazard {
@@ -60,13 +66,17 @@ impl Hazard {
         carried(self.external, self.passive).unwrap_or_default()
     }
 
-    /// `lumbar extension at −60.0° (74 % of the torque of 165 N m there)`, `left knee at −5.0° (the whole torque of 37 N m there)`.
+    /// `low back bent forward by 60°`.
+    pub fn posture_in_words(&self, model: &Model) -> String {
+        self.row.posture_in_words(&model.coordinates()[self.coordinate].name, self.angle)
+    }
+
+    /// `low back bent forward by 60°: ligaments carry 74 % of its torque of 165 N m`, `...: ligaments carry its whole torque of 37 N m`.
     pub fn in_words(&self, model: &Model) -> String {
-        let name = plain_name(&model.coordinates()[self.coordinate].name);
-        let angle = format!("{:.1}°", self.angle.to_degrees()).replace('-', "\u{2212}");
         let percent = (100.0 * self.carried()).round();
-        let share = if percent < 100.0 { format!("{percent:.0}\u{a0}% of the") } else { "the whole".to_owned() };
-        format!("{name} at {angle} ({share} torque of {:.0} N m there)", self.external.abs())
+        let share = if percent < 100.0 { format!("{percent:.0}\u{a0}% of its") } else { "its whole".to_owned() };
+        let posture = self.posture_in_words(model);
+        format!("{posture}: ligaments carry {share} torque of {:.0}\u{a0}N\u{a0}m", self.external.abs())
     }
 }
 

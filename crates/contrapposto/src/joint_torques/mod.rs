@@ -24,6 +24,7 @@ mod muscles;
 
 pub use about_axes::AboutAxes;
 pub use group_load::{GroupLoad, relative_load};
+pub(crate) use hazard::posture_in_words;
 pub use hazard::{Hazard, carried};
 pub use muscles::{JointMuscles, LEAST_MUSCLE_STRENGTH, RESTING_ACTIVATION};
 

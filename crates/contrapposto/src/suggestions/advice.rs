@@ -2,11 +2,15 @@
 
 use super::budget::{Budget, Trial, within};
 use super::change::{Change, Job};
+use super::gain::Gains;
 use super::trial::Suggestion;
 use crate::verdict::{Verdict, has_motors};
 
-/// The sentence of a job with reserve. Fatigue of muscles is judged, and hazards are; ligaments and discs besides are not.
-const NOTHING: &str = "Nothing needs to change as to muscle fatigue";
+/// The sentence of a job with reserve.
+const NOTHING: &str = "Nothing needs to change";
+/// The reasons for it, of a body with muscles.
+const WITH_MUSCLES: &str =
+    ": no muscle fails, and no joint is in a known hazard for ligaments. Discomfort and discs are not judged";
 
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,8 +19,10 @@ pub struct Advice {
     pub helping: Vec<Suggestion>,
     /// Suggestions that were not tried because the budget was used up, in words.
     pub not_tried: Vec<String>,
-    /// `What would help most: ...`; `None` where there is nothing to say.
-    pub sentence: Option<String>,
+    /// The suggestions that help beside the job as it is; without rows where there are none.
+    pub gains: Gains,
+    /// Sentences about changes that do not help, or were not tried.
+    pub notes: Vec<String>,
 }
 
 impl Advice {
@@ -31,14 +37,8 @@ impl Advice {
         trial: impl Fn(&Change) -> Trial + Sync,
     ) -> Self {
         if verdict.has_reserve() {
-            return Self {
-                sentence: Some(if has_motors(job.model) {
-                    "Nothing needs to change.".to_owned()
-                } else {
-                    format!("{NOTHING}.")
-                }),
-                ..Self::default()
-            };
+            let about = if has_motors(job.model) { "" } else { WITH_MUSCLES };
+            return Self { notes: vec![format!("{NOTHING}{about}.")], ..Self::default() };
         }
         let changes = changes();
         let trials = within(budget, &changes, trial);
@@ -48,34 +48,41 @@ impl Advice {
         let all: Vec<Suggestion> = changes.iter().zip(&trials).filter_map(suggestion).chain(known()).collect();
         let tried: Vec<String> = all.iter().map(|one| one.change.clone()).collect();
         let helping = Suggestion::that_help(all, verdict);
-        let sentence = sentence(verdict, &helping, &tried, &not_tried);
-        Self { helping, not_tried, sentence }
+        let gains = if helping.is_empty() {
+            Gains::default()
+        } else {
+            Gains::new(heading(verdict, &helping), verdict, &helping)
+        };
+        let notes = notes(verdict, &helping, &tried, &not_tried);
+        Self { helping, not_tried, gains, notes }
     }
 }
 
-/// The sentence after the verdict; `None` where there is nothing to try.
-fn sentence(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried: &[String]) -> Option<String> {
-    let all = tried.join("; ");
-    let stays = !helping.is_empty() && !verdict.hazards.is_empty() && helping.iter().all(|one| one.hazards > 0);
-    let hazard = stays.then(|| format!("No change that was tried ends every hazard: {all}."));
-    let what = match (stays, helping.iter().any(|one| one.lessens_hazards(verdict))) {
-        (false, _) => "What would help",
+/// Whether every change that helps leaves a joint in hazard.
+fn hazard_stays(verdict: &Verdict, helping: &[Suggestion]) -> bool {
+    !helping.is_empty() && !verdict.hazards.is_empty() && helping.iter().all(|one| one.hazards > 0)
+}
+
+/// The name of the column of changes that help.
+fn heading(verdict: &Verdict, helping: &[Suggestion]) -> &'static str {
+    match (hazard_stays(verdict, helping), helping.iter().any(|one| one.lessens_hazards(verdict))) {
+        (false, _) => "What would help, the most helpful first",
         (true, false) => "What would let it go on longer",
-        (true, true) => "What would end some of them, or let it go on longer",
-    };
-    let said = match helping {
-        [] if tried.is_empty() => None,
-        [] if tried.len() == 1 => Some(format!("The one change that was tried does not help: {all}.")),
-        [] => Some(format!("None of the {} changes that were tried helps: {all}.", tried.len())),
-        [best] => Some(format!("{what}: {}.", best.in_words(verdict))),
-        [best, rest @ ..] => {
-            let rest: Vec<String> = rest.iter().map(|one| one.in_words(verdict)).collect();
-            let most = if stays { "" } else { " most" };
-            Some(format!("{what}{most}: {}. Also: {}.", best.in_words(verdict), rest.join("; ")))
-        }
+        (true, true) => "What would end some hazards, or let it go on longer",
+    }
+}
+
+/// The sentences about changes that do not help, or were not tried.
+fn notes(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried: &[String]) -> Vec<String> {
+    let all = tried.join("; ");
+    let of_all = match (helping, tried.len()) {
+        ([], 0) => None,
+        ([], 1) => Some(format!("The one change that was tried does not help: {all}.")),
+        ([], count) => Some(format!("None of the {count} changes that were tried helps: {all}.")),
+        _ if hazard_stays(verdict, helping) => Some(format!("No change that was tried ends every hazard: {all}.")),
+        _ => None,
     };
     let left = (!not_tried.is_empty())
         .then(|| format!("Not tried, to keep the computing time short: {}.", not_tried.join("; ")));
-    let parts: Vec<String> = hazard.into_iter().chain(said).chain(left).collect();
-    (!parts.is_empty()).then(|| parts.join(" "))
+    of_all.into_iter().chain(left).collect()
 }

@@ -22,5 +22,6 @@ pub use advice::Advice;
 pub use breaks::{BREAK, BREAK_EVERY, Worked, with_breaks};
 pub use budget::{BUDGET_FACTOR, Budget, LEAST_BUDGET, Trial};
 pub use change::{Change, Job, JointAngle, changes};
+pub use gain::Gains;
 pub use promise::{by_promise, by_promise_of_search};
 pub use trial::{Suggestion, try_run, try_search};

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::change::{Change, Job, JointAngle};
 use crate::hybrid::Strategy;
+use crate::joint_torques::posture_in_words;
 use crate::model::plain_name;
 use crate::verdict::{Amount, MOST_AMOUNTS, amounts, amounts_in_words};
 
@@ -18,7 +19,7 @@ struct Moved {
 }
 
 impl Change {
-    /// `the target of right hand 10 cm lower (height 1.85 m instead of 1.95 m)`, `20 % less load (2.4 kg instead of 3 kg)`.
+    /// `target of right hand 10 cm lower (height 1.85 m instead of 1.95 m)`, `20 % less load (2.4 kg instead of 3 kg)`.
     pub fn in_words(&self, job: &Job<'_>) -> String {
         match self {
             Self::Targets(by, how) => {
@@ -29,14 +30,18 @@ impl Change {
                         names.push(name);
                     }
                 }
-                format!("the target of {} {how}{}", names.join(" and "), moved_in_words(job, by).unwrap_or_default())
+                let target = if names.len() == 1 { "target" } else { "targets" };
+                format!("{target} of {} {how}{}", names.join(" and "), moved_in_words(job, by).unwrap_or_default())
             }
             Self::Joints(angles) => {
                 let coordinates = job.model.coordinates();
                 let degrees = |angle: f64| format!("{:.0}°", angle.to_degrees()).replace('-', "\u{2212}");
                 let at = |&JointAngle { coordinate, before, angle }: &JointAngle| {
-                    let name = plain_name(&coordinates[coordinate].name);
-                    format!("{name} at {} instead of {}", degrees(angle), degrees(before))
+                    let name = &coordinates[coordinate].name;
+                    match posture_in_words(name, angle) {
+                        Some(posture) => format!("{posture} instead of {}", degrees(before.abs())),
+                        None => format!("{} at {} instead of {}", plain_name(name), degrees(angle), degrees(before)),
+                    }
                 };
                 angles.iter().map(at).collect::<Vec<_>>().join(" and ")
             }

@@ -42,7 +42,7 @@ pub enum TrackingError {
     Posture(#[from] PostureError),
 }
 
-/// Markers with weights that tell which way a body faces: fewer of them fit it turned, too.
+/// Markers with weights that tell which way a body faces: fewer of them fit it turned, too. Assumed.
 const ENOUGH_MARKERS: usize = 4;
 
 /// Tracks frames, each given by the places of all markers of the goals (m, ground; `None` for a gap). A frame without a marker that has a

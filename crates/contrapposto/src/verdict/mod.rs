@@ -19,6 +19,7 @@
 mod amounts;
 mod hands;
 mod holding;
+mod lines;
 mod missed;
 mod motion;
 mod motors;
@@ -29,6 +30,7 @@ mod words;
 
 pub(crate) use amounts::{Amount, MOST_AMOUNTS, amounts, amounts_in_words};
 pub use hands::HandLoad;
+pub use lines::Line;
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest};
 pub use motors::{has_motors, muscles_or_motors};
 pub use posture::HeldPosture;
@@ -165,8 +167,10 @@ pub struct Verdict {
     pub passed: Vec<PassedHazard>,
     /// Weights in hands that are much for the grip, the heaviest first.
     pub hands: Vec<HandLoad>,
-    /// The first sentence of every result.
+    /// The first line of every result: one sentence, and those about hazards and motion.
     pub sentence: String,
+    /// The findings behind it, which stand below it.
+    pub lines: Vec<Line>,
     /// Targets that are missed, the most important first.
     pub missed: Vec<Missed>,
 }
@@ -178,6 +182,12 @@ impl Verdict {
         let tired = self.tired.is_some_and(|tired| tired.fatigue > TIRED);
         let hazard = !self.hazards.is_empty() || !self.passed.is_empty() || !self.hands.is_empty();
         self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && !hazard
+    }
+
+    /// The sentence and the lines below it, each on a line of its own.
+    pub fn in_words(&self) -> String {
+        let lines = self.lines.iter().map(|line| line.in_words() + "\n");
+        std::iter::once(format!("{}\n", self.sentence)).chain(lines).collect()
     }
 
     /// Number of coordinates in hazard at the end and of hands with much weight.
@@ -211,6 +221,8 @@ pub(crate) struct Findings {
     pub(crate) tired: Option<Tired>,
     /// Coordinates in hazard.
     pub(crate) hazards: Vec<Hazard>,
+    /// Coordinates that were in hazard in a run, with the time in all, s.
+    pub(crate) in_hazard: Vec<(usize, f64)>,
     /// Hazards of a run that were over at its end.
     pub(crate) passed: Vec<PassedHazard>,
     /// Weights in hands that are much for the grip, the heaviest first.

@@ -26,6 +26,7 @@ impl Verdict {
             fails: fails(scenario, summary),
             passed: passed(scenario, summary, &hazards),
             hazards,
+            in_hazard: in_hazard(scenario, summary),
             hands: hands(scenario),
             loads: summary.fall.map_or_else(Vec::new, |fall| loads_at(scenario, fall.time).to_vec()),
             interrupted: interrupted.then_some(summary.end_time),
@@ -65,6 +66,13 @@ fn loads_at(scenario: &Scenario, time: f64) -> &[Load] {
     let mut changed =
         scenario.events.iter().filter(|event| event.time <= time).filter_map(|event| event.loads.as_deref());
     changed.next_back().unwrap_or(&scenario.loads)
+}
+
+/// Coordinates that were in hazard, with the time in all, s.
+fn in_hazard(scenario: &Scenario, summary: &Summary) -> Vec<(usize, f64)> {
+    let seconds =
+        |(i, course): (usize, &CoordinateSummary)| Some((i, course.hazardous?.samples as f64 * scenario.run.step));
+    summary.coordinates.iter().enumerate().filter_map(seconds).collect()
 }
 
 /// Hazards of a run that are none of those `at_end`.

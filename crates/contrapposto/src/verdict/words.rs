@@ -1,9 +1,9 @@
-//! Says a verdict in one sentence.
+//! Says a verdict in one sentence, or in two where ligaments are in hazard.
 
 use super::missed::unit;
 use super::{
-    Failure, Findings, HandLoad, MOST_AMOUNTS, Missed, Nearest, PassedHazard, TIRED, Verdict, VerdictKind, Who,
-    amounts, amounts_in_words, muscles_or_motors,
+    Failure, Findings, MOST_AMOUNTS, Missed, Nearest, Verdict, VerdictKind, Who, amounts, amounts_in_words,
+    muscles_or_motors,
 };
 use crate::contact::Slip;
 use crate::model::{Model, plain_group_name, plain_name};
@@ -30,7 +30,7 @@ impl Findings {
             VerdictKind::HeldUntil => self.held_until(model),
             VerdictKind::Holds => self.holds(model),
         };
-        let sentence = if kind.is_done() { sentence + &self.hands_in_words(model) } else { sentence };
+        let sentence = if kind.is_done() { sentence + &self.hazard(model).unwrap_or_default() } else { sentence };
         let sentence = match self.interrupted {
             Some(time) => format!("Interrupted after {}; so far: {sentence}", how_long(time)),
             None => sentence,
@@ -42,6 +42,7 @@ impl Findings {
             None if self.dynamics => format!("{sentence} Inertia of the motion counts."),
             None => sentence,
         };
+        let (lines, slip) = (self.lines(model, kind), self.noticed_slip());
         let fails = match kind {
             VerdictKind::HeldUntil => self.fails,
             VerdictKind::Holds => self.fails_later().copied(),
@@ -60,10 +61,11 @@ impl Findings {
             tired: self.tired,
             fails_weaker: self.fails_weaker().map(|failure| failure.who),
             hazards: self.hazards,
-            slip: self.slip.filter(|(slip, _)| slip.exceeds(Slip::NOTICED)),
+            slip,
             passed: self.passed,
             hands: self.hands,
             sentence: muscles_or_motors(model, &sentence),
+            lines,
             missed: self.missed,
         }
     }
@@ -139,15 +141,11 @@ impl Findings {
 
     fn held_until(&self, model: &Model) -> String {
         let Some(Failure { who, time, range }) = self.fails else { return String::new() };
-        let who = who.name(model);
-        let range = in_words(range);
+        let (who, range) = (who.name(model), in_words(range));
         if time <= 0.0 {
             return format!("Cannot be held: {who} fails at once ({range}).");
         }
-        let hazards: Vec<String> = self.ligaments(model).into_iter().chain(self.passed(model)).collect();
-        let hazards = if hazards.is_empty() { String::new() } else { format!("; but {}", listed(&hazards)) };
-        let overload = self.overload(model).unwrap_or_default();
-        format!("Can be held {} ({range}), then {who} fails first{hazards}.{overload}", self.held(time))
+        format!("Can be held {} ({range}), then {who} fails first.", self.held(time))
     }
 
     /// `10 min of the 2.0 h asked`, `598 s of the 600 s asked`, or `10 min` where no time was asked for.
@@ -164,24 +162,8 @@ impl Findings {
         format!("{time} of the {asked} asked")
     }
 
-    /// ` Later, at 5.0 min, right hip extension would need 130 % of its strength.`, of a group that is too weak after another one has failed.
-    fn overload(&self, model: &Model) -> Option<String> {
-        let (group, time) = self.hardest.filter(|(group, _)| group.load > 1.0)?;
-        let (who, when) = (Who::from(group).name(model), how_long(time?));
-        Some(format!(" Later, at {when}, {who} would need {} of its strength.", percent(group.load)))
-    }
-
-    /// ` Fatigue of the grip is not judged: the right hand holds 245 N, 51 % of the mean strength of a man's grip.`
-    fn hands_in_words(&self, model: &Model) -> String {
-        let hands: Vec<String> = self.hands.iter().map(|hand: &HandLoad| hand.in_words(model)).collect();
-        match hands.as_slice() {
-            [] => String::new(),
-            hands => format!(" Fatigue of the grip is not judged: {}.", enumerated(hands)),
-        }
-    }
-
     fn holds(&self, model: &Model) -> String {
-        if model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
+        if has_no_strength(model) {
             return "In balance; no strength of this body is known, so nothing can be said of load and time."
                 .to_owned();
         }
@@ -189,89 +171,42 @@ impl Findings {
             Some(time) => format!("Holds through the run ({})", how_long(time)),
             None => "Holds without a limit by muscles".to_owned(),
         };
-        let but = listed(&self.reservations(model));
-        let but = if but.is_empty() { but } else { format!(", but {but}") };
-        format!("{head}{but}.{} {}", self.goes_on(model), self.hardest_worked(model))
-    }
-
-    /// `weaker people (one in six) fail after 3.9 min`, `right shoulder flexion is 82 % tired at the end`.
-    fn reservations(&self, model: &Model) -> Vec<String> {
-        let weaker = self.fails_weaker().map(|failure| {
-            let first = self.fails_later().is_some_and(|other| other.who == failure.who);
-            let who = if first { String::new() } else { format!(" ({})", failure.who.name(model)) };
-            // Two of three people lie within the range: one in six below it.
-            format!("weaker people (one in six) fail after {}{who}", how_long(failure.range.0))
-        });
-        let tired = self.tired.filter(|tired| tired.fatigue > TIRED);
-        let tired = tired.map(|tired| {
-            let lasts = if tired.lasts { " (at that load it does not become more tired)" } else { "" };
-            format!("{} is {} tired at the end{lasts}", tired.who.name(model), percent(tired.fatigue))
-        });
-        weaker.into_iter().chain(tired).chain(self.ligaments(model)).chain(self.passed(model)).collect()
-    }
-
-    /// `ligaments hold lumbar extension at −60.0° (74 % of the torque of 165 N m there)`.
-    fn ligaments(&self, model: &Model) -> Option<String> {
-        let list: Vec<String> = self.hazards.iter().map(|hazard| hazard.in_words(model)).collect();
-        (!list.is_empty()).then(|| format!("ligaments hold {}", enumerated(&list)))
-    }
-
-    /// `ligaments held for 40 s lumbar extension at −60.0° (74 % of the torque of 165 N m there)`.
-    fn passed(&self, model: &Model) -> Option<String> {
-        let sentence =
-            |passed: &PassedHazard| format!("for {} {}", how_long(passed.seconds), passed.hazard.in_words(model));
-        let list: Vec<String> = self.passed.iter().map(sentence).collect();
-        (!list.is_empty()).then(|| format!("ligaments held {}", enumerated(&list)))
-    }
-
-    /// ` If it goes on like this, right shoulder flexion fails first, after about 6.6 min in all (3.9 min to 21.4 min for two of three people).`
-    fn goes_on(&self, model: &Model) -> String {
-        let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.range.0 < A_DAY) else {
-            let said = !self.later.is_empty() && self.asked.is_some();
-            return if said { " If it goes on like this, no muscle fails.".to_owned() } else { String::new() };
-        };
-        let (who, least) = (who.name(model), how_long(range.0));
-        let on = if self.asked.is_some() { " If it goes on like this," } else { "" };
-        if *time < A_DAY {
-            let range = in_words(*range);
-            return format!("{on} {who} fails first, after about {} in all ({range}).", how_long(*time));
-        }
-        let no = if on.is_empty() { "No" } else { "no" };
-        format!(
-            "{on} {no} muscle of the mean person fails; in weaker people {who} can fail, after {least} at the earliest."
-        )
-    }
-
-    /// `Hardest worked: right shoulder flexion at 17 % of its strength.`, or `... of its strength at 7.9 min (11 % at the end).`
-    fn hardest_worked(&self, model: &Model) -> String {
-        let Some((group, time)) = self.hardest.filter(|(group, _)| group.load >= 0.005) else {
-            return "No muscle works.".to_owned();
-        };
-        let greatest = percent(group.load);
-        let is_it = |who: &Who| (who.coordinate, who.side) == (group.coordinate, group.side);
-        let end = self.later.iter().find(|failure| is_it(&failure.who)).map(|failure| percent(failure.who.load));
-        let end = time.zip(end.filter(|end| *end != greatest));
-        let end = end.map(|(time, end)| match how_long(time) {
-            at if self.asked.map(how_long).as_ref() == Some(&at) => {
-                format!(" shortly before the end ({end} at the end)")
+        let hardest = || match self.hardest_load() {
+            Some(group) => {
+                format!(", hardest worked: {} at {} of its strength", Who::from(group).name(model), percent(group.load))
             }
-            at => format!(" at {at} ({end} at the end)"),
-        });
-        let name = Who::from(group).name(model);
-        format!("Hardest worked: {name} at {greatest} of its strength{}.", end.unwrap_or_default())
+            None => "; no muscle works".to_owned(),
+        };
+        format!("{head}{}.", self.weaker(model).unwrap_or_else(hardest))
+    }
+
+    /// `, but in weaker people (one in six) right shoulder flexion fails within 3.9 min`: two of three people lie within the range, one in six below it.
+    fn weaker(&self, model: &Model) -> Option<String> {
+        let Failure { who, range: (least, _), .. } = self.fails_weaker()?;
+        let who = who.name(model);
+        Some(if *least > 0.0 {
+            format!(", but in weaker people (one in six) {who} fails within {}", how_long(*least))
+        } else {
+            format!(", but weaker people (one in six) are too weak for it ({who})")
+        })
+    }
+
+    /// ` Hazard for ligaments: low back bent forward by 60°.`
+    fn hazard(&self, model: &Model) -> Option<String> {
+        let passed = self.passed.iter().map(|passed| &passed.hazard);
+        let list: Vec<String> =
+            self.hazards.iter().chain(passed).map(|hazard| hazard.posture_in_words(model)).collect();
+        (!list.is_empty()).then(|| format!(" Hazard for ligaments: {}.", enumerated(&list)))
     }
 }
 
-/// `a`, `a, and b`, `a, b, and c`.
-fn listed(parts: &[String]) -> String {
-    match parts {
-        [first @ .., last] if !first.is_empty() => format!("{}, and {last}", first.join(", ")),
-        _ => parts.concat(),
-    }
+/// No group of the body has a strength.
+pub(super) fn has_no_strength(model: &Model) -> bool {
+    model.coordinates().iter().all(|coordinate| coordinate.groups.is_none())
 }
 
 /// `a`, `a and b`, `a, b and c`.
-fn enumerated(parts: &[String]) -> String {
+pub(super) fn enumerated(parts: &[String]) -> String {
     match parts {
         [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
         _ => parts.concat(),
@@ -335,8 +270,8 @@ impl Who {
     }
 }
 
-/// `14 min to 27 min in two of three people`.
-fn in_words((least, greatest): (f64, f64)) -> String {
+/// `14 min to 27 min for two of three people`.
+pub(super) fn in_words((least, greatest): (f64, f64)) -> String {
     let most = if greatest < A_DAY { how_long(greatest) } else { "no limit".to_owned() };
     format!("{} to {most} for two of three people", how_long(least))
 }
@@ -346,7 +281,7 @@ pub fn slip_in_words(slip: Slip) -> String {
     format!("{} and {:.1}°", length(slip.distance), slip.angle.to_degrees())
 }
 
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
 }
 

@@ -7,9 +7,9 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::simulation::{Contact, Standing};
 use contrapposto::statics::{Load, LoadKind};
-use contrapposto::verdict::{Verdict, VerdictKind};
+use contrapposto::verdict::{Line, Verdict, VerdictKind};
 use contrapposto_formats::tissue::SourcedModel;
-use contrapposto_report::{Entry, Figure, List, Moments, Table};
+use contrapposto_report::{Entry, Fact, Figure, List, Moments, Table};
 use nalgebra::Vector3;
 
 use super::page;
@@ -19,7 +19,7 @@ use crate::view::decision::answer;
 use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{add_reasons, hazards};
+use crate::view::scene::hazard::hazards;
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
 use crate::view::text::assess::times_from;
@@ -135,8 +135,11 @@ pub(crate) fn report_of_assessment(
     }
     report.open = assessed_frames.nearest(moment(found, verdict));
     let span = last.time - first.time;
-    report.headline.clone_from(&verdict.sentence);
-    report.reasons = advice.sentence.clone().into_iter().collect();
+    super::answer(&mut report, verdict, advice);
+    // Those of the page say how long, too.
+    report.facts.retain(|fact| fact.name != Line::HAZARD);
+    let hazards = hazards(model, frames, true);
+    report.facts.extend(hazards.into_iter().map(|text| Fact { name: Line::HAZARD.to_owned(), text }));
     report.reasons.extend(warnings.iter().map(|warning| sentence(warning) + "."));
     report.reasons.extend(times_from(first.time));
     let basis = inertia.map_or_else(|| "Each posture is treated as held at rest".to_owned(), sentence);
@@ -147,7 +150,6 @@ pub(crate) fn report_of_assessment(
         entries: entries(assessed_frames, &working, &shown),
         none: "None: no group fails, and no joint alone gives relief.".to_owned(),
     };
-    add_reasons(&mut report, hazards(model, frames, true));
     report.table = table(assessed_frames.opened, &working);
     Ok(page(model, report))
 }

@@ -2,10 +2,10 @@
 
 use contrapposto::capacity::{GreatestForce, Limiter};
 use contrapposto::model::Model;
-use contrapposto::verdict::Who;
+use contrapposto::verdict::{Line, Who};
 use contrapposto_formats::{CapacityText, ForceText};
 use contrapposto_plot::{BodyPosture, ForceFigure, Spoke};
-use contrapposto_report::{ForceSolid, Moments, Table};
+use contrapposto_report::{Fact, ForceSolid, Moments, Table};
 
 use super::figure::{carriers, figure, figures_of};
 use crate::fail::Fail;
@@ -14,7 +14,7 @@ use crate::view::body::held_body;
 use crate::view::capacity::{Forces, limited_by, newtons};
 use crate::view::held::Held;
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{add_reasons, hazards};
+use crate::view::scene::hazard::hazards;
 use crate::view::stage::Stage;
 use crate::view::text::capacity::row;
 use crate::view::text::compare::ComparedPosture;
@@ -114,7 +114,8 @@ pub(crate) fn report_of_capacity(
             rows: extremes.chain(text.main.iter().map(named)).collect(),
         };
     }
-    add_reasons(&mut report, hazards(model, &frames, false));
+    let hazards = hazards(model, &frames, false);
+    report.facts = hazards.into_iter().map(|text| Fact { name: Line::HAZARD.to_owned(), text }).collect();
     Ok(contrapposto_report::write(&report))
 }
 

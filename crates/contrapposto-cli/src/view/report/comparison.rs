@@ -1,6 +1,6 @@
 //! The page of postures side by side.
 
-use contrapposto_report::{Entry, List, Moments, Report, Table};
+use contrapposto_report::{Entry, Fact, List, Moments, Report, Table};
 
 use super::figure::figure;
 use super::page;
@@ -34,8 +34,11 @@ pub(crate) fn report_of_comparison(postures: &[ComparedPosture], text: &CompareT
         Report { title: "Compared postures".to_owned(), ..Report::default() }
     };
     report.headline.clone_from(&text.sentence);
-    report.reasons =
-        postures.iter().map(|compared| format!("{}: {}", compared.letter, compared.verdict.sentence)).collect();
+    let fact = |compared: &ComparedPosture| Fact {
+        name: compared.letter.to_string(),
+        text: compared.verdict.sentence.trim_end_matches('.').to_owned(),
+    };
+    report.facts = postures.iter().map(fact).collect();
     report.figures = postures
         .iter()
         .map(|compared| {

@@ -6,17 +6,17 @@ use contrapposto::equilibria::{Direction, Equilibria, RelaxedPosture};
 use contrapposto::hybrid::{Carrier, Equilibrium};
 use contrapposto::model::Model;
 use contrapposto_formats::RelaxScenario;
-use contrapposto_report::{Entry, List, Moments, Table};
+use contrapposto_report::{Entry, Fact, List, Moments, Table};
 
 use super::figure::{carriers, figure, figures_of, weight};
 use super::page;
 use crate::fail::Fail;
-use crate::view::answer::{Answer, also_missed, also_slid};
+use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
 use crate::view::frame::{Frame, frame_of_posture};
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{add_reasons, hazards};
+use crate::view::scene::hazard::hazards;
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
 use crate::view::words::{MOST_JOINTS_SHOWN, how_long, list, percent, plain, value};
@@ -68,8 +68,7 @@ pub(crate) fn report_of_equilibria(
         return Ok(page(model, report));
     };
     let more = found.postures.get(1).map(|next| percent(next.relaxed.effort / best.relaxed.effort - 1.0));
-    report.headline.clone_from(&verdict.sentence);
-    report.reasons.extend(also_missed(verdict).into_iter().chain(also_slid(verdict)).chain(advice.sentence.clone()));
+    super::answer(&mut report, verdict, advice);
     report.reasons.push(match (found.postures.len(), &more) {
         (n, Some(more)) => {
             format!(
@@ -95,7 +94,8 @@ pub(crate) fn report_of_equilibria(
         columns: ["Posture", "Effort", "Weight on", "Held by", "Highest load"].map(str::to_owned).to_vec(),
         rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
     };
-    add_reasons(&mut report, hazards(model, &frames, false));
+    let others = hazards(model, &frames[1..], false);
+    report.facts.extend(others.into_iter().map(|text| Fact { name: "Hazard in others".to_owned(), text }));
     Ok(page(model, report))
 }
 

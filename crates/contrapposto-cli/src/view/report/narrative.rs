@@ -4,7 +4,7 @@ use contrapposto::simulation::{FootStep, Scenario, StopReason, Summary};
 use contrapposto::verdict::TIRED;
 use contrapposto_report::{Figure, Report};
 
-use crate::view::answer::{Answer, also_missed, also_slid, group_of_title};
+use crate::view::answer::{Answer, group_of_title};
 use crate::view::axes::pelvis_list;
 use crate::view::excerpt::RunExcerpt;
 use crate::view::frame::Frame;
@@ -33,18 +33,15 @@ pub(super) fn write(
     let main = of_title.unwrap_or_else(|| main_coordinate(scenario, summary));
     let ligaments = answer.verdict.hazards.first().map_or(main, |hazard| hazard.coordinate);
     let in_hazard = !answer.verdict.hazards.is_empty();
-    let narrative = Narrative { scenario, names, first, last, main, ligaments, in_hazard };
+    let angles = excerpt.frames.iter().map(|frame| frame.angles[main].to_degrees());
+    let (low, high) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), a| (low.min(a), high.max(a)));
+    let narrative = Narrative { scenario, names, first, last, main, swept: high - low, ligaments, in_hazard };
     let lists = pelvis_list(&scenario.model, &first.posture).zip(pelvis_list(&scenario.model, &last.posture));
     // On its feet (or hands), not seated.
     let seated = scenario.supports.iter().any(|s| Some(s.segment) == scenario.model.segment("pelvis"));
     let standing = lists.filter(|_| !scenario.supports.is_empty() && !seated && pelvis_was_relieved(scenario, summary));
-    report.headline.clone_from(&answer.verdict.sentence);
-    report.reasons = also_missed(&answer.verdict)
-        .into_iter()
-        .chain(also_slid(&answer.verdict))
-        .chain(answer.also_cut())
-        .chain(answer.advice.sentence.clone())
-        .collect();
+    super::answer(report, &answer.verdict, &answer.advice);
+    report.reasons.extend(answer.also_cut());
     // Of a job that cannot be done nothing else is said to hold.
     let tired = answer.verdict.tired.is_some_and(|tired| tired.fatigue > TIRED);
     if answer.verdict.kind.is_done() && !(tired && excerpt.happened == 0) {
@@ -59,7 +56,7 @@ pub(super) fn write(
         }
     }
     report.reasons.extend(summary.foot_steps.iter().map(|step| narrative.of_step(step)));
-    report.reasons.push(narrative.end(excerpt, summary));
+    report.reasons.extend(narrative.end(excerpt, summary));
     report.figures = narrative.figures(standing, summary);
 }
 
@@ -82,6 +79,8 @@ struct Narrative<'a> {
     first: &'a Frame,
     last: &'a Frame,
     main: usize,
+    /// Difference of the greatest and the least angle of `main` over the run, degrees.
+    swept: f64,
     /// The coordinate whose passive torque is reported: the first in hazard, or `main`.
     ligaments: usize,
     /// That coordinate is in hazard.
@@ -114,7 +113,8 @@ impl Narrative<'_> {
         let [before, after] = [self.first, self.last].map(|frame| frame.active(self.main).abs());
         let axis = self.about_axis();
         if self.moved().abs() < STAYED {
-            return format!("{name} stayed at {to}{axis}: its muscles hold {after:.1} N m.");
+            let verb = if self.swept < STAYED { "stayed at" } else { "ended where it began, at" };
+            return format!("{name} {verb} {to}{axis}: its muscles hold {after:.1} N m.");
         }
         let verb = if after > before { "more" } else { "less" };
         format!(
@@ -205,7 +205,8 @@ impl Narrative<'_> {
         )
     }
 
-    fn end(&self, excerpt: &RunExcerpt, summary: &Summary) -> String {
+    /// The reason for which the run ended, if not at its time; and the decisions that the page leaves out.
+    fn end(&self, excerpt: &RunExcerpt, summary: &Summary) -> Option<String> {
         let how = match summary.reason {
             StopReason::Settled => "the posture no longer changed",
             StopReason::Duration => "its full duration",
@@ -219,7 +220,8 @@ impl Narrative<'_> {
             0 => String::new(),
             more => format!(" Of {} decisions the first {listed} are listed; {more} more follow.", excerpt.happened),
         };
-        format!("The run ended after {}: {how}.{why}{more}", how_long(summary.end_time))
+        let whole = summary.reason == StopReason::Duration && more.is_empty();
+        (!whole).then(|| format!("The run ended after {}: {how}.{why}{more}", how_long(summary.end_time)))
     }
 
     fn figures(&self, standing: Option<(f64, f64)>, summary: &Summary) -> Vec<Figure> {
@@ -271,7 +273,7 @@ impl Narrative<'_> {
         figures.push(figure(
             "Effort of all muscles",
             change,
-            format!("sum of squared relative loads, {before:.3} to {after:.3}"),
+            format!("sum of squared relative loads, {before:.4} to {after:.4}"),
         ));
         if let Some((name, load, time)) = hardest_of_run(&scenario.model, summary) {
             figures.push(figure("Highest load", percent(load), format!("{name}, at {}", how_long(time))));

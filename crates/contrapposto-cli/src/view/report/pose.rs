@@ -12,7 +12,6 @@ use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
 use crate::view::held::{Held, held};
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::stage::Stage;
 use crate::view::targets::targets;
 use crate::view::text::pose::{IN_BALANCE, mark, reached, tasks as tasks_of};
@@ -46,9 +45,8 @@ pub(crate) fn report_of_pose(
     let missing = all.iter().filter(|entries| !reached(entries) && !rest(&entries[0].task));
     let missing: Vec<String> =
         missing.map(|entries| format!("{} by {}", plain_task(&entries[0].task), remaining(entries))).collect();
-    report.headline.clone_from(&text.verdict.sentence);
-    report.reasons = reasons((pose.reason, kept_balance), &missing, done == all.len());
-    report.reasons.splice(0..0, answer.advice.sentence.clone());
+    super::answer(&mut report, &answer.verdict, &answer.advice);
+    report.reasons.extend(reasons((pose.reason, kept_balance), &missing, done == all.len()));
     let nothing = scenario.supports.is_empty() && !root_rates(model).is_empty();
     if unheld.is_some() || nothing {
         report.reasons.push("The torques shown are those of a body whose root is held, as if by hand.".to_owned());
@@ -64,7 +62,6 @@ pub(crate) fn report_of_pose(
         columns: ["Priority", "Task", "Remaining error", "Result"].map(str::to_owned).to_vec(),
         rows: all.iter().map(row).collect(),
     };
-    add_reasons(&mut report, hazards(model, &frames, false));
     Ok(page(model, report))
 }
 

@@ -14,7 +14,6 @@ use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::frame::Frame;
 use crate::view::recording::Recording;
 use crate::view::scene::Scene;
-use crate::view::scene::hazard::{add_reasons, hazards};
 use crate::view::selection::{main_coordinate, shown};
 use crate::view::stage::{Stage, load_in_words};
 use crate::view::targets::missed_targets;
@@ -46,9 +45,7 @@ pub(crate) fn report_of_run(
         entries: entries(scenario, summary, &excerpt, &shown),
         none: "None: no muscle group needed relief.".to_owned(),
     };
-    let hazards = hazards(&scenario.model, &excerpt.frames, true);
     narrative::write((scenario, &scene.names_of_supports()), &excerpt, summary, answer, &mut report);
-    add_reasons(&mut report, hazards);
     Ok(page(&scenario.model, report))
 }
 

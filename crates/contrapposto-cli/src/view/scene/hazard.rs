@@ -4,7 +4,6 @@
 use contrapposto::joint_torques::Hazard;
 use contrapposto::model::Model;
 use contrapposto::model::data::{HazardRow, library};
-use contrapposto_report::Report;
 
 use crate::view::frame::Frame;
 use crate::view::words::{how_long, list};
@@ -14,7 +13,7 @@ pub(crate) fn hazard(model: &Model, frame: &Frame, i: usize) -> Option<&'static 
     Hazard::at(&model.coordinates()[i], frame.angles[i], frame.external[i], frame.passive[i])
 }
 
-/// A sentence for each kind of hazard in the frames, about the coordinates where they are loaded most. `lasts`: the frames follow
+/// A text for each kind of hazard in the frames, about the coordinates where they are loaded most. `lasts`: the frames follow
 /// each other in time.
 pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<String> {
     let mut sentences = vec![];
@@ -40,13 +39,7 @@ pub(crate) fn hazards(model: &Model, frames: &[Frame], lasts: bool) -> Vec<Strin
             ""
         };
         let joints = list(&joints);
-        sentences.push(format!("Hazard: ligaments hold {joints}{long}; {}{too_long}.", row.finding));
+        sentences.push(format!("{joints}{long}; {}{too_long}", row.finding));
     }
     sentences
-}
-
-/// Puts the sentences behind the first reason of a page.
-pub(crate) fn add_reasons(report: &mut Report, sentences: Vec<String>) {
-    let place = report.reasons.len().min(1);
-    report.reasons.splice(place..place, sentences);
 }

@@ -1,5 +1,7 @@
 //! Reads `data/hazards.toml`: the joint angles at which passive tissue that carries a joint is a hazard.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 
 use super::reference::Reference;
@@ -15,7 +17,8 @@ pub(super) struct HazardFile {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HazardRow {
-    coordinates: Vec<String>,
+    /// Coordinates, each with the posture in words, before the size of its angle.
+    coordinates: BTreeMap<String, String>,
     positive: String,
     /// The positive sense of a coordinate that runs against the row.
     #[serde(default)]
@@ -42,7 +45,7 @@ impl HazardRow {
     pub(crate) fn limit(&self, coordinate: &Coordinate, angle: f64) -> Option<f64> {
         let same_sense = self.positive.is_empty() || coordinate.positive == self.positive;
         let opposite = !self.negative.is_empty() && coordinate.positive == self.negative;
-        if !self.coordinates.contains(&coordinate.name) || !(same_sense || opposite) {
+        if !self.concerns(&coordinate.name) || !(same_sense || opposite) {
             return None;
         }
         let sense = if opposite { -1.0 } else { 1.0 };
@@ -50,6 +53,17 @@ impl HazardRow {
         let below = self.below_deg.filter(|limit| degrees <= *limit);
         let limit = below.or(self.above_deg.filter(|limit| degrees >= *limit));
         limit.map(|limit| sense * limit.to_radians())
+    }
+
+    /// Whether the row is about a coordinate of this name.
+    pub(crate) fn concerns(&self, coordinate: &str) -> bool {
+        self.coordinates.contains_key(coordinate)
+    }
+
+    /// `low back bent forward by 60°`: a coordinate of the row at an angle, rad.
+    pub(crate) fn posture_in_words(&self, coordinate: &str, angle: f64) -> String {
+        let posture = self.coordinates.get(coordinate).map_or(coordinate, String::as_str);
+        format!("{posture} {:.0}°", angle.to_degrees().abs())
     }
 
     /// Longest time for which the study kept people there, s.

@@ -1,0 +1,170 @@
+//! Says what stands below the sentence of a verdict: a line for each finding, with its name.
+
+use super::words::{A_DAY, enumerated, has_no_strength, how_long, in_words, percent, slip_in_words};
+use super::{Failure, Findings, HandLoad, TIRED, VerdictKind, Who, muscles_or_motors};
+use crate::contact::Slip;
+use crate::joint_torques::{GroupLoad, Hazard};
+use crate::model::Model;
+
+/// Load below which no muscle counts as working.
+const NO_WORK: f64 = 0.005;
+
+/// A finding behind a verdict.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// `Fails first`, `Hardest worked`, `Most tired`, `Hazard`, `Later`, `Grip`, `Missed besides` or `Slip`.
+    pub name: &'static str,
+    /// The finding, without a full stop.
+    pub text: String,
+}
+
+impl Line {
+    /// Name of the lines about hazards for ligaments.
+    pub const HAZARD: &'static str = "Hazard";
+
+    /// `Hardest worked: right shoulder flexion, 17 % of its strength.`
+    pub fn in_words(&self) -> String {
+        format!("{}: {}.", self.name, self.text)
+    }
+}
+
+impl Findings {
+    /// The lines below the sentence of a verdict of this kind.
+    pub(super) fn lines(&self, model: &Model, kind: VerdictKind) -> Vec<Line> {
+        let mut lines = vec![];
+        let mut line = |name: &'static str, text: Option<String>| {
+            lines.extend(text.map(|text| Line { name, text: muscles_or_motors(model, &text) }));
+        };
+        if kind == VerdictKind::Holds && !has_no_strength(model) {
+            line("Fails first", self.fails_first(model));
+            line("Hardest worked", self.hardest_worked(model));
+            line("Most tired", self.most_tired(model));
+        }
+        if kind == VerdictKind::HeldUntil {
+            line("Later", self.overload(model));
+        }
+        if kind.is_done() {
+            self.hazards_in_words(model).into_iter().for_each(|text| line(Line::HAZARD, Some(text)));
+            line("Grip", self.hands_in_words(model));
+        }
+        line("Missed besides", self.missed_besides());
+        line("Slip", self.slip_in_words().filter(|_| kind != VerdictKind::CannotStand));
+        lines
+    }
+
+    /// The load of the hardest worked group, if any works.
+    pub(super) fn hardest_load(&self) -> Option<GroupLoad> {
+        self.hardest.map(|(group, _)| group).filter(|group| group.load >= NO_WORK)
+    }
+
+    /// `right shoulder flexion, after about 6.6 min in all if it goes on like this (3.9 min to 21.4 min for two of three people)`.
+    fn fails_first(&self, model: &Model) -> Option<String> {
+        self.asked?;
+        let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.range.0 < A_DAY) else {
+            return (!self.later.is_empty()).then(|| "no muscle, if it goes on like this".to_owned());
+        };
+        let (who, least) = (who.name(model), how_long(range.0));
+        Some(if *time < A_DAY {
+            let (time, range) = (how_long(*time), in_words(*range));
+            format!("{who}, after about {time} in all if it goes on like this ({range})")
+        } else {
+            format!(
+                "no muscle of a person of mean strength; in weaker people {who} can fail, after {least} at the earliest"
+            )
+        })
+    }
+
+    /// `right hip extension, 17 % of its strength; it fails later, after about 32 min`, or `..., 17 % of its strength at 7.9 min (11 % at the end)`.
+    /// `None` where the sentence has said it all.
+    fn hardest_worked(&self, model: &Model) -> Option<String> {
+        let time = self.hardest?.1;
+        let group = self.hardest_load()?;
+        let greatest = percent(group.load);
+        let is_it = |who: &Who| (who.coordinate, who.side) == (group.coordinate, group.side);
+        let own = self.later.iter().find(|failure| is_it(&failure.who));
+        let end = time.zip(own.map(|own| percent(own.who.load)).filter(|end| *end != greatest));
+        let end = end.map(|(time, end)| match how_long(time) {
+            at if self.asked.map(how_long).as_ref() == Some(&at) => {
+                format!(" shortly before the end ({end} at the end)")
+            }
+            at => format!(" at {at} ({end} at the end)"),
+        });
+        let first = self.asked.and(self.fails_later()).filter(|first| first.time < A_DAY && !is_it(&first.who));
+        let fails = first.zip(own).map(|(_, own)| match own.time {
+            time if time < A_DAY => format!("; it fails later, after about {}", how_long(time)),
+            _ => "; it does not fail at its load of the end".to_owned(),
+        });
+        if self.fails_weaker().is_none() && end.is_none() && fails.is_none() {
+            return None;
+        }
+        let name = Who::from(group).name(model);
+        Some(format!("{name}, {greatest} of its strength{}{}", end.unwrap_or_default(), fails.unwrap_or_default()))
+    }
+
+    /// `right shoulder flexion, 82 % at the end (at 100 % it fails)`.
+    fn most_tired(&self, model: &Model) -> Option<String> {
+        let tired = self.tired.filter(|tired| tired.fatigue > TIRED)?;
+        let lasts = if tired.lasts { "; at that load it does not become more tired" } else { "" };
+        Some(format!(
+            "{}, {} at the end (at 100\u{a0}% it fails){lasts}",
+            tired.who.name(model),
+            percent(tired.fatigue)
+        ))
+    }
+
+    /// `at 5.0 min right hip extension would need 130 % of its strength`, of a group that is too weak after another one has failed.
+    fn overload(&self, model: &Model) -> Option<String> {
+        let (group, time) = self.hardest.filter(|(group, _)| group.load > 1.0)?;
+        let (who, when) = (Who::from(group).name(model), how_long(time?));
+        Some(format!("at {when} {who} would need {} of its strength", percent(group.load)))
+    }
+
+    /// Each hazard: the posture, the torque, its time where that is known, and the finding of the study, which is told once.
+    fn hazards_in_words(&self, model: &Model) -> Vec<String> {
+        let now = self.hazards.iter().map(|hazard| (hazard, self.seconds_in_hazard(hazard), ""));
+        let over = self.passed.iter().map(|passed| (&passed.hazard, Some(passed.seconds), ", over at the end"));
+        let mut told: Vec<&str> = vec![];
+        let in_words = |(hazard, seconds, over): (&Hazard, Option<f64>, &str)| {
+            let long = seconds.map_or_else(String::new, |seconds| format!(" for {}{over}", how_long(seconds)));
+            let limit = hazard.row.seconds().zip(seconds).is_some_and(|(limit, seconds)| seconds > limit);
+            let limit = if limit { "; that is longer than the study allowed" } else { "" };
+            let finding = hazard.row.finding.as_str();
+            let finding = if told.contains(&finding) { String::new() } else { format!("; {finding}{limit}") };
+            told.push(&hazard.row.finding);
+            format!("{}{long}{finding}", hazard.in_words(model))
+        };
+        now.chain(over).map(in_words).collect()
+    }
+
+    /// Time for which a coordinate was in hazard in all, s.
+    fn seconds_in_hazard(&self, hazard: &Hazard) -> Option<f64> {
+        self.in_hazard.iter().find(|(coordinate, _)| *coordinate == hazard.coordinate).map(|(_, seconds)| *seconds)
+    }
+
+    /// `its fatigue is not judged; the right hand holds 245 N, 51 % of the mean strength of a man's grip`.
+    fn hands_in_words(&self, model: &Model) -> Option<String> {
+        let hands: Vec<String> = self.hands.iter().map(|hand: &HandLoad| hand.in_words(model)).collect();
+        (!hands.is_empty()).then(|| format!("its fatigue is not judged; {}", enumerated(&hands)))
+    }
+
+    /// `look at head by 3.4° (of lower priority)`: the targets that the sentence does not name.
+    fn missed_besides(&self) -> Option<String> {
+        // The sentence names the first that decides.
+        let named = self.missed.iter().position(|missed| missed.decides);
+        let lower = self.missed.iter().enumerate().filter(|(i, _)| Some(*i) != named).map(|(_, missed)| missed);
+        let list: Vec<String> = lower.map(|missed| format!("{} by {}", missed.task, missed.by())).collect();
+        (!list.is_empty()).then(|| format!("{} (of lower priority)", list.join(", ")))
+    }
+
+    /// The greatest slip of the supports and its time, s, where it counts.
+    pub(super) fn noticed_slip(&self) -> Option<(Slip, Option<f64>)> {
+        self.slip.filter(|(slip, _)| slip.exceeds(Slip::NOTICED))
+    }
+
+    /// `the supports slid by 0.2 cm and 0.3° (the greatest slip, at 12 s)`.
+    fn slip_in_words(&self) -> Option<String> {
+        let (slip, time) = self.noticed_slip()?;
+        let when = time.map_or(String::new(), |time| format!(" (the greatest slip, at {})", how_long(time)));
+        Some(format!("the supports slid by {}{when}", slip_in_words(slip)))
+    }
+}
