@@ -1,5 +1,6 @@
 //! One module a command: its arguments in, one call of the library, its outputs.
 
+pub(crate) mod animation;
 pub(crate) mod assess;
 pub(crate) mod capacity;
 pub(crate) mod compare;

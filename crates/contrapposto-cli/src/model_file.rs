@@ -6,10 +6,11 @@ mod include;
 use std::path::Path;
 
 use contrapposto::joint_torques::JointMuscles;
+use contrapposto::model::Adult;
 use contrapposto_formats::model_ir::RootAttachment;
 use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use contrapposto_formats::xml::Limits;
-use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size};
+use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size, scenario_adult};
 
 use crate::args::{ModelArgs, PassiveFrom, RootChoice, use_muscles};
 use crate::fail::Fail;
@@ -56,7 +57,7 @@ fn open_with(
     read_file: Read,
 ) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
     let root = args.root.map(RootChoice::body);
-    let mut opened = match args.model.to_str().and_then(adult_size) {
+    let mut opened = match built_in(&args.model)? {
         Some(_) if root.is_some() => {
             let why = "the built-in adult has six root coordinates of its own (pelvis_tilt .. pelvis_tz)";
             return Err(Fail::Refused(format!("--root: {}", ModelFileError::RootGiven(why))));
@@ -65,7 +66,7 @@ fn open_with(
             let why = "the built-in adult has a size of its own: `adult:female,1.65m,60kg`";
             return Err(Fail::Refused(format!("--person: {why}")));
         }
-        Some(size) => SourcedModel::adult(&size.map_err(refused)?).map_err(refused)?,
+        Some(size) => SourcedModel::adult(&size).map_err(refused)?,
         None if args.no_strength => file(&args.model, root, read_file)?.without_strength(),
         None => file(&args.model, root, read_file)?,
     };
@@ -91,6 +92,18 @@ fn open_with(
         if fill { opened.fill(&person).map_err(refused) } else { Ok(opened) }
     };
     Ok((filled(opened)?, library.map(filled).transpose()?))
+}
+
+/// Size of the built-in adult that MODEL names: as a text, or as a scenario (.toml) that describes it.
+pub(crate) fn built_in(model: &Path) -> Result<Option<Adult>, Fail> {
+    if let Some(size) = model.to_str().and_then(adult_size) {
+        return size.map(Some).map_err(refused);
+    }
+    if model.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        let bytes = read(model, MOST_BYTES)?;
+        return Ok(Some(scenario_adult(&model.display().to_string(), &bytes)?));
+    }
+    Ok(None)
 }
 
 fn refused(error: impl std::fmt::Display) -> Fail {

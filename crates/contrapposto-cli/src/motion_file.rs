@@ -217,8 +217,11 @@ pub(crate) fn note_values_out_of_range(
     warnings
 }
 
-/// The warning about a hinge that some frame turns [`FAR`] beyond its range, as no body does.
+/// The warning about a hinge that some frame turns [`FAR`] beyond its range, as no body does. A root without muscles and ligaments turns round freely.
 fn far_outside(coordinate: &Coordinate, frames: &[(f64, Posture)], index: usize) -> Option<String> {
+    if coordinate.groups.is_none() && coordinate.passive.is_none() {
+        return None;
+    }
     let (min, max) = coordinate.range;
     let beyond = |value: f64| (min - value).max(value - max);
     let (time, worst) = frames

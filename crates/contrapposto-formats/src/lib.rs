@@ -10,6 +10,7 @@ pub mod mjcf;
 pub mod model_ir;
 pub mod motion;
 pub mod osim;
+pub mod rigs;
 pub mod tissue;
 pub mod urdf;
 pub mod write;
@@ -46,7 +47,7 @@ pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
     ContentsTask, MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, ScenarioContents, read_contents,
-    read_pose, read_relax, read_run, read_scenario, scenario_model, scenario_runs, scenario_schema,
+    read_pose, read_relax, read_run, read_scenario, scenario_adult, scenario_model, scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SlipText, SummaryText, iterations};
 pub use sweep::{Design, Distribution, Parameter, Plan, Template, Value, read_plan};

@@ -10,20 +10,26 @@ use super::model::ModelArgs;
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto track subject.osim walk.trc --out out\n  \
     contrapposto track subject.osim walk.trc --tasks Setup_IK.xml --out out\n  \
-    contrapposto assess subject.osim out/motion.mot --out report\n\n\
+    contrapposto assess subject.osim out/motion.mot --out report\n  \
+    contrapposto track adult walk.bvh --out out\n\n\
     The weighted squared distances of the markers, and the weighted squared errors of coordinates with a task, are least in every frame, as in \
     OpenSim's inverse kinematics. Locked coordinates keep their default, and ranges of clamped ones are hard limits. Writes motion.mot \
-    and marker-errors.sto into DIR.")]
+    and marker-errors.sto into DIR.\n\n\
+    An animation (.bvh; names of Mixamo, CMU and others, or --rig) moves the adult: `adult` gets the bones of the rig, `adult:female,1.65m,60kg` stays as \
+    it is. adult.toml, written beside motion.mot, is that adult, as MODEL of `assess` and others.")]
 pub(crate) struct TrackArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Measured markers (.trc).
+    /// Measured markers (.trc); or an animation (.bvh), which moves the built-in adult.
     pub(crate) markers: PathBuf,
     /// OpenSim's IKTaskSet, or the setup file (.xml) that holds one: weights of markers, and coordinates with wanted values. Without it
     /// every marker that file and model have counts the same.
     #[arg(long, value_name = "SET.xml")]
     pub(crate) tasks: Option<PathBuf>,
-    /// Unit of the markers, whatever the file says.
+    /// Joints of an animation by the adult's segments (TOML: hand_r = "RightHand"), where their names are not known.
+    #[arg(long, value_name = "NAMES.toml", conflicts_with = "tasks")]
+    pub(crate) rig: Option<PathBuf>,
+    /// Unit of the markers, whatever the file says; of an animation, whatever its legs say.
     #[arg(long, value_enum)]
     pub(crate) units: Option<UnitChoice>,
     /// Leave out the frames before this time, s; as the setup file says when left out.

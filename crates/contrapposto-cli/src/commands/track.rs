@@ -17,15 +17,20 @@ use crate::output::{ResultSet, print, print_note};
 use matching::{Matched, Observed, length};
 
 /// The motion that is written.
-const MOTION: &str = "motion.mot";
+pub(super) const MOTION: &str = "motion.mot";
 /// The errors of its markers.
-const ERRORS: &str = "marker-errors.sto";
+pub(super) const ERRORS: &str = "marker-errors.sto";
 /// Times of a setup file and of a marker file are the same up to this, s: both are rounded to a millisecond.
-const SAME_TIME: f64 = 5e-4;
+pub(super) const SAME_TIME: f64 = 5e-4;
 /// Most values of the motion that is written: `assess` and `torques` read tables of 64 MiB.
-const MOST_MOTION_VALUES: usize = 3_000_000;
+pub(super) const MOST_MOTION_VALUES: usize = 3_000_000;
 
 pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
+    if args.rig.is_some() {
+        return Err(Fail::Refused(
+            "--rig names the joints of an animation (.bvh); markers have names of their own".to_owned(),
+        ));
+    }
     let out = ResultSet::open(&args.out, &[MOTION, ERRORS])?;
     let opened = open(&args.model, false)?;
     let model = &opened.model;
@@ -92,7 +97,7 @@ fn frames(
 }
 
 /// `from 1 s`, `up to 2 s`, `from 1 s to 2 s`.
-fn asked(from: Option<f64>, to: Option<f64>) -> String {
+pub(super) fn asked(from: Option<f64>, to: Option<f64>) -> String {
     match (from, to) {
         (Some(from), Some(to)) => format!("from {from} s to {to} s"),
         (Some(from), None) => format!("from {from} s"),
@@ -101,14 +106,14 @@ fn asked(from: Option<f64>, to: Option<f64>) -> String {
     }
 }
 
-fn motion(model: &Model, times: &[f64], tracked: &[TrackedFrame]) -> Result<String, UnwritableTable> {
+pub(super) fn motion(model: &Model, times: &[f64], tracked: &[TrackedFrame]) -> Result<String, UnwritableTable> {
     let columns: Vec<(&str, CoordinateKind)> = model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
     let rows: Vec<&[f64]> = tracked.iter().map(|frame| frame.posture.values()).collect();
     write_sto("Coordinates", &columns, true, times, &rows)
 }
 
 /// The table that OpenSim's tool writes.
-fn errors(times: &[f64], tracked: &[TrackedFrame]) -> Result<String, UnwritableTable> {
+pub(super) fn errors(times: &[f64], tracked: &[TrackedFrame]) -> Result<String, UnwritableTable> {
     let names = ["total_squared_error", "marker_error_RMS", "marker_error_max"];
     let columns = names.map(|name| (name, CoordinateKind::Translation));
     let row = |frame: &TrackedFrame| {

@@ -34,7 +34,7 @@ mod upright;
 mod world;
 
 pub use contents::{ContentsTask, ScenarioContents, read_contents};
-pub use model::{ModelFile, scenario_model};
+pub use model::{ModelFile, scenario_adult, scenario_model};
 pub use pose::{PoseScenario, read_pose};
 pub use relax::{RelaxScenario, read_relax};
 pub use simulate::{RunScenario, read_run, read_scenario, scenario_runs};

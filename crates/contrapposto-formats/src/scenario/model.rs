@@ -1,6 +1,6 @@
 //! Reads which body a scenario has: a model file, or the built-in adult with its passive curves and fatigue laws.
 
-use contrapposto::model::{Adult, AdultError, Model, Part};
+use contrapposto::model::{Adult, AdultError, Model, Part, adult};
 
 use super::error_keys::adult_path;
 use super::fatigue_choice::fatigue_choice;
@@ -135,7 +135,28 @@ pub(super) fn body(at: &Located, text: &ScenarioText, file: Option<Model>) -> Re
     with_spread(at, model, &text.strength, &text.passive)
 }
 
-fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
+/// The built-in adult that a scenario describes in `[model] adult`: MODEL of the commands that take one.
+///
+/// # Errors
+/// [`InputError`] when it is no scenario, has a model file, or changes strength, passive torque or fatigue.
+pub fn scenario_adult(name: &str, bytes: &[u8]) -> Result<Adult, InputError> {
+    read_toml(name, bytes, |at, text: &ScenarioText| {
+        check_head(at, text)?;
+        if text.model.file.is_some() {
+            let help = Some("name that file instead, or describe the adult: adult = { ... }".to_owned());
+            return Err(at.key_error(&["model", "file"], "as MODEL a scenario gives the built-in adult only", help));
+        }
+        if let Some(table) = ["passive", "strength", "fatigue"].into_iter().find(|table| at.holds(&[table])) {
+            let help = Some("leave it out, and use --overlay and --fatigue".to_owned());
+            return Err(at.key_error(&[table], format!("[{table}] counts in runs of the scenario only"), help));
+        }
+        let size = size(text);
+        adult(&size).map_err(|error| refused_adult(at, &error))?;
+        Ok(size)
+    })
+}
+
+fn size(text: &ScenarioText) -> Adult {
     let default = AdultText::default();
     let size = text.model.adult.as_ref().unwrap_or(&default);
     let sex = size.sex.sex();
@@ -144,21 +165,25 @@ fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
         PartText::RightArm => Part::RightArm,
     };
     let lengths = size.lengths_m.iter().map(|(name, length)| (name.clone(), *length)).collect();
-    let size = Adult { sex, stature: size.stature_m, mass: size.mass_kg, part, lengths };
-    let refuse = |error: AdultError| {
-        let (path, message) = (adult_path(&error), error.to_string());
-        match error {
-            // The name of the segment is refused, not its length.
-            AdultError::Length { .. } => at.key_error(&path, message, None),
-            AdultError::Size { value, .. } => {
-                let help = path.last().and_then(|key| stature_in_metres(key, value));
-                at.error(&path, message, help)
-            }
-            _ => at.error(&path, message, None),
+    Adult { sex, stature: size.stature_m, mass: size.mass_kg, part, lengths }
+}
+
+fn refused_adult(at: &Located, error: &AdultError) -> InputError {
+    let (path, message) = (adult_path(error), error.to_string());
+    match error {
+        // The name of the segment is refused, not its length.
+        AdultError::Length { .. } => at.key_error(&path, message, None),
+        AdultError::Size { value, .. } => {
+            let help = path.last().and_then(|key| stature_in_metres(key, *value));
+            at.error(&path, message, help)
         }
-    };
+        _ => at.error(&path, message, None),
+    }
+}
+
+fn built_in(at: &Located, text: &ScenarioText) -> Result<Model, InputError> {
     let choice = fatigue_choice(at, text)?;
-    Ok(SourcedModel::adult(&size).map_err(refuse)?.with_fatigue(&choice).model)
+    Ok(SourcedModel::adult(&size(text)).map_err(|error| refused_adult(at, &error))?.with_fatigue(&choice).model)
 }
 
 /// A question whether the stature was written in centimetres.

@@ -1,0 +1,286 @@
+//! Reads BVH: a hierarchy of joints with offsets and channels, then a row of numbers for every frame.
+//!
+//! Keywords in any case, channels in any order and number, `{` on the same line or the next one, names with blanks. Angles are degrees and turn about
+//! the axes that the turns before have left (`R = R1 R2 R3` in the order of the file); places stand instead of the joint's offset.
+
+use contrapposto::model::LARGEST;
+use nalgebra::Vector3;
+
+use super::{Channel, Rig, RigJoint};
+use crate::input_error::{InputError, Source, utf8};
+use crate::motion::{MOST_NAME_BYTES, MOST_NUMBERS};
+use crate::xml::shorten;
+
+/// Most joints of a rig (assumed: with all fingers and a face a rig has some hundred).
+const MOST_JOINTS: usize = 2000;
+/// Most channels of a joint: three places and three turns, each once more for files that repeat them.
+const MOST_CHANNELS: usize = 12;
+/// Longest time between frames, s (assumed).
+const LONGEST_FRAME: f64 = 1000.0;
+
+/// Reads a `.bvh` file. `name` stands in errors only.
+///
+/// ```
+/// let text = "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 1 Yposition\n End Site\n { OFFSET 0 1 0 }\n}\nMOTION\nFrames: 1\nFrame Time: 0.1\n0.9\n";
+/// let rig = contrapposto_formats::rigs::read_bvh("a.bvh", text.as_bytes())?;
+/// assert_eq!(rig.frames, [[0.9]]);
+/// # Ok::<(), contrapposto_formats::InputError>(())
+/// ```
+///
+/// # Errors
+/// [`InputError`] says what is wrong, where, and what would be right.
+pub fn read_bvh(name: &str, bytes: &[u8]) -> Result<Rig, InputError> {
+    let text = utf8(name, bytes)?;
+    let mut words = Words { source: Source { name, text }, at: 0 };
+    if text.starts_with('\u{feff}') {
+        words.at = '\u{feff}'.len_utf8();
+    }
+    words.expect("HIERARCHY", "a .bvh file begins with HIERARCHY")?;
+    let mut rig = Rig { joints: vec![], ends: vec![], frame_time: 0.0, frames: vec![], warnings: vec![] };
+    let channels = hierarchy(&mut words, &mut rig)?;
+    words.expect("MOTION", "after the joints follows MOTION")?;
+    words.label("Frames", "the number of frames is said by `Frames: 120`")?;
+    let promised = words.word().ok_or_else(|| words.missing("the number of frames"))?;
+    let promised = promised.parse::<usize>().map_err(|_| {
+        words.error(promised, format!("`{}` is no number of frames", shorten(promised)), "a whole number is accepted")
+    })?;
+    words.label("Frame", "the time of a frame is said by `Frame Time: 0.008333`")?;
+    words.label("Time", "the time of a frame is said by `Frame Time: 0.008333`")?;
+    rig.frame_time = words.frame_time()?;
+    rows(&words, channels, &mut rig)?;
+    if rig.frames.len() != promised {
+        let (found, line) = (rig.frames.len(), text[..words.at].lines().count() - 1);
+        rig.warnings.push(format!(
+            "{name}: the header says {promised} frames (line {line}), but there are {found}, which are read; was the file cut off?"
+        ));
+    }
+    Ok(rig)
+}
+
+/// Reads the joints; answers the number of channels of a frame.
+fn hierarchy(words: &mut Words<'_>, rig: &mut Rig) -> Result<usize, InputError> {
+    words.expect("ROOT", "the first joint is `ROOT NAME`")?;
+    let mut channels = 0;
+    let mut open = vec![Open::Joint(joint(words, rig, None)?)];
+    while let Some(last) = open.last() {
+        let Some(word) = words.word() else { return Err(words.missing("a closing brace `}`")) };
+        let (known, inside) = (word.to_ascii_uppercase(), last.joint());
+        match (known.as_str(), last) {
+            ("}", _) => drop(open.pop()),
+            ("OFFSET", Open::Joint(j)) => rig.joints[*j].offset = words.triple()?,
+            ("OFFSET", Open::End(j)) => rig.ends.push((*j, words.triple()?)),
+            ("CHANNELS", Open::Joint(j)) if rig.joints[*j].channels.is_empty() => {
+                rig.joints[*j].first = channels;
+                rig.joints[*j].channels = words.channels()?;
+                channels += rig.joints[*j].channels.len();
+            }
+            ("CHANNELS", Open::Joint(_)) => {
+                return Err(words.error(word, "the joint has channels already", "one line CHANNELS a joint"));
+            }
+            ("JOINT", Open::Joint(_)) => open.push(Open::Joint(joint(words, rig, Some(inside))?)),
+            ("END", Open::Joint(_)) => {
+                let _ = words.name();
+                words.expect("{", "an end is `End Site { OFFSET x y z }`")?;
+                open.push(Open::End(inside));
+            }
+            _ => {
+                let help = "OFFSET, CHANNELS, JOINT, `End Site` and `}` are known in a joint, OFFSET and `}` in an end";
+                return Err(words.error(word, format!("`{}` is unknown here", shorten(word)), help));
+            }
+        }
+    }
+    if channels == 0 {
+        return Err(words.missing("a joint with CHANNELS, without which nothing moves"));
+    }
+    Ok(channels)
+}
+
+/// An open brace.
+enum Open {
+    Joint(usize),
+    /// The end of a joint.
+    End(usize),
+}
+
+impl Open {
+    fn joint(&self) -> usize {
+        match self {
+            Self::Joint(joint) | Self::End(joint) => *joint,
+        }
+    }
+}
+
+/// Reads the name of a joint and its opening brace.
+fn joint(words: &mut Words<'_>, rig: &mut Rig, parent: Option<usize>) -> Result<usize, InputError> {
+    let name = words.name();
+    if name.is_empty() || name.len() > MOST_NAME_BYTES || name.contains(char::is_control) {
+        let help = format!("a name has 1 to {MOST_NAME_BYTES} bytes and no control characters");
+        return Err(words.error(name, "the joint's name cannot be read", &help));
+    }
+    if rig.joints.len() == MOST_JOINTS {
+        return Err(words.error(name, format!("more than {MOST_JOINTS} joints"), "keep fewer joints"));
+    }
+    words.expect("{", "a joint is `JOINT NAME { OFFSET x y z CHANNELS ... }`")?;
+    if rig.joint(name).is_some() {
+        let line = words.source.text[..words.at].lines().count();
+        rig.warnings.push(format!("{}:{line}: two joints are named `{name}`; the first one counts", words.source.name));
+    }
+    let offset = Vector3::zeros();
+    rig.joints.push(RigJoint { name: name.to_owned(), parent, offset, channels: vec![], first: 0 });
+    Ok(rig.joints.len() - 1)
+}
+
+/// Reads the frames, a line each.
+fn rows(words: &Words<'_>, channels: usize, rig: &mut Rig) -> Result<(), InputError> {
+    let turns: Vec<bool> = rig
+        .joints
+        .iter()
+        .flat_map(|joint| &joint.channels)
+        .map(|channel| matches!(channel, Channel::Turn(_)))
+        .collect();
+    for line in words.source.text[words.at..].split('\n').map(str::trim).filter(|line| !line.is_empty()) {
+        if (rig.frames.len() + 1).saturating_mul(channels) > MOST_NUMBERS {
+            return Err(words.error(&line[..0], format!("more than {MOST_NUMBERS} numbers"), "keep fewer frames"));
+        }
+        let mut row = Vec::with_capacity(channels);
+        for cell in line.split_whitespace() {
+            let Some(&turns) = turns.get(row.len()) else {
+                let message = format!("the row has more than the {channels} numbers of its channels");
+                return Err(words.error(cell, message, "decimals need a point"));
+            };
+            let value = words.number(cell)?;
+            row.push(if turns { value.to_radians() } else { value });
+        }
+        if row.len() < channels {
+            let message = format!("the row has {} numbers, the channels need {channels}", row.len());
+            return Err(words.error(&line[line.len()..], message, "was the file cut off?"));
+        }
+        rig.frames.push(row);
+    }
+    if rig.frames.is_empty() { Err(words.missing("a row of numbers for every frame")) } else { Ok(()) }
+}
+
+/// The words of a text, one after the other.
+struct Words<'a> {
+    source: Source<'a>,
+    at: usize,
+}
+
+impl<'a> Words<'a> {
+    fn error(&self, part: &str, message: impl Into<String>, help: &str) -> InputError {
+        let start = (part.as_ptr() as usize).checked_sub(self.source.text.as_ptr() as usize);
+        let span = start.map(|start| start..start + part.len()).filter(|s| self.source.text.get(s.clone()).is_some());
+        self.source.error(span, message, "here", Some(help.to_owned()))
+    }
+
+    fn missing(&self, what: &str) -> InputError {
+        let end = self.source.text.len();
+        let help = Some(format!("{what} is due; was the file cut off?"));
+        self.source.error(Some(end..end), format!("{}: ends too early", self.source.name), "here", help)
+    }
+
+    /// The next word; braces stand alone.
+    fn word(&mut self) -> Option<&'a str> {
+        let rest = &self.source.text[self.at..];
+        let begin = self.at + (rest.len() - rest.trim_start().len());
+        let rest = &self.source.text[begin..];
+        let first = rest.chars().next()?;
+        let end = if "{}".contains(first) {
+            first.len_utf8()
+        } else {
+            rest.find(|c: char| c.is_whitespace() || "{}".contains(c)).unwrap_or(rest.len())
+        };
+        self.at = begin + end;
+        Some(&rest[..end])
+    }
+
+    /// The rest of the line up to a brace: a name that may hold blanks.
+    fn name(&mut self) -> &'a str {
+        let rest = &self.source.text[self.at..];
+        let end = rest.find(['\n', '{', '}']).unwrap_or(rest.len());
+        self.at += end;
+        rest[..end].trim()
+    }
+
+    fn expect(&mut self, known: &str, help: &str) -> Result<(), InputError> {
+        match self.word() {
+            Some(word) if word.eq_ignore_ascii_case(known) => Ok(()),
+            Some(word) => Err(self.error(word, format!("`{}` stands where `{known}` is due", shorten(word)), help)),
+            None => Err(self.missing(&format!("`{known}`"))),
+        }
+    }
+
+    /// A word of the header with or without its colon.
+    fn label(&mut self, known: &str, help: &str) -> Result<(), InputError> {
+        let begin = self.at;
+        match self.word() {
+            Some(word) if word.trim_end_matches(':').eq_ignore_ascii_case(known) => {}
+            // `Frames:120`, without a blank.
+            Some(word)
+                if word
+                    .get(..=known.len())
+                    .is_some_and(|w| w[..known.len()].eq_ignore_ascii_case(known) && w.ends_with(':')) =>
+            {
+                self.at -= word.len() - known.len() - 1;
+            }
+            Some(word) => {
+                return Err(self.error(word, format!("`{}` stands where `{known}` is due", shorten(word)), help));
+            }
+            None => return Err(self.missing(&format!("`{known}`"))),
+        }
+        let rest = self.source.text[self.at..].trim_start();
+        if rest.starts_with(':') && self.at > begin {
+            self.at = self.source.text.len() - rest.len() + 1;
+        }
+        Ok(())
+    }
+
+    fn number(&self, cell: &str) -> Result<f64, InputError> {
+        let help = "a number of at most 1e9 in size is accepted, with a decimal point";
+        let value = cell.parse::<f64>().ok().filter(|value| value.abs() <= LARGEST);
+        value.ok_or_else(|| self.error(cell, format!("`{}` is no number that is accepted", shorten(cell)), help))
+    }
+
+    fn triple(&mut self) -> Result<Vector3<f64>, InputError> {
+        let mut triple = Vector3::zeros();
+        for value in triple.iter_mut() {
+            let word = self.word().ok_or_else(|| self.missing("an offset of three numbers"))?;
+            *value = self.number(word)?;
+        }
+        Ok(triple)
+    }
+
+    fn frame_time(&mut self) -> Result<f64, InputError> {
+        let word = self.word().ok_or_else(|| self.missing("the time of a frame"))?;
+        let time = self.number(word)?;
+        if time > 0.0 && time <= LONGEST_FRAME {
+            return Ok(time);
+        }
+        let message = format!("the time of a frame is {time:?} s");
+        Err(self.error(word, message, &format!("more than 0 and at most {LONGEST_FRAME} s are accepted")))
+    }
+
+    fn channels(&mut self) -> Result<Vec<Channel>, InputError> {
+        let word = self.word().ok_or_else(|| self.missing("the number of channels"))?;
+        let count = word.parse::<usize>().ok().filter(|count| *count <= MOST_CHANNELS);
+        let Some(count) = count else {
+            let message = format!("`{}` is no number of channels", shorten(word));
+            return Err(self.error(word, message, &format!("0 to {MOST_CHANNELS} are accepted")));
+        };
+        let mut channels = vec![];
+        for _ in 0..count {
+            let word = self.word().ok_or_else(|| self.missing("the name of a channel"))?;
+            let lower = word.to_ascii_lowercase();
+            let axis = ["x", "y", "z"].iter().position(|axis| lower.starts_with(axis));
+            channels.push(match (axis, lower.get(1..)) {
+                (Some(axis), Some("position")) => Channel::Place(axis),
+                (Some(axis), Some("rotation")) => Channel::Turn(axis),
+                _ => {
+                    let help = "Xposition, Yposition, Zposition, Xrotation, Yrotation, Zrotation are known";
+                    return Err(self.error(word, format!("`{}` is no known channel", shorten(word)), help));
+                }
+            });
+        }
+        Ok(channels)
+    }
+}
