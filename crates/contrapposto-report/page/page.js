@@ -122,7 +122,7 @@ function hideUnknown() {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
     "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-solid": report.solid, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
     figure: report.skin, postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
-    scene: report.segments.length, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
+    answer: report.facts.length || report.changes.rows.length || report.reasons.length, scene: report.segments.length, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
   if (report.solid) fillLimits(report.solid);

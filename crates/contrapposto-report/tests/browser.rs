@@ -199,7 +199,7 @@ fn slider_keys_and_decisions_move_body_and_charts() {
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
 fn buttons_keys_and_list_choose_a_posture() {
     let mut page = open_page("postures.html", &postures(3));
-    let parts = "scene postures key-ghost key-force key-center key-target list joint muscles overview";
+    let parts = "scene postures key-ghost key-force key-center key-target list answer joint muscles overview";
     assert_eq!(page.evaluate(SHOWN), parts, "no time, no fatigue");
     let name = "document.querySelector('#postures [aria-pressed=true]').textContent";
     let top = "Math.max(...document.getElementById('balance').data.at(-1).y)";
@@ -227,7 +227,8 @@ fn buttons_keys_and_list_choose_a_posture() {
 #[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
 fn parts_without_data_are_hidden() {
     let mut report = postures(1);
-    (report.list, report.table) = (List::default(), Table::default());
+    (report.list, report.table, report.changes) = (List::default(), Table::default(), Table::default());
+    (report.facts, report.reasons) = (vec![], vec![]);
     (report.center_of_mass, report.supports, report.targets) = (vec![], vec![], vec![]);
     report.joints.iter_mut().for_each(|joint| joint.groups = None);
     let mut page = open_page("one.html", &report);
@@ -341,6 +342,15 @@ fn a_long_report_is_five_screens_of_a_phone_and_two_pages_of_paper() {
     report.title = "A long day".to_owned();
     report.body = "adult".to_owned();
     report.headline = "Can be held 19.8 min, then right shoulder flexion fails first.".to_owned();
+    let fact = || Fact { name: "Hardest worked".to_owned(), text: text() };
+    report.facts = vec![fact(), fact(), fact(), fact()];
+    report.changes.columns =
+        ["What would help", "lasts (mean strength)", "lasts (weaker people)"].map(str::to_owned).to_vec();
+    report.changes.rows =
+        vec![
+            ["20 % less load (2.4 kg instead of 3 kg)", "22.4 min", "3.9 min, too short"].map(str::to_owned).to_vec();
+            5
+        ];
     report.reasons = vec![text(); 8];
     report.figures = vec![Figure { label: "Load".to_owned(), value: "5 %".to_owned(), note: "a note".to_owned() }; 6];
     report.list.entries = (0..120).map(|i| entry(i % 50, 0, &text())).collect();
