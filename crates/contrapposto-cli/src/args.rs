@@ -6,6 +6,7 @@ mod joint;
 mod model;
 mod muscles;
 mod population;
+mod scale;
 mod scenario;
 mod studio;
 mod sweep;
@@ -24,10 +25,11 @@ pub(crate) use model::{
 };
 pub(crate) use muscles::use_muscles;
 pub(crate) use population::PopulationArgs;
+pub(crate) use scale::ScaleArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;
 pub(crate) use sweep::SweepArgs;
-pub(crate) use track::TrackArgs;
+pub(crate) use track::{TrackArgs, UnitChoice};
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.
 #[derive(Debug, Parser)]
@@ -80,6 +82,8 @@ pub(crate) enum Verb {
     Torques(TorquesArgs),
     /// Path, forces and moment arms of every muscle of an OpenSim or MJCF model, and the strength of its joints, for one posture or a motion.
     Muscles(MusclesArgs),
+    /// Scale an OpenSim model to a person by the markers of a static trial (.trc) and the setup file of OpenSim's ScaleTool.
+    Scale(ScaleArgs),
     /// Find the motion of an OpenSim model whose markers lie nearest to measured ones (.trc): inverse kinematics.
     Track(TrackArgs),
     /// Find the muscle group that fails first in a recorded motion, when, and which change of posture would relieve it.

@@ -14,6 +14,7 @@ pub(crate) mod passive;
 pub(crate) mod population;
 pub(crate) mod pose;
 pub(crate) mod relax;
+pub(crate) mod scale;
 pub(crate) mod simulate;
 pub(crate) mod studio;
 pub(crate) mod sweep;

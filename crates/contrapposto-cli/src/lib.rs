@@ -24,7 +24,7 @@ use clap::Parser;
 use args::{Args, Verb};
 use commands::{
     animation, assess, capacity, compare, convert, figures, inspect, minimize, muscles, new, passive, population, pose,
-    relax, simulate, studio, sweep, torques, track,
+    relax, scale, simulate, studio, sweep, torques, track,
 };
 use output::Notes;
 
@@ -61,6 +61,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Inspect(args) => inspect::inspect(&args),
         Verb::Torques(args) => torques::torques(&args),
         Verb::Muscles(args) => muscles::muscles(&args),
+        Verb::Scale(args) => scale::scale(&args),
         Verb::Track(args) if animation::is_animation(&args.markers) => animation::animation(&args),
         Verb::Track(args) => track::track(&args),
         Verb::Assess(args) => assess::assess(&args),

@@ -19,6 +19,7 @@ mod functions;
 mod joint;
 mod muscle;
 mod path;
+pub mod scaling;
 mod sets;
 mod springs;
 mod tree;

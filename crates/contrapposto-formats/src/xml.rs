@@ -99,6 +99,9 @@ struct Element {
     name: Span,
     attributes: (u32, u32),
     position: Position,
+    /// Bytes of the source: all of it with its tags, and the content between them.
+    whole: Span,
+    content: Span,
     first_child: u32,
     last_child: u32,
     next_sibling: u32,
@@ -193,6 +196,19 @@ impl<'a> Node<'a> {
         self.index as usize
     }
 
+    /// Bytes of the source, without a byte order mark, from the start tag to the end tag.
+    #[must_use]
+    pub fn whole(self) -> std::ops::Range<usize> {
+        range(self.element().whole)
+    }
+
+    /// Bytes of the source between the tags; `None` for an element of a single tag.
+    #[must_use]
+    pub fn content(self) -> Option<std::ops::Range<usize>> {
+        let (whole, content) = (range(self.element().whole), range(self.element().content));
+        (content.end < whole.end).then_some(content)
+    }
+
     /// Value of an attribute, references resolved.
     #[must_use]
     pub fn attribute(self, name: &str) -> Option<&'a str> {
@@ -261,4 +277,8 @@ impl<'a> Node<'a> {
     fn find(self, name: &str) -> Option<&'a Attribute> {
         self.attribute_slice().iter().find(|a| self.document.slice(a.name) == name)
     }
+}
+
+fn range(span: Span) -> std::ops::Range<usize> {
+    span.start as usize..span.end as usize
 }

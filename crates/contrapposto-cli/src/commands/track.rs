@@ -1,7 +1,7 @@
 //! `contrapposto track`: the motion of a model whose markers lie nearest to measured ones.
 
 mod doubts;
-mod matching;
+pub(crate) mod matching;
 
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::tracking::{self, TrackedFrame};
@@ -14,7 +14,7 @@ use crate::fail::Fail;
 use crate::input::read;
 use crate::model_file::open;
 use crate::output::{ResultSet, print, print_note};
-use matching::{Matched, Observed, length};
+use matching::{Matched, Observed, Source, length};
 
 /// The motion that is written.
 pub(super) const MOTION: &str = "motion.mot";
@@ -39,7 +39,10 @@ pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let tasks = tasks(args)?;
     tasks.iter().flat_map(|tasks| &tasks.notes).for_each(|note| print_note("note", note));
     markers.warnings.iter().for_each(|warning| print_note("warning", warning));
-    let matched = Matched::new(&opened, &markers, tasks.as_ref(), (args, &name))?;
+    let [shown, tasks_file] = [Some(&args.model.model), args.tasks.as_ref()]
+        .map(|path| path.map_or_else(String::new, |path| path.display().to_string()));
+    let source = Source { model: &shown, markers: &name, tasks: &tasks_file };
+    let matched = Matched::new(&opened, &markers, tasks.as_ref(), source)?;
     matched.warnings.iter().for_each(|warning| print_note("warning", warning));
     matched.notes.iter().for_each(|note| print_note("note", note));
     let (times, frames) = frames(args, &name, &markers, (&matched, model.coordinates().len()), tasks.as_ref())?;

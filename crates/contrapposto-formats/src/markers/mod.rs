@@ -1,8 +1,15 @@
-//! Reads measured markers (`.trc`) and the tasks of marker tracking (OpenSim's IKTaskSet).
+//! Reads measured markers (`.trc`), the tasks of marker tracking (OpenSim's IKTaskSet) and the measurements that scale a body (OpenSim's
+//! ScaleTool).
 
+mod marker_set;
+mod measurement;
+mod scale_setup;
 mod tasks;
 mod trc;
 
+pub use marker_set::marker_set;
+pub use measurement::{Measurement, MeasurementError};
+pub use scale_setup::{Order, ScaleSetup, scale_setup};
 pub use tasks::{CoordinateTask, MarkerTask, TaskFileError, TaskValue, TrackingTasks, tracking_tasks};
 pub use trc::{MarkerUnit, Markers, read_trc};
 

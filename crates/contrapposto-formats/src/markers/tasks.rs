@@ -94,10 +94,7 @@ pub fn tracking_tasks(file: &str, bytes: &[u8]) -> Result<TrackingTasks, TaskFil
         let message = format!("the tasks are in the file {other:?}; give that file as --tasks");
         return Err(reader.error(set, message));
     }
-    let mut tasks = TrackingTasks::default();
-    for node in set.child("objects").into_iter().flat_map(Node::children) {
-        reader.task(node, &mut tasks)?;
-    }
+    let mut tasks = reader.tasks(set)?;
     if let Some(tool) = tool {
         for element in ["model_file", "marker_file"] {
             if let Some(named) = text(tool, element) {
@@ -116,12 +113,22 @@ pub fn tracking_tasks(file: &str, bytes: &[u8]) -> Result<TrackingTasks, TaskFil
     Ok(tasks)
 }
 
-struct Reader<'f> {
-    file: &'f str,
+/// Reads elements of setup files.
+pub(super) struct Reader<'f> {
+    pub(super) file: &'f str,
 }
 
 impl Reader<'_> {
-    fn error(&self, node: Node<'_>, problem: String) -> TaskFileError {
+    /// The tasks of an IKTaskSet.
+    pub(super) fn tasks(&self, set: Node<'_>) -> Result<TrackingTasks, TaskFileError> {
+        let mut tasks = TrackingTasks::default();
+        for node in set.child("objects").into_iter().flat_map(Node::children) {
+            self.task(node, &mut tasks)?;
+        }
+        Ok(tasks)
+    }
+
+    pub(super) fn error(&self, node: Node<'_>, problem: String) -> TaskFileError {
         TaskFileError::Element { file: self.file.to_owned(), place: node.position(), problem }
     }
 
@@ -175,7 +182,7 @@ impl Reader<'_> {
     }
 
     /// `true` where it is left out.
-    fn flag(&self, node: Node<'_>, element: &str) -> Result<bool, TaskFileError> {
+    pub(super) fn flag(&self, node: Node<'_>, element: &str) -> Result<bool, TaskFileError> {
         match text(node, element).map(|text| text.to_ascii_lowercase()).as_deref() {
             None | Some("true" | "1") => Ok(true),
             Some("false" | "0") => Ok(false),
@@ -186,7 +193,7 @@ impl Reader<'_> {
         }
     }
 
-    fn number(&self, node: Node<'_>, element: &str) -> Result<Option<f64>, TaskFileError> {
+    pub(super) fn number(&self, node: Node<'_>, element: &str) -> Result<Option<f64>, TaskFileError> {
         let Some(text) = text(node, element) else { return Ok(None) };
         match text.parse::<f64>() {
             Ok(value) if value.abs() <= contrapposto::model::LARGEST.max(1e12) => Ok(Some(value)),
@@ -197,7 +204,7 @@ impl Reader<'_> {
         }
     }
 
-    fn time_range(&self, tool: Node<'_>) -> Result<Option<(f64, f64)>, TaskFileError> {
+    pub(super) fn time_range(&self, tool: Node<'_>) -> Result<Option<(f64, f64)>, TaskFileError> {
         let Some(text) = text(tool, "time_range") else { return Ok(None) };
         let mut words = text.split_ascii_whitespace().map(str::parse::<f64>);
         match (words.next(), words.next(), words.next()) {
@@ -211,6 +218,6 @@ impl Reader<'_> {
 }
 
 /// The text of a child element, if there is any.
-fn text(node: Node<'_>, element: &str) -> Option<String> {
+pub(super) fn text(node: Node<'_>, element: &str) -> Option<String> {
     node.child(element).map(Node::text).filter(|text| !text.is_empty() && text != "Unassigned")
 }

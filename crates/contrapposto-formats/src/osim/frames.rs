@@ -69,6 +69,16 @@ impl<'a> Frames<'a> {
         Ok(())
     }
 
+    /// Frames that are fixed to others, with their paths, in the file's order.
+    pub(super) fn offsets(&self) -> Vec<(&str, Node<'a>)> {
+        let mut found = Vec::from_iter(self.by_path.iter().filter_map(|(path, frame)| match frame {
+            Frame::Offset(node) => Some((path.as_str(), *node)),
+            Frame::Base(_) => None,
+        }));
+        found.sort_by_key(|(_, node)| node.index());
+        found
+    }
+
     /// The frame that the socket `name` of the component at `path` is connected to.
     pub(super) fn socket(
         &self,

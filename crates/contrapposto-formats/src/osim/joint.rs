@@ -109,7 +109,7 @@ pub(super) fn free<'a>(
     Ok((joint, slides_first(&driven)))
 }
 
-fn declared(joint: Node<'_>) -> Vec<Node<'_>> {
+pub(super) fn declared(joint: Node<'_>) -> Vec<Node<'_>> {
     let new = joint.child("coordinates").into_iter().flat_map(Node::children);
     new.chain(objects(joint.child("CoordinateSet"))).filter(|n| n.name() == "Coordinate").collect()
 }
@@ -135,8 +135,8 @@ struct Part {
     gives_kind: bool,
 }
 
-/// The elements of the six axes, in the order of [`AXES`].
-fn transform_axes<'a>(transform: Node<'a>) -> Result<[Option<Node<'a>>; 6], OsimProblem> {
+/// The elements of the six axes: translations, then rotations.
+pub(super) fn transform_axes<'a>(transform: Node<'a>) -> Result<[Option<Node<'a>>; 6], OsimProblem> {
     let mut axes: [Option<Node<'a>>; 6] = [None; 6];
     for axis in transform.children().filter(|n| n.name() == "TransformAxis") {
         let name = axis.attribute("name").unwrap_or_default().trim();

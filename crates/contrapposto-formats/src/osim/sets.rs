@@ -11,7 +11,7 @@ use crate::model_ir::{Ignored, ModelIr, near};
 use crate::xml::Node;
 
 /// From this version on a body does not contain its joint.
-const SETS_FROM: u32 = 30500;
+pub(super) const SETS_FROM: u32 = 30500;
 
 /// A body with its mass.
 pub(super) struct SceneBody<'a> {
@@ -230,6 +230,27 @@ impl<'a> Scene<'a> {
             self.joints.push(SceneJoint { name: reader.name(node)?, node, parent, child, old: true });
         }
         Ok(())
+    }
+
+    /// The markers.
+    pub(super) fn markers(&self) -> &[Node<'a>] {
+        &self.markers
+    }
+
+    /// Frames that are fixed to others, with their paths.
+    pub(super) fn offset_frames(&self) -> Vec<(&str, Node<'a>)> {
+        self.frames.offsets()
+    }
+
+    /// The frame that the socket `name` of the component at `path` is connected to.
+    pub(super) fn frame(
+        &self,
+        reader: &Reader<'a>,
+        component: Node<'a>,
+        name: &str,
+        path: &str,
+    ) -> Result<Attachment, OsimProblem> {
+        self.frames.socket(reader, component, name, path)
     }
 
     /// Sets of surfaces that paths wrap over, each with the body that carries it.

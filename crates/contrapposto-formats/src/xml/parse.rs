@@ -66,6 +66,11 @@ impl<'a> Cursor<'a> {
     }
 }
 
+/// Bytes that were read.
+fn offset(reader: &Reader<&[u8]>) -> usize {
+    usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX)
+}
+
 struct Builder<'a> {
     source: &'a str,
     limits: &'a Limits,
@@ -83,16 +88,20 @@ impl<'a> Builder<'a> {
     fn run(mut self) -> Result<Document, XmlError> {
         let mut reader = Reader::from_str(self.source);
         loop {
-            let start = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
+            let start = offset(&reader);
             match reader.read_event() {
                 Err(error) => {
                     let at = usize::try_from(reader.error_position()).unwrap_or(0);
                     return Err(self.grammar_error(&error, at));
                 }
-                Ok(Event::Start(tag)) => self.start_tag(&tag, start, true)?,
-                Ok(Event::Empty(tag)) => self.start_tag(&tag, start, false)?,
+                Ok(Event::Start(tag)) => self.start_tag(&tag, (start, offset(&reader)), true)?,
+                Ok(Event::Empty(tag)) => self.start_tag(&tag, (start, offset(&reader)), false)?,
                 Ok(Event::End(_)) => {
-                    self.open.pop();
+                    if let Some(index) = self.open.pop() {
+                        let element = &mut self.document.elements[index as usize];
+                        element.content.end = start as u32;
+                        element.whole.end = offset(&reader) as u32;
+                    }
                 }
                 Ok(Event::Text(text)) => self.text(&text.xml10_content(), start)?,
                 Ok(Event::CData(text)) => self.text(&text.xml10_content(), start)?,
@@ -174,7 +183,12 @@ impl<'a> Builder<'a> {
         Ok(self.push(name))
     }
 
-    fn start_tag(&mut self, tag: &BytesStart<'_>, start: usize, stays_open: bool) -> Result<(), XmlError> {
+    fn start_tag(
+        &mut self,
+        tag: &BytesStart<'_>,
+        (start, end): (usize, usize),
+        stays_open: bool,
+    ) -> Result<(), XmlError> {
         let position = self.cursor.at(start);
         let parent = self.open.last().copied();
         if parent.is_none() && !self.document.elements.is_empty() {
@@ -196,6 +210,8 @@ impl<'a> Builder<'a> {
             name,
             attributes,
             position,
+            whole: Span { start: start as u32, end: end as u32 },
+            content: Span { start: end as u32, end: end as u32 },
             first_child: NONE,
             last_child: NONE,
             next_sibling: NONE,

@@ -4,13 +4,14 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::tolerances::{BETTER_START, SAME_TURN, TURNED_STARTS_FROM};
+use super::tolerances::{BETTER_LIMB, BETTER_START, SAME_TURN, TURNED_STARTS_FROM};
 use super::tracker::{Solved, Tracker};
 use crate::model::{CoordinateKind, Model};
 use crate::posture::{Posture, PostureError};
 
 /// The posture of a first frame from `start`. Where its markers stay far, the root begins turned by quarters of a turn about up to three
-/// of its coordinates, too, and the least objective is taken; an answer from `start` that is as good within 1 % stays.
+/// of its coordinates, too; where a coordinate is held at a limit, the limbs begin again from `start` with the root in its place, all of
+/// them and then each that is held. The least objective is taken; a turn must save 1 % of it.
 ///
 /// # Errors
 /// [`PostureError`] when the start does not fit the model.
@@ -25,24 +26,61 @@ pub fn first_posture(
     let weights = tracker.goals().markers.iter().map(|marker| marker.weight);
     let pulls = weights.zip(tracker.errors()).filter_map(|(weight, error)| Some((weight, error?)));
     let (sum, all) = pulls.fold((0.0, 0.0), |(sum, all), (weight, error)| (sum + weight * error * error, all + weight));
-    if all == 0.0 || f64::sqrt(sum / all) < TURNED_STARTS_FROM {
+    if all == 0.0 {
         return Ok((best, solved));
     }
-    for turned in turned_roots(tracker, model, start) {
-        let mut posture = turned;
-        let other = tracker.solve(model, &mut posture, observed)?;
-        if other.objective < BETTER_START * solved.objective {
-            (best, solved) = (posture, other);
+    let mut changed = false;
+    let mut attempt =
+        |tracker: &mut Tracker, share: f64, mut posture: Posture, best: &mut Posture, least: &mut Solved| {
+            let other = tracker.solve(model, &mut posture, observed)?;
+            if other.objective < share * least.objective {
+                (*best, *least) = (posture, other);
+            }
+            changed = true;
+            Ok::<(), PostureError>(())
+        };
+    if f64::sqrt(sum / all) >= TURNED_STARTS_FROM {
+        for turned in turned_roots(tracker, model, start) {
+            attempt(tracker, BETTER_START, turned, &mut best, &mut solved)?;
         }
     }
-    let solved = tracker.solve(model, &mut best, observed)?;
+    if !held(tracker, model, &best).is_empty() {
+        let mut posture = best.clone();
+        let limbs = (0..start.values().len()).filter(|c| !root_coordinates(model).contains(c));
+        limbs.for_each(|c| posture.values_mut()[c] = start.values()[c]);
+        attempt(tracker, BETTER_LIMB, posture, &mut best, &mut solved)?;
+    }
+    for coordinate in held(tracker, model, &best) {
+        let mut posture = best.clone();
+        posture.values_mut()[coordinate] = start.values()[coordinate];
+        attempt(tracker, BETTER_LIMB, posture, &mut best, &mut solved)?;
+    }
+    if changed {
+        solved = tracker.solve(model, &mut best, observed)?;
+    }
     Ok((best, solved))
+}
+
+fn root_coordinates(model: &Model) -> Vec<usize> {
+    let roots = model.segments().iter().filter(|segment| segment.parent.is_none());
+    roots.flat_map(|segment| segment.coordinates.clone()).collect()
+}
+
+/// Free coordinates of limbs that lie at a limit.
+fn held(tracker: &Tracker, model: &Model, posture: &Posture) -> Vec<usize> {
+    let root = root_coordinates(model);
+    let goals = tracker.goals();
+    let at_limit = |&(c, (low, high)): &(usize, (f64, f64))| {
+        let value = posture.values()[c];
+        let free = low < high && !goals.fixed.contains(&c) && !model.is_dependent(c) && !root.contains(&c);
+        (free && (value <= low || value >= high)).then_some(c)
+    };
+    goals.limits.iter().filter_map(at_limit).collect()
 }
 
 /// Copies of `start` with the root turned.
 fn turned_roots(tracker: &Tracker, model: &Model, start: &Posture) -> Vec<Posture> {
-    let roots = model.segments().iter().filter(|segment| segment.parent.is_none());
-    let coordinates: Vec<usize> = roots.flat_map(|segment| segment.coordinates.clone()).collect();
+    let coordinates = root_coordinates(model);
     let movable = |c: &usize| !tracker.goals().fixed.contains(c) && !model.is_dependent(*c);
     let of_kind =
         |kind| coordinates.iter().copied().filter(movable).filter(move |&c| model.coordinates()[c].kind == kind);

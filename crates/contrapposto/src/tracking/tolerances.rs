@@ -33,7 +33,9 @@ pub(super) const ROUNDED_CHANGE: f64 = 1e-13;
 pub(super) const NO_MULTIPLIER: f64 = 1e-13;
 /// Root mean square of the marker errors of the first frame, m, from which on other directions of the body are tried.
 pub(super) const TURNED_STARTS_FROM: f64 = 0.03;
-/// Share of the objective that another start must save to be taken.
+/// Share of the objective that a start with a turned body may leave to be taken.
 pub(super) const BETTER_START: f64 = 0.99;
+/// Share of the objective that a start with other limbs may leave to be taken: less than that is the accuracy of a solution.
+pub(super) const BETTER_LIMB: f64 = 0.999_999;
 /// Angle between two turns of the body, rad, below which they are one.
 pub(super) const SAME_TURN: f64 = 1e-6;

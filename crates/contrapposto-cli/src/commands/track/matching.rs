@@ -9,7 +9,6 @@ use contrapposto_formats::nearest;
 use contrapposto_formats::tissue::SourcedModel;
 use nalgebra::Vector3;
 
-use crate::args::TrackArgs;
 use crate::fail::Fail;
 
 /// Most names in a sentence.
@@ -29,14 +28,22 @@ pub(crate) struct Matched {
     pub(crate) notes: Vec<String>,
 }
 
+/// Names of the files, for messages.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'s> {
+    pub(crate) model: &'s str,
+    pub(crate) markers: &'s str,
+    pub(crate) tasks: &'s str,
+}
+
 impl Matched {
     pub(crate) fn new(
         opened: &SourcedModel,
         markers: &Markers,
         tasks: Option<&TrackingTasks>,
-        (args, name): (&TrackArgs, &str),
+        source: Source<'_>,
     ) -> Result<Self, Fail> {
-        let shown = args.model.model.display().to_string();
+        let (shown, name) = (source.model, source.markers);
         if opened.markers.is_empty() {
             let accepted = "an OpenSim model with a MarkerSet, or an MJCF model with sites, is accepted";
             return Err(Fail::Refused(format!("{shown}: holds no markers; {accepted}")));
@@ -76,8 +83,8 @@ impl Matched {
             let list = listed(&weightless.iter().map(String::as_str).collect::<Vec<_>>());
             matched.warnings.push(format!("{} tasks give no weight, which is 0: {list}", weightless.len()));
         }
-        matched.compare(&of_model, &of_file, tasks, (&shown, name));
-        matched.coordinate_goals(&opened.model, tasks, args)?;
+        matched.compare(&of_model, &of_file, tasks, (shown, name));
+        matched.coordinate_goals(&opened.model, tasks, source.tasks)?;
         matched.goals.limits.clone_from(&opened.hard_limits);
         let locked = opened.model.coordinates().iter().enumerate().filter(|(_, coordinate)| coordinate.locked);
         matched.goals.fixed = locked.map(|(index, _)| index).collect();
@@ -116,10 +123,9 @@ impl Matched {
         }
     }
 
-    fn coordinate_goals(&mut self, model: &Model, tasks: Option<&TrackingTasks>, args: &TrackArgs) -> Result<(), Fail> {
+    fn coordinate_goals(&mut self, model: &Model, tasks: Option<&TrackingTasks>, file: &str) -> Result<(), Fail> {
         for task in tasks.map_or(&[][..], |tasks| &tasks.coordinates) {
             let Some(coordinate) = model.coordinate(&task.name) else {
-                let file = args.tasks.as_ref().map_or_else(String::new, |path| path.display().to_string());
                 let meant = nearest(&task.name, model.coordinates().iter().map(|c| c.name.as_str()));
                 let meant = meant.map_or_else(String::new, |meant| format!("; did you mean `{meant}`?"));
                 let (line, column) = (task.place.line, task.place.column);
