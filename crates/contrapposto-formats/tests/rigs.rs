@@ -130,7 +130,8 @@ const TURNS: [(&str, [f64; 3], f64, &str, f64); 12] = [
 fn turns_of_mixamo_and_cmu_rigs_are_the_angles_that_they_mean() {
     // Mixamo in cm with y up; CMU in its own unit with z up; the same in a unit that nobody knows.
     for (names, metres, up) in [(MIXAMO, 0.01, "y"), (CMU, 0.0254 / 0.45, "z"), (CMU, 7.7, "-y")] {
-        let text = RigText { names, metres, up, splayed: names.legs_apart }.text(&TURNS.map(|t| (t.0, t.1, t.2)));
+        let text =
+            RigText { names, metres, up, splayed: names.legs_apart, bent: 0.0 }.text(&TURNS.map(|t| (t.0, t.1, t.2)));
         let (fitted, found) = tracked(&text, &Sizing::ToRig(Sex::Male));
         let model = &fitted.model;
         assert_eq!(fitted.axes.up_word(), up);
@@ -173,6 +174,25 @@ fn turns_of_mixamo_and_cmu_rigs_are_the_angles_that_they_mean() {
 }
 
 #[test]
+fn elbows_that_are_bent_in_the_rest_pose_are_bent_in_the_body() {
+    let rig = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0, bent: 25.0 };
+    let (fitted, found) = tracked(&rig.text(&[("LeftForeArm", [0.0, 1.0, 0.0], -30.0)]), &Sizing::ToRig(Sex::Male));
+    for (frame, coordinate, wanted) in [
+        (0, "elbow_flex_l", 25.0),
+        (0, "elbow_flex_r", 25.0),
+        (0, "arm_add_l", -90.0),
+        (0, "pro_sup_l", 0.0),
+        (0, "wrist_flex_r", 0.0),
+        (0, "wrist_dev_l", 0.0),
+        (1, "elbow_flex_l", 55.0),
+        (1, "pro_sup_l", 0.0),
+    ] {
+        let value = angle(&fitted.model, &found[frame], coordinate);
+        assert!((value - wanted).abs() < 1e-3, "{frame} {coordinate}: {value} against {wanted}");
+    }
+}
+
+#[test]
 fn channels_stand_in_any_order_and_places_instead_of_offsets() {
     let text = "HIERARCHY\r\nROOT My Hips {\n OFFSET 1 2 3 CHANNELS 4 Yposition Xrotation Zrotation Yrotation\njoint a:b\n{\nOFFSET 0 2 0\n\
                 CHANNELS 1 zROTATION\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\nMOTION\nFrames:2\nFrame Time: .5\n5 90 0 0 90\n\n5 0 90 90 0\n";
@@ -194,7 +214,7 @@ fn channels_stand_in_any_order_and_places_instead_of_offsets() {
 
 #[test]
 fn faults_are_refused_with_their_place() {
-    let good = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0 }.text(&[]);
+    let good = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0, bent: 0.0 }.text(&[]);
     for (from, to, said) in [
         ("HIERARCHY", "HIERARCHIE", "`HIERARCHIE` stands where `HIERARCHY` is due"),
         ("MOTION", "", "stands where `MOTION` is due"),
@@ -227,7 +247,7 @@ fn faults_are_refused_with_their_place() {
 
 #[test]
 fn names_of_other_programs_are_known_and_missing_ones_are_listed() {
-    let text = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0 }.text(&[]);
+    let text = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0, bent: 0.0 }.text(&[]);
     let mixamo = read_bvh("a.bvh", text.as_bytes()).unwrap();
     let renamed = |names: &[(&str, &str)]| {
         let mut rig = mixamo.clone();
@@ -308,7 +328,8 @@ fn names_of_other_programs_are_known_and_missing_ones_are_listed() {
 
 #[test]
 fn swapped_sides_a_first_frame_apart_and_bodies_that_turn_round_are_noticed() {
-    let text = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0 }.text(&TURNS.map(|t| (t.0, t.1, t.2)));
+    let text =
+        RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0, bent: 0.0 }.text(&TURNS.map(|t| (t.0, t.1, t.2)));
     let swapped = text.replace("Left", "Lxft").replace("Right", "Left").replace("Lxft", "Right");
     let (fitted, _) = tracked(&swapped, &Sizing::ToRig(Sex::Male));
     assert!(!fitted.feet_point_ahead);
@@ -330,6 +351,9 @@ fn swapped_sides_a_first_frame_apart_and_bodies_that_turn_round_are_noticed() {
     assert!(targets.is_moved() && (targets.turned().to_degrees().abs() - 170.0).abs() < 1.0, "{}", targets.turned());
     let hips = targets.places(0)[0].unwrap();
     assert!(hips.x.hypot(hips.z) < 1e-9 && (hips.y - 1.0).abs() < 0.01, "{hips}");
+    // The second point of the pelvis lies 0.1 m ahead of the first.
+    let ahead = targets.places(0)[1].unwrap() - hips;
+    assert!(ahead.x > 0.099, "{ahead}");
 }
 
 #[test]
@@ -337,7 +361,8 @@ fn mutated_files_give_finite_points_or_a_refusal() {
     const SEED: u64 = 7;
     println!("seed {SEED}");
     let mut rng = Pcg64::new(u128::from(SEED), 0);
-    let plain = RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0 }.text(&TURNS.map(|t| (t.0, t.1, t.2)));
+    let plain =
+        RigText { names: MIXAMO, metres: 0.01, up: "y", splayed: 0.0, bent: 0.0 }.text(&TURNS.map(|t| (t.0, t.1, t.2)));
     let (mut answered, mut refused) = (0, 0);
     for round in 0..2000 {
         let mut bytes = plain.clone().into_bytes();

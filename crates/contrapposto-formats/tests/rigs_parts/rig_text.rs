@@ -36,6 +36,8 @@ pub(crate) struct RigText {
     /// The file's axis that points up.
     pub(crate) up: &'static str,
     pub(crate) splayed: f64,
+    /// Angle by which the elbows are bent forward in the rest pose, deg.
+    pub(crate) bent: f64,
 }
 
 struct Joint {
@@ -76,12 +78,15 @@ impl RigText {
         let neck = add("Neck", Some(chest), [0.0, 0.15, 0.0], None);
         add("Head", Some(neck), [0.0, 0.1, 0.02], Some([0.0, 0.18, 0.0]));
         for (word, letter, side) in [("Left", "L", 1.0), ("Right", "R", -1.0)] {
+            // Along the forearm, and ahead of it.
+            let (sin, cos) = self.bent.to_radians().sin_cos();
+            let fore = |[along, ahead]: [f64; 2]| [side * (along * cos - ahead * sin), 0.0, along * sin + ahead * cos];
             let collar = add(&format!("{word}Shoulder"), Some(chest), [0.05 * side, 0.1, 0.0], None);
             let arm = add(&format!("{word}Arm"), Some(collar), [0.13 * side, 0.0, 0.0], None);
-            let fore = add(&format!("{word}ForeArm"), Some(arm), [upper_arm * side, 0.0, 0.0], None);
-            let hand = add(&format!("{word}Hand"), Some(fore), [forearm * side, 0.0, 0.0], None);
-            add(&format!("{word}HandThumb1"), Some(hand), [0.03 * side, 0.0, 0.03], Some([0.03 * side, 0.0, 0.03]));
-            add(&format!("{word}HandMiddle1"), Some(hand), [0.09 * side, 0.0, 0.0], Some([0.09 * side, 0.0, 0.0]));
+            let elbow = add(&format!("{word}ForeArm"), Some(arm), [upper_arm * side, 0.0, 0.0], None);
+            let hand = add(&format!("{word}Hand"), Some(elbow), fore([forearm, 0.0]), None);
+            add(&format!("{word}HandThumb1"), Some(hand), fore([0.03, 0.03]), Some(fore([0.03, 0.03])));
+            add(&format!("{word}HandMiddle1"), Some(hand), fore([0.09, 0.0]), Some(fore([0.09, 0.0])));
             let mut parent = hips;
             if self.names.hip_joints {
                 parent = add(&format!("{letter}HipJoint"), Some(hips), [0.0; 3], None);
