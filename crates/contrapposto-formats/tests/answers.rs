@@ -134,7 +134,7 @@ fn a_tired_group_without_a_limit_is_told_to_become_no_more_tired() {
         assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.sentence);
         let tired = verdict.tired.unwrap();
         assert!(tired.fatigue > 0.5, "{}", verdict.sentence);
-        assert_eq!(tired.lasts, verdict.in_words().contains("; at that load it does not become more tired"));
+        assert_eq!(tired.lasts, verdict.in_words().contains("; at its load it becomes no more tired"));
         (tired.lasts, verdict.in_words())
     };
     let (lasts, sentence) = arm(0.0);

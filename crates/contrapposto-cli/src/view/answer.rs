@@ -59,7 +59,7 @@ impl Answer {
 
     /// A search that ended at its budget is no proof that the body has no easier posture.
     pub(crate) fn also_cut(&self) -> Option<String> {
-        let text = "The search for an easier posture was cut short to save computing time: there may be an easier one.";
+        let text = "The search for an easier posture was cut short: there may be an easier one.";
         self.search_cut.then(|| text.to_owned())
     }
 }

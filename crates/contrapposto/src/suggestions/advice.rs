@@ -9,8 +9,7 @@ use crate::verdict::{Verdict, has_motors};
 /// The sentence of a job with reserve.
 const NOTHING: &str = "Nothing needs to change";
 /// The reasons for it, of a body with muscles.
-const WITH_MUSCLES: &str =
-    ": no muscle fails, and no joint is in a known hazard for ligaments. Discomfort and discs are not judged";
+const WITH_MUSCLES: &str = " for muscles and ligaments";
 
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,7 +65,7 @@ fn hazard_stays(verdict: &Verdict, helping: &[Suggestion]) -> bool {
 /// The name of the column of changes that help.
 fn heading(verdict: &Verdict, helping: &[Suggestion]) -> &'static str {
     match (hazard_stays(verdict, helping), helping.iter().any(|one| one.lessens_hazards(verdict))) {
-        (false, _) => "What would help, the most helpful first",
+        (false, _) => "What would help",
         (true, false) => "What would let it go on longer",
         (true, true) => "What would end some hazards, or let it go on longer",
     }
@@ -82,7 +81,6 @@ fn notes(verdict: &Verdict, helping: &[Suggestion], tried: &[String], not_tried:
         _ if hazard_stays(verdict, helping) => Some(format!("No change that was tried ends every hazard: {all}.")),
         _ => None,
     };
-    let left = (!not_tried.is_empty())
-        .then(|| format!("Not tried, to keep the computing time short: {}.", not_tried.join("; ")));
+    let left = (!not_tried.is_empty()).then(|| format!("Not tried: {}.", not_tried.join("; ")));
     of_all.into_iter().chain(left).collect()
 }

@@ -89,8 +89,13 @@ impl Row<'_> {
     /// A time beside the asked one.
     fn beside_asked(&self, seconds: f64) -> String {
         let short = self.asked.is_some_and(|asked| seconds < asked);
-        let short = if short { ", too short" } else { "" };
-        if seconds < A_DAY { format!("{}{short}", how_long(seconds)) } else { "no limit".to_owned() }
+        let alike = self.asked.map(how_long).is_some_and(|asked| asked == how_long(seconds));
+        match (short, alike) {
+            _ if seconds >= A_DAY => "no limit".to_owned(),
+            (true, true) => format!("just under {}", how_long(seconds)),
+            (true, false) => format!("{}, too short", how_long(seconds)),
+            (false, _) => how_long(seconds),
+        }
     }
 
     /// `none`, `1 joint`, `2 joints`.

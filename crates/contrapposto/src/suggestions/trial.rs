@@ -107,6 +107,11 @@ impl Suggestion {
         }
     }
 
+    /// Whether people with that least time, s, reach the asked one; where none is asked nobody does.
+    fn reaches(&self, least: f64) -> bool {
+        self.asked.is_some_and(|asked| least >= asked)
+    }
+
     /// Number of hazards and of hands with much weight.
     fn risks(&self) -> usize {
         self.hazards + self.hands
@@ -114,7 +119,8 @@ impl Suggestion {
 
     /// The suggestions that help, the one that helps most first: a better kind of verdict, or the same with fewer hazards and
     /// hands with much weight or for longer; where no muscle
-    /// limits the mean person before or after, longer for weaker ones.
+    /// limits the mean person before or after, longer for weaker ones. Of those that are equally safe the ones come first with which weaker people
+    /// reach the asked time.
     pub fn that_help(mut all: Vec<Self>, verdict: &Verdict) -> Vec<Self> {
         let (before, least_before) = times(verdict.seconds, verdict.least);
         let longer = |one: &Self| {
@@ -133,6 +139,7 @@ impl Suggestion {
             b.kind
                 .cmp(&a.kind)
                 .then(a.risks().cmp(&b.risks()))
+                .then(b.reaches(least_b).cmp(&a.reaches(least_a)))
                 .then(time_b.total_cmp(&time_a))
                 .then(least_b.total_cmp(&least_a))
                 .then(load)

@@ -52,7 +52,7 @@ impl Change {
             Self::Strategy(Strategy::Active) => "relief by the active strategy instead of the passive one".to_owned(),
             Self::Strategy(Strategy::Passive) => "relief by the passive strategy instead of the active one".to_owned(),
             Self::OtherFoot => match job.feet() {
-                Some([ahead, behind]) => format!("the {behind} ahead instead of the {ahead}"),
+                Some([ahead, behind]) => format!("feet exchanged: the {behind} ahead instead of the {ahead}"),
                 None => "the other foot ahead".to_owned(),
             },
         }

@@ -3,11 +3,15 @@
 use super::words::{A_DAY, enumerated, has_no_strength, how_long, in_words, percent, slip_in_words};
 use super::{Failure, Findings, HandLoad, TIRED, VerdictKind, Who, muscles_or_motors};
 use crate::contact::Slip;
-use crate::joint_torques::{GroupLoad, Hazard};
+use crate::joint_torques::{GroupLoad, Hazard, posture_in_words};
 use crate::model::Model;
 
 /// Load below which no muscle counts as working.
 const NO_WORK: f64 = 0.005;
+
+/// The words for no hazard.
+const NO_HAZARD: &str =
+    "none is known for the ligaments of low back, hips and knees at these angles; discs and discomfort are not judged";
 
 /// A finding behind a verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,6 +49,7 @@ impl Findings {
         }
         if kind.is_done() {
             self.hazards_in_words(model).into_iter().for_each(|text| line(Line::HAZARD, Some(text)));
+            line(Line::HAZARD, self.no_hazard(model));
             line("Grip", self.hands_in_words(model));
         }
         line("Missed besides", self.missed_besides());
@@ -61,16 +66,17 @@ impl Findings {
     fn fails_first(&self, model: &Model) -> Option<String> {
         self.asked?;
         let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.range.0 < A_DAY) else {
-            return (!self.later.is_empty()).then(|| "no muscle, if it goes on like this".to_owned());
+            return (!self.later.is_empty()).then(|| "no muscle, if the posture of the end is held on".to_owned());
         };
-        let (who, least) = (who.name(model), how_long(range.0));
+        let (who_load, who, least) = (who.load, who.name(model), how_long(range.0));
         Some(if *time < A_DAY {
             let (time, range) = (how_long(*time), in_words(*range));
-            format!("{who}, after about {time} in all if it goes on like this ({range})")
-        } else {
+            let load = percent(who_load);
             format!(
-                "no muscle of a person of mean strength; in weaker people {who} can fail, after {least} at the earliest"
+                "{who} ({load} of its strength), after about {time} in all if the posture of the end is held on ({range})"
             )
+        } else {
+            format!("no muscle of a person of mean strength; in weaker people (one in six) {who} within {least}")
         })
     }
 
@@ -104,7 +110,7 @@ impl Findings {
     /// `right shoulder flexion, 82 % at the end (at 100 % it fails)`.
     fn most_tired(&self, model: &Model) -> Option<String> {
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED)?;
-        let lasts = if tired.lasts { "; at that load it does not become more tired" } else { "" };
+        let lasts = if tired.lasts { "; at its load it becomes no more tired" } else { "" };
         Some(format!(
             "{}, {} at the end (at 100\u{a0}% it fails){lasts}",
             tired.who.name(model),
@@ -134,6 +140,13 @@ impl Findings {
             format!("{}{long}{finding}", hazard.in_words(model))
         };
         now.chain(over).map(in_words).collect()
+    }
+
+    /// The words for none, of a body of which some would be known.
+    fn no_hazard(&self, model: &Model) -> Option<String> {
+        let known = model.coordinates().iter().any(|c| posture_in_words(&c.name, 0.0).is_some() && c.groups.is_some());
+        let none = self.hazards.is_empty() && self.passed.is_empty();
+        (known && none && !has_no_strength(model)).then(|| NO_HAZARD.to_owned())
     }
 
     /// Time for which a coordinate was in hazard in all, s.

@@ -171,9 +171,12 @@ impl Findings {
             Some(time) => format!("Holds through the run ({})", how_long(time)),
             None => "Holds without a limit by muscles".to_owned(),
         };
+        let reached = self.asked.zip(self.least).is_some_and(|(asked, least)| least >= asked);
+        let too = if reached { ", also for weaker people (one in six);" } else { "," };
         let hardest = || match self.hardest_load() {
             Some(group) => {
-                format!(", hardest worked: {} at {} of its strength", Who::from(group).name(model), percent(group.load))
+                let share = percent(group.load);
+                format!("{too} hardest worked: {} at {share} of its strength", Who::from(group).name(model))
             }
             None => "; no muscle works".to_owned(),
         };
@@ -270,10 +273,14 @@ impl Who {
     }
 }
 
-/// `14 min to 27 min for two of three people`.
+/// `between 14 min and 27 min for two of three people`, `14 min to no limit for two of three people`.
 pub(super) fn in_words((least, greatest): (f64, f64)) -> String {
-    let most = if greatest < A_DAY { how_long(greatest) } else { "no limit".to_owned() };
-    format!("{} to {most} for two of three people", how_long(least))
+    let least = how_long(least);
+    if greatest < A_DAY {
+        format!("between {least} and {} for two of three people", how_long(greatest))
+    } else {
+        format!("{least} to no limit for two of three people")
+    }
 }
 
 /// `5.3 cm and 2.1°`.
