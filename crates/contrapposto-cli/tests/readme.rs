@@ -31,11 +31,11 @@ fn answers_of_the_readme_are_those_of_the_program() {
     let readme = readme();
     let overhead = answer("overhead", ("mass_kg = 2", "mass_kg = 2"));
     assert!(readme.contains(&format!("`{}`", overhead[0])), "README.md does not say: {}", overhead[0]);
-    let rows = overhead[1..]
-        .iter()
-        .take_while(|line| line.starts_with(' '))
-        .map(|line| line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" | "));
-    let rows: Vec<String> = rows.collect();
+    let is_row = |line: &&String| line.starts_with(' ');
+    let table = overhead.iter().skip_while(|line| !is_row(line)).take_while(is_row);
+    let cells = |line: &String| line.split("  ").map(str::trim).map(str::to_owned).collect::<Vec<_>>();
+    let row = |line| cells(line).into_iter().filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" | ");
+    let rows: Vec<String> = table.map(row).collect();
     assert!(rows.len() > 2, "{overhead:?}");
     for row in rows {
         assert!(readme.contains(&format!("| {row} |")), "README.md does not say: {row}");

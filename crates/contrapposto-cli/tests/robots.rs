@@ -87,6 +87,7 @@ fn titles_and_folders_of_a_robot_keep_the_words_of_the_user() {
         assert!(Path::new(page).is_file() && page.contains("muscle-"), "{command}: {page}");
         let mine = run.stdout.lines().filter(|line| !line.contains("muscle-") && *line != "muscle test");
         assert!(mine.clone().all(|line| !line.contains("muscle")), "{command}: {}", run.stdout);
+        assert!(!run.stdout.contains("people"), "{command}: {}", run.stdout);
         assert!(command == "relax" || run.stdout.lines().any(|line| line == "muscle test"), "{}", run.stdout);
     }
 }

@@ -4,7 +4,7 @@
 
 use contrapposto::model::{Adult, Sex, adult};
 use contrapposto::simulation::{Scenario, run as simulate};
-use contrapposto::verdict::{HandLoad, Verdict, VerdictKind};
+use contrapposto::verdict::{HandLoad, Line, Verdict, VerdictKind};
 use contrapposto_formats::{VerdictText, read_scenario};
 
 const GRAVITY: f64 = 9.81;
@@ -119,6 +119,47 @@ fn an_overload_after_a_failure_does_not_make_the_job_one_that_cannot_be_done() {
     assert!(failed.in_words().contains("\nLater: at 5.0"), "{}", failed.in_words());
     let (_, rested) = answer(&text(0.0));
     assert_eq!(rested.kind, VerdictKind::CannotBeDone, "{}", rested.sentence);
+}
+
+/// A group that rests at the end may have failed before in weaker people: an arm and a trunk hold until four fifths of the time that a person of mean
+/// strength can, then a force turns round and they rest.
+#[test]
+fn a_group_that_rests_at_the_end_has_failed_before_in_weaker_people() {
+    let text = |turns: f64, seconds: f64| {
+        format!(
+            "format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73 }}\n[posture]\npelvis_ty_m = 0.95\n\
+             elbow_flex_r_deg = 90\nelbow_flex_l_deg = 12\n[coordinates]\nfree = []\n[[load]]\nsegment = \"radius_r\"\nforce_n = [0, -200, 0]\n\
+             fixed_in = \"world\"\n[[event]]\nat_s = {turns}\n[[event.load]]\nsegment = \"radius_r\"\nforce_n = [0, 60, 0]\n\
+             fixed_in = \"world\"\n[strategy]\nkind = \"active\"\n[run]\nduration_s = {seconds}\nstep_s = 0.5\n"
+        )
+    };
+    let (_, failed) = answer(&text(300.0, 310.0));
+    let held = (0.8 * failed.seconds.unwrap()).floor();
+    let (scenario, verdict) = answer(&text(held, held + 5.0));
+    assert_eq!(verdict.kind, VerdictKind::Holds, "{}", verdict.in_words());
+    let weaker = verdict.fails_weaker.unwrap();
+    assert_eq!(weaker.load, 0.0, "{}", verdict.in_words());
+    assert!(verdict.least.unwrap() < held && !verdict.has_reserve(), "{:?}", verdict.least);
+    let words = format!(", but in weaker people (one in six) {} fails within ", weaker.name(&scenario.model));
+    assert!(verdict.sentence.contains(&words), "{}", verdict.sentence);
+}
+
+/// Hazards that nobody judges are not said to be none: only of parts whose coordinates have a known sense and passive torque.
+#[test]
+fn no_known_hazard_is_said_of_the_parts_that_are_judged_only() {
+    let text = |part: &str| {
+        format!(
+            "format = 1\n[model]\nadult = {{ sex = \"male\", stature_m = 1.75, mass_kg = 73{part} }}\n[coordinates]\nfree = []\n\
+             [strategy]\nkind = \"active\"\n[run]\nduration_s = 0.2\nstep_s = 0.1\n"
+        )
+    };
+    let hazard = |part: &str| {
+        let lines = answer(&text(part)).1.lines;
+        lines.into_iter().find(|line| line.name == Line::HAZARD).map(|line| line.text)
+    };
+    let whole = "none is known for the ligaments of low back, knees and hips at these angles; discs and discomfort are not judged";
+    assert_eq!(hazard("").as_deref(), Some(whole));
+    assert_eq!(hazard(", part = \"right_arm\""), None);
 }
 
 /// An elbow that is tired from before holds so little that it does not become more tired: beside its fatigue stands why no muscle fails.

@@ -26,10 +26,23 @@ pub fn carried(external: f64, passive: f64) -> Option<f64> {
     (external.abs() > SMALL_TORQUE).then(|| (-passive / external).clamp(0.0, 1.0))
 }
 
-/// `low back bent forward by 30°`: a coordinate for which a hazard is known, at an angle, rad; `None` of another coordinate.
-pub(crate) fn posture_in_words(coordinate: &str, angle: f64) -> Option<String> {
+/// `low back bent forward by 30°`: a coordinate for which a hazard is known, at an angle, rad.
+pub(crate) fn posture_in_words(coordinate: &str, angle: f64) -> String {
     let mut rows = library().hazards().iter();
-    Some(rows.find(|row| row.concerns(coordinate))?.posture_in_words(coordinate, angle))
+    let row = rows.find(|row| row.concerns(coordinate));
+    row.map_or_else(|| coordinate.to_owned(), |row| row.posture_in_words(coordinate, angle))
+}
+
+/// Parts of a body whose hazards are judged: their coordinates have the senses of the rows, and passive torque.
+pub(crate) fn judged_parts(model: &Model) -> Vec<&'static str> {
+    let mut parts: Vec<&str> = vec![];
+    for row in library().hazards() {
+        let judged = |c: &Coordinate| row.sense(c).is_some() && c.passive.is_some();
+        if model.coordinates().iter().any(judged) && !parts.contains(&row.part.as_str()) {
+            parts.push(&row.part);
+        }
+    }
+    parts
 }
 
 impl Hazard {

@@ -24,8 +24,8 @@ mod muscles;
 
 pub use about_axes::AboutAxes;
 pub use group_load::{GroupLoad, relative_load};
-pub(crate) use hazard::posture_in_words;
 pub use hazard::{Hazard, carried};
+pub(crate) use hazard::{judged_parts, posture_in_words};
 pub use muscles::{JointMuscles, LEAST_MUSCLE_STRENGTH, RESTING_ACTIVATION};
 
 use crate::contact::ContactForces;

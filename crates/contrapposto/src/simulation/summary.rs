@@ -85,6 +85,13 @@ pub struct Hazardous {
     pub torques: [f64; 2],
 }
 
+impl Hazardous {
+    /// Time from sample to sample, s, of samples that are `step` seconds apart.
+    pub fn seconds(&self, step: f64) -> f64 {
+        self.samples.saturating_sub(1) as f64 * step
+    }
+}
+
 /// Results of one coordinate.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateSummary {

@@ -4,13 +4,10 @@ use super::budget::{Budget, Trial, within};
 use super::change::{Change, Job};
 use super::gain::Gains;
 use super::trial::Suggestion;
-use crate::verdict::{Verdict, has_motors};
+use crate::verdict::{Line, Verdict, has_motors};
 
 /// The sentence of a job with reserve.
 const NOTHING: &str = "Nothing needs to change";
-/// The reasons for it, of a body with muscles.
-const WITH_MUSCLES: &str = " for muscles and ligaments";
-
 /// The changes of a job that were tried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Advice {
@@ -36,7 +33,15 @@ impl Advice {
         trial: impl Fn(&Change) -> Trial + Sync,
     ) -> Self {
         if verdict.has_reserve() {
-            let about = if has_motors(job.model) { "" } else { WITH_MUSCLES };
+            if verdict.hardest.is_none() {
+                return Self::default();
+            }
+            let judged = verdict.lines.iter().any(|line| line.name == Line::HAZARD);
+            let about = match (has_motors(job.model), judged) {
+                (true, _) => "",
+                (false, true) => " for muscles and ligaments",
+                (false, false) => " for muscles",
+            };
             return Self { notes: vec![format!("{NOTHING}{about}.")], ..Self::default() };
         }
         let changes = changes();
@@ -50,7 +55,7 @@ impl Advice {
         let gains = if helping.is_empty() {
             Gains::default()
         } else {
-            Gains::new(heading(verdict, &helping), verdict, &helping)
+            Gains::new(job.model, heading(verdict, &helping), verdict, &helping)
         };
         let notes = notes(verdict, &helping, &tried, &not_tried);
         Self { helping, not_tried, gains, notes }

@@ -1,7 +1,11 @@
 //! Says what the changes of a job give, as a table: the times without and with each of them.
 
 use super::trial::Suggestion;
-use crate::verdict::{A_DAY, Verdict, VerdictKind, how_long};
+use crate::model::Model;
+use crate::verdict::{A_DAY, Verdict, VerdictKind, has_motors, how_long};
+
+/// Names of the columns of times.
+const OF_PEOPLE: [&str; 2] = ["lasts (mean strength)", "lasts (weaker people, one in six)"];
 
 /// Changes beside the job as it is, a row each, the job first and then the change that helps most.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,11 +30,12 @@ struct Row<'a> {
 
 impl Gains {
     /// The table of changes that help the job with this verdict.
-    pub(super) fn new(heading: &str, before: &Verdict, helping: &[Suggestion]) -> Self {
+    pub(super) fn new(model: &Model, heading: &str, before: &Verdict, helping: &[Suggestion]) -> Self {
         let as_it_is = Row {
             change: "as it is",
             kind: before.kind,
-            asked: before.asked,
+            // A run that settled before its end is beside the same time as its changes.
+            asked: helping.first().map_or(before.asked, |one| one.asked),
             seconds: before.seconds,
             least: before.least,
             hazards: before.hazards.len(),
@@ -38,11 +43,15 @@ impl Gains {
         };
         let rows: Vec<Row<'_>> = std::iter::once(as_it_is).chain(helping.iter().map(Row::from)).collect();
         let (hazards, hands) = (rows.iter().any(|row| row.hazards > 0), rows.iter().any(|row| row.hands > 0));
-        let mut columns = vec![heading, "lasts (mean strength)", "lasts (weaker people, one in six)"];
-        columns.extend(hazards.then_some("hazard for ligaments"));
+        let people = !has_motors(model);
+        let mut columns = vec![heading];
+        columns.extend_from_slice(if people { &OF_PEOPLE } else { &["lasts"] });
+        let at_end = if before.asked.is_some() { "hazard for ligaments at the end" } else { "hazard for ligaments" };
+        columns.extend(hazards.then_some(at_end));
         columns.extend(hands.then_some("strength of the grip"));
         let cells = |row: &Row<'_>| {
-            let mut cells = vec![row.change.to_owned(), row.time(), row.time_of_weaker()];
+            let mut cells = vec![row.change.to_owned(), row.time()];
+            cells.extend(people.then(|| row.time_of_weaker()));
             cells.extend(hazards.then(|| row.hazards_in_words()));
             cells.extend(hands.then(|| if row.hands > 0 { "half or more" } else { "less than half" }.to_owned()));
             cells
@@ -77,7 +86,7 @@ impl Row<'_> {
         }
     }
 
-    /// As [`Self::time`], of people whose strength is one standard deviation below the mean; `too weak` from the start.
+    /// As [`Self::time`], of people whose strength is one standard deviation below the mean, or by another published law; `too weak` from the start.
     fn time_of_weaker(&self) -> String {
         match self.least {
             Some(least) if least <= 0.0 => "too weak".to_owned(),

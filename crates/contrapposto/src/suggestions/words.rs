@@ -35,13 +35,9 @@ impl Change {
             }
             Self::Joints(angles) => {
                 let coordinates = job.model.coordinates();
-                let degrees = |angle: f64| format!("{:.0}°", angle.to_degrees()).replace('-', "\u{2212}");
                 let at = |&JointAngle { coordinate, before, angle }: &JointAngle| {
-                    let name = &coordinates[coordinate].name;
-                    match posture_in_words(name, angle) {
-                        Some(posture) => format!("{posture} instead of {}", degrees(before.abs())),
-                        None => format!("{} at {} instead of {}", plain_name(name), degrees(angle), degrees(before)),
-                    }
+                    let posture = posture_in_words(&coordinates[coordinate].name, angle);
+                    format!("{posture} instead of {:.0}°", before.to_degrees().abs())
                 };
                 angles.iter().map(at).collect::<Vec<_>>().join(" and ")
             }

@@ -38,10 +38,16 @@ pub(super) struct GroupAtEnd<'a> {
 }
 
 impl GroupAtEnd<'_> {
-    /// Time at which the group fails under its load at the time `end`, s after `start`; `None` where the group does not work.
+    /// Time at which the group fails under its load at the time `end`, s after `start`; `None` where the group did not work. Of a group that rests at the
+    /// end only weaker people, or another law, fail: before.
     fn failure(&self, (start, end): (f64, f64)) -> Option<Failure> {
-        if self.who.load <= 0.0 {
+        if self.history.pieces().iter().all(|(_, load)| *load <= 0.0) {
             return None;
+        }
+        if self.who.load <= 0.0 {
+            let (least, greatest) = spread(self.muscles, self.history, self.start);
+            let range = (least - start, greatest - start);
+            return least.is_finite().then_some(Failure { who: self.who, time: f64::INFINITY, range });
         }
         let time = end + self.seconds_left.unwrap_or(f64::INFINITY);
         let (least, greatest) = spread(self.muscles, self.history, self.start);

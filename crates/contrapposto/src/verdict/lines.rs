@@ -3,15 +3,11 @@
 use super::words::{A_DAY, enumerated, has_no_strength, how_long, in_words, percent, slip_in_words};
 use super::{Failure, Findings, HandLoad, TIRED, VerdictKind, Who, muscles_or_motors};
 use crate::contact::Slip;
-use crate::joint_torques::{GroupLoad, Hazard, posture_in_words};
+use crate::joint_torques::{GroupLoad, Hazard, judged_parts};
 use crate::model::Model;
 
-/// Load below which no muscle counts as working.
+/// Load below which no muscle counts as working: half of the last digit that is shown. Derived.
 const NO_WORK: f64 = 0.005;
-
-/// The words for no hazard.
-const NO_HAZARD: &str =
-    "none is known for the ligaments of low back, hips and knees at these angles; discs and discomfort are not judged";
 
 /// A finding behind a verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,22 +58,21 @@ impl Findings {
         self.hardest.map(|(group, _)| group).filter(|group| group.load >= NO_WORK)
     }
 
-    /// `right shoulder flexion, after about 6.6 min in all if it goes on like this (3.9 min to 21.4 min for two of three people)`.
+    /// `right shoulder flexion (16 % of its strength), after about 6.6 min in all if the posture of the end is held on (...)`.
     fn fails_first(&self, model: &Model) -> Option<String> {
         self.asked?;
-        let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.range.0 < A_DAY) else {
+        if let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.time < A_DAY) {
+            let (load, name) = (percent(who.load), who.name(model));
+            let (time, range) = (how_long(*time), in_words(*range));
+            return Some(format!(
+                "{name} ({load} of its strength), after about {time} in all if the posture of the end is held on ({range})"
+            ));
+        }
+        let Some(Failure { who, range: (least, _), .. }) = self.weakest() else {
             return (!self.later.is_empty()).then(|| "no muscle, if the posture of the end is held on".to_owned());
         };
-        let (who_load, who, least) = (who.load, who.name(model), how_long(range.0));
-        Some(if *time < A_DAY {
-            let (time, range) = (how_long(*time), in_words(*range));
-            let load = percent(who_load);
-            format!(
-                "{who} ({load} of its strength), after about {time} in all if the posture of the end is held on ({range})"
-            )
-        } else {
-            format!("no muscle of a person of mean strength; in weaker people (one in six) {who} within {least}")
-        })
+        let (who, least) = (who.name(model), how_long(*least));
+        Some(format!("no muscle of a person of mean strength; in weaker people (one in six) {who} within {least}"))
     }
 
     /// `right hip extension, 17 % of its strength; it fails later, after about 32 min`, or `..., 17 % of its strength at 7.9 min (11 % at the end)`.
@@ -135,18 +130,23 @@ impl Findings {
             let limit = hazard.row.seconds().zip(seconds).is_some_and(|(limit, seconds)| seconds > limit);
             let limit = if limit { "; that is longer than the study allowed" } else { "" };
             let finding = hazard.row.finding.as_str();
-            let finding = if told.contains(&finding) { String::new() } else { format!("; {finding}{limit}") };
+            let finding = if told.contains(&finding) { String::new() } else { format!("; {finding}") };
             told.push(&hazard.row.finding);
-            format!("{}{long}{finding}", hazard.in_words(model))
+            format!("{}{long}{finding}{limit}", hazard.in_words(model))
         };
         now.chain(over).map(in_words).collect()
     }
 
-    /// The words for none, of a body of which some would be known.
+    /// `none is known for the ligaments of low back, knees and hips at these angles; discs and discomfort are not judged`; `None` where nothing is
+    /// judged, or where there was a hazard for a moment.
     fn no_hazard(&self, model: &Model) -> Option<String> {
-        let known = model.coordinates().iter().any(|c| posture_in_words(&c.name, 0.0).is_some() && c.groups.is_some());
-        let none = self.hazards.is_empty() && self.passed.is_empty();
-        (known && none && !has_no_strength(model)).then(|| NO_HAZARD.to_owned())
+        let none = self.hazards.is_empty() && self.passed.is_empty() && self.in_hazard.is_empty();
+        let parts: Vec<String> = judged_parts(model).into_iter().map(str::to_owned).collect();
+        let known = none && !parts.is_empty() && !has_no_strength(model);
+        known.then(|| {
+            let parts = enumerated(&parts);
+            format!("none is known for the ligaments of {parts} at these angles; discs and discomfort are not judged")
+        })
     }
 
     /// Time for which a coordinate was in hazard in all, s.

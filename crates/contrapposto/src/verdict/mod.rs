@@ -176,12 +176,13 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Nothing needs to change: the job holds, for the weaker of two of three people, too, no group is tired at its end, no
+    /// Nothing needs to change: the job holds, for the weaker of two of three people, too, who can begin it at least where no time is asked; no group is tired at its end, no
     /// coordinate is or was in hazard, and no weight is much for a grip.
     pub fn has_reserve(&self) -> bool {
         let tired = self.tired.is_some_and(|tired| tired.fatigue > TIRED);
         let hazard = !self.hazards.is_empty() || !self.passed.is_empty() || !self.hands.is_empty();
-        self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && !hazard
+        let too_weak = self.least.is_some_and(|least| least <= 0.0);
+        self.kind == VerdictKind::Holds && self.fails_weaker.is_none() && !tired && !hazard && !too_weak
     }
 
     /// The sentence and the lines below it, each on a line of its own.
@@ -247,10 +248,15 @@ impl Findings {
         first.filter(|failure| failure.range.0.is_finite())
     }
 
+    /// The group that fails first in weaker people, or by another published law, within a day.
+    fn weakest(&self) -> Option<&Failure> {
+        let first = self.later.iter().min_by(|a, b| a.range.0.total_cmp(&b.range.0));
+        first.filter(|failure| failure.range.0 < A_DAY)
+    }
+
     /// The group that fails before the asked time in weaker people, or by another published law.
     fn fails_weaker(&self) -> Option<&Failure> {
-        let first = self.later.iter().min_by(|a, b| a.range.0.total_cmp(&b.range.0));
-        first.filter(|failure| self.asked.is_some_and(|asked| failure.range.0 < asked))
+        self.weakest().filter(|failure| self.asked.is_some_and(|asked| failure.range.0 < asked))
     }
 
     /// Whether a group would need more than its strength. One that failed before under a load within its strength has ended the job.

@@ -70,8 +70,7 @@ fn loads_at(scenario: &Scenario, time: f64) -> &[Load] {
 
 /// Coordinates that were in hazard, with the time in all, s.
 fn in_hazard(scenario: &Scenario, summary: &Summary) -> Vec<(usize, f64)> {
-    let seconds =
-        |(i, course): (usize, &CoordinateSummary)| Some((i, course.hazardous?.samples as f64 * scenario.run.step));
+    let seconds = |(i, course): (usize, &CoordinateSummary)| Some((i, course.hazardous?.seconds(scenario.run.step)));
     summary.coordinates.iter().enumerate().filter_map(seconds).collect()
 }
 
@@ -83,7 +82,7 @@ fn passed(scenario: &Scenario, summary: &Summary, at_end: &[Hazard]) -> Vec<Pass
         let [external, passive] = worst.torques;
         let is_over = at_end.iter().all(|hazard| hazard.coordinate != i);
         let row = Hazard::at(coordinate, worst.angle, external, passive)?;
-        let seconds = worst.samples as f64 * scenario.run.step;
+        let seconds = worst.seconds(scenario.run.step);
         let hazard = Hazard { coordinate: i, angle: worst.angle, external, passive, row };
         (is_over && seconds >= LEAST_HAZARD).then_some(PassedHazard { hazard, time: worst.time, seconds })
     };

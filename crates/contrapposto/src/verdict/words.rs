@@ -2,7 +2,7 @@
 
 use super::missed::unit;
 use super::{
-    Failure, Findings, MOST_AMOUNTS, Missed, Nearest, Verdict, VerdictKind, Who, amounts, amounts_in_words,
+    Failure, Findings, MOST_AMOUNTS, Missed, Nearest, Verdict, VerdictKind, Who, amounts, amounts_in_words, has_motors,
     muscles_or_motors,
 };
 use crate::contact::Slip;
@@ -172,7 +172,11 @@ impl Findings {
             None => "Holds without a limit by muscles".to_owned(),
         };
         let reached = self.asked.zip(self.least).is_some_and(|(asked, least)| least >= asked);
-        let too = if reached { ", also for weaker people (one in six);" } else { "," };
+        let too = if reached && self.hands.is_empty() && !has_motors(model) {
+            ", also for weaker people (one in six);"
+        } else {
+            ","
+        };
         let hardest = || match self.hardest_load() {
             Some(group) => {
                 let share = percent(group.load);
@@ -185,7 +189,10 @@ impl Findings {
 
     /// `, but in weaker people (one in six) right shoulder flexion fails within 3.9 min`: two of three people lie within the range, one in six below it.
     fn weaker(&self, model: &Model) -> Option<String> {
-        let Failure { who, range: (least, _), .. } = self.fails_weaker()?;
+        let Failure { who, range: (least, _), .. } = match self.asked {
+            Some(_) => self.fails_weaker()?,
+            None => self.weakest()?,
+        };
         let who = who.name(model);
         Some(if *least > 0.0 {
             format!(", but in weaker people (one in six) {who} fails within {}", how_long(*least))

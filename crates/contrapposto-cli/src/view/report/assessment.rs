@@ -137,8 +137,8 @@ pub(crate) fn report_of_assessment(
     let span = last.time - first.time;
     super::answer(&mut report, verdict, advice);
     // Those of the page say how long, too.
-    report.facts.retain(|fact| fact.name != Line::HAZARD);
     let hazards = hazards(model, frames, true);
+    report.facts.retain(|fact| hazards.is_empty() || fact.name != Line::HAZARD);
     report.facts.extend(hazards.into_iter().map(|text| Fact { name: Line::HAZARD.to_owned(), text }));
     report.reasons.extend(warnings.iter().map(|warning| sentence(warning) + "."));
     report.reasons.extend(times_from(first.time));

@@ -19,6 +19,8 @@ pub(super) struct HazardFile {
 pub struct HazardRow {
     /// Coordinates, each with the posture in words, before the size of its angle.
     coordinates: BTreeMap<String, String>,
+    /// The part of the body.
+    pub part: String,
     positive: String,
     /// The positive sense of a coordinate that runs against the row.
     #[serde(default)]
@@ -43,12 +45,7 @@ impl HazardRow {
 
     /// The angle from which on a coordinate at this one is in hazard, rad; `None` where it is not.
     pub(crate) fn limit(&self, coordinate: &Coordinate, angle: f64) -> Option<f64> {
-        let same_sense = self.positive.is_empty() || coordinate.positive == self.positive;
-        let opposite = !self.negative.is_empty() && coordinate.positive == self.negative;
-        if !self.concerns(&coordinate.name) || !(same_sense || opposite) {
-            return None;
-        }
-        let sense = if opposite { -1.0 } else { 1.0 };
+        let sense = self.sense(coordinate)?;
         let degrees = sense * angle.to_degrees();
         let below = self.below_deg.filter(|limit| degrees <= *limit);
         let limit = below.or(self.above_deg.filter(|limit| degrees >= *limit));
@@ -64,6 +61,14 @@ impl HazardRow {
     pub(crate) fn posture_in_words(&self, coordinate: &str, angle: f64) -> String {
         let posture = self.coordinates.get(coordinate).map_or(coordinate, String::as_str);
         format!("{posture} {:.0}°", angle.to_degrees().abs())
+    }
+
+    /// 1 for a coordinate of the row that counts as the row does, -1 for one that runs against it; `None` of all others.
+    pub(crate) fn sense(&self, coordinate: &Coordinate) -> Option<f64> {
+        let same_sense = self.positive.is_empty() || coordinate.positive == self.positive;
+        let opposite = !self.negative.is_empty() && coordinate.positive == self.negative;
+        let sense = if opposite { -1.0 } else { 1.0 };
+        (self.concerns(&coordinate.name) && (same_sense || opposite)).then_some(sense)
     }
 
     /// Longest time for which the study kept people there, s.
