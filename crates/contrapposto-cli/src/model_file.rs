@@ -101,7 +101,13 @@ pub(crate) fn built_in(model: &Path) -> Result<Option<Adult>, Fail> {
     }
     if model.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let bytes = read(model, MOST_BYTES)?;
-        return Ok(Some(scenario_adult(&model.display().to_string(), &bytes)?));
+        let name = model.display().to_string();
+        let (size, others) = scenario_adult(&name, &bytes)?;
+        if !others.is_empty() {
+            let list = others.iter().map(|table| format!("[{table}]")).collect::<Vec<_>>().join(", ");
+            print_note("note", &format!("{name}: as MODEL it gives its body only; not used: {list}"));
+        }
+        return Ok(Some(size));
     }
     Ok(None)
 }

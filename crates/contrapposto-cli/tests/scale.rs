@@ -213,9 +213,15 @@ fn what_is_wrong_is_told_by_name() {
     let unit = with(&["--measure", "thigh=femur_r.o,femur_r.y:femur_r", "--units", "m"]);
     assert!(unit.contains("0.01 to 100 is accepted; do the units of the markers fit?"), "{unit}");
     let time = with(&["--measure", "thigh=femur_r.o,femur_r.y:femur_r", "--from", "5"]);
-    assert!(time.contains("no frame lies from 5 s to inf s; it goes from 0 s to 0.2 s"), "{time}");
+    assert!(
+        time.contains("no frame lies in the time that is asked for (from 5 s); it goes from 0 s to 0.2 s"),
+        "{time}"
+    );
     let mass = with(&["--mass", "0"]);
     assert!(mass.contains("--mass: is 0 kg; above 0 kg to 1000 kg is accepted"), "{mass}");
+    let heavy = write(bench.folder.path(), "heavy.xml", &bench.setup().replace("63.5", "63500"));
+    let mass = with(&["--setup", &heavy]);
+    assert!(mass.contains("heavy.xml: <mass>: is 63500 kg; above 0 kg to 1000 kg is accepted"), "{mass}");
     let same = refused(&["scale", &bench.model, &bench.trial, "--out", &bench.model]);
     assert!(same.contains("is the model file itself"), "{same}");
     let ending = refused(&["scale", &bench.model, &bench.trial, "--out", "x.xml"]);

@@ -99,6 +99,14 @@ impl<'a> Located<'a> {
         table.is_some_and(|table| table.keys().any(|key| !keys.contains(&key.get_ref().as_ref())))
     }
 
+    /// Keys and tables of the file's outermost level, in the order of the file.
+    pub(crate) fn outermost(&self) -> Vec<&str> {
+        let mut keys: Vec<(usize, &str)> =
+            self.tree.keys().map(|key| (key.span().start, key.get_ref().as_ref())).collect();
+        keys.sort_unstable();
+        keys.into_iter().map(|(_, key)| key).collect()
+    }
+
     /// Keys of the table at `path`, in the order of the file.
     pub(crate) fn keys(&self, path: &[&str]) -> Vec<&str> {
         let (Some(_), Some(value)) = self.find(path) else { return vec![] };

@@ -26,8 +26,9 @@ fn tracked(text: &str, sizing: &Sizing) -> (Fitted, Vec<Posture>) {
     let rig = read_bvh("a.bvh", text.as_bytes()).unwrap();
     let assignment = Assignment::find(&rig, &BTreeMap::new()).unwrap();
     let fitted = Fitted::new(&rig, &assignment, sizing, None).unwrap();
-    let targets = Targets::new(&rig, &assignment, &fitted);
-    let places: Vec<_> = (0..rig.frames.len()).map(|frame| targets.places(frame)).collect();
+    let frames: Vec<usize> = (0..rig.frames.len()).collect();
+    let targets = Targets::new(&rig, &assignment, &fitted, &frames);
+    let places: Vec<_> = frames.iter().map(|&frame| targets.places(frame)).collect();
     let start = fitted.model.default_posture();
     let answer = track(&fitted.model, targets.goals.clone(), &start, places.iter().map(Vec::as_slice)).unwrap();
     let mut postures: Vec<Posture> = answer.into_iter().map(|frame| frame.posture).collect();
@@ -334,11 +335,13 @@ fn swapped_sides_a_first_frame_apart_and_bodies_that_turn_round_are_noticed() {
     let (fitted, _) = tracked(&swapped, &Sizing::ToRig(Sex::Male));
     assert!(!fitted.feet_point_ahead);
     let last = text.lines().last().unwrap();
-    let more = text.replace("Frames: 2", "Frames: 3") + last + "\n";
+    let more = text.replace("Frames: 2", "Frames: 4") + last + "\n" + last + "\n";
     let rig = read_bvh("a.bvh", more.as_bytes()).unwrap();
     let assignment = Assignment::find(&rig, &BTreeMap::new()).unwrap();
     let fitted = Fitted::new(&rig, &assignment, &Sizing::ToRig(Sex::Male), None).unwrap();
-    let targets = Targets::new(&rig, &assignment, &fitted);
+    let all = [0, 1, 2, 3];
+    assert!(!Targets::new(&rig, &assignment, &fitted, &all[1..]).first_frame_jumps());
+    let targets = Targets::new(&rig, &assignment, &fitted, &all);
     assert!(targets.first_frame_jumps() && !targets.is_moved() && targets.turned() == 0.0);
     // Turned by 170 deg about the vertical and 8 m away; the adult faces ahead at the origin.
     let mut away = rig.clone();
@@ -347,7 +350,7 @@ fn swapped_sides_a_first_frame_apart_and_bodies_that_turn_round_are_noticed() {
         frame[root.iter().position(|channel| *channel == Channel::Turn(1)).unwrap()] += 170_f64.to_radians();
         frame[0] += 800.0;
     }
-    let targets = Targets::new(&away, &assignment, &fitted);
+    let targets = Targets::new(&away, &assignment, &fitted, &all);
     assert!(targets.is_moved() && (targets.turned().to_degrees().abs() - 170.0).abs() < 1.0, "{}", targets.turned());
     let hips = targets.places(0)[0].unwrap();
     assert!(hips.x.hypot(hips.z) < 1e-9 && (hips.y - 1.0).abs() < 0.01, "{hips}");
@@ -380,8 +383,9 @@ fn mutated_files_give_finite_points_or_a_refusal() {
         let points = read_bvh("m.bvh", &bytes).ok().and_then(|rig| {
             let assignment = Assignment::find(&rig, &BTreeMap::new()).ok()?;
             let fitted = Fitted::new(&rig, &assignment, &Sizing::ToRig(Sex::Female), None).ok()?;
-            let targets = Targets::new(&rig, &assignment, &fitted);
-            Some((0..rig.frames.len()).flat_map(|frame| targets.places(frame)).flatten().collect::<Vec<_>>())
+            let frames: Vec<usize> = (0..rig.frames.len()).collect();
+            let targets = Targets::new(&rig, &assignment, &fitted, &frames);
+            Some(frames.iter().flat_map(|&frame| targets.places(frame)).flatten().collect::<Vec<_>>())
         });
         match points {
             Some(points) => {

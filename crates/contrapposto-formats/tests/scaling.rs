@@ -170,6 +170,9 @@ fn markers_come_from_a_set_and_move_unless_they_are_fixed() {
 fn older_documents_and_setup_files_of_other_tools_are_refused_by_name() {
     let old = scaled(&LEG.replace("40000", "30000"), "leg.osim", &Scaling::default()).unwrap_err().to_string();
     assert!(old.contains("leg.osim") && old.contains("open an older file in OpenSim 4 and save it"), "{old}");
+    let no_mass = LEG.replace("<mass>8<", "<mass>0<").replace("<mass>3<", "<mass>0<");
+    let no_mass = scaled(&no_mass, "leg.osim", &Scaling { mass: Some(70.0), ..Scaling::default() }).unwrap_err();
+    assert!(no_mass.to_string().contains("a body of 0 kg is not supported"), "{no_mass}");
     let other = scale_setup("ik.xml", b"<OpenSimDocument><InverseKinematicsTool/></OpenSimDocument>").unwrap_err();
     let other = other.to_string();
     assert!(other.contains("holds <InverseKinematicsTool>; the setup file of a ScaleTool is accepted"), "{other}");

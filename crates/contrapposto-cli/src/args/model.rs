@@ -15,7 +15,7 @@ use crate::fail::Fail;
 /// MODEL, and the options that complete it.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ModelArgs {
-    /// Model file (.osim, .urdf, MJCF .xml), or the built-in adult: `adult`, `adult:female,1.65m,60kg`.
+    /// Model file (.osim, .urdf, MJCF .xml), or the built-in adult: `adult`, `adult:female,1.65m,60kg`, a scenario (.toml) that describes it.
     pub(crate) model: PathBuf,
     /// Ranges, passive laws, strength and fatigue by coordinate (TOML), laid over the model.
     #[arg(long, value_name = "FILE.toml")]

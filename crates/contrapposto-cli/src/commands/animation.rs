@@ -45,9 +45,9 @@ pub(crate) fn animation(args: &TrackArgs) -> Result<(), Fail> {
     let assignment = Assignment::find(&rig, &given).map_err(|error| refused(&error))?;
     let metres = args.units.map(|unit| unit.unit().metres());
     let fitted = Fitted::new(&rig, &assignment, &sizing, metres).map_err(|error| refused(&error))?;
-    let targets = Targets::new(&rig, &assignment, &fitted);
-    say(&rig, &assignment, &fitted, &targets);
     let frames = frames(args, &file, &rig, fitted.model.coordinates().len())?;
+    let targets = Targets::new(&rig, &assignment, &fitted, &frames);
+    say((&rig, &frames), &assignment, (&fitted, &sizing), &targets);
     let model = &fitted.model;
     let places: Vec<_> = frames.iter().map(|&frame| targets.places(frame)).collect();
     let mut tracked =
@@ -62,7 +62,13 @@ pub(crate) fn animation(args: &TrackArgs) -> Result<(), Fail> {
     out.write(&[(MOTION, motion), (ERRORS, errors), (ADULT, adult)])?;
     let (motion, adult) = (out.path(MOTION).display().to_string(), out.path(ADULT).display().to_string());
     print(&format!("{answer}{motion}, {ERRORS} and {ADULT} beside it\n"))?;
+    let (motion, adult) = (quoted(&motion), quoted(&adult));
     print(&format!("next: contrapposto assess {adult} {motion} --fixed-root --out report\n"))
+}
+
+/// A path as a command line has it: in quotes where it holds blanks.
+fn quoted(path: &str) -> String {
+    if path.contains(char::is_whitespace) { format!("\"{path}\"") } else { path.to_owned() }
 }
 
 /// The adult that is asked for: MODEL `adult` gets the bones of the rig.
@@ -75,7 +81,7 @@ fn sizing(args: &TrackArgs) -> Result<Sizing, Fail> {
     if args.tasks.is_some() {
         return Err(Fail::Refused("--tasks has the weights of markers; an animation has joints".to_owned()));
     }
-    match built_in(&model.model)? {
+    let sizing = match built_in(&model.model)? {
         Some(_) if model.model.as_os_str() == "adult" => Ok(Sizing::ToRig(Sex::Male)),
         Some(size) if size.part != Part::Whole => {
             let why = "an animation moves a whole body; the model has an arm only";
@@ -87,7 +93,12 @@ fn sizing(args: &TrackArgs) -> Result<Sizing, Fail> {
             let why = "an animation moves the built-in adult: MODEL `adult`, `adult:female,1.65m,60kg` or its .toml";
             Err(Fail::Refused(format!("{shown}: {why}")))
         }
+    }?;
+    if args.units.is_some() && sizing != Sizing::ToRig(Sex::Male) {
+        let why = "the adult is given, and the motion is scaled by the legs; --units goes with MODEL `adult`, which gets the bones of the rig";
+        return Err(Fail::Refused(format!("--units: {why}")));
     }
+    Ok(sizing)
 }
 
 /// Time of a frame, s, to a microsecond.
@@ -116,7 +127,12 @@ fn frames(args: &TrackArgs, file: &str, rig: &Rig, coordinates: usize) -> Result
 }
 
 /// Notes and warnings about names, axes, unit and size.
-fn say(rig: &Rig, assignment: &Assignment, fitted: &Fitted, targets: &Targets<'_>) {
+fn say(
+    (rig, frames): (&Rig, &[usize]),
+    assignment: &Assignment,
+    (fitted, sizing): (&Fitted, &Sizing),
+    targets: &Targets<'_>,
+) {
     let pairs = assignment.pairs().map(|(segment, joint)| format!("{segment} = {}", rig.joints[joint].name));
     print_note("note", &format!("joints of the rig by segment: {}", pairs.collect::<Vec<_>>().join(", ")));
     let size = &fitted.size;
@@ -128,7 +144,11 @@ fn say(rig: &Rig, assignment: &Assignment, fitted: &Fitted, targets: &Targets<'_
             "no unit is known, or the adult is given: lengths are scaled so that the legs are those of an adult of {adult}"
         ),
     };
-    print_note("note", &format!("{unit}; --units or MODEL `adult:female,1.65m,60kg` says otherwise"));
+    let otherwise = match sizing {
+        Sizing::ToRig(_) => "--units or MODEL `adult:female,1.65m,60kg` says otherwise",
+        Sizing::Given(_) => "MODEL `adult` takes the size of the rig",
+    };
+    print_note("note", &format!("{unit}; {otherwise}"));
     if !size.lengths.is_empty() {
         let lengths = size.lengths.iter().map(|(name, length)| format!("{name} {length:.3} m"));
         let list = lengths.collect::<Vec<_>>().join(", ");
@@ -161,8 +181,8 @@ fn say(rig: &Rig, assignment: &Assignment, fitted: &Fitted, targets: &Targets<'_
     if !fitted.feet_point_ahead {
         print_note("warning", "the feet of the rig point backwards: are left and right swapped in its names?");
     }
-    if targets.first_frame_jumps() {
-        let next = rig.frame_time;
+    if let (true, Some(&second)) = (targets.first_frame_jumps(), frames.get(1)) {
+        let next = time(rig, second);
         print_note(
             "warning",
             &format!(

@@ -30,6 +30,7 @@ const MOST_MASS: f64 = 1000.0;
 pub(crate) fn scale(args: &ScaleArgs) -> Result<(), Fail> {
     check(args)?;
     let setup = setup(args)?;
+    let mass = mass(args, &setup)?;
     let shown = args.model.display().to_string();
     let bytes = read(&args.model, Limits::default().file_bytes as u64)?;
     let text = std::str::from_utf8(&bytes).map_err(|error| Fail::Refused(format!("{shown}: {error}")))?;
@@ -45,7 +46,7 @@ pub(crate) fn scale(args: &ScaleArgs) -> Result<(), Fail> {
     let scaling = Scaling {
         factors: measured.factors.clone(),
         preserve_mass_distribution: setup.preserve_mass_distribution || args.preserve_mass_distribution,
-        mass: args.mass.or(setup.mass),
+        mass,
         name: setup.name.clone(),
     };
     let scaled = scaled(&shown, &text, &before, &scaling)?;
@@ -79,12 +80,20 @@ fn check(args: &ScaleArgs) -> Result<(), Fail> {
     if same(&args.model, &args.out) {
         return Err(Fail::Refused(format!("{out}: is the model file itself; give another name")));
     }
-    match args.mass {
-        Some(mass) if !(mass > 0.0 && mass <= MOST_MASS) => {
-            Err(Fail::Refused(format!("--mass: is {mass} kg; above 0 kg to {MOST_MASS} kg is accepted")))
-        }
-        _ => Ok(()),
+    Ok(())
+}
+
+/// Mass that the person is said to have, kg.
+fn mass(args: &ScaleArgs, setup: &ScaleSetup) -> Result<Option<f64>, Fail> {
+    let Some(mass) = args.mass.or(setup.mass) else { return Ok(None) };
+    if mass > 0.0 && mass <= MOST_MASS {
+        return Ok(Some(mass));
     }
+    let said = match (&args.mass, &args.setup) {
+        (None, Some(path)) => format!("{}: <mass>", path.display()),
+        _ => "--mass".to_owned(),
+    };
+    Err(Fail::Refused(format!("{said}: is {mass} kg; above 0 kg to {MOST_MASS} kg is accepted")))
 }
 
 fn setup(args: &ScaleArgs) -> Result<ScaleSetup, Fail> {

@@ -1,5 +1,7 @@
 //! Reads a file of markers (OpenSim's MarkerSet).
 
+use std::collections::HashSet;
+
 use nalgebra::Vector3;
 
 use super::TaskFileError;
@@ -22,9 +24,10 @@ pub fn marker_set(file: &str, bytes: &[u8], bodies: &[String]) -> Result<Vec<Set
         return Err(reader.error(root, "holds no <MarkerSet>; a file of markers has one".to_owned()));
     };
     let mut markers: Vec<SetMarker> = vec![];
+    let mut names = HashSet::new();
     for node in set.child("objects").into_iter().flat_map(|objects| objects.children_named("Marker")) {
         let marker = marker(&reader, node, bodies)?;
-        if markers.iter().any(|other| other.name == marker.name) {
+        if !names.insert(marker.name.clone()) {
             return Err(reader.error(node, format!("two markers are named `{}`", marker.name)));
         }
         markers.push(marker);

@@ -9,7 +9,7 @@ mod trc;
 
 pub use marker_set::marker_set;
 pub use measurement::{Measurement, MeasurementError};
-pub use scale_setup::{Order, ScaleSetup, scale_setup};
+pub use scale_setup::{ACCEPTED_FACTORS, Order, ScaleSetup, scale_setup};
 pub use tasks::{CoordinateTask, MarkerTask, TaskFileError, TaskValue, TrackingTasks, tracking_tasks};
 pub use trc::{MarkerUnit, Markers, read_trc};
 

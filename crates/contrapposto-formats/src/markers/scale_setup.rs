@@ -16,8 +16,8 @@ pub enum Order {
     Manual,
 }
 
-/// Smallest and largest factor that is accepted (assumed: a body a hundred times as large is of another unit).
-const ACCEPTED_FACTORS: std::ops::RangeInclusive<f64> = 0.01..=100.0;
+/// Smallest and largest factor of a body that is accepted (assumed: a body a hundred times as large is of another unit).
+pub const ACCEPTED_FACTORS: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 
 /// A setup file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -154,7 +154,8 @@ impl Reader<'_> {
         let segment = text(node, "segment").unwrap_or_default();
         let factors = self.vector(node, "scales")?.unwrap_or(Vector3::repeat(1.0));
         if let Some(factor) = factors.iter().find(|factor| !ACCEPTED_FACTORS.contains(factor)) {
-            let problem = format!("the factor of `{}` is {factor}; 0.01 to 100 is accepted", shorten(&segment));
+            let (least, most) = (ACCEPTED_FACTORS.start(), ACCEPTED_FACTORS.end());
+            let problem = format!("the factor of `{}` is {factor}; {least} to {most} is accepted", shorten(&segment));
             return Err(self.error(node, problem));
         }
         Ok((segment, factors, node.position()))

@@ -15,8 +15,10 @@ use crate::xml::shorten;
 const MOST_JOINTS: usize = 2000;
 /// Most channels of a joint: three places and three turns, each once more for files that repeat them.
 const MOST_CHANNELS: usize = 12;
-/// Longest time between frames, s (assumed).
-const LONGEST_FRAME: f64 = 1000.0;
+/// Most joints times frames (assumed: to place them all takes seconds).
+const MOST_PLACED_JOINTS: usize = 10_000_000;
+/// Shortest and longest time between frames, s (assumed; times of a motion are rounded to 1e-6 s).
+const FRAME_TIMES: std::ops::RangeInclusive<f64> = 1e-5..=1000.0;
 
 /// Reads a `.bvh` file. `name` stands in errors only.
 ///
@@ -31,25 +33,27 @@ const LONGEST_FRAME: f64 = 1000.0;
 /// [`InputError`] says what is wrong, where, and what would be right.
 pub fn read_bvh(name: &str, bytes: &[u8]) -> Result<Rig, InputError> {
     let text = utf8(name, bytes)?;
-    let mut words = Words { source: Source { name, text }, at: 0 };
+    let mut words = Words { source: Source { name, text }, at: 0, repeated: vec![] };
     if text.starts_with('\u{feff}') {
         words.at = '\u{feff}'.len_utf8();
     }
     words.expect("HIERARCHY", "a .bvh file begins with HIERARCHY")?;
     let mut rig = Rig { joints: vec![], ends: vec![], frame_time: 0.0, frames: vec![], warnings: vec![] };
     let channels = hierarchy(&mut words, &mut rig)?;
+    rig.warnings.extend(words.repeated_names());
     words.expect("MOTION", "after the joints follows MOTION")?;
     words.label("Frames", "the number of frames is said by `Frames: 120`")?;
     let promised = words.word().ok_or_else(|| words.missing("the number of frames"))?;
     let promised = promised.parse::<usize>().map_err(|_| {
         words.error(promised, format!("`{}` is no number of frames", shorten(promised)), "a whole number is accepted")
     })?;
+    let header = words.at;
     words.label("Frame", "the time of a frame is said by `Frame Time: 0.008333`")?;
     words.label("Time", "the time of a frame is said by `Frame Time: 0.008333`")?;
     rig.frame_time = words.frame_time()?;
     rows(&words, channels, &mut rig)?;
     if rig.frames.len() != promised {
-        let (found, line) = (rig.frames.len(), text[..words.at].lines().count() - 1);
+        let (found, line) = (rig.frames.len(), text[..header].lines().count());
         rig.warnings.push(format!(
             "{name}: the header says {promised} frames (line {line}), but there are {found}, which are read; was the file cut off?"
         ));
@@ -61,14 +65,24 @@ pub fn read_bvh(name: &str, bytes: &[u8]) -> Result<Rig, InputError> {
 fn hierarchy(words: &mut Words<'_>, rig: &mut Rig) -> Result<usize, InputError> {
     words.expect("ROOT", "the first joint is `ROOT NAME`")?;
     let mut channels = 0;
-    let mut open = vec![Open::Joint(joint(words, rig, None)?)];
-    while let Some(last) = open.last() {
+    let mut open = vec![(Open::Joint(joint(words, rig, None)?), false)];
+    while let Some((last, has_offset)) = open.last_mut() {
+        let last = &*last;
         let Some(word) = words.word() else { return Err(words.missing("a closing brace `}`")) };
         let (known, inside) = (word.to_ascii_uppercase(), last.joint());
         match (known.as_str(), last) {
             ("}", _) => drop(open.pop()),
-            ("OFFSET", Open::Joint(j)) => rig.joints[*j].offset = words.triple()?,
-            ("OFFSET", Open::End(j)) => rig.ends.push((*j, words.triple()?)),
+            ("OFFSET", _) if *has_offset => {
+                return Err(words.error(word, "the joint or end has an offset already", "one OFFSET each"));
+            }
+            ("OFFSET", _) => {
+                let offset = words.triple()?;
+                *has_offset = true;
+                match last {
+                    Open::Joint(j) => rig.joints[*j].offset = offset,
+                    Open::End(j) => rig.ends.push((*j, offset)),
+                }
+            }
             ("CHANNELS", Open::Joint(j)) if rig.joints[*j].channels.is_empty() => {
                 rig.joints[*j].first = channels;
                 rig.joints[*j].channels = words.channels()?;
@@ -77,11 +91,11 @@ fn hierarchy(words: &mut Words<'_>, rig: &mut Rig) -> Result<usize, InputError> 
             ("CHANNELS", Open::Joint(_)) => {
                 return Err(words.error(word, "the joint has channels already", "one line CHANNELS a joint"));
             }
-            ("JOINT", Open::Joint(_)) => open.push(Open::Joint(joint(words, rig, Some(inside))?)),
+            ("JOINT", Open::Joint(_)) => open.push((Open::Joint(joint(words, rig, Some(inside))?), false)),
             ("END", Open::Joint(_)) => {
                 let _ = words.name();
                 words.expect("{", "an end is `End Site { OFFSET x y z }`")?;
-                open.push(Open::End(inside));
+                open.push((Open::End(inside), false));
             }
             _ => {
                 let help = "OFFSET, CHANNELS, JOINT, `End Site` and `}` are known in a joint, OFFSET and `}` in an end";
@@ -113,6 +127,7 @@ impl Open {
 /// Reads the name of a joint and its opening brace.
 fn joint(words: &mut Words<'_>, rig: &mut Rig, parent: Option<usize>) -> Result<usize, InputError> {
     let name = words.name();
+    let named = words.at;
     if name.is_empty() || name.len() > MOST_NAME_BYTES || name.contains(char::is_control) {
         let help = format!("a name has 1 to {MOST_NAME_BYTES} bytes and no control characters");
         return Err(words.error(name, "the joint's name cannot be read", &help));
@@ -122,8 +137,7 @@ fn joint(words: &mut Words<'_>, rig: &mut Rig, parent: Option<usize>) -> Result<
     }
     words.expect("{", "a joint is `JOINT NAME { OFFSET x y z CHANNELS ... }`")?;
     if rig.joint(name).is_some() {
-        let line = words.source.text[..words.at].lines().count();
-        rig.warnings.push(format!("{}:{line}: two joints are named `{name}`; the first one counts", words.source.name));
+        words.repeated.push((named, name));
     }
     let offset = Vector3::zeros();
     rig.joints.push(RigJoint { name: name.to_owned(), parent, offset, channels: vec![], first: 0 });
@@ -138,9 +152,14 @@ fn rows(words: &Words<'_>, channels: usize, rig: &mut Rig) -> Result<(), InputEr
         .flat_map(|joint| &joint.channels)
         .map(|channel| matches!(channel, Channel::Turn(_)))
         .collect();
+    let joints = rig.joints.len();
     for line in words.source.text[words.at..].split('\n').map(str::trim).filter(|line| !line.is_empty()) {
         if (rig.frames.len() + 1).saturating_mul(channels) > MOST_NUMBERS {
             return Err(words.error(&line[..0], format!("more than {MOST_NUMBERS} numbers"), "keep fewer frames"));
+        }
+        if (rig.frames.len() + 1).saturating_mul(joints) > MOST_PLACED_JOINTS {
+            let message = format!("{joints} joints times frames are more than {MOST_PLACED_JOINTS}");
+            return Err(words.error(&line[..0], message, "keep fewer frames, or fewer joints"));
         }
         let mut row = Vec::with_capacity(channels);
         for cell in line.split_whitespace() {
@@ -164,6 +183,8 @@ fn rows(words: &Words<'_>, channels: usize, rig: &mut Rig) -> Result<(), InputEr
 struct Words<'a> {
     source: Source<'a>,
     at: usize,
+    /// Names that a joint had before, each with the place after it.
+    repeated: Vec<(usize, &'a str)>,
 }
 
 impl<'a> Words<'a> {
@@ -177,6 +198,17 @@ impl<'a> Words<'a> {
         let end = self.source.text.len();
         let help = Some(format!("{what} is due; was the file cut off?"));
         self.source.error(Some(end..end), format!("{}: ends too early", self.source.name), "here", help)
+    }
+
+    /// A warning about joints whose name another one had before.
+    fn repeated_names(&self) -> Option<String> {
+        let ((at, name), more) = self.repeated.split_first()?;
+        let line = self.source.text[..*at].lines().count();
+        let more = match more.len() {
+            0 => String::new(),
+            count => format!("; so it is with {count} more joints"),
+        };
+        Some(format!("{}:{line}: two joints are named `{name}`; the first one counts{more}", self.source.name))
     }
 
     /// The next word; braces stand alone.
@@ -253,11 +285,11 @@ impl<'a> Words<'a> {
     fn frame_time(&mut self) -> Result<f64, InputError> {
         let word = self.word().ok_or_else(|| self.missing("the time of a frame"))?;
         let time = self.number(word)?;
-        if time > 0.0 && time <= LONGEST_FRAME {
+        if FRAME_TIMES.contains(&time) {
             return Ok(time);
         }
         let message = format!("the time of a frame is {time:?} s");
-        Err(self.error(word, message, &format!("more than 0 and at most {LONGEST_FRAME} s are accepted")))
+        Err(self.error(word, message, &format!("{:?} s to {} s are accepted", FRAME_TIMES.start(), FRAME_TIMES.end())))
     }
 
     fn channels(&mut self) -> Result<Vec<Channel>, InputError> {
@@ -282,5 +314,59 @@ impl<'a> Words<'a> {
             });
         }
         Ok(channels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
+    use miette::Diagnostic;
+
+    use super::{MOST_JOINTS, MOST_PLACED_JOINTS, read_bvh};
+
+    /// A chain of joints of which the first has a channel.
+    fn chain(names: &[String], frames: usize) -> String {
+        let mut text = "HIERARCHY\nROOT hips {\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n".to_owned();
+        names.iter().for_each(|name| text += &format!("JOINT {name} {{\nOFFSET 0 1 0\n"));
+        text += &"}".repeat(names.len() + 1);
+        text + &format!("\nMOTION\nFrames: {frames}\nFrame Time: 0.01\n") + &"0\n".repeat(frames)
+    }
+
+    #[test]
+    fn joints_times_frames_have_a_cap() {
+        let names: Vec<String> = (1..MOST_JOINTS).map(|joint| format!("j{joint}")).collect();
+        let most = MOST_PLACED_JOINTS / MOST_JOINTS;
+        assert_eq!(read_bvh("a.bvh", chain(&names, most).as_bytes()).unwrap().frames.len(), most);
+        let error = read_bvh("a.bvh", chain(&names, most + 1).as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("2000 joints times frames are more than 10000000"), "{error}");
+    }
+
+    #[test]
+    fn repeated_names_are_one_warning() {
+        let names = ["a", "hips", "a", "b"].map(str::to_owned);
+        let rig = read_bvh("a.bvh", chain(&names, 1).as_bytes()).unwrap();
+        let said = "a.bvh:7: two joints are named `hips`; the first one counts; so it is with 1 more joints";
+        assert_eq!(rig.warnings, [said]);
+    }
+
+    #[test]
+    fn headers_that_cannot_be_meant_are_refused_or_told_with_their_line() {
+        let text = chain(&[], 2);
+        let refused = |old: &str, new: &str| {
+            let changed = text.replacen(old, new, 1);
+            assert_ne!(changed, text);
+            let error = read_bvh("a.bvh", changed.as_bytes()).unwrap_err();
+            format!("{error}; {}", error.help().unwrap())
+        };
+        let twice = refused("OFFSET 0 0 0\n", "OFFSET 0 0 0\nOFFSET 0 1 0\n");
+        assert!(twice.contains("has an offset already"), "{twice}");
+        let end = refused("}", "End Site {\nOFFSET 0 1 0\nOFFSET 0 2 0\n}\n}");
+        assert!(end.contains("has an offset already"), "{end}");
+        let short = refused("0.01", "1e-7");
+        assert!(short.contains("is 1e-7 s") && short.contains("1e-5 s to 1000 s are accepted"), "{short}");
+        let cut = text.replace("Frames: 2\n", "Frames: 3\n\n\n");
+        let warnings = read_bvh("a.bvh", cut.as_bytes()).unwrap().warnings;
+        assert!(warnings[0].contains("the header says 3 frames (line 7), but there are 2"), "{warnings:?}");
     }
 }

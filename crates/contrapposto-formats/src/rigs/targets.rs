@@ -42,6 +42,8 @@ enum Shown {
 pub struct Targets<'a> {
     rig: &'a Rig,
     fitted: &'a Fitted,
+    /// Numbers of the frames that are asked for.
+    frames: &'a [usize],
     hips: [usize; 2],
     scale: f64,
     /// Ground place that becomes the origin, m.
@@ -54,8 +56,8 @@ pub struct Targets<'a> {
 }
 
 impl<'a> Targets<'a> {
-    /// The points of a fitted adult.
-    pub fn new(rig: &'a Rig, assignment: &Assignment, fitted: &'a Fitted) -> Self {
+    /// The points of a fitted adult. `frames`: those of the rig that are asked for; by them the motion is turned and moved.
+    pub fn new(rig: &'a Rig, assignment: &Assignment, fitted: &'a Fitted, frames: &'a [usize]) -> Self {
         let model = &fitted.model;
         let has = |stem: &str, side: &str| assignment.joint(&format!("{stem}{side}")).is_some();
         let mut shown = vec![];
@@ -81,7 +83,7 @@ impl<'a> Targets<'a> {
         let hips = ["femur_r", "femur_l"].map(|name| assignment.needed(name));
         let scale = if fitted.from_first_frame { fitted.metres } else { fitted.scale(rig, assignment) };
         let (origin, facing) = (Vector3::zeros(), UnitQuaternion::identity());
-        let mut targets = Self { rig, fitted, hips, scale, origin, facing, shown, goals };
+        let mut targets = Self { rig, fitted, frames, hips, scale, origin, facing, shown, goals };
         targets.facing = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -targets.aside());
         targets.origin = targets.far_origin();
         targets
@@ -112,11 +114,10 @@ impl<'a> Targets<'a> {
         turned.map(|(turned, _)| (turned.segment, angle(turned.segment))).collect()
     }
 
-    /// Whether the first frame is another pose than the motion that follows: one for calibration.
+    /// Whether the first frame that is asked for is another pose than the motion that follows: one for calibration.
     pub fn first_frame_jumps(&self) -> bool {
-        let Some(frames) = (self.rig.frames.len() > 2).then(|| [0, 1, 2].map(|frame| self.chain(frame))) else {
-            return false;
-        };
+        let [first, second, third, ..] = *self.frames else { return false };
+        let frames = [first, second, third].map(|frame| self.chain(frame));
         let most = |a: &[Placement], b: &[Placement]| {
             a.iter().zip(b).map(|(a, b)| a.rotation.angle_to(&b.rotation)).fold(0.0, f64::max)
         };
@@ -153,7 +154,7 @@ impl<'a> Targets<'a> {
     fn aside(&self) -> f64 {
         let Some(pelvis) = self.fitted.turned.iter().find(|turned| turned.segment == 0) else { return 0.0 };
         let (mut placed, mut before, mut low, mut high) = (vec![], 0.0, f64::INFINITY, f64::NEG_INFINITY);
-        for frame in 0..self.rig.frames.len() {
+        for &frame in self.frames {
             self.rig.place(Some(frame), &mut placed);
             let ahead = self.fitted.axes.to_ground() * placed[pelvis.joint].rotation * pelvis.to_joint * Vector3::x();
             let yaw = (-ahead.z).atan2(ahead.x);
@@ -166,7 +167,7 @@ impl<'a> Targets<'a> {
     /// The level place of the first frame where the motion leaves the range of the root.
     fn far_origin(&self) -> Vector3<f64> {
         let (mut placed, mut first, mut far) = (vec![], None, false);
-        for frame in 0..self.rig.frames.len() {
+        for &frame in self.frames {
             self.rig.place(Some(frame), &mut placed);
             let hips = self.hips(&placed);
             first.get_or_insert(Vector3::new(hips.x, 0.0, hips.z));

@@ -135,11 +135,15 @@ pub(super) fn body(at: &Located, text: &ScenarioText, file: Option<Model>) -> Re
     with_spread(at, model, &text.strength, &text.passive)
 }
 
-/// The built-in adult that a scenario describes in `[model] adult`: MODEL of the commands that take one.
+/// Keys of a scenario that belong to its body as MODEL.
+const OF_THE_BODY: [&str; 3] = ["format", "title", "model"];
+
+/// The built-in adult that a scenario describes in `[model] adult`: MODEL of the commands that take one. With the names of the tables that
+/// count in runs of the scenario only.
 ///
 /// # Errors
 /// [`InputError`] when it is no scenario, has a model file, or changes strength, passive torque or fatigue.
-pub fn scenario_adult(name: &str, bytes: &[u8]) -> Result<Adult, InputError> {
+pub fn scenario_adult(name: &str, bytes: &[u8]) -> Result<(Adult, Vec<String>), InputError> {
     read_toml(name, bytes, |at, text: &ScenarioText| {
         check_head(at, text)?;
         if text.model.file.is_some() {
@@ -152,7 +156,8 @@ pub fn scenario_adult(name: &str, bytes: &[u8]) -> Result<Adult, InputError> {
         }
         let size = size(text);
         adult(&size).map_err(|error| refused_adult(at, &error))?;
-        Ok(size)
+        let others = at.outermost().into_iter().filter(|key| !OF_THE_BODY.contains(key)).map(str::to_owned);
+        Ok((size, others.collect()))
     })
 }
 

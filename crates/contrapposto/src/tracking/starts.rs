@@ -11,7 +11,8 @@ use crate::posture::{Posture, PostureError};
 
 /// The posture of a first frame from `start`. Where its markers stay far, the root begins turned by quarters of a turn about up to three
 /// of its coordinates, too; where a coordinate is held at a limit, the limbs begin again from `start` with the root in its place, all of
-/// them and then each that is held. The least objective is taken; a turn must save 1 % of it.
+/// them and then each that is held. The least objective is taken; a turn must save 1 % of it (`BETTER_START`), other limbs a millionth
+/// (`BETTER_LIMB`).
 ///
 /// # Errors
 /// [`PostureError`] when the start does not fit the model.

@@ -31,11 +31,12 @@ pub(super) const GOOD_DECREASE: f64 = 0.5;
 pub(super) const ROUNDED_CHANGE: f64 = 1e-13;
 /// Multiplier of a limit, as a share of the greatest one, that has no sign.
 pub(super) const NO_MULTIPLIER: f64 = 1e-13;
-/// Root mean square of the marker errors of the first frame, m, from which on other directions of the body are tried.
+/// Root mean square of the marker errors of the first frame, m, from which on other directions of the body are tried. Assumed.
 pub(super) const TURNED_STARTS_FROM: f64 = 0.03;
-/// Share of the objective that a start with a turned body may leave to be taken.
+/// Share of the objective that a start with a turned body may leave to be taken. Assumed.
 pub(super) const BETTER_START: f64 = 0.99;
 /// Share of the objective that a start with other limbs may leave to be taken: less than that is the accuracy of a solution.
+/// Assumed.
 pub(super) const BETTER_LIMB: f64 = 0.999_999;
 /// Angle between two turns of the body, rad, below which they are one.
 pub(super) const SAME_TURN: f64 = 1e-6;

@@ -7,6 +7,7 @@ use contrapposto_formats::markers::Markers;
 use contrapposto_formats::tissue::SourcedModel;
 
 use crate::args::ScaleArgs;
+use crate::commands::track::asked;
 use crate::fail::Fail;
 
 pub(super) fn refused(error: impl std::fmt::Display) -> Fail {
@@ -33,7 +34,8 @@ pub(super) fn time_range(args: &ScaleArgs, given: Option<(f64, f64)>) -> (f64, f
 pub(super) fn frames(markers: &Markers, name: &str, (from, to): (f64, f64)) -> Result<RangeInclusive<usize>, Fail> {
     let (first, last) = (markers.times[0], markers.times[markers.times.len() - 1]);
     if from > last || to < first || from > to {
-        let why = format!("no frame lies from {from} s to {to} s; it goes from {first} s to {last} s");
+        let asked = asked(Some(from).filter(|time| time.is_finite()), Some(to).filter(|time| time.is_finite()));
+        let why = format!("no frame lies in the time that is asked for ({asked}); it goes from {first} s to {last} s");
         return Err(Fail::Refused(format!("{name}: {why}")));
     }
     Ok(markers.frames_between(from, to))

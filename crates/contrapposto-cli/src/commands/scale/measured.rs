@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto_formats::markers::{Markers, Measurement, Order, ScaleSetup};
+use contrapposto_formats::markers::{ACCEPTED_FACTORS, Markers, Measurement, Order, ScaleSetup};
 use contrapposto_formats::nearest;
 use contrapposto_formats::tissue::SourcedModel;
 use nalgebra::Vector3;
@@ -18,8 +18,6 @@ use crate::output::print_note;
 
 /// Factors out of this range are warned of (assumed: people differ from a model of an adult by less than a factor of two).
 const LIKELY: RangeInclusive<f64> = 0.5..=2.0;
-/// Factors out of this range are refused (assumed: such markers have another unit).
-const POSSIBLE: RangeInclusive<f64> = 0.01..=100.0;
 
 /// A measurement with its result.
 struct Taken<'m> {
@@ -110,13 +108,16 @@ impl<'m> Measured<'m> {
             return Err("it has no pair of markers".to_owned());
         }
         let factor = pairs.iter().map(|(of_model, measured)| measured / of_model).sum::<f64>() / pairs.len() as f64;
-        if !POSSIBLE.contains(&factor) {
+        if !ACCEPTED_FACTORS.contains(&factor) {
+            let (least, most) = (ACCEPTED_FACTORS.start(), ACCEPTED_FACTORS.end());
             let units = "do the units of the markers fit? --units mm, cm or m says them";
-            return Err(format!("its factor is {factor:.4}; 0.01 to 100 is accepted; {units}"));
+            return Err(format!("its factor is {factor:.4}; {least} to {most} is accepted; {units}"));
         }
         if !LIKELY.contains(&factor) {
-            let said =
-                "people differ from a model by a factor between 0.5 and 2; do names and units of the markers fit?";
+            let (least, most) = (LIKELY.start(), LIKELY.end());
+            let said = format!(
+                "people differ from a model by a factor between {least} and {most}; do names and units of the markers fit?"
+            );
             print_note(
                 "warning",
                 &format!("{place}measurement `{}` gives the factor {factor:.3}; {said}", measurement.name),

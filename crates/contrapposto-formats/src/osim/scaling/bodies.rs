@@ -21,7 +21,11 @@ impl<'a> Scaler<'_, 'a> {
             scaled.push((mass, known.map(|_| inertia)));
         }
         let total: f64 = scaled.iter().map(|(mass, _)| mass).sum();
-        let all = scaling.mass.filter(|_| total > 0.0).map_or(1.0, |mass| mass / total);
+        let all = scaling.mass.map_or(1.0, |mass| mass / total);
+        if !all.is_finite() {
+            let accepted = "bodies with mass, where the mass of the person is given";
+            return Err(OsimProblem::unsupported(parts.model.place(), &format!("a body of {total} kg"), accepted));
+        }
         for ((body, factors), (mass, inertia)) in bodies.iter().zip(self.factors.clone()).zip(scaled) {
             let center = body.center_of_mass.component_mul(&factors);
             let mut properties = vec![("mass", number(mass * all)), ("mass_center", vector(center))];

@@ -62,16 +62,10 @@ impl<'s> Edits<'s> {
 
     /// Sets an attribute that is there.
     pub(super) fn set_attribute(&mut self, node: Node<'_>, name: &str, value: &str) {
-        let Some(old) = node.attribute(name) else { return };
         let start = node.whole().start;
         let tag = &self.source[start..node.content().map_or(node.whole().end, |content| content.start)];
-        for quote in ['"', '\''] {
-            let written = format!("{quote}{old}{quote}");
-            if let Some(at) = tag.find(&written) {
-                let value = format!("\"{}\"", escaped(value));
-                self.changes.push((start + at..start + at + written.len(), value));
-                return;
-            }
+        if let Some(old) = attribute(tag, name) {
+            self.changes.push((start + old.start..start + old.end, format!("\"{}\"", escaped(value))));
         }
     }
 
@@ -98,6 +92,21 @@ impl<'s> Edits<'s> {
     }
 }
 
+/// Place of an attribute's value in a tag, quotes counted.
+fn attribute(tag: &str, name: &str) -> Option<Range<usize>> {
+    let mut at = tag.find(char::is_whitespace)?;
+    loop {
+        let equals = at + tag[at..].find('=')?;
+        let open = equals + tag[equals..].find(['"', '\''])?;
+        let quote = &tag[open..=open];
+        let end = open + 1 + tag[open + 1..].find(quote)? + 1;
+        if tag[at..equals].trim() == name {
+            return Some(open..end);
+        }
+        at = end;
+    }
+}
+
 /// The shortest text of a number that gives the same number again.
 pub(super) fn number(value: f64) -> String {
     format!("{value:?}")
@@ -111,4 +120,18 @@ pub(super) fn vector(value: Vector3<f64>) -> String {
 /// Text for an attribute or an element.
 pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::attribute;
+
+    #[test]
+    fn attributes_are_found_by_their_names() {
+        let tag = "<Model type=\"gait\" note='name=\"a\" >'\n name = \"gait &amp; more\">";
+        let value = |name| attribute(tag, name).map(|range| &tag[range]);
+        assert_eq!(value("name"), Some("\"gait &amp; more\""));
+        assert_eq!(value("note"), Some("'name=\"a\" >'"));
+        assert_eq!((value("type"), value("gait")), (Some("\"gait\""), None));
+    }
 }

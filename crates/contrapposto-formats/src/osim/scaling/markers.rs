@@ -33,7 +33,7 @@ pub struct PlacedMarkers {
 /// Adds markers to a model; one of the same name gives way.
 ///
 /// # Errors
-/// [`OsimError`] for a file that is no model of OpenSim 4.
+/// [`OsimError`] for a file that is no model of OpenSim, or of a version below 30500.
 pub fn with_markers(text: &str, file_name: &str, markers: &[SetMarker]) -> Result<String, OsimError> {
     let text = unmarked(text);
     with_parts(text, file_name, |parts| {
@@ -68,7 +68,7 @@ pub fn with_markers(text: &str, file_name: &str, markers: &[SetMarker]) -> Resul
 /// Moves markers that are not fixed, and removes others. `place`: the new place in the frame of the marker's body, m; `None` where it stays.
 ///
 /// # Errors
-/// [`OsimError`] for a file that is no model of OpenSim 4.
+/// [`OsimError`] for a file that is no model of OpenSim, or of a version below 30500.
 pub fn with_placed_markers(
     text: &str,
     file_name: &str,

@@ -68,7 +68,7 @@ fn with_parts<T>(
         let root = document.root();
         let version = root.attribute("Version").and_then(|v| v.trim().parse::<u32>().ok()).unwrap_or(0);
         if root.name() != "OpenSimDocument" || version < SETS_FROM {
-            let accepted = "a document of OpenSim 4 (open an older file in OpenSim 4 and save it)";
+            let accepted = "an OpenSimDocument of version 30500 or later (open an older file in OpenSim 4 and save it)";
             let what = format!("<{}> of version {version}", root.name());
             return Err(OsimProblem::unsupported(root.place(), &what, accepted));
         }
@@ -90,7 +90,7 @@ fn unmarked(text: &str) -> &str {
 /// Names of the bodies of a model file.
 ///
 /// # Errors
-/// [`OsimError`] for a file that is no model of OpenSim 4.
+/// [`OsimError`] for a file that is no model of OpenSim, or of a version below 30500.
 pub fn bodies(text: &str, file_name: &str) -> Result<Vec<String>, OsimError> {
     with_parts(text, file_name, |parts| Ok(parts.scene.bodies.iter().map(|body| body.name.clone()).collect()))
 }
@@ -98,7 +98,7 @@ pub fn bodies(text: &str, file_name: &str) -> Result<Vec<String>, OsimError> {
 /// Scales the text of a model. Factors of bodies that the model lacks are not used.
 ///
 /// # Errors
-/// [`OsimError`] for a file that is no model of OpenSim 4, or a part of it that cannot be scaled.
+/// [`OsimError`] for a file that is no model of OpenSim, or of a version below 30500, or a part of it that cannot be scaled.
 pub fn scaled(text: &str, file_name: &str, scaling: &Scaling) -> Result<Scaled, OsimError> {
     let text = unmarked(text);
     with_parts(text, file_name, |parts| {

@@ -19,7 +19,7 @@ const LENGTHS: [(&str, &[(&str, f64)]); 6] = [
 /// of the scaled path over that before, by the name of the force; `None` where it is not known.
 ///
 /// # Errors
-/// [`OsimError`] for a file that is no model of OpenSim 4.
+/// [`OsimError`] for a file that is no model of OpenSim, or of a version below 30500.
 pub fn with_path_lengths(
     text: &str,
     file_name: &str,
