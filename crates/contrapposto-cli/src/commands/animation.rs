@@ -126,15 +126,8 @@ fn frames(args: &TrackArgs, file: &str, rig: &Rig, coordinates: usize) -> Result
     Ok(frames)
 }
 
-/// Notes and warnings about names, axes, unit and size.
-fn say(
-    (rig, frames): (&Rig, &[usize]),
-    assignment: &Assignment,
-    (fitted, sizing): (&Fitted, &Sizing),
-    targets: &Targets<'_>,
-) {
-    let pairs = assignment.pairs().map(|(segment, joint)| format!("{segment} = {}", rig.joints[joint].name));
-    print_note("note", &format!("joints of the rig by segment: {}", pairs.collect::<Vec<_>>().join(", ")));
+/// The unit of the rig's lengths, and what else could say it.
+fn unit(fitted: &Fitted, sizing: &Sizing) -> String {
     let size = &fitted.size;
     let adult = format!("{} m and {} kg", size.stature, size.mass);
     let unit = match fitted.unit {
@@ -148,7 +141,20 @@ fn say(
         Sizing::ToRig(_) => "--units or MODEL `adult:female,1.65m,60kg` says otherwise",
         Sizing::Given(_) => "MODEL `adult` takes the size of the rig",
     };
-    print_note("note", &format!("{unit}; {otherwise}"));
+    format!("{unit}; {otherwise}")
+}
+
+/// Notes and warnings about names, axes, unit and size.
+fn say(
+    (rig, frames): (&Rig, &[usize]),
+    assignment: &Assignment,
+    (fitted, sizing): (&Fitted, &Sizing),
+    targets: &Targets<'_>,
+) {
+    let pairs = assignment.pairs().map(|(segment, joint)| format!("{segment} = {}", rig.joints[joint].name));
+    print_note("note", &format!("joints of the rig by segment: {}", pairs.collect::<Vec<_>>().join(", ")));
+    let size = &fitted.size;
+    print_note("note", &unit(fitted, sizing));
     if !size.lengths.is_empty() {
         let lengths = size.lengths.iter().map(|(name, length)| format!("{name} {length:.3} m"));
         let list = lengths.collect::<Vec<_>>().join(", ");
