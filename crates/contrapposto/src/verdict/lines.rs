@@ -91,7 +91,8 @@ impl Findings {
             at => format!(" at {at} ({end} at the end)"),
         });
         let first = self.asked.and(self.fails_later()).filter(|first| first.time < A_DAY && !is_it(&first.who));
-        let fails = first.zip(own).map(|(_, own)| match own.time {
+        let apart = first.zip(own).filter(|(first, own)| how_long(first.time) != how_long(own.time));
+        let fails = apart.map(|(_, own)| match own.time {
             time if time < A_DAY => format!("; it fails later, after about {}", how_long(time)),
             _ => "; it does not fail at its load of the end".to_owned(),
         });
