@@ -82,10 +82,10 @@ pub(crate) enum Verb {
     Torques(TorquesArgs),
     /// Path, forces and moment arms of every muscle of an OpenSim or MJCF model, and the strength of its joints, for one posture or a motion.
     Muscles(MusclesArgs),
-    /// Scale an OpenSim model to a person by the markers of a static trial (.trc) and the setup file of OpenSim's ScaleTool.
+    /// Scale an OpenSim model to a person by the markers of a static trial (.trc, .c3d) and the setup file of OpenSim's ScaleTool.
     Scale(ScaleArgs),
-    /// Find the motion of an OpenSim model whose markers lie nearest to measured ones (.trc): inverse kinematics. Or that of the built-in adult
-    /// which moves as an animation (.bvh).
+    /// Find the motion of an OpenSim model whose markers lie nearest to measured ones (.trc, .c3d): inverse kinematics. Or that of the built-in
+    /// adult which moves as an animation (.bvh).
     Track(TrackArgs),
     /// Find the muscle group that fails first in a recorded motion, when, and which change of posture would relieve it.
     Assess(AssessArgs),

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 use std::io::Write;
 
+use contrapposto_formats::markers::MarkerFileError;
 use contrapposto_formats::{InputError, escaped_lines};
 
 /// The reason for which the program stops.
@@ -40,6 +41,15 @@ impl Fail {
         // Nothing is left to try when standard error is closed, too.
         let _ = std::io::stderr().write_all(text.as_bytes());
         code
+    }
+}
+
+impl From<MarkerFileError> for Fail {
+    fn from(error: MarkerFileError) -> Self {
+        match error {
+            MarkerFileError::Trc(error) => error.into(),
+            MarkerFileError::C3d(error) => Self::Refused(error.to_string()),
+        }
     }
 }
 

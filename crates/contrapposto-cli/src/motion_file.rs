@@ -7,6 +7,7 @@ use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError};
+use contrapposto_formats::markers::is_c3d;
 use contrapposto_formats::motion::{self, Postures, Units, postures, read_table};
 use contrapposto_formats::nearest;
 use contrapposto_formats::tissue::SourcedModel;
@@ -33,9 +34,10 @@ pub(crate) fn loads_of(
     Ok((loads, ground))
 }
 
-/// Whether a file is one of markers (.trc).
+/// Whether a file is one of markers (.trc, .c3d).
 fn holds_markers(name: &str, bytes: &[u8]) -> bool {
-    name.to_ascii_lowercase().ends_with(".trc") || bytes.starts_with(b"PathFileType")
+    let name = name.to_ascii_lowercase();
+    [".trc", ".c3d"].iter().any(|ending| name.ends_with(ending)) || bytes.starts_with(b"PathFileType") || is_c3d(bytes)
 }
 
 /// The table of --grf; notes say on which segments its plates are taken to act.
@@ -43,8 +45,9 @@ fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<St
     let name = path.display().to_string();
     let bytes = read(path, motion::MOST_TABLE_BYTES as u64)?;
     if holds_markers(&name, &bytes) {
-        let why = "is a marker file, which holds no forces; --grf is a table of ground reactions (.mot, .sto) or an ExternalLoads file";
-        return Err(Fail::Refused(format!("{name}: {why}")));
+        let holds = if is_c3d(&bytes) { "whose forces are not read" } else { "which holds no forces" };
+        let accepted = "--grf is a table of ground reactions (.mot, .sto) or an ExternalLoads file";
+        return Err(Fail::Refused(format!("{name}: is a marker file, {holds}; {accepted}")));
     }
     let is_xml = bytes.trim_ascii_start().first() == Some(&b'<');
     let ground = if is_xml {
@@ -119,7 +122,7 @@ pub(crate) fn read_whole_motion(
     })?;
     if holds_markers(&name, &bytes) {
         let why =
-            "is a marker file; `contrapposto track MODEL FILE.trc --out DIR` makes a motion of it: give DIR/motion.mot";
+            "is a marker file; `contrapposto track MODEL FILE --out DIR` makes a motion of it: give DIR/motion.mot";
         return Err(Fail::Refused(format!("{name}: {why}")));
     }
     let table = read_table(&name, &bytes)?;

@@ -85,7 +85,7 @@ fn start_table(path: &Path) -> Result<String, Fail> {
 /// Refuses a model file, or a motion, where a scenario is due.
 fn refuse_model(path: &Path, name: &str) -> Result<(), Fail> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    if ["mot", "sto", "trc"].contains(&ending.as_str()) {
+    if ["mot", "sto", "trc", "c3d"].contains(&ending.as_str()) {
         let why = "is a motion, not a scenario; `contrapposto assess MODEL MOTION` and `torques MODEL MOTION` take it";
         return Err(Fail::Refused(format!("{name}: {why}")));
     }

@@ -182,7 +182,7 @@ fn compressed_files_and_marker_files_say_what_to_do() {
         let markers = write(folder.path(), name, "PathFileType\t4\t(X/Y/Z)\twalk.trc\nDataRate\n60\n");
         let said = refused(&["assess", "adult", &markers]);
         assert!(
-            said.contains("is a marker file; `contrapposto track MODEL FILE.trc --out DIR` makes a motion of it"),
+            said.contains("is a marker file; `contrapposto track MODEL FILE --out DIR` makes a motion of it"),
             "{said}"
         );
         let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n5,60\n");

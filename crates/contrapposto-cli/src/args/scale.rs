@@ -19,7 +19,7 @@ use super::track::UnitChoice;
 pub(crate) struct ScaleArgs {
     /// Model file of OpenSim 4 (.osim).
     pub(crate) model: PathBuf,
-    /// Measured markers of a person who stands still (.trc).
+    /// Measured markers of a person who stands still (.trc, .c3d).
     pub(crate) markers: PathBuf,
     /// Setup file of OpenSim's ScaleTool (.xml): measurements, factors given by hand, the person's mass, and the tasks that place markers.
     #[arg(long, value_name = "SETUP.xml")]

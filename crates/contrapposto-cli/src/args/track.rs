@@ -20,7 +20,7 @@ use super::model::ModelArgs;
 pub(crate) struct TrackArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Measured markers (.trc); or an animation (.bvh), which moves the built-in adult.
+    /// Measured markers (.trc, .c3d); or an animation (.bvh), which moves the built-in adult.
     pub(crate) markers: PathBuf,
     /// OpenSim's IKTaskSet, or the setup file (.xml) that holds one: weights of markers, and coordinates with wanted values. Without it
     /// every marker that file and model have counts the same.

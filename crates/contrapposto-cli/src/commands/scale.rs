@@ -10,7 +10,7 @@ use std::path::Path;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::muscle::{PathGeometry, PathRule};
-use contrapposto_formats::markers::{ScaleSetup, marker_set, read_trc, scale_setup};
+use contrapposto_formats::markers::{ScaleSetup, marker_set, read_markers, scale_setup};
 use contrapposto_formats::motion::MOST_TABLE_BYTES;
 use contrapposto_formats::osim::scaling::{self, Scaling};
 use contrapposto_formats::tissue::SourcedModel;
@@ -38,7 +38,7 @@ pub(crate) fn scale(args: &ScaleArgs) -> Result<(), Fail> {
     let text = with_marker_set(args, &setup, text.to_owned(), (&shown, &bodies))?;
     let name = args.markers.display().to_string();
     let units = args.units.map(crate::args::UnitChoice::unit);
-    let markers = read_trc(&name, &read(&args.markers, MOST_TABLE_BYTES as u64)?, units)?;
+    let markers = read_markers(&name, &read(&args.markers, MOST_TABLE_BYTES as u64)?, units)?;
     setup.notes.iter().for_each(|note| print_note("note", note));
     markers.warnings.iter().for_each(|warning| print_note("warning", warning));
     let before = opened(&shown, &text)?;
@@ -69,7 +69,7 @@ pub(crate) fn scale(args: &ScaleArgs) -> Result<(), Fail> {
 fn check(args: &ScaleArgs) -> Result<(), Fail> {
     let is = |path: &Path, ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let (model, markers, out) = (args.model.display(), args.markers.display(), args.out.display());
-    if is(&args.model, "trc") || is(&args.markers, "osim") {
+    if is(&args.model, "trc") || is(&args.model, "c3d") || is(&args.markers, "osim") {
         let why = format!("the model comes first, then the markers: contrapposto scale {markers} {model} ...");
         return Err(Fail::Refused(format!("{model}: {why}")));
     }

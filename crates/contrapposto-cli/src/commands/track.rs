@@ -5,7 +5,7 @@ pub(crate) mod matching;
 
 use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::tracking::{self, TrackedFrame};
-use contrapposto_formats::markers::{Markers, TrackingTasks, read_trc, tracking_tasks};
+use contrapposto_formats::markers::{Markers, TrackingTasks, read_markers, tracking_tasks};
 use contrapposto_formats::motion::{MOST_TABLE_BYTES, UnwritableTable, write_sto};
 use contrapposto_formats::xml::Limits;
 
@@ -35,7 +35,8 @@ pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let opened = open(&args.model, false)?;
     let model = &opened.model;
     let name = args.markers.display().to_string();
-    let markers = read_trc(&name, &read(&args.markers, MOST_TABLE_BYTES as u64)?, args.units.map(|unit| unit.unit()))?;
+    let markers =
+        read_markers(&name, &read(&args.markers, MOST_TABLE_BYTES as u64)?, args.units.map(|unit| unit.unit()))?;
     let tasks = tasks(args)?;
     tasks.iter().flat_map(|tasks| &tasks.notes).for_each(|note| print_note("note", note));
     markers.warnings.iter().for_each(|warning| print_note("warning", warning));
