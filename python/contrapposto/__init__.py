@@ -16,10 +16,13 @@ from contrapposto.errors import ContrappostoError, InputError, InternalError, Jo
 from contrapposto.jobs import minimize, pose, relax, simulate
 from contrapposto.loads import Force, Weight
 from contrapposto.model import Model
-from contrapposto.results import Equilibria, Pose, Record, Run
+from contrapposto.motions import assess
+from contrapposto.muscle_states import MuscleStates, muscles
+from contrapposto.results import Assessment, Equilibria, Pose, Record, Run
 from contrapposto.torques import Torques
 
 __all__ = [
+    "Assessment",
     "ContrappostoError",
     "Engine",
     "Equilibria",
@@ -28,13 +31,16 @@ __all__ = [
     "InternalError",
     "JobError",
     "Model",
+    "MuscleStates",
     "Pose",
     "Record",
     "Run",
     "Torques",
     "Weight",
     "__version__",
+    "assess",
     "minimize",
+    "muscles",
     "pose",
     "relax",
     "simulate",

@@ -31,6 +31,8 @@ class Model:
     @staticmethod
     def adult(female: bool, stature: float | None = None, mass: float | None = None) -> Model: ...
     @staticmethod
+    def adult_at(female: bool, percentile: float) -> Model: ...
+    @staticmethod
     def from_file(
         path: str | os.PathLike[str],
         overlay: str | os.PathLike[str] | None = None,
@@ -63,9 +65,10 @@ class Model:
     @property
     def notes(self) -> list[tuple[str, str]]: ...
     def torques(
-        self, postures: _Array, loads: Sequence[_Load], device: _Array | None, threads: int
+        self, postures: _Array, loads: Sequence[_Load], device: _Array | None, muscles: str | None, threads: int
     ) -> tuple[_Array, _Array, _Array]: ...
     def gradient(self, postures: _Array, loads: Sequence[_Load], threads: int) -> _Array: ...
+    def muscles(self, postures: _Array, opensim: bool, activation: float) -> list[str]: ...
 
 @final
 class Engine:
@@ -86,6 +89,13 @@ class Engine:
 class Job:
     @staticmethod
     def run(kind: str, scenario: str, is_text: bool, suggest: bool) -> Job: ...
+    @staticmethod
+    def assess(
+        model: Model,
+        path: str | os.PathLike[str] | None,
+        rows: tuple[_Array, _Array] | None,
+        words: Sequence[str],
+    ) -> Job: ...
     def frames(self) -> tuple[list[str], list[_Array]]: ...
     @property
     def json(self) -> str: ...

@@ -17,18 +17,18 @@ Scenario: TypeAlias = str | os.PathLike[str] | Mapping[str, Any]
 
 def pose(scenario: Scenario) -> Pose:
     """Solves one posture from tasks in strict order of priority, as `contrapposto pose`."""
-    return Pose._run(("pose", *source_of(scenario), False))
+    return Pose._run(_native.Job.run, "pose", *source_of(scenario), False)
 
 
 def relax(scenario: Scenario) -> Equilibria:
     """Finds the different postures of least effort under the tasks, and their stability, as `contrapposto relax`."""
-    return Equilibria._run(("relax", *source_of(scenario), False))
+    return Equilibria._run(_native.Job.run, "relax", *source_of(scenario), False)
 
 
 def simulate(scenario: Scenario, *, suggest: bool = False) -> Run:
     """Runs a scenario over time, as `contrapposto simulate`. With `suggest` changes of a job that does not hold are tried, too, which
     takes several times as long; `summary.suggestions` has those that help."""
-    return Run._run(("simulate", *source_of(scenario), bool(suggest)))
+    return Run._run(_native.Job.run, "simulate", *source_of(scenario), bool(suggest))
 
 
 def minimize(problem: Mapping[str, Any], *, literal: bool = False) -> Record:

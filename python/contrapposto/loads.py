@@ -13,7 +13,7 @@ from contrapposto.errors import InputError
 
 if TYPE_CHECKING:
     Numbers: TypeAlias = "npt.ArrayLike"
-    Native: TypeAlias = str | tuple[str, str, Array, tuple[float, float, float] | None, bool]
+    Parts: TypeAlias = tuple[str, str, Array, tuple[float, float, float] | None, bool]
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Weight:
     mass: Numbers
     at: Sequence[float] | None = None
 
-    def _native(self) -> Native:
+    def _native(self) -> Parts:
         mass = numbers("mass of a Weight", self.mass)
         if mass.ndim > 1:
             raise InputError(f"mass of the Weight on `{self.segment}` has shape {mass.shape}; it must be a number, or (N,)")
@@ -51,7 +51,7 @@ class Force:
     at: Sequence[float] | None = None
     axes: Literal["ground", "segment"] = "ground"
 
-    def _native(self) -> Native:
+    def _native(self) -> Parts:
         force = numbers("force of a Force", self.force)
         if force.ndim not in (1, 2) or force.shape[-1] != 3:
             raise InputError(f"force of the Force on `{self.segment}` has shape {force.shape}; it must be (3,) or (N, 3)")
@@ -76,12 +76,33 @@ def _point(at: Sequence[float] | None) -> tuple[float, float, float] | None:
 
 def native_loads(loads: Load | Sequence[Load]) -> list[Any]:
     """Loads as the compiled half takes them."""
-    found: list[Any] = []
-    for load in [loads] if isinstance(loads, (str, Weight, Force)) else loads:
-        if isinstance(load, str):
-            found.append(load)
-        elif isinstance(load, (Weight, Force)):
-            found.append(load._native())
-        else:
+    return [load if isinstance(load, str) else load._native() for load in _listed(loads)]
+
+
+def load_words(loads: Load | Sequence[Load]) -> list[str]:
+    """Loads at all times as options of the program."""
+    return [f"--load={text}" if "kg" in text else f"--force={text}" for text in map(_text, _listed(loads))]
+
+
+def _listed(loads: Load | Sequence[Load]) -> list[Load]:
+    listed = [loads] if isinstance(loads, (str, Weight, Force)) else list(loads)
+    for load in listed:
+        if not isinstance(load, (str, Weight, Force)):
             raise InputError(f"{load!r} is no load; accepted: a Weight, a Force, or a text such as 'hand_r 3kg'")
-    return found
+    return listed
+
+
+def _text(load: Load) -> str:
+    if isinstance(load, str):
+        return load
+    _, segment, rows, at, in_segment = load._native()
+    if len(rows) != 1:
+        raise InputError(f"the load on `{segment}` has {len(rows)} rows; a load at all times has one")
+    point = "" if at is None else f" at {_joined(at)}"
+    if isinstance(load, Weight):
+        return f"{segment} {float(rows[0, 0])!r}kg{point}"
+    return f"{segment} {_joined(rows[0])}{point} {'segment' if in_segment else 'world'}"
+
+
+def _joined(numbers: Any) -> str:
+    return ",".join(repr(float(number)) for number in numbers)

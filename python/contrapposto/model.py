@@ -18,6 +18,8 @@ from contrapposto.errors import InputError
 from contrapposto.loads import Load, native_loads
 from contrapposto.torques import Torques
 
+#: The quantities that the muscles of a model file give.
+Muscles: TypeAlias = Literal["off", "strength", "passive", "both"]
 #: Sense of a coordinate: that of the torque of a muscle group.
 Sense: TypeAlias = Literal["positive", "negative"]
 
@@ -46,10 +48,20 @@ class Model:
         sex: Literal["female", "male"] = "male",
         stature: float | None = None,
         mass: float | None = None,
+        *,
+        percentile: float | None = None,
     ) -> Model:
-        """The built-in adult; stature (m) and mass (kg) are those of de Leva's reference woman or man where they are left out."""
+        """The built-in adult; stature (m) and mass (kg) are those of de Leva's reference woman or man where they are left out.
+
+        percentile: above 0 and below 100; stature and mass are each at that percentile of women or men of ANSUR II (measured; soldiers
+            of the US Army). Of both together fewer people are that small, or that large: `notes` says so, with the source.
+        """
         if sex not in ("female", "male"):
             raise InputError(f"sex is {sex!r}; it must be 'female' or 'male'")
+        if percentile is not None:
+            if stature is not None or mass is not None:
+                raise InputError("percentile gives stature and mass; leave them out, or leave out percentile")
+            return cls._of(_native.Model.adult_at(sex == "female", percentile))
         return cls._of(_native.Model.adult(sex == "female", stature, mass))
 
     @classmethod
@@ -143,6 +155,7 @@ class Model:
         loads: Load | Sequence[Load] = (),
         external: Any | None = None,
         *,
+        muscles: Muscles | None = None,
         threads: int = 1,
     ) -> Torques:
         """External, passive and active torque of postures at rest.
@@ -152,11 +165,13 @@ class Model:
         loads: weights and forces on segments: `Weight`, `Force`, or texts such as "hand_r 3kg".
         external: generalised forces of a device at the joints (N m, N), in the order of `torque_names`, shape (N, r) or (r,); they
             count as external torque.
+        muscles: the quantities that the muscles of a model file give, as `--muscles` of the program: "both" for an OpenSim file with
+            muscles and "off" for all others when left out. With "passive" or "both" passive torque is that of its resting fibres.
         threads: number of threads. Each result is the same to the bit for any number.
         """
         table, single = postures(self._native, q)
         device = None if external is None else rows("external", external)
-        results = self._native.torques(table, native_loads(loads), device, _count(threads))
+        results = self._native.torques(table, native_loads(loads), device, muscles, _count(threads))
         return Torques(
             self.torque_names, tuple(self._native.torque_units), *(array[0] if single else array for array in results)
         )
@@ -169,7 +184,7 @@ class Model:
         return gradient[0] if single else gradient
 
     def passive(self, coordinate: str, angles: npt.ArrayLike) -> Array:
-        """Passive torque (N m) of a coordinate at angles (rad), the other coordinates at their default."""
+        """Passive torque (N m) of a coordinate at angles (rad), the other coordinates at their default; that of `torques`."""
         if coordinate not in self.torque_names:
             raise _unknown(coordinate)
         angles = line("angles", angles)
@@ -177,7 +192,7 @@ class Model:
 
     def strength(self, coordinate: str, angles: npt.ArrayLike) -> Array:
         """Greatest voluntary torque (N m, both positive) of the muscle groups of the positive and the negative sense of a coordinate at
-        angles (rad), shape (N, 2)."""
+        angles (rad), shape (N, 2). Muscles of a model file have no part in it; `contrapposto.muscles` gives their strength."""
         angles = line("angles", angles)
         both = [_native.strength(self._native, coordinate, positive, angles) for positive in (True, False)]
         return np.stack(both, axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -16,6 +16,7 @@ from contrapposto._arrays import Array
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped, unused-ignore]
+    import xarray
 
     from contrapposto._native import Job
 
@@ -73,7 +74,7 @@ def _frozen(value: Any) -> Any:
 
 
 class Result:
-    """The result of a job on a scenario. Each array has one row a moment or posture, and one column a coordinate."""
+    """The result of a job. Each array has one row a moment or posture, and one column a coordinate."""
 
     __slots__ = ("_native", "_job", "names", "t", "q", "external", "passive", "active", "load", "fatigue", "summary", "notes")
 
@@ -99,21 +100,22 @@ class Result:
     notes: tuple[str, ...]
 
     _native: Job | None
-    _job: tuple[str, str, bool, bool]
+    #: How to do the job again: a function that picklable arguments go to, and these.
+    _job: tuple[Callable[..., Job], tuple[Any, ...]]
 
     def __init__(self) -> None:
-        raise TypeError("results are made by jobs: contrapposto.pose, relax, simulate")
+        raise TypeError("results are made by jobs: contrapposto.pose, relax, simulate, assess")
 
     @classmethod
-    def _run(cls: type[R], job: tuple[str, str, bool, bool]) -> R:
-        native = _native.Job.run(*job)
+    def _run(cls: type[R], make: Callable[..., Job], *arguments: Any) -> R:
+        native, job = make(*arguments), (make, arguments)
         names, (times, *columns, fatigue) = native.frames()
         fatigue = fatigue.reshape(len(fatigue), len(names), 2)
         notes = tuple(text for _, text in native.notes)
         return cls._of(native, job, (tuple(names), times[0], *columns, fatigue, Record(json.loads(native.json)), notes))
 
     @classmethod
-    def _of(cls: type[R], native: Job | None, job: tuple[str, str, bool, bool], parts: tuple[Any, ...]) -> R:
+    def _of(cls: type[R], native: Job | None, job: tuple[Callable[..., Job], tuple[Any, ...]], parts: tuple[Any, ...]) -> R:
         result = object.__new__(cls)
         object.__setattr__(result, "_native", native)
         object.__setattr__(result, "_job", job)
@@ -131,7 +133,8 @@ class Result:
 
     @property
     def verdict(self) -> Record:
-        """The answer, in the words of `verdict` in the program's JSON: `kind`, `sentence`, `minutes`, `who`, ..."""
+        """The answer, in the words of `verdict` in the program's JSON: `kind`, `sentence`, `lines` (the findings behind it), `minutes`,
+        `who`, ..."""
         verdict: Record = self.summary["verdict"]
         return verdict
 
@@ -140,8 +143,8 @@ class Result:
 
     def html(self) -> str:
         """The page of the program, one HTML text that needs no network. A result that was pickled does its job again for it."""
-        native = self._native if self._native is not None else _native.Job.run(*self._job)
-        return native.report()
+        make, arguments = self._job
+        return (self._native or make(*arguments)).report()
 
     def report(self, path: str | os.PathLike[str]) -> Path:
         """Writes the page of the program; gives its path."""
@@ -166,6 +169,20 @@ class Result:
         table = pandas.DataFrame(stacked.reshape(len(self.t), -1), index=index, columns=columns)
         table.attrs["verdict"] = self.verdict.sentence
         return table
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The arrays over `t` (s), `coordinate` and `sense` of the muscle group."""
+        import xarray
+
+        kinds = {"external": "N m", "passive": "N m", "active": "N m", "load": "1"}
+        over = ("t", "coordinate")
+        columns: dict[str, Any] = {name: (over, getattr(self, name), {"units": unit}) for name, unit in kinds.items()}
+        columns["q"] = (over, self.q, {"units": "rad, m or 1 (components of quaternions)"})
+        if len(self.fatigue):
+            columns["fatigue"] = ((*over, "sense"), self.fatigue, {"units": "1"})
+        places = {"t": ("t", self.t, {"units": "s"}), "coordinate": list(self.names), "sense": ["positive", "negative"]}
+        provenance = {"verdict": self.verdict.sentence, "program": f"contrapposto {_native.__version__}"}
+        return xarray.Dataset(columns, places, provenance)
 
     def plot(self, *coordinates: str, ax: Any = None) -> Any:
         """Draws the loads of coordinates with matplotlib: of a run over time, of postures as bars. Without names: of the six with the
@@ -210,5 +227,13 @@ class Equilibria(Result):
 
 class Run(Result):
     """A run over time. A long run keeps every second, third, ... sample. `summary` has reliefs, steps, suggestions and failures."""
+
+    __slots__ = ()
+
+
+class Assessment(Result):
+    """A recorded motion that was assessed, a row a posture. `summary.groups` has the muscle groups, the worst first, with their peaks,
+    the time at which each fails, and changes of posture that would relieve it; its peaks are judged within the error of the angles, `load`
+    is that of the angles as they are given."""
 
     __slots__ = ()

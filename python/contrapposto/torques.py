@@ -9,6 +9,7 @@ from contrapposto._arrays import Array
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped, unused-ignore]
+    import xarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,3 +48,12 @@ class Torques:
         table: Any = pandas.DataFrame(stacked.reshape(stacked.shape[0], -1), columns=columns)
         table.attrs["units"] = dict(zip(self.names, self.units))
         return table
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The three torques over `posture` and `coordinate`, whose units are a coordinate of their own."""
+        import numpy as np
+        import xarray
+
+        kinds = ("external", "passive", "active")
+        columns = {kind: (("posture", "coordinate"), np.atleast_2d(getattr(self, kind))) for kind in kinds}
+        return xarray.Dataset(columns, {"coordinate": list(self.names), "unit": ("coordinate", list(self.units))})

@@ -82,6 +82,33 @@ def test_tables_and_charts(results: dict[str, contrapposto.results.Result], kind
     np.testing.assert_allclose(result.external + result.passive + result.active, 0, atol=1e-9)
 
 
+@pytest.mark.parametrize("kind", SCENARIOS)
+def test_arrays_have_names_for_xarray(results: dict[str, contrapposto.results.Result], kind: str, tmp_path: Path) -> None:
+    pytest.importorskip("xarray")
+    result = results[kind]
+    data = result.to_xarray()
+    name = result.names[-1]
+    assert data["load"].sel(coordinate=name).values.tobytes() == result.load[:, -1].tobytes()
+    assert data["active"].attrs["units"] == "N m" and data.attrs["verdict"] == result.verdict.sentence
+    if kind == "simulate":
+        assert data["fatigue"].sel(coordinate=name, sense="negative").values.tobytes() == result.fatigue[:, -1, 1].tobytes()
+        assert float(data["load"].sel(t=result.t[-1], coordinate=name)) == result.load[-1, -1]
+    else:
+        assert "fatigue" not in data
+
+
+def test_a_verdict_has_the_findings_behind_it(
+    results: dict[str, contrapposto.results.Result], program: str, tmp_path: Path
+) -> None:
+    for kind, path in SCENARIOS.items():
+        options = ["--no-suggest"] if kind == "simulate" else []
+        said = subprocess.run([program, kind, str(path), "--out", str(tmp_path / kind), *options], capture_output=True, text=True)
+        lines = results[kind].verdict.lines
+        assert isinstance(lines, tuple)
+        assert said.stdout.splitlines()[: 1 + len(lines)] == [results[kind].verdict.sentence, *lines]
+    assert results["simulate"].verdict.lines
+
+
 def test_a_text_and_a_dictionary_give_the_same_as_the_file(results: dict[str, contrapposto.results.Result]) -> None:
     if sys.version_info >= (3, 11):
         import tomllib

@@ -5,11 +5,13 @@ mod failure;
 mod frames;
 mod jobs;
 mod model;
+mod muscles;
 mod torques;
 
 pub use controller::Controller;
 pub use failure::{Failure, Note, Place};
 pub use frames::Frames;
-pub use jobs::{Posed, Relaxed, ScenarioSource, Simulated};
+pub use jobs::{Assessed, MotionSource, Posed, Relaxed, ScenarioSource, Simulated};
 pub use model::{ModelOptions, ModelSource};
+pub use muscles::muscle_lines;
 pub use torques::{RestTorques, TorqueRow};

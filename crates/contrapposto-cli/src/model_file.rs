@@ -30,7 +30,13 @@ pub(crate) fn open_with_muscles(
     args: &ModelArgs,
     muscles: (Option<MuscleUse>, &str),
 ) -> Result<(SourcedModel, Option<JointMuscles>, Vec<String>), Fail> {
-    let (mut opened, library) = open_with(args, true, Some(muscles), SourcedModel::read)?;
+    with_joint_muscles(open_with(args, true, Some(muscles), SourcedModel::read)?)
+}
+
+/// A model with the muscles of its joints, from the model and the same one without muscles; with warnings about these muscles.
+pub(crate) fn with_joint_muscles(
+    (mut opened, library): (SourcedModel, Option<SourcedModel>),
+) -> Result<(SourcedModel, Option<JointMuscles>, Vec<String>), Fail> {
     let (muscles, doubts) = library.map_or((None, vec![]), |library| opened.joint_muscles(&library));
     doubts.iter().for_each(|doubt| print_note("warning", doubt));
     Ok((opened, muscles, doubts))
@@ -74,10 +80,6 @@ fn open_with(
     if let Some(path) = &args.overlay {
         opened = opened.lay_over(&path.display().to_string(), &read(path, MOST_BYTES)?)?;
     }
-    let library = muscles.map(|_| opened.clone());
-    if let Some(muscles) = muscles {
-        use_muscles(&mut opened, muscles)?;
-    }
     let fill = match args.passive {
         Some(from) => from == PassiveFrom::Library,
         None => filled && args.overlay.is_none(),
@@ -87,10 +89,23 @@ fn open_with(
         opened.notes.push(text.to_owned());
     }
     let person = args.person.unwrap_or_default();
-    let filled = |opened: SourcedModel| {
+    completed(opened, muscles, |opened| {
         let refused = |error| Fail::Refused(format!("--person: {error}"));
         if fill { opened.fill(&person).map_err(refused) } else { Ok(opened) }
-    };
+    })
+}
+
+/// Gives the muscles of a model what is asked of them, and completes it by `filled`; where muscles are in question the same model without
+/// them, too.
+pub(crate) fn completed(
+    mut opened: SourcedModel,
+    muscles: Option<(Option<MuscleUse>, &str)>,
+    filled: impl Fn(SourcedModel) -> Result<SourcedModel, Fail>,
+) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
+    let library = muscles.map(|_| opened.clone());
+    if let Some(muscles) = muscles {
+        use_muscles(&mut opened, muscles)?;
+    }
     Ok((filled(opened)?, library.map(filled).transpose()?))
 }
 

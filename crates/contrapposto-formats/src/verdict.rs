@@ -40,7 +40,6 @@ pub struct VerdictText {
     /// The first line of every result.
     pub sentence: String,
     /// The findings behind it, each with its name: `Hardest worked: ...`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lines: Vec<String>,
     /// Targets that are missed, the most important first.
     pub missed: Vec<MissedText>,

@@ -1,14 +1,17 @@
-//! The class `Job`: a scenario carried out, and its results.
+//! The class `Job`: a scenario or a motion carried out, and its results.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use contrapposto_cli::library::{Failure, Frames, Note, Posed, Relaxed, ScenarioSource, Simulated};
-use numpy::PyArray2;
+use contrapposto_cli::library::{
+    Assessed, Failure, Frames, MotionSource, Note, Posed, Relaxed, ScenarioSource, Simulated,
+};
+use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::array_2;
+use crate::arrays::{array_2, rows_of};
 use crate::errors::{failure, guarded};
+use crate::model::Model;
 use crate::unlocked::in_background;
 
 /// The result of a job of each kind.
@@ -16,6 +19,7 @@ enum Done {
     Pose(Box<Posed>),
     Relax(Box<Relaxed>),
     Run(Box<Simulated>),
+    Assessment(Box<Assessed>),
 }
 
 /// A job that was carried out.
@@ -56,6 +60,26 @@ impl Job {
         in_background(py, job)?.map_err(|why| failure(py, &why))
     }
 
+    /// Assesses a motion of a model: the path of a file, or times as one row and postures. `words` are the program's options.
+    #[staticmethod]
+    fn assess(
+        py: Python<'_>,
+        model: &Model,
+        path: Option<PathBuf>,
+        rows: Option<(PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, f64>)>,
+        words: Vec<String>,
+    ) -> PyResult<Self> {
+        let source = model.source.clone();
+        let motion = match (path, rows) {
+            (Some(path), _) => MotionSource::File(path),
+            (None, Some((times, postures))) => MotionSource::Rows(rows_of(&times).2, rows_of(&postures).2),
+            (None, None) => MotionSource::Rows(vec![], vec![]),
+        };
+        let assessed = in_background(py, move |_| Assessed::new(source, motion, words))?;
+        let (assessed, notes) = assessed.map_err(|why| failure(py, &why))?;
+        Ok(Self { done: Done::Assessment(Box::new(assessed)), notes })
+    }
+
     /// Names of coordinates, and arrays: times as one row, then one row a moment of postures, external, passive and active torque,
     /// load and fatigue.
     fn frames<'py>(&self, py: Python<'py>) -> PyResult<Columns<'py>> {
@@ -63,6 +87,7 @@ impl Job {
             Done::Pose(posed) => posed.frames(),
             Done::Relax(relaxed) => relaxed.frames(),
             Done::Run(run) => run.frames(),
+            Done::Assessment(assessed) => assessed.frames(),
         };
         let Frames { names, times, postures, external, passive, active, load, fatigue } = frames.clone();
         let (rows, width) = (times.len(), names.len());
@@ -82,6 +107,7 @@ impl Job {
             Done::Pose(posed) => posed.json(),
             Done::Relax(relaxed) => relaxed.json(),
             Done::Run(run) => run.json(),
+            Done::Assessment(assessed) => assessed.json(),
         }
     }
 
@@ -98,6 +124,7 @@ impl Job {
                 Done::Pose(posed) => posed.report(),
                 Done::Relax(relaxed) => relaxed.report(),
                 Done::Run(run) => run.report(),
+                Done::Assessment(assessed) => assessed.report(),
             });
             page.map_err(|why| failure(py, &why))
         })

@@ -1,11 +1,15 @@
 //! The class `Model`: a body and its torques in postures at rest.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
+use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Sex;
-use contrapposto_cli::library::{Failure, ModelOptions, ModelSource, Note, RestTorques, TorqueRow};
-use contrapposto_formats::tissue::SourcedModel;
+use contrapposto::posture::Posture;
+use contrapposto_cli::library::{Failure, ModelOptions, ModelSource, Note, RestTorques, TorqueRow, muscle_lines};
+use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use numpy::{PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -14,6 +18,7 @@ use crate::arrays::{array_2, array_3, rows_of};
 use crate::errors::{failure, guarded, internal, unit_of};
 use crate::loads::Loading;
 use crate::torques::Given;
+use crate::unlocked::in_background;
 
 /// External, passive and active torque as arrays.
 type Arrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
@@ -21,10 +26,18 @@ type Arrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<
 /// An immutable body.
 #[pyclass(frozen, module = "contrapposto._native")]
 pub(crate) struct Model {
-    source: ModelSource,
+    pub(crate) source: ModelSource,
     pub(crate) opened: Arc<SourcedModel>,
     rows: Vec<TorqueRow>,
     notes: Vec<Note>,
+    /// The same body with its muscles, by the use that was asked of them.
+    bodies: Mutex<BTreeMap<String, Arc<Body>>>,
+}
+
+/// A body with its muscles, where they are used.
+pub(crate) struct Body {
+    pub(crate) opened: Arc<SourcedModel>,
+    pub(crate) muscles: Option<JointMuscles>,
 }
 
 impl Model {
@@ -32,7 +45,35 @@ impl Model {
         let of_model = std::mem::take(&mut opened.notes);
         notes.extend(of_model.into_iter().map(|text| Note { kind: "note".to_owned(), text }));
         let rows = RestTorques::rows(&opened.model);
-        Self { source, opened: Arc::new(opened), rows, notes }
+        Self { source, opened: Arc::new(opened), rows, notes, bodies: Mutex::default() }
+    }
+
+    /// The body whose muscles are used as `uses` says, a word of the program's `--muscles`; as the program does without one.
+    fn body(&self, py: Python<'_>, uses: Option<&str>) -> PyResult<Arc<Body>> {
+        let asked = match uses {
+            None => None,
+            Some("off") => Some(MuscleUse::Off),
+            Some("strength") => Some(MuscleUse::Strength),
+            Some("passive") => Some(MuscleUse::Passive),
+            Some("both") => Some(MuscleUse::Both),
+            Some(other) => {
+                let message = format!("muscles is `{other}`; it must be `off`, `strength`, `passive` or `both`");
+                return Err(failure(py, &Failure::refused(message)));
+            }
+        };
+        if asked.unwrap_or_else(|| self.opened.default_muscle_use()) == MuscleUse::Off {
+            return Ok(Arc::new(Body { opened: Arc::clone(&self.opened), muscles: None }));
+        }
+        let name = uses.unwrap_or_default().to_owned();
+        let bodies = || self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(body) = bodies().get(&name) {
+            return Ok(Arc::clone(body));
+        }
+        let made = py.detach(|| self.source.open_with_muscles(asked)).map_err(|why| failure(py, &why))?;
+        let ((opened, muscles), _) = made;
+        let body = Arc::new(Body { opened: Arc::new(opened), muscles });
+        bodies().insert(name, Arc::clone(&body));
+        Ok(body)
     }
 
     fn made_of(py: Python<'_>, source: ModelSource) -> PyResult<Self> {
@@ -85,6 +126,13 @@ impl Model {
     fn adult(py: Python<'_>, female: bool, stature: Option<f64>, mass: Option<f64>) -> PyResult<Self> {
         let sex = if female { Sex::Female } else { Sex::Male };
         Self::made_of(py, ModelSource::adult(sex, stature, mass))
+    }
+
+    /// The built-in adult at a percentile of people of that sex.
+    #[staticmethod]
+    fn adult_at(py: Python<'_>, female: bool, percentile: f64) -> PyResult<Self> {
+        let sex = if female { Sex::Female } else { Sex::Male };
+        Self::made_of(py, ModelSource::adult_at(sex, percentile).map_err(|why| failure(py, &why))?)
     }
 
     /// Reads a model file: OpenSim, URDF or MJCF.
@@ -179,19 +227,21 @@ impl Model {
     }
 
     /// External, passive and active torque of postures.
-    #[pyo3(signature = (postures, loads, device, threads))]
+    #[pyo3(signature = (postures, loads, device, muscles, threads))]
     fn torques<'py>(
         &self,
         py: Python<'py>,
         postures: PyReadonlyArray2<'py, f64>,
         loads: Vec<Bound<'py, PyAny>>,
         device: Option<PyReadonlyArray2<'py, f64>>,
+        muscles: Option<&str>,
         threads: usize,
     ) -> PyResult<Arrays<'py>> {
         guarded(py, || {
+            let body = self.body(py, muscles)?;
             let given = self.given(py, &postures, &loads, device.as_ref(), threads)?;
             let (count, rates) = (postures.as_array().nrows(), self.rows.len());
-            let [external, passive, active] = given.torques(py, &self.opened, rates)?;
+            let [external, passive, active] = given.torques(py, &body, rates)?;
             let array = |values| array_2(py, (count, rates), values);
             Ok((array(external)?, array(passive)?, array(active)?))
         })
@@ -209,7 +259,25 @@ impl Model {
         guarded(py, || {
             let given = self.given(py, &postures, &loads, None, threads)?;
             let (count, rates) = (postures.as_array().nrows(), self.rows.len());
-            array_3(py, (count, rates), given.gradients(py, &self.opened, rates)?)
+            array_3(py, (count, rates), given.gradients(py, &*self.body(py, Some("off"))?, rates)?)
         })
+    }
+
+    /// The muscles in postures, a JSON text each, as a line of `contrapposto muscles --json`.
+    fn muscles(
+        &self,
+        py: Python<'_>,
+        postures: PyReadonlyArray2<'_, f64>,
+        opensim: bool,
+        activation: f64,
+    ) -> PyResult<Vec<String>> {
+        let given = self.given(py, &postures, &[], None, 1)?;
+        let rows = given.values.chunks_exact(given.width.max(1));
+        let (rows, opened): (Vec<Posture>, _) =
+            (rows.map(|row| Posture::new(row.to_vec())).collect(), Arc::clone(&self.opened));
+        let job = move |stop: &AtomicBool| {
+            muscle_lines(&opened, &rows, (opensim, activation), || !stop.load(Ordering::Relaxed))
+        };
+        in_background(py, job)?.map_err(|why| failure(py, &why))
     }
 }

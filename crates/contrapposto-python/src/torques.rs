@@ -3,11 +3,11 @@
 use contrapposto::joint_torques::JointTorquesError;
 use contrapposto::statics::Load;
 use contrapposto_cli::library::RestTorques;
-use contrapposto_formats::tissue::SourcedModel;
 use pyo3::prelude::*;
 
 use crate::errors::refused_row;
 use crate::loads::Loading;
+use crate::model::Body;
 
 /// Postures of one thread between two looks for Ctrl-C.
 const BLOCK: usize = 2048;
@@ -35,29 +35,29 @@ impl Given {
     }
 
     /// Torques of all postures, `rates` a posture. The number of threads changes no bit of them.
-    pub(crate) fn torques(&self, py: Python<'_>, opened: &SourcedModel, rates: usize) -> PyResult<Torques> {
+    pub(crate) fn torques(&self, py: Python<'_>, body: &Body, rates: usize) -> PyResult<Torques> {
         let mut all = [(); 3].map(|()| vec![0.0; self.postures() * rates]);
         let [external, passive, active] = &mut all;
         let size = (BLOCK * rates).max(1);
         let parts = external.chunks_mut(size).zip(passive.chunks_mut(size)).zip(active.chunks_mut(size));
         let parts =
             parts.enumerate().map(|(i, ((external, passive), active))| (i * BLOCK, [external, passive, active]));
-        self.in_blocks(py, opened, parts, |body, loads, row, [external, passive, active], at| {
+        self.in_blocks(py, body, parts, |rest, loads, row, [external, passive, active], at| {
             let here = at * rates..(at + 1) * rates;
             let out = [&mut external[here.clone()], &mut passive[here.clone()], &mut active[here]];
             let device = if self.device.is_empty() { &[] } else { &self.device[row * rates..(row + 1) * rates] };
-            body.update(&opened.model, self.row(row), loads, device, out)
+            rest.update(&body.opened.model, self.row(row), loads, device, out)
         })?;
         Ok(all)
     }
 
     /// Gradients of external torque of all postures, `rates * rates` numbers a posture.
-    pub(crate) fn gradients(&self, py: Python<'_>, opened: &SourcedModel, rates: usize) -> PyResult<Vec<f64>> {
+    pub(crate) fn gradients(&self, py: Python<'_>, body: &Body, rates: usize) -> PyResult<Vec<f64>> {
         let square = rates * rates;
         let mut all = vec![0.0; self.postures() * square];
         let parts = all.chunks_mut((BLOCK * square).max(1)).enumerate().map(|(i, part)| (i * BLOCK, part));
-        self.in_blocks(py, opened, parts, |body, loads, row, part, at| {
-            body.gradient(&opened.model, self.row(row), loads, &mut part[at * square..(at + 1) * square])
+        self.in_blocks(py, body, parts, |rest, loads, row, part, at| {
+            rest.gradient(&body.opened.model, self.row(row), loads, &mut part[at * square..(at + 1) * square])
         })?;
         Ok(all)
     }
@@ -71,17 +71,18 @@ impl Given {
     fn in_blocks<P: Send>(
         &self,
         py: Python<'_>,
-        opened: &SourcedModel,
+        body: &Body,
         mut parts: impl Iterator<Item = (usize, P)>,
         fill: impl Fn(&mut RestTorques, &[Load], usize, &mut P, usize) -> Result<(), JointTorquesError> + Sync,
     ) -> PyResult<()> {
-        let mut bodies: Vec<RestTorques> = (0..self.threads.max(1)).map(|_| RestTorques::new(opened)).collect();
-        let part_of = |body: &mut RestTorques, (first, mut part): (usize, P)| -> Result<(), Refused> {
+        let mut bodies: Vec<RestTorques> =
+            (0..self.threads.max(1)).map(|_| RestTorques::new(&body.opened, body.muscles.as_ref())).collect();
+        let part_of = |rest: &mut RestTorques, (first, mut part): (usize, P)| -> Result<(), Refused> {
             let mut loads = vec![];
             for (at, row) in (first..self.postures().min(first + BLOCK)).enumerate() {
                 loads.clear();
                 loads.extend(self.loads.iter().map(|load| load.at(row)));
-                fill(body, &loads, row, &mut part, at).map_err(|error| (row, error))?;
+                fill(rest, &loads, row, &mut part, at).map_err(|error| (row, error))?;
             }
             Ok(())
         };
@@ -91,7 +92,7 @@ impl Given {
                 return Ok(());
             }
             let done = py.detach(|| at_once(&mut bodies, round, &part_of));
-            done.map_err(|(row, error)| refused_row(py, &opened.model, row, &error))?;
+            done.map_err(|(row, error)| refused_row(py, &body.opened.model, row, &error))?;
             py.check_signals()?;
         }
     }

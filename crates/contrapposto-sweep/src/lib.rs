@@ -20,7 +20,7 @@ pub use interval::{CONFIDENCE, wilson};
 pub use normal::{cumulative, quantile};
 pub use outcome::Outcome;
 pub use part::{COLUMNS, Study};
-pub use population::{MOST_BODIES, People, Population, QUANTILES, SEXES, population};
+pub use population::{MOST_BODIES, People, Population, QUANTILES, SEXES, population, size_at};
 pub use rank_regression::{RankCoefficient, RankRegression, ranks};
 pub use sampler::Sampler;
 pub use sensitivity::{LEAST_FOR_SENSITIVITY, NoSensitivity, PARAMETERS, Sensitivity};

@@ -46,13 +46,20 @@ pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
         ));
     }
     notes.iter().for_each(|note| print_note("note", note));
-    run(&opened, &frames, args)
+    each_frame(&opened, &frames, (args.rule, args.activation), |frame| {
+        print(&if args.json { json(&opened, frame)? } else { readable(&opened, frame) })
+    })
 }
 
-/// Computes and prints frame after frame.
-fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> Result<(), Fail> {
+/// Computes frame after frame, by a rule and at an activation, and shows each to `visit`.
+pub(crate) fn each_frame<'a>(
+    opened: &SourcedModel,
+    frames: impl IntoIterator<Item = &'a (f64, Posture)>,
+    (choice, activation): (RuleChoice, f64),
+    mut visit: impl FnMut(&MuscleFrame<'_>) -> Result<(), Fail>,
+) -> Result<(), Fail> {
     let (model, muscles) = (&opened.model, &opened.muscles);
-    let rule = match args.rule {
+    let rule = match choice {
         RuleChoice::Geodesic => PathRule::Geodesic,
         RuleChoice::Opensim => PathRule::OpenSim,
     };
@@ -61,14 +68,14 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
     let (mut strengths, mut passive) = (vec![[0.0; 2]; model.rates().len()], vec![0.0; model.rates().len()]);
     let mut of_bushings = passive.clone();
     let none = vec![0.0; model.rates().len()];
-    for (index, (time, posture)) in frames.iter().enumerate() {
+    for (index, (time, posture)) in frames.into_iter().enumerate() {
         kinematics.update(model, posture).map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
         geometry.update(model, &kinematics, &muscles.paths, rule);
         let states = |activation: f64| -> Vec<FiberState> {
             let all = muscles.muscles.iter();
             all.map(|muscle| muscle.at_rest(geometry.lengths()[muscle.spec().path], activation)).collect()
         };
-        let (rest, full) = (states(args.activation), states(1.0));
+        let (rest, full) = (states(activation), states(1.0));
         strength(muscles, &geometry, &rest, &full, &mut strengths);
         passive_torque(muscles, &geometry, &rest, &mut passive);
         bushing_torque(&muscles.bushings, model, &kinematics, &mut of_bushings);
@@ -77,8 +84,8 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
         let frame = MuscleFrame {
             index,
             time: *time,
-            rule: args.rule,
-            activation: args.activation,
+            rule: choice,
+            activation,
             geometry: &geometry,
             rest: &rest,
             full: &full,
@@ -86,7 +93,7 @@ fn run(opened: &SourcedModel, frames: &[(f64, Posture)], args: &MusclesArgs) -> 
             coupled: &coupled,
             passive: &passive,
         };
-        print(&if args.json { json(opened, &frame)? } else { readable(opened, &frame) })?;
+        visit(&frame)?;
     }
     Ok(())
 }

@@ -3,17 +3,22 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use contrapposto::joint_torques::JointMuscles;
+use contrapposto::model::data::library;
 use contrapposto::model::{Adult, Sex};
 use contrapposto_formats::model_ir::RootAttachment;
-use contrapposto_formats::tissue::{Person, SourcedModel};
+use contrapposto_formats::tissue::{MuscleUse, Person, SourcedModel};
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, person};
+use contrapposto_sweep::size_at;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{Failure, Note, with_notes};
+use crate::commands::assess::job::Opened;
 use crate::fail::Fail;
 use crate::input::read;
-use crate::model_file::{confined, refused_file};
+use crate::model_file::{completed, confined, refused_file, with_joint_muscles};
+use crate::output::print_note;
 
 /// The options that complete a model file, as those of the program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,7 +41,13 @@ pub struct ModelSource(Kind);
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Kind {
-    Adult { female: bool, stature: f64, mass: f64 },
+    Adult {
+        female: bool,
+        stature: f64,
+        mass: f64,
+        /// The percentile of people of that sex from which stature and mass come.
+        percentile: Option<f64>,
+    },
     File(Box<File>),
 }
 
@@ -58,7 +69,20 @@ impl ModelSource {
     pub fn adult(sex: Sex, stature: Option<f64>, mass: Option<f64>) -> Self {
         let reference = Adult::reference(sex);
         let (stature, mass) = (stature.unwrap_or(reference.stature), mass.unwrap_or(reference.mass));
-        Self(Kind::Adult { female: sex == Sex::Female, stature, mass })
+        Self(Kind::Adult { female: sex == Sex::Female, stature, mass, percentile: None })
+    }
+
+    /// The built-in adult whose stature and mass are each at a percentile (0 to 100) of people of that sex (`data/people.toml`).
+    ///
+    /// # Errors
+    /// [`Failure`] of a percentile that is not between 0 and 100.
+    pub fn adult_at(sex: Sex, percentile: f64) -> Result<Self, Failure> {
+        if !(percentile > 0.0 && percentile < 100.0) {
+            let message = format!("percentile is {percentile}; it must lie between 0 and 100");
+            return Err(Failure::refused(message));
+        }
+        let (stature, mass) = size_at(sex, percentile / 100.0);
+        Ok(Self(Kind::Adult { female: sex == Sex::Female, stature, mass, percentile: Some(percentile) }))
     }
 
     /// Reads a model file, and the files that it includes.
@@ -85,11 +109,12 @@ impl ModelSource {
                 person: options.person.clone(),
             };
             let (mut include, mut included) = (confined(path, most), BTreeMap::new());
-            let opened = file.open(&mut |name| {
+            let mut keep = |name: &str| {
                 let bytes = include(name)?;
                 included.insert(name.to_owned(), bytes.clone());
                 Ok(bytes)
-            })?;
+            };
+            let (opened, _) = file.open(&mut keep, None)?;
             file.included = included;
             Ok((Self(Kind::File(Box::new(file))), opened))
         })?;
@@ -117,21 +142,65 @@ impl ModelSource {
     /// # Errors
     /// [`Failure`] for an adult of no adult's size, or bytes that are no model.
     pub fn open(&self) -> Result<(SourcedModel, Vec<Note>), Failure> {
-        with_notes(|| match &self.0 {
-            &Kind::Adult { female, stature, mass } => {
+        with_notes(|| Ok(self.completed(None)?.0))
+    }
+
+    /// Makes the model and gives its muscles the use that is asked of them, that of the program's `--muscles` without one.
+    ///
+    /// # Errors
+    /// As [`ModelSource::open`]; and a use of muscles that the model does not have.
+    pub fn open_with_muscles(
+        &self,
+        uses: Option<MuscleUse>,
+    ) -> Result<((SourcedModel, Option<JointMuscles>), Vec<Note>), Failure> {
+        with_notes(|| self.opened(uses).map(|(opened, muscles, _)| (opened, muscles)))
+    }
+
+    /// The model with its muscles, and warnings about them.
+    pub(super) fn opened(&self, uses: Option<MuscleUse>) -> Result<Opened, Fail> {
+        with_joint_muscles(self.completed(Some((uses, "muscles")))?)
+    }
+
+    fn completed(&self, muscles: Muscles) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
+        match &self.0 {
+            &Kind::Adult { female, stature, mass, percentile } => {
                 let sex = if female { Sex::Female } else { Sex::Male };
+                if let Some(percentile) = percentile {
+                    print_note("note", &at_percentile((female, percentile), (stature, mass)));
+                }
                 let size = Adult { stature, mass, ..Adult::reference(sex) };
-                SourcedModel::adult(&size).map_err(|error| Fail::Refused(error.to_string()))
+                let opened = SourcedModel::adult(&size).map_err(|error| Fail::Refused(error.to_string()))?;
+                completed(opened, muscles, Ok)
             }
-            Kind::File(file) => {
-                file.open(&mut |name| file.included.get(name).cloned().ok_or_else(|| "it was not kept".to_owned()))
-            }
-        })
+            Kind::File(file) => file.open(
+                &mut |name| file.included.get(name).cloned().ok_or_else(|| "it was not kept".to_owned()),
+                muscles,
+            ),
+        }
     }
 }
 
+/// The use of muscles that is asked for, and the name of the key that asks.
+type Muscles = Option<(Option<MuscleUse>, &'static str)>;
+
+/// The sentence about an adult at a percentile.
+fn at_percentile((female, percentile): (bool, f64), (stature, mass): (f64, f64)) -> String {
+    let reference = &library().people().reference;
+    let people = if female { "women" } else { "men" };
+    format!(
+        "stature {stature:.3} m and mass {mass:.1} kg are each at percentile {percentile} of {people} ({}; {}: {}); of both together fewer \
+         people are that small or that large",
+        reference.status, reference.note, reference.source
+    )
+}
+
 impl File {
-    fn open(&self, include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>) -> Result<SourcedModel, Fail> {
+    /// The model; where muscles are in question the same one without them, too.
+    fn open(
+        &self,
+        include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+        muscles: Muscles,
+    ) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
         let root = self.free_root.map(|free| if free { RootAttachment::Free } else { RootAttachment::Fixed });
         let person = self.person.as_deref().map_or(Ok(Person::default()), person);
         let person = person.map_err(|error| Fail::Refused(format!("person: {error}")))?;
@@ -143,9 +212,9 @@ impl File {
         if let Some((name, bytes)) = &self.overlay {
             opened = opened.lay_over(name, bytes)?;
         }
-        if self.fill {
-            opened = opened.fill(&person).map_err(|error| Fail::Refused(format!("person: {error}")))?;
-        }
-        Ok(opened)
+        completed(opened, muscles, |opened| {
+            let refused = |error| Fail::Refused(format!("person: {error}"));
+            if self.fill { opened.fill(&person).map_err(refused) } else { Ok(opened) }
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Computes external, passive and active torque of postures at rest, in the order and to the last bit of `contrapposto torques`.
 
-use contrapposto::joint_torques::{JointTorques, JointTorquesError, Quantities};
+use contrapposto::joint_torques::{JointMuscles, JointTorques, JointTorquesError, Quantities};
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
@@ -30,10 +30,11 @@ impl RestTorques {
         Order::new(model).rows.into_iter().map(|row| TorqueRow { name: row.name, turns: row.turns }).collect()
     }
 
-    /// Space for a model.
-    pub fn new(opened: &SourcedModel) -> Self {
+    /// Space for a model and its muscles.
+    pub fn new(opened: &SourcedModel, muscles: Option<&JointMuscles>) -> Self {
         Self {
-            body: JointTorques::with_passive_ranges(&opened.model, &opened.passive_ranges()),
+            body: JointTorques::with_passive_ranges(&opened.model, &opened.passive_ranges())
+                .with_muscles(muscles.cloned()),
             posture: opened.model.default_posture(),
             rates: Order::new(&opened.model).rows.iter().map(|row| row.rate).collect(),
         }

@@ -1,7 +1,6 @@
 //! `assess.json`, and the terminal table of a recorded motion.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use contrapposto::assessment::{AngleInDoubt, Assessment, GroupAssessment, Peak, PeakKind, Proposal};
 use contrapposto::hybrid::Strategy;
@@ -114,8 +113,8 @@ impl From<Peak> for PeakText {
 impl AssessText {
     pub(crate) fn new(
         opened: &SourcedModel,
-        motion: &Path,
-        times: &[f64],
+        motion: &str,
+        (frames, (start, end)): (usize, (f64, f64)),
         (angle_error, found): (f64, &Assessment),
         answer: &Answer,
         warnings: Vec<String>,
@@ -124,12 +123,12 @@ impl AssessText {
         let model = &opened.model;
         Self {
             model: model.name().to_owned(),
-            motion: motion.display().to_string(),
+            motion: motion.to_owned(),
             verdict: VerdictText::new(model, &answer.verdict),
             advice: (&answer.advice).into(),
-            frames: times.len(),
-            start_s: times.first().copied().unwrap_or_default(),
-            end_s: times.last().copied().unwrap_or_default(),
+            frames,
+            start_s: start,
+            end_s: end,
             angle_error_deg: angle_error.to_degrees(),
             groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group, found.dynamics)).collect(),
             residual_force_n: found.residual_force.into(),

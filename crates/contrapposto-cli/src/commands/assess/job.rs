@@ -1,0 +1,209 @@
+//! Assesses a recorded motion of an opened model: the motion and its loads, checked, and the answer.
+
+use contrapposto::assessment::assess as assessed;
+use contrapposto::assessment::{ANGLE_ERROR, AssessSettings, Assessment, FAST_SHARE, Instant};
+use contrapposto::contact::Support;
+use contrapposto::joint_torques::JointMuscles;
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
+use contrapposto::posture::Posture;
+use contrapposto::statics::Load;
+use contrapposto::suggestions::{Advice, Change, Job as Asked, Trial, Worked, changes, with_breaks};
+use contrapposto::verdict::Verdict;
+use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
+use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
+use nalgebra::Vector3;
+
+use super::support_doubts::support_doubts;
+use super::warnings::{WHAT_CARRIES, warnings};
+use crate::args::{AssessArgs, SuggestArgs};
+use crate::fail::Fail;
+use crate::motion_file::{loads_of, note_values_out_of_range};
+use crate::moving::{Recorded, keep_overlap};
+use crate::output::print_note;
+use crate::view::answer::Answer;
+use crate::view::text::assess::AssessText;
+
+/// Friction of a support: shoe on floor, as in scenarios.
+const FRICTION: f64 = 0.6;
+
+/// A motion of a model and its loads, checked.
+pub(crate) struct Job {
+    pub(crate) opened: SourcedModel,
+    /// Times (s) and postures.
+    pub(crate) motion: Vec<(f64, Posture)>,
+    /// Loads at all times.
+    pub(crate) held: Vec<Load>,
+    /// The measured forces of the ground.
+    ground: Option<GroundReaction>,
+    pub(crate) settings: AssessSettings,
+    /// The sentence that says that inertia counts.
+    pub(crate) said: Option<String>,
+    /// Reasons to doubt model and motion.
+    doubts: Vec<String>,
+}
+
+/// The answer to a motion.
+pub(crate) struct Found {
+    pub(crate) assessment: Assessment,
+    pub(crate) answer: Answer,
+    /// Reasons to doubt the numbers.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A model with its muscles, and warnings about them.
+pub(crate) type Opened = (SourcedModel, Option<JointMuscles>, Vec<String>);
+
+impl Job {
+    /// The motion `name`, which `read` gives, with the loads and the settings of the arguments; notes about them go to standard error.
+    pub(crate) fn new(
+        args: &AssessArgs,
+        (opened, muscles, of_muscles): Opened,
+        name: &str,
+        read: impl FnOnce(&Model, &mut Vec<String>) -> Result<Vec<(f64, Posture)>, Fail>,
+    ) -> Result<Self, Fail> {
+        let mut opened = opened.with_fatigue(&args.fatigue.choice()?);
+        let mut notes = std::mem::take(&mut opened.notes);
+        notes.extend(fatigue_notes(&opened.model));
+        let model = &opened.model;
+        let all = read(model, &mut notes)?;
+        let mut recorded = Recorded::new(name, all, (&args.dynamics, &args.under.frames), model)?;
+        let (held, ground) = loads_of(&args.under, model, &mut notes)?;
+        keep_overlap(&mut recorded, ground.as_ref())?;
+        if let ([(first, _), .., (last, _)], frames) = (recorded.frames.as_slice(), recorded.frames.len())
+            && first >= last
+        {
+            let why = format!("its {frames} frames all have the time {first} s; times must rise, or give one frame");
+            return Err(Fail::Refused(format!("{name}: {why}")));
+        }
+        let Recorded { frames: motion, rates, said } = recorded;
+        if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
+            let why =
+                "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
+            return Err(Fail::Refused(why.to_owned()));
+        }
+        let usual = if opened.is_exported_adult() { 0.0 } else { ANGLE_ERROR };
+        let angle_error = args.angle_error.map_or(usual, f64::to_radians);
+        let settings = AssessSettings {
+            supports: supports(args, model)?,
+            rates,
+            root_held: args.fixed_root,
+            passive_ranges: opened.passive_ranges(),
+            muscles,
+            angle_error,
+            ..AssessSettings::default()
+        };
+        let out_of_range = note_values_out_of_range(&opened, &motion, &mut notes);
+        out_of_range.iter().for_each(|warning| print_note("warning", warning));
+        said.iter().chain(&notes).for_each(|note| print_note("note", note));
+        let doubts = [of_muscles, out_of_range].concat();
+        Ok(Self { opened, motion, held, ground, settings, said, doubts })
+    }
+
+    /// Assesses all postures and shows each to `visit`. Warnings about the numbers go to standard error.
+    pub(crate) fn carry_out(&self, args: &AssessArgs, name: &str, visit: impl FnMut(&Instant)) -> Result<Found, Fail> {
+        let model = &self.opened.model;
+        let loads = |time: f64, kinematics: &Kinematics, loads: &mut Vec<Load>| {
+            loads.extend_from_slice(&self.held);
+            self.measured(time, kinematics, loads);
+        };
+        let assessment = assessed(model, &self.motion, loads, &self.settings, visit)
+            .map_err(|error| Fail::Refused(format!("{name}: {error}")))?;
+        let new = [
+            support_doubts(model, &self.motion, &self.settings.supports),
+            warnings(args, &self.opened, (&self.settings, &assessment), self.motion.len()),
+        ]
+        .concat();
+        new.iter().for_each(|warning| print_note("warning", warning));
+        let warnings = [self.doubts.clone(), new].concat();
+        let (begin, end) = self.ends();
+        let verdict = Verdict::of_motion_with(model, &assessment, end - begin, &self.held);
+        let advice = self.advice(&assessment, &verdict, args.suggest);
+        Ok(Found { assessment, answer: Answer::new(verdict, advice), warnings })
+    }
+
+    /// Adds the measured forces of the ground at a time.
+    pub(crate) fn measured(&self, time: f64, kinematics: &Kinematics, loads: &mut Vec<Load>) {
+        self.ground.iter().for_each(|ground| ground.loads(time, &self.opened.model, kinematics, loads));
+    }
+
+    /// The words of `assess.json` about the motion `name`.
+    pub(crate) fn text(&self, name: &str, found: &Found, files: Vec<String>) -> AssessText {
+        let warnings = found.warnings.clone();
+        let numbers = (self.settings.angle_error, &found.assessment);
+        AssessText::new(&self.opened, name, (self.motion.len(), self.ends()), numbers, &found.answer, warnings, files)
+    }
+
+    /// Times of the first and the last posture, s.
+    fn ends(&self) -> (f64, f64) {
+        self.motion.first().zip(self.motion.last()).map_or((0.0, 0.0), |(first, last)| (first.0, last.0))
+    }
+
+    /// The changes that were tried: less load, and breaks. Measured forces of the ground belong to the load that was carried, so that
+    /// another one is not tried with them; of a fast motion nothing is.
+    fn advice(&self, found: &Assessment, verdict: &Verdict, suggest: SuggestArgs) -> Advice {
+        let Self { opened, motion, held, settings, ground, .. } = self;
+        let (model, frames, (begin, end)) = (&opened.model, motion.len(), self.ends());
+        let Some(((_, start), budget)) = motion.first().zip(suggest.budget(frames)) else { return Advice::default() };
+        if found.uncarried.is_some() {
+            let notes = vec![format!("To say who carries it, {WHAT_CARRIES}.")];
+            return Advice { notes, ..Advice::default() };
+        }
+        if found.fast_share > FAST_SHARE {
+            return Advice::default();
+        }
+        let (supports, loads) = (&settings.supports, if ground.is_none() { vec![held.as_slice()] } else { vec![] });
+        let job = Asked { model, start, supports, levels: vec![], loads, asked: Some(end - begin), strategy: None };
+        let all =
+            || changes(&job, &verdict.hazards).into_iter().filter(|change| *change != Change::OtherFoot).collect();
+        let groups = Worked::in_motion(model, found);
+        let breaks = || with_breaks(&groups, end - begin, (begin, end), verdict);
+        let trial = |change: &Change| {
+            let mut loads = held.clone();
+            change.apply_to_loads(&mut loads);
+            let found = assessed(model, motion, |_, _, all| all.extend_from_slice(&loads), settings, |_| {});
+            let verdict = found.ok().map(|found| Verdict::of_motion_with(model, &found, end - begin, &loads));
+            Trial { verdict, steps: frames }
+        };
+        Advice::new(verdict, &job, all, || verdict.kind.is_done().then(breaks).flatten(), budget, trial)
+    }
+}
+
+/// The supports, on horizontal ground.
+fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
+    let mut patches = vec![];
+    for text in &args.patch {
+        patches.push(patch(model, text).map_err(|error| Fail::Refused(format!("--patch \"{text}\": {error}")))?);
+    }
+    let mut supports: Vec<Support> = vec![];
+    for name in &args.support {
+        let refuse = |why: String| Fail::Refused(format!("--support {name}: {why}"));
+        let segment = model.segment(name).ok_or_else(|| refuse(no_segment(model, name)))?;
+        if supports.iter().any(|support| support.segment == segment) {
+            return Err(refuse("it is named twice".to_owned()));
+        }
+        let given = patches.iter().find(|(of, _)| *of == segment).map(|(_, corners)| corners);
+        let corners: Vec<Vector3<f64>> = given.unwrap_or(&model.segments()[segment].patch).clone();
+        if corners.is_empty() {
+            return Err(refuse(format!(
+                "where it touches the ground is not known; give corners in its frame (m): --patch \"{name} X,Y,Z X,Y,Z ...\""
+            )));
+        }
+        let Some(normal) = (-model.gravity()).try_normalize(1e-9) else {
+            return Err(refuse("without gravity there is no ground".to_owned()));
+        };
+        supports.push(Support {
+            segment,
+            corners,
+            normal,
+            friction: FRICTION,
+            share_max: 1.0,
+            place: contrapposto::contact::Place::Fixed,
+        });
+    }
+    if let Some((segment, _)) = patches.iter().find(|(of, _)| !supports.iter().any(|support| support.segment == *of)) {
+        let name = &model.segments()[*segment].name;
+        return Err(Fail::Refused(format!("--patch \"{name} ...\": `{name}` is no support; name it with --support")));
+    }
+    Ok(supports)
+}
