@@ -10,6 +10,7 @@ every joint of a body at rest.
 True
 """
 
+from contrapposto import interop
 from contrapposto._native import __version__
 from contrapposto.engine import Engine
 from contrapposto.errors import ContrappostoError, InputError, InternalError, JobError
@@ -39,6 +40,7 @@ __all__ = [
     "Weight",
     "__version__",
     "assess",
+    "interop",
     "minimize",
     "muscles",
     "pose",

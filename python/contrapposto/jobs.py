@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any, TypeAlias
 
 from contrapposto import _native
+from contrapposto._toml import toml
 from contrapposto.errors import InputError
 from contrapposto.results import Equilibria, Pose, Record, Run
 
@@ -44,31 +45,9 @@ def minimize(problem: Mapping[str, Any], *, literal: bool = False) -> Record:
 def source_of(scenario: Scenario) -> tuple[str, bool]:
     """The scenario, and whether it is a text (else a path). A text has more than one line, or an `=`."""
     if isinstance(scenario, Mapping):
-        return "".join(f"{_key(key)} = {_toml(value)}\n" for key, value in scenario.items()), True
+        return toml(scenario), True
     if isinstance(scenario, os.PathLike):
         return os.fspath(scenario), False
     if isinstance(scenario, str):
         return scenario, "\n" in scenario or "=" in scenario
     raise InputError(f"scenario is {type(scenario).__name__}; it must be a path, a text (TOML) or a dictionary")
-
-
-def _key(key: object) -> str:
-    if not isinstance(key, str):
-        raise InputError(f"the key {key!r} of a scenario is no text")
-    return json.dumps(key)
-
-
-def _toml(value: Any) -> str:
-    """The value in TOML, tables in one line."""
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + "}"
-    if hasattr(value, "tolist"):  # arrays and numbers of numpy
-        value = value.tolist()
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if isinstance(value, (bool, str)):
-        return json.dumps(value)
-    if isinstance(value, (int, float)):
-        # TOML writes inf and nan as Python does.
-        return repr(value)
-    raise InputError(f"{value!r} is no value of a scenario; accepted: texts, numbers, lists and dictionaries")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from contrapposto import _native
 from contrapposto._native import Model as NativeModel
-from contrapposto._arrays import Array, line, postures, rows
+from contrapposto._arrays import Array, line, numbers, postures, rows
+from contrapposto._toml import toml
 from contrapposto.errors import InputError
 from contrapposto.loads import Load, native_loads
 from contrapposto.torques import Torques
@@ -101,6 +102,34 @@ class Model:
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
         return (Model._from_state, (zlib.compress(self._native.state(), 1),))
+
+    def with_passive(self, coordinate: str, angles: npt.ArrayLike, torques: npt.ArrayLike) -> Model:
+        """The same body with a measured passive torque of a coordinate: torques (N m), which never rise, at rising angles (rad) that
+        cover its range; between them a monotone cubic."""
+        rows = _table(angles, torques)
+        return self._laid(coordinate, {"passive": {"table_deg_nm": rows}})
+
+    def with_strength(
+        self,
+        coordinate: str,
+        positive: npt.ArrayLike,
+        negative: npt.ArrayLike,
+        angles: npt.ArrayLike | None = None,
+        *,
+        fatigue: str | None = None,
+    ) -> Model:
+        """The same body with the strength of both muscle groups of a coordinate, N m, both positive: two numbers, or one a rising angle
+        (rad) of `angles`, between which a cubic goes and outside of which the nearer end holds. fatigue: class of their law of fatigue
+        ("knee", "shoulder", ...); it stays as it is when left out, "general" of a coordinate that had no groups."""
+        if angles is None:
+            both = {"positive_nm": _number("positive", positive), "negative_nm": _number("negative", negative)}
+            laid: dict[str, Any] = {"strength": both}
+        else:
+            laid = {"strength": {"table_deg_nm": _table(angles, positive, negative)}}
+        return self._laid(coordinate, laid if fatigue is None else {**laid, "fatigue": fatigue})
+
+    def _laid(self, coordinate: str, words: Mapping[str, Any]) -> Model:
+        return Model._of(self._native.lay_over(toml({"coordinates": {coordinate: words}})))
 
     @property
     def name(self) -> str:
@@ -219,6 +248,26 @@ class Model:
 
     def __repr__(self) -> str:
         return f"<contrapposto.Model {self.name!r}: {len(self.coordinate_names)} coordinates, {self.mass:.1f} kg>"
+
+
+def _number(what: str, value: npt.ArrayLike) -> float:
+    array = numbers(what, value)
+    if array.ndim != 0:
+        raise InputError(f"{what} has shape {array.shape}; without `angles` it must be one number (N m)")
+    return float(array)
+
+
+def _table(angles: npt.ArrayLike, *columns: npt.ArrayLike) -> list[list[float]]:
+    """Rows of a table: angles in degrees, then the columns."""
+    turns = np.degrees(line("angles", angles))
+    # Back in radians the ends must not lie inside of what was given, by a last digit.
+    turns[:1], turns[-1:] = np.nextafter(turns[:1], -np.inf), np.nextafter(turns[-1:], np.inf)
+    sizes = [line("torques", column) for column in columns]
+    for size in sizes:
+        if len(size) != len(turns):
+            raise InputError(f"there are {len(turns)} angles and {len(size)} torques; there must be as many")
+    rows: list[list[float]] = np.stack([turns, *sizes], axis=1).tolist()
+    return rows
 
 
 def _unknown(coordinate: str) -> InputError:

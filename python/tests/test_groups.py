@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 
 import numpy as np
@@ -77,3 +78,49 @@ def test_decisions_are_those_of_the_program(program: str) -> None:
         contrapposto.minimize({**PROBLEM, "angle_deg": "x"})
     with pytest.raises(InputError, match="no JSON object of finite numbers"):
         contrapposto.minimize({**PROBLEM, "angle_deg": float("nan")})
+
+
+def test_a_measured_passive_torque_goes_through_its_rows(woman: Model) -> None:
+    (low, high) = woman.ranges[woman.coordinate_names.index("elbow_flex_r")]
+    angles, torques = np.linspace(low, high, 6), np.array([9.0, 2.0, 0.5, -0.5, -3.0, -12.0])
+    model = woman.with_passive("elbow_flex_r", angles, torques)
+    np.testing.assert_allclose(model.passive("elbow_flex_r", angles), torques, atol=1e-9)
+    between = model.passive("elbow_flex_r", np.linspace(low, high, 101))
+    assert (np.diff(between) <= 1e-12).all()
+    assert model.passive("elbow_flex_l", angles).tobytes() == woman.passive("elbow_flex_l", angles).tobytes()
+    copy = pickle.loads(pickle.dumps(model))
+    assert copy.passive("elbow_flex_r", angles).tobytes() == model.passive("elbow_flex_r", angles).tobytes()
+    with pytest.raises(InputError, match="rise"):
+        woman.with_passive("elbow_flex_r", angles, torques[::-1])
+    with pytest.raises(InputError, match="6 angles and 5 torques"):
+        woman.with_passive("elbow_flex_r", angles, torques[1:])
+    with pytest.raises(InputError, match="begin at or below"):
+        woman.with_passive("elbow_flex_r", angles + 0.1, torques)
+    with pytest.raises(InputError, match="no coordinate `elbow`"):
+        woman.with_passive("elbow", angles, torques)
+
+
+def test_a_measured_strength_counts_everywhere(woman: Model) -> None:
+    angles = np.radians([10, 60, 120])
+    model = woman.with_strength("elbow_flex_r", [20, 45, 25], [15, 30, 35], angles)
+    np.testing.assert_allclose(model.strength("elbow_flex_r", angles), [[20, 15], [45, 30], [25, 35]], atol=1e-9)
+    np.testing.assert_allclose(model.strength("elbow_flex_r", np.radians([0, 140])), [[20, 15], [25, 35]], atol=1e-9)
+    assert model.group_names("elbow_flex_r") == woman.group_names("elbow_flex_r")
+    # A load is a share of this strength in an assessment.
+    found = contrapposto.assess(model, {"elbow_flex_r": angles}, [0, 1, 2], loads=["hand_r 2kg"], fixed_root=True, angle_error=0.0)
+    elbow = found.names.index("elbow_flex_r")
+    active = found.active[:, elbow]
+    strength = np.where(active > 0, [20, 45, 25], [15, 30, 35])
+    np.testing.assert_allclose(found.load[:, elbow], np.abs(active) / strength, rtol=1e-9)
+    flat = model.with_strength("elbow_flex_r", 50, 40, fatigue="knee")
+    assert flat.strength("elbow_flex_r", angles).tolist() == [[50, 40]] * 3
+    assert flat.endurance_time("elbow_flex_r", 0.4) == woman.endurance_time("knee_angle_r", 0.4)
+    assert pickle.loads(pickle.dumps(model)).strength("elbow_flex_r", 0.7).tolist() == model.strength("elbow_flex_r", 0.7).tolist()
+    with pytest.raises(InputError, match="-1"):
+        woman.with_strength("elbow_flex_r", -1, 40)
+    with pytest.raises(InputError, match="no table of strength"):
+        woman.with_strength("elbow_flex_r", [20, 45], [15, 30], [1, 0.5])
+    with pytest.raises(InputError, match="must be one number"):
+        woman.with_strength("elbow_flex_r", [20, 45], [15, 30])
+    with pytest.raises(InputError, match="no fatigue class `tail`"):
+        woman.with_strength("elbow_flex_r", 20, 45, fatigue="tail")

@@ -5,6 +5,7 @@ mod failure;
 mod frames;
 mod jobs;
 mod model;
+mod motion;
 mod muscles;
 mod torques;
 
@@ -13,5 +14,6 @@ pub use failure::{Failure, Note, Place};
 pub use frames::Frames;
 pub use jobs::{Assessed, MotionSource, Posed, Relaxed, ScenarioSource, Simulated};
 pub use model::{ModelOptions, ModelSource};
+pub use motion::{MotionRows, read_motion, write_motion};
 pub use muscles::muscle_lines;
 pub use torques::{RestTorques, TorqueRow};

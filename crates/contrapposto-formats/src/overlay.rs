@@ -13,7 +13,7 @@ use serde::Deserialize;
 use crate::input_error::{InputError, suggestion};
 use crate::model_ir::MOST_STRENGTH;
 use crate::passive_law::{CoordinateLimitForceText, DoubleExponentialText, PassiveText, ReshapeText, passive_curve};
-use crate::toml_file::{Located, read_toml};
+use crate::toml_file::{Located, read_toml, rows};
 
 /// Fatigue class of a group that is given a strength and nothing else, and of a movement that the built-in data do not know.
 pub(crate) const GENERAL: &str = "general";
@@ -53,8 +53,20 @@ struct OverlayPassiveText {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StrengthText {
-    positive_nm: f64,
-    negative_nm: f64,
+    positive_nm: Option<f64>,
+    negative_nm: Option<f64>,
+    /// Measured rows: angle, deg, and the sizes of both senses, N m.
+    #[serde(default, deserialize_with = "rows")]
+    table_deg_nm: Option<Vec<[f64; 3]>>,
+}
+
+impl StrengthText {
+    fn in_words(&self) -> String {
+        match (self.positive_nm, self.negative_nm, &self.table_deg_nm) {
+            (Some(positive), Some(negative), _) => format!("strength {positive} / {negative} N m"),
+            (.., rows) => format!("strength of a table of {} rows", rows.as_ref().map_or(0, Vec::len)),
+        }
+    }
 }
 
 /// A model with an overlay laid over it.
@@ -287,16 +299,11 @@ impl Table<'_> {
             }
         };
         if let Some(strength) = &text.strength {
-            let sides = [("positive_nm", strength.positive_nm), ("negative_nm", strength.negative_nm)];
-            for ((key, peak), group) in sides.into_iter().zip(&mut groups) {
-                if !(peak > 0.0 && peak <= MOST_STRENGTH) {
-                    let path = [self.path[0], self.path[1], "strength", key];
-                    let help = Some("both sizes are positive, at most 1e6 N m".to_owned());
-                    return Err(self.at.error(&path, format!("{key} is {peak}"), help));
-                }
-                group.strength = Strength::constant(peak);
+            let both = self.strengths(strength)?;
+            for (group, strength) in groups.iter_mut().zip(both) {
+                group.strength = strength;
             }
-            said.push(format!("strength {} / {} N m", strength.positive_nm, strength.negative_nm));
+            said.push(strength.in_words());
         }
         if let Some(class) = class {
             let fatigue = law(class)?;
@@ -307,6 +314,40 @@ impl Table<'_> {
         }
         *model = model.clone().with_groups(index, groups);
         Ok(())
+    }
+
+    /// Strength of the positive and the negative sense.
+    fn strengths(&self, text: &StrengthText) -> Result<[Strength; 2], InputError> {
+        let path = |key: &'static str| [self.path[0], self.path[1], "strength", key];
+        let refuse = |key: &'static str, message: String| {
+            let help = Some("both sizes are positive, at most 1e6 N m".to_owned());
+            self.at.error(&path(key), message, help)
+        };
+        let is_one = |peak: f64| peak > 0.0 && peak <= MOST_STRENGTH;
+        let rows = match (text.positive_nm, text.negative_nm, &text.table_deg_nm) {
+            (Some(positive), Some(negative), None) => {
+                let sides = [("positive_nm", positive), ("negative_nm", negative)];
+                return match sides.into_iter().find(|(_, peak)| !is_one(*peak)) {
+                    Some((key, peak)) => Err(refuse(key, format!("{key} is {peak}"))),
+                    None => Ok(sides.map(|(_, peak)| Strength::constant(peak))),
+                };
+            }
+            (None, None, Some(rows)) => rows,
+            _ => {
+                let help = Some("give positive_nm and negative_nm, or table_deg_nm alone".to_owned());
+                return Err(self.key_error("strength", "strength has two sizes, or one table", help));
+            }
+        };
+        if let Some([angle, positive, negative]) = rows.iter().find(|[_, a, b]| !is_one(*a) || !is_one(*b)) {
+            return Err(refuse("table_deg_nm", format!("at {angle} deg the sizes are {positive} and {negative}")));
+        }
+        let side = |side: usize| {
+            let rows: Vec<(f64, f64)> = rows.iter().map(|row| (row[0].to_radians(), row[1 + side])).collect();
+            let help = Some("give two rows or more whose angles rise".to_owned());
+            let message = "these rows are no table of strength";
+            Strength::tabulated(&rows).ok_or_else(|| self.at.error(&path("table_deg_nm"), message, help))
+        };
+        Ok([side(0)?, side(1)?])
     }
 
     fn key_error(&self, key: &str, message: impl Into<String>, help: Option<String>) -> InputError {

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Sex;
 use contrapposto::posture::Posture;
-use contrapposto_cli::library::{Failure, ModelOptions, ModelSource, Note, RestTorques, TorqueRow, muscle_lines};
+use contrapposto_cli::library::{
+    Failure, ModelOptions, ModelSource, Note, RestTorques, TorqueRow, muscle_lines, read_motion, write_motion,
+};
 use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use numpy::{PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -17,11 +18,14 @@ use pyo3::types::PyBytes;
 use crate::arrays::{array_2, array_3, rows_of};
 use crate::errors::{failure, guarded, internal, unit_of};
 use crate::loads::Loading;
-use crate::torques::Given;
+use crate::torques::{Body, Given};
 use crate::unlocked::in_background;
 
 /// External, passive and active torque as arrays.
 type Arrays<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+
+/// Times as one row, postures, and kinds and texts of notes.
+type Motion<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Vec<(String, String)>);
 
 /// An immutable body.
 #[pyclass(frozen, module = "contrapposto._native")]
@@ -32,12 +36,6 @@ pub(crate) struct Model {
     notes: Vec<Note>,
     /// The same body with its muscles, by the use that was asked of them.
     bodies: Mutex<BTreeMap<String, Arc<Body>>>,
-}
-
-/// A body with its muscles, where they are used.
-pub(crate) struct Body {
-    pub(crate) opened: Arc<SourcedModel>,
-    pub(crate) muscles: Option<JointMuscles>,
 }
 
 impl Model {
@@ -154,6 +152,11 @@ impl Model {
             Ok(Self::new(source, opened, notes))
         };
         guarded(py, read)
+    }
+
+    /// The same body with an overlay (TOML) laid over it.
+    fn lay_over(&self, py: Python<'_>, overlay: String) -> PyResult<Self> {
+        Self::made_of(py, self.source.clone().lay_over(overlay))
     }
 
     /// The model of the bytes that `state` gives.
@@ -279,5 +282,47 @@ impl Model {
             muscle_lines(&opened, &rows, (opensim, activation), || !stop.load(Ordering::Relaxed))
         };
         in_background(py, job)?.map_err(|why| failure(py, &why))
+    }
+
+    /// Postures whose dependent coordinates are those that the independent ones ask for.
+    fn coupled<'py>(
+        &self,
+        py: Python<'py>,
+        postures: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mut given = self.given(py, &postures, &[], None, 1)?;
+        for row in given.values.chunks_exact_mut(given.width.max(1)) {
+            for coupling in self.opened.model.couplings() {
+                row[coupling.dependent] = coupling.function.value(row[coupling.independent]);
+            }
+        }
+        array_2(py, (postures.as_array().nrows(), given.width), given.values)
+    }
+
+    /// Times and postures of a table (.mot, .sto, .csv), and notes about it.
+    fn read_motion<'py>(&self, py: Python<'py>, path: PathBuf, degrees: Option<bool>) -> PyResult<Motion<'py>> {
+        guarded(py, || {
+            let read = py.detach(|| read_motion(&self.opened.model, &path, degrees));
+            let ((times, values), notes) = read.map_err(|why| failure(py, &why))?;
+            let (rows, width) = (times.len(), self.opened.model.coordinates().len());
+            let notes = notes.into_iter().map(|note| (note.kind, note.text)).collect();
+            Ok((array_2(py, (1, rows), times)?, array_2(py, (rows, width), values)?, notes))
+        })
+    }
+
+    /// Writes times (one row) and postures as a .mot table.
+    fn write_motion(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        times: PyReadonlyArray2<'_, f64>,
+        postures: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<()> {
+        guarded(py, || {
+            let given = self.given(py, &postures, &[], None, 1)?;
+            let times = rows_of(&times).2;
+            let written = py.detach(|| write_motion(&self.opened.model, &path, &times, &given.values));
+            written.map_err(|why| failure(py, &why))
+        })
     }
 }

@@ -1,16 +1,24 @@
 //! Computes the torques of many postures in blocks, between which Ctrl-C is seen.
 
-use contrapposto::joint_torques::JointTorquesError;
+use std::sync::Arc;
+
+use contrapposto::joint_torques::{JointMuscles, JointTorquesError};
 use contrapposto::statics::Load;
 use contrapposto_cli::library::RestTorques;
+use contrapposto_formats::tissue::SourcedModel;
 use pyo3::prelude::*;
 
 use crate::errors::refused_row;
 use crate::loads::Loading;
-use crate::model::Body;
 
 /// Postures of one thread between two looks for Ctrl-C.
 const BLOCK: usize = 2048;
+
+/// A body with its muscles, where they are used.
+pub(crate) struct Body {
+    pub(crate) opened: Arc<SourcedModel>,
+    pub(crate) muscles: Option<JointMuscles>,
+}
 
 /// Postures, and all that acts on the body in them.
 pub(crate) struct Given {

@@ -576,6 +576,7 @@ fn strength_slope_and_floor() {
             narrowness: rng.random_range(0.0..2.0),
             floor: rng.random_range(0.01..0.5),
             tested: EVERY_ANGLE,
+            table: None,
         };
         let angle = rng.random_range(-4.0..4.0);
         let (torque, slope) = strength.torque_and_slope(angle);
@@ -600,12 +601,49 @@ fn strength_slope_and_floor() {
 }
 
 #[test]
+fn strength_of_a_table_goes_through_its_rows_and_stays_between_them_with_its_own_slope() {
+    let mut rng = random("strength_of_a_table_goes_through_its_rows_and_stays_between_them_with_its_own_slope");
+    for _ in 0..200 {
+        let mut angle = rng.random_range(-2.0..0.0);
+        let mut rows = vec![];
+        for _ in 0..rng.random_range(2..9) {
+            rows.push((angle, rng.random_range(5.0..200.0)));
+            angle += rng.random_range(0.05..0.6);
+        }
+        let strength = Strength::tabulated(&rows).unwrap();
+        let (mirrored, scaled) = (strength.clone().mirrored(), strength.clone().scaled(1.7));
+        rows.iter().for_each(|(angle, torque)| assert!((strength.torque(*angle) - torque).abs() < 1e-9));
+        assert!((strength.greatest() - rows.iter().map(|row| row.1).fold(0.0, f64::max)).abs() < 1e-12);
+        for pair in rows.windows(2) {
+            let at = rng.random_range(pair[0].0 + 1e-4..pair[1].0 - 1e-4);
+            let (torque, slope) = strength.torque_and_slope(at);
+            let (low, high) = (pair[0].1.min(pair[1].1), pair[0].1.max(pair[1].1));
+            assert!((low - 1e-9..=high + 1e-9).contains(&torque), "{rows:?} at {at}: {torque}");
+            let by_difference = (strength.torque(at + 1e-6) - strength.torque(at - 1e-6)) / 2e-6;
+            assert!((slope - by_difference).abs() < 1e-3 * (1.0 + slope.abs()), "{rows:?} at {at}: {slope}");
+            assert!((mirrored.torque(-at) - torque).abs() < 1e-9);
+            assert!((mirrored.torque_and_slope(-at).1 + slope).abs() < 1e-7 * (1.0 + slope.abs()));
+            assert!((scaled.torque(at) - 1.7 * torque).abs() < 1e-9);
+        }
+        for (outside, end) in [(rows[0].0 - 0.3, rows[0].1), (angle + 0.3, rows[rows.len() - 1].1)] {
+            assert!((strength.torque(outside) - end).abs() < 1e-9 && strength.torque_and_slope(outside).1 == 0.0);
+        }
+    }
+    for odd in
+        [&[(0.0, 5.0)][..], &[], &[(1.0, 5.0), (0.0, 5.0)], &[(0.0, 5.0), (1.0, 0.0)], &[(0.0, f64::NAN), (1.0, 1.0)]]
+    {
+        assert!(Strength::tabulated(odd).is_none(), "{odd:?}");
+    }
+}
+
+#[test]
 fn strength_outside_the_tested_angles_is_that_of_the_nearer_end() {
     let mut rng = random("strength_outside_the_tested_angles_is_that_of_the_nearer_end");
     for _ in 0..1000 {
         let low = rng.random_range(-1.5..0.0);
         let tested = (low, low + rng.random_range(0.2..2.0));
-        let strength = Strength { peak: 100.0, best: rng.random_range(-2.0..2.0), narrowness: 0.9, floor: 0.1, tested };
+        let best = rng.random_range(-2.0..2.0);
+        let strength = Strength { peak: 100.0, best, narrowness: 0.9, floor: 0.1, tested, table: None };
         for (outside, end) in [(tested.0 - 0.7, tested.0), (tested.1 + 0.7, tested.1)] {
             assert_eq!(strength.torque_and_slope(outside), (strength.torque(end), 0.0));
             assert!(strength.is_extrapolated(outside) && !strength.is_extrapolated(end));

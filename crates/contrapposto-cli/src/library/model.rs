@@ -37,7 +37,11 @@ pub struct ModelOptions {
 
 /// All bytes and words that a model is made of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ModelSource(Kind);
+pub struct ModelSource {
+    kind: Kind,
+    /// Overlays laid over the model one after the other, as TOML.
+    laid: Vec<String>,
+}
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Kind {
@@ -65,11 +69,22 @@ struct File {
 }
 
 impl ModelSource {
+    fn of(kind: Kind) -> Self {
+        Self { kind, laid: vec![] }
+    }
+
+    /// The same with an overlay (TOML) laid over it.
+    #[must_use]
+    pub fn lay_over(mut self, overlay: String) -> Self {
+        self.laid.push(overlay);
+        self
+    }
+
     /// The built-in adult, stature in m and mass in kg; those of the reference woman or man where they are left out.
     pub fn adult(sex: Sex, stature: Option<f64>, mass: Option<f64>) -> Self {
         let reference = Adult::reference(sex);
         let (stature, mass) = (stature.unwrap_or(reference.stature), mass.unwrap_or(reference.mass));
-        Self(Kind::Adult { female: sex == Sex::Female, stature, mass, percentile: None })
+        Self::of(Kind::Adult { female: sex == Sex::Female, stature, mass, percentile: None })
     }
 
     /// The built-in adult whose stature and mass are each at a percentile (0 to 100) of people of that sex (`data/people.toml`).
@@ -82,7 +97,7 @@ impl ModelSource {
             return Err(Failure::refused(message));
         }
         let (stature, mass) = size_at(sex, percentile / 100.0);
-        Ok(Self(Kind::Adult { female: sex == Sex::Female, stature, mass, percentile: Some(percentile) }))
+        Ok(Self::of(Kind::Adult { female: sex == Sex::Female, stature, mass, percentile: Some(percentile) }))
     }
 
     /// Reads a model file, and the files that it includes.
@@ -114,9 +129,9 @@ impl ModelSource {
                 included.insert(name.to_owned(), bytes.clone());
                 Ok(bytes)
             };
-            let (opened, _) = file.open(&mut keep, None)?;
+            let (opened, _) = file.open(&mut keep, &[], None)?;
             file.included = included;
-            Ok((Self(Kind::File(Box::new(file))), opened))
+            Ok((Self::of(Kind::File(Box::new(file))), opened))
         })?;
         Ok((source, opened, notes))
     }
@@ -162,7 +177,7 @@ impl ModelSource {
     }
 
     fn completed(&self, muscles: Muscles) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
-        match &self.0 {
+        match &self.kind {
             &Kind::Adult { female, stature, mass, percentile } => {
                 let sex = if female { Sex::Female } else { Sex::Male };
                 if let Some(percentile) = percentile {
@@ -170,14 +185,19 @@ impl ModelSource {
                 }
                 let size = Adult { stature, mass, ..Adult::reference(sex) };
                 let opened = SourcedModel::adult(&size).map_err(|error| Fail::Refused(error.to_string()))?;
-                completed(opened, muscles, Ok)
+                completed(lay(opened, &self.laid)?, muscles, Ok)
             }
             Kind::File(file) => file.open(
                 &mut |name| file.included.get(name).cloned().ok_or_else(|| "it was not kept".to_owned()),
+                &self.laid,
                 muscles,
             ),
         }
     }
+}
+
+fn lay(opened: SourcedModel, overlays: &[String]) -> Result<SourcedModel, Fail> {
+    overlays.iter().try_fold(opened, |opened, text| Ok(opened.lay_over("overlay", text.as_bytes())?))
 }
 
 /// The use of muscles that is asked for, and the name of the key that asks.
@@ -199,6 +219,7 @@ impl File {
     fn open(
         &self,
         include: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+        laid: &[String],
         muscles: Muscles,
     ) -> Result<(SourcedModel, Option<SourcedModel>), Fail> {
         let root = self.free_root.map(|free| if free { RootAttachment::Free } else { RootAttachment::Fixed });
@@ -212,6 +233,7 @@ impl File {
         if let Some((name, bytes)) = &self.overlay {
             opened = opened.lay_over(name, bytes)?;
         }
+        let opened = lay(opened, laid)?;
         completed(opened, muscles, |opened| {
             let refused = |error| Fail::Refused(format!("person: {error}"));
             if self.fill { opened.fill(&person).map_err(refused) } else { Ok(opened) }

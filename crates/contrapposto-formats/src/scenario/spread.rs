@@ -98,7 +98,8 @@ pub(super) fn with_spread(
         let coordinate = &model.coordinates()[index];
         if let Some(groups) = &coordinate.groups {
             let groups = groups.clone().map(|mut group| {
-                group.strength = group.strength.scaled(factor(&group));
+                let times = factor(&group);
+                group.strength = group.strength.scaled(times);
                 group
             });
             model = model.with_groups(index, groups);

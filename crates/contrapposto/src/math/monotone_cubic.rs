@@ -24,6 +24,19 @@ impl Piece {
         (c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + t * 3.0 * c3))
     }
 
+    /// Second derivative at `x`.
+    pub(crate) fn curvature(&self, x: f64) -> f64 {
+        let [_, _, c2, c3] = self.coefficients;
+        2.0 * c2 + 6.0 * c3 * (x - self.start)
+    }
+
+    /// The piece of the curve that runs the other way, `x -> -x`.
+    fn mirrored(&self) -> Self {
+        let ((value, slope), curvature) = (self.value_and_slope(self.end), self.curvature(self.end));
+        let coefficients = [value, -slope, curvature / 2.0, -self.coefficients[3]];
+        Self { start: -self.end, end: -self.start, coefficients, end_slope: -self.coefficients[1] }
+    }
+
     /// Integral of the value from the piece's start to `x`.
     pub(crate) fn integral(&self, x: f64) -> f64 {
         let [c0, c1, c2, c3] = self.coefficients;
@@ -137,6 +150,11 @@ impl MonotoneCubic {
             ..piece.clone()
         };
         Self { pieces: self.pieces.iter().map(scaled).collect() }
+    }
+
+    /// The curve that runs the other way, `x -> -x`.
+    pub(crate) fn mirrored(&self) -> Self {
+        Self { pieces: self.pieces.iter().rev().map(Piece::mirrored).collect() }
     }
 
     /// The cubic pieces from left to right.

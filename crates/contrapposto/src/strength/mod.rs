@@ -3,10 +3,15 @@
 //! One shape: `S(q) = peak max(floor, cos(narrowness (q' - best)))`, where `q'` is the nearest angle to `q` that was tested: outside
 //! the tested angles the strength at the nearer end is held, an extrapolation. With `narrowness = 0` strength is the same
 //! everywhere. Anderson, Madigan & Nussbaum 2007 (J. Biomech. 40:3105-3113, Table 3) use this cosine: `peak = C1 M g H`,
-//! `narrowness = C2`, `best = C3`. The floor keeps relative load finite inside the range.
+//! `narrowness = C2`, `best = C3`. The floor keeps relative load finite inside the range. Or a measured table, through which a cubic
+//! goes that never leaves the two neighbouring values (Fritsch & Carlson 1980).
+
+use std::sync::Arc;
+
+use crate::math::MonotoneCubic;
 
 /// Greatest voluntary torque of one muscle group against angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Strength {
     /// Torque at the best angle, N m, positive. It is not reached where the best angle was not tested.
     pub peak: f64,
@@ -18,6 +23,8 @@ pub struct Strength {
     pub floor: f64,
     /// Least and greatest angle (rad) of the measurement; infinite where no angle is known to lie outside of it.
     pub tested: (f64, f64),
+    /// Shares of the peak against angle (rad), in place of the cosine.
+    pub table: Option<Arc<MonotoneCubic>>,
 }
 
 /// Every angle: nothing is held.
@@ -26,7 +33,25 @@ pub const EVERY_ANGLE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 impl Strength {
     /// The same at every angle.
     pub fn constant(peak: f64) -> Self {
-        Self { peak, best: 0.0, narrowness: 0.0, floor: 1.0, tested: EVERY_ANGLE }
+        Self { peak, best: 0.0, narrowness: 0.0, floor: 1.0, tested: EVERY_ANGLE, table: None }
+    }
+
+    /// Of measured rows (angle rad, torque N m), angles strictly rising, torques positive, two rows at least; `None` of others. Outside of them
+    /// the torque of the nearer end is held.
+    ///
+    /// ```
+    /// use contrapposto::strength::Strength;
+    /// let elbow = Strength::tabulated(&[(0.0, 40.0), (1.5, 60.0), (2.5, 30.0)]).unwrap();
+    /// assert_eq!([elbow.torque(-1.0), elbow.torque(1.5), elbow.torque(3.0)], [40.0, 60.0, 30.0]);
+    /// assert!(Strength::tabulated(&[(0.0, 40.0), (1.0, -1.0)]).is_none());
+    /// ```
+    pub fn tabulated(rows: &[(f64, f64)]) -> Option<Self> {
+        let (first, last) = (rows.first()?, rows.last()?);
+        let (best, peak) = rows.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let least = rows.iter().map(|row| row.1).fold(f64::INFINITY, f64::min);
+        let shares: Vec<(f64, f64)> = rows.iter().map(|(angle, torque)| (*angle, torque / peak)).collect();
+        let table = Some(Arc::new(MonotoneCubic::new(&shares).filter(|_| least > 0.0)?));
+        Some(Self { peak, best, narrowness: 0.0, floor: least / peak, tested: (first.0, last.0), table })
     }
 
     /// Greatest torque at `angle` (rad), N m; always positive.
@@ -45,6 +70,11 @@ impl Strength {
 
     /// Greatest torque (N m) and its slope (N m/rad) at `angle` (rad).
     pub fn torque_and_slope(&self, angle: f64) -> (f64, f64) {
+        if let Some(table) = &self.table {
+            let at = angle.clamp(self.tested.0, self.tested.1);
+            let (share, slope) = table.piece_at(at).value_and_slope(at);
+            return (self.peak * share, if self.is_extrapolated(angle) { 0.0 } else { self.peak * slope });
+        }
         if self.narrowness == 0.0 {
             return (self.peak, 0.0);
         }
@@ -59,6 +89,10 @@ impl Strength {
 
     /// Second derivative at `angle` (rad), N m/rad^2; 0 on the floor and outside the tested angles.
     pub(crate) fn curvature(&self, angle: f64) -> f64 {
+        if let Some(table) = &self.table {
+            let curvature = table.piece_at(angle).curvature(angle);
+            return if self.is_extrapolated(angle) { 0.0 } else { self.peak * curvature };
+        }
         let torque = self.torque(angle);
         let flat = torque <= self.peak * self.floor || self.is_extrapolated(angle);
         if flat { 0.0 } else { -self.narrowness.powi(2) * torque }
@@ -93,6 +127,7 @@ impl Strength {
     /// The same strength of a coordinate that counts the other way round.
     #[must_use]
     pub fn mirrored(self) -> Self {
-        Self { best: -self.best, tested: (-self.tested.1, -self.tested.0), ..self }
+        let table = self.table.map(|table| Arc::new(table.mirrored()));
+        Self { best: -self.best, tested: (-self.tested.1, -self.tested.0), table, ..self }
     }
 }

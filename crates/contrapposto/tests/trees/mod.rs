@@ -198,6 +198,7 @@ pub fn with_muscles(rng: &mut Pcg64, mut model: Model, fatigue: &FatigueLaw) -> 
                     narrowness: [0.0, rng.random_range(0.2..1.2)][rng.random_range(0..2)],
                     floor: rng.random_range(0.05..0.5),
                     tested: EVERY_ANGLE,
+                    table: None,
                 },
                 fatigue: fatigue.clone(),
             };

@@ -146,7 +146,7 @@ impl StrengthAtText {
     pub(crate) fn at(opened: &SourcedModel, coordinate: usize, side: Side, angle: f64) -> Option<Self> {
         let origins = &opened.origins[coordinate];
         let coordinate = &opened.model.coordinates()[coordinate];
-        let strength = coordinate.groups.as_ref()?[side.index()].strength;
+        let strength = &coordinate.groups.as_ref()?[side.index()].strength;
         let of_twin = if origins.turned { 1 - side.index() } else { side.index() };
         let angle_deg = (coordinate.kind == CoordinateKind::Rotation).then(|| angle.to_degrees());
         let status = match origins.strength {
@@ -156,7 +156,7 @@ impl StrengthAtText {
             Origin::Library => {
                 let sources = origins.twin.as_deref().and_then(|twin| data::library().sources(twin));
                 let strengths = sources.and_then(|sources| sources.strength);
-                strengths.map(|of| of[of_twin].status_at(&strength, angle).to_string())
+                strengths.map(|of| of[of_twin].status_at(strength, angle).to_string())
             }
         };
         let (strength_nm, floor) = (strength.torque(angle), strength.is_floor(angle));

@@ -133,6 +133,7 @@ impl StrengthFile {
             narrowness: row.c2_per_rad,
             floor: movement.floor.unwrap_or(self.floor.share),
             tested: radians(movement.tested_deg),
+            table: None,
         };
         Some((strength, StrengthSources { size: &movement.reference, shape: &movement.reference }))
     }
@@ -146,6 +147,7 @@ impl StrengthFile {
             narrowness: row.shape.narrowness_per_rad,
             floor: self.floor.share,
             tested: row.shape.tested_deg.map_or(EVERY_ANGLE, radians),
+            table: None,
         };
         if let Some(angle) = row.at_deg {
             strength.peak *= strength.peak / strength.torque(angle.to_radians());
