@@ -19,7 +19,8 @@ from contrapposto.loads import Force, Weight
 from contrapposto.model import Model
 from contrapposto.motions import assess
 from contrapposto.muscle_states import MuscleStates, muscles
-from contrapposto.results import Assessment, Equilibria, Pose, Record, Run
+from contrapposto._results import Assessment, Equilibria, Pose, Record, Run
+from contrapposto.sweeps import Population, Results, population, results, sweep
 from contrapposto.torques import Torques
 
 __all__ = [
@@ -33,8 +34,10 @@ __all__ = [
     "JobError",
     "Model",
     "MuscleStates",
+    "Population",
     "Pose",
     "Record",
+    "Results",
     "Run",
     "Torques",
     "Weight",
@@ -43,7 +46,10 @@ __all__ = [
     "interop",
     "minimize",
     "muscles",
+    "population",
     "pose",
     "relax",
+    "results",
     "simulate",
+    "sweep",
 ]

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from contrapposto import _native
 from contrapposto._toml import toml
 from contrapposto.errors import InputError
-from contrapposto.results import Equilibria, Pose, Record, Run
+from contrapposto._results import Equilibria, Pose, Record, Run
 
 #: A scenario: the path of a file, its text (TOML), or a dictionary of the same words.
 Scenario: TypeAlias = str | os.PathLike[str] | Mapping[str, Any]

@@ -16,7 +16,7 @@ from contrapposto._arrays import line, postures
 from contrapposto.errors import InputError
 from contrapposto.loads import Load, load_words
 from contrapposto.model import Model, Muscles
-from contrapposto.results import Assessment
+from contrapposto._results import Assessment
 
 #: Name of a file.
 Name: TypeAlias = str | os.PathLike[str]

@@ -17,6 +17,7 @@ import pytest
 import contrapposto
 from conftest import REPOSITORY
 from contrapposto import InputError
+from contrapposto._results import Result
 
 SCENARIOS = {
     "pose": REPOSITORY / "scenarios/poses/reach-shelf.toml",
@@ -27,13 +28,13 @@ JSON = {"pose": "pose.json", "relax": "relax.json", "simulate": "summary.json"}
 
 
 @pytest.fixture(scope="session")
-def results() -> dict[str, contrapposto.results.Result]:
+def results() -> dict[str, Result]:
     return {kind: getattr(contrapposto, kind)(path) for kind, path in SCENARIOS.items()}
 
 
 @pytest.mark.parametrize("kind", SCENARIOS)
 def test_the_words_are_those_of_the_program(
-    results: dict[str, contrapposto.results.Result], kind: str, program: str, tmp_path: Path
+    results: dict[str, Result], kind: str, program: str, tmp_path: Path
 ) -> None:
     options = ["--no-suggest"] if kind == "simulate" else []
     command = [program, kind, str(SCENARIOS[kind]), "--out", str(tmp_path), *options]
@@ -45,7 +46,7 @@ def test_the_words_are_those_of_the_program(
 
 
 @pytest.mark.parametrize("kind", SCENARIOS)
-def test_results_are_frozen_and_pickle(results: dict[str, contrapposto.results.Result], kind: str, tmp_path: Path) -> None:
+def test_results_are_frozen_and_pickle(results: dict[str, Result], kind: str, tmp_path: Path) -> None:
     result = results[kind]
     copy = pickle.loads(pickle.dumps(result))
     assert type(copy) is type(result)
@@ -68,7 +69,7 @@ def test_results_are_frozen_and_pickle(results: dict[str, contrapposto.results.R
 
 
 @pytest.mark.parametrize("kind", SCENARIOS)
-def test_tables_and_charts(results: dict[str, contrapposto.results.Result], kind: str) -> None:
+def test_tables_and_charts(results: dict[str, Result], kind: str) -> None:
     pytest.importorskip("pandas")
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
@@ -83,7 +84,7 @@ def test_tables_and_charts(results: dict[str, contrapposto.results.Result], kind
 
 
 @pytest.mark.parametrize("kind", SCENARIOS)
-def test_arrays_have_names_for_xarray(results: dict[str, contrapposto.results.Result], kind: str, tmp_path: Path) -> None:
+def test_arrays_have_names_for_xarray(results: dict[str, Result], kind: str, tmp_path: Path) -> None:
     pytest.importorskip("xarray")
     result = results[kind]
     data = result.to_xarray()
@@ -98,7 +99,7 @@ def test_arrays_have_names_for_xarray(results: dict[str, contrapposto.results.Re
 
 
 def test_a_verdict_has_the_findings_behind_it(
-    results: dict[str, contrapposto.results.Result], program: str, tmp_path: Path
+    results: dict[str, Result], program: str, tmp_path: Path
 ) -> None:
     for kind, path in SCENARIOS.items():
         options = ["--no-suggest"] if kind == "simulate" else []
@@ -109,7 +110,7 @@ def test_a_verdict_has_the_findings_behind_it(
     assert results["simulate"].verdict.lines
 
 
-def test_a_text_and_a_dictionary_give_the_same_as_the_file(results: dict[str, contrapposto.results.Result]) -> None:
+def test_a_text_and_a_dictionary_give_the_same_as_the_file(results: dict[str, Result]) -> None:
     if sys.version_info >= (3, 11):
         import tomllib
 

@@ -146,6 +146,68 @@ fn a_changed_plan_keeps_the_parts_that_it_does_not_change_and_removes_the_others
 }
 
 #[test]
+fn parts_of_another_plan_stay_until_all_parts_of_this_one_are_there() {
+    let (folder, path) = plan(PLAN);
+    let out = folder.path().join("out");
+    assert_eq!(sweep(&path, &out, &[]).0, 0);
+    let before = files(&out);
+    std::fs::write(folder.path().join("base.toml"), BASE.replace("duration_s = 200", "duration_s = 201")).unwrap();
+    std::fs::write(&path, PLAN.replace("rows = 60", "rows = 100000")).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_contrapposto"))
+        .args(["sweep", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--resume"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let new_part = || files(&out).keys().any(|name| name.ends_with(".csv") && !before.contains_key(name));
+    while !new_part() {
+        assert!(child.try_wait().unwrap().is_none(), "the sweep ended without a part");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let after = files(&out);
+    assert!(before.iter().all(|(name, bytes)| after.get(name) == Some(bytes)));
+    // The whole of a third plan removes the parts of both others.
+    std::fs::write(&path, PLAN.replace("rows = 60", "rows = 7")).unwrap();
+    assert_eq!(sweep(&path, &out, &["--resume"]).0, 0);
+    assert_eq!(files(&out).keys().filter(|name| name.ends_with(".csv")).count(), 1);
+}
+
+#[test]
+fn a_plan_whose_first_row_is_no_scenario_goes_on_and_its_list_has_the_texts() {
+    let text = "base = \"base.toml\"\ndesign = \"grid\"\nrows_per_part = 3\n[parameters]\n\"load.0.mass_kg\" = { list = [-1, 1] }\n";
+    let (folder, path) = plan(text);
+    let out = folder.path().join("out");
+    let (code, words) = sweep(&path, &out, &[]);
+    assert_eq!(code, 0, "{words}");
+    let kinds: Vec<String> = rows(&out).iter().map(|row| row["kind"].clone()).collect();
+    assert!(kinds[0] == "refused" && kinds[1] != "refused", "{kinds:?}");
+    let cuts: Vec<String> = rows(&out).iter().map(|row| row["search_cut"].clone()).collect();
+    assert_eq!(cuts, ["", "false"]);
+    let list: Value = serde_json::from_slice(&files(&out)["sweep.json"]).unwrap();
+    assert_eq!((list["plan"].as_str().unwrap(), list["scenario"].as_str().unwrap()), (text, BASE));
+    assert_eq!((list["seed"].as_u64(), list["design"].as_str()), (Some(0), Some("grid")));
+}
+
+#[test]
+fn a_body_that_falls_in_the_first_sample_cannot_stand() {
+    let (folder, plan) = plan(
+        "base = \"base.toml\"\ndesign = \"grid\"\n[parameters]\n\"support.0.on.friction\" = { list = [0, 0.6] }\n",
+    );
+    let on = |foot: &str| {
+        format!("[[support]]\nsegment = \"calcn_{foot}\"\non = {{ normal = [0.45, 1, 0], friction = 0.6 }}\n")
+    };
+    let base = format!("format = 1\n{}{}[strategy]\nkind = \"active\"\n[run]\nduration_s = 1\n", on("r"), on("l"));
+    std::fs::write(folder.path().join("base.toml"), base).unwrap();
+    let out = folder.path().join("out");
+    let (code, words) = sweep(&plan, &out, &[]);
+    assert_eq!(code, 0, "{words}");
+    let rows = rows(&out);
+    assert_eq!((rows[0]["kind"].as_str(), rows[0]["note"].as_str()), ("cannot_stand", ""), "{rows:?}");
+}
+
+#[test]
 fn a_refused_plan_or_base_names_its_file_line_and_column_and_writes_nothing() {
     for (from, to, words) in [
         ("rows = 60", "rows = -1", "plan.toml:3:8"),

@@ -13,6 +13,7 @@ mod job;
 mod loads;
 mod model;
 mod program;
+mod sweep;
 mod torques;
 mod unlocked;
 
@@ -31,6 +32,8 @@ mod _native {
     use super::model::Model;
     #[pymodule_export]
     use super::program::run_program;
+    #[pymodule_export]
+    use super::sweep::{Sweep, SweepFolder, population};
 
     use super::*;
 

@@ -18,6 +18,15 @@ pub(crate) fn in_background<T: Send + 'static>(
     py: Python<'_>,
     job: impl FnOnce(&AtomicBool) -> T + Send + 'static,
 ) -> PyResult<T> {
+    watched(py, job, |_| Ok(()))
+}
+
+/// As [`in_background`]; between two looks `tell` is called, whose exception ends the job as Ctrl-C does.
+pub(crate) fn watched<T: Send + 'static>(
+    py: Python<'_>,
+    job: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+    tell: impl Fn(Python<'_>) -> PyResult<()>,
+) -> PyResult<T> {
     let stop = Arc::new(AtomicBool::new(false));
     let (sender, ends) = channel();
     let flag = Arc::clone(&stop);
@@ -42,7 +51,7 @@ pub(crate) fn in_background<T: Send + 'static>(
                 return Err(panic.map_or_else(|| internal(py, "the job gave no result"), |panic| panicked(py, &*panic)));
             }
         }
-        if let Err(interrupt) = py.check_signals() {
+        if let Err(interrupt) = py.check_signals().and_then(|()| tell(py)) {
             stop.store(true, Ordering::Relaxed);
             return Err(interrupt);
         }

@@ -25,6 +25,8 @@ pub struct Outcome {
     pub effort: Option<f64>,
     /// Simulated time, s.
     pub seconds: Option<f64>,
+    /// Whether a search for an easier posture was cut short at its budget.
+    pub search_cut: Option<bool>,
     /// The reason for which it is refused.
     pub note: Option<String>,
 }
@@ -57,7 +59,8 @@ impl Outcome {
         let summary = run.summary();
         let effort = summary.standing.as_ref().map_or_else(|| loads.iter().map(|load| load * load).sum(), |s| s.effort);
         let verdict = Verdict::of_run(&scenario, &summary);
-        Some(Self { effort: Some(effort), seconds: Some(summary.end_time), ..Self::answered(&scenario, &verdict) })
+        let (effort, seconds, search_cut) = (Some(effort), Some(summary.end_time), Some(summary.search_cut));
+        Some(Self { effort, seconds, search_cut, ..Self::answered(&scenario, &verdict) })
     }
 
     /// Of a run that ended with an error: a body that its supports do not hold cannot stand, whether before the first sample or in it.

@@ -10,7 +10,7 @@ use super::outcome::Outcome;
 use super::sampler::Sampler;
 
 /// Columns of a part after `row` and the parameters, with their meaning.
-pub const COLUMNS: [(&str, &str); 8] = [
+pub const COLUMNS: [(&str, &str); 9] = [
     (
         "kind",
         "verdict: cannot_be_done, cannot_stand, not_reached, held_until or holds; refused: no scenario with these values, or an error in the run",
@@ -21,6 +21,7 @@ pub const COLUMNS: [(&str, &str); 8] = [
     ("load", "1; active torque of `hardest` over its strength"),
     ("effort", "1; sum of (active torque / strength)^2 at the end"),
     ("seconds", "s; simulated time"),
+    ("search_cut", "true where a search for an easier posture was cut short: there may be one"),
     ("note", "why the row is refused"),
 ];
 
@@ -173,6 +174,7 @@ fn line(row: usize, values: &[Value], outcome: &Outcome) -> String {
         number(outcome.load),
         number(outcome.effort),
         number(outcome.seconds),
+        outcome.search_cut.map_or_else(String::new, |cut| cut.to_string()),
         text(&outcome.note),
     ];
     let cells = std::iter::once(row.to_string()).chain(values.iter().map(value)).chain(answer);

@@ -47,6 +47,7 @@ fn answer(columns: &BTreeMap<&str, usize>, first: usize, mut cells: Vec<String>)
         load: number("load")?,
         effort: number("effort")?,
         seconds: number("seconds")?,
+        search_cut: text("search_cut").map(|cut| cut == "true"),
         note: text("note"),
     };
     let row = cells.first()?.parse().ok()?;

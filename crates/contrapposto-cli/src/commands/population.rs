@@ -1,12 +1,13 @@
 //! `contrapposto population`: a scenario in, the share of women and of men who can hold it out.
 
 use std::collections::BTreeMap;
+use std::num::NonZero;
 use std::path::Path;
 
 use contrapposto_formats::{MOST_BYTES, read_run, scenario_model};
 use contrapposto_sweep::{Answer, Population, Study, population as plans, read_part};
 
-use super::sweep::parts::{Others, compute, fill};
+use super::sweep::parts::{Filling, Others, Watch, compute, watched};
 use crate::args::PopulationArgs;
 use crate::fail::Fail;
 use crate::input::read;
@@ -20,38 +21,44 @@ const POPULATION_FILES: [&str; 3] = ["population.json", "population.csv", "popul
 const ROWS: &str = "rows";
 
 pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
-    let (study, asked) = open(args)?;
-    let folder = args.out.as_deref().map(|out| ResultSet::open(out, &POPULATION_FILES)).transpose()?;
-    let parts = match &args.out {
-        Some(out) => kept(&study, out, args)?,
-        None => computed(&study, args)?,
-    };
-    let mut answers: Vec<Answer> = vec![];
-    for (i, part) in parts.iter().enumerate() {
-        let rows = study.rows_of(i);
-        let why = || {
-            format!(
-                "rows {} to {} are expected, each whole; remove this file and use --resume",
-                rows.start,
-                rows.end - 1
-            )
-        };
-        answers.extend(read_part(&part.text, rows.clone()).ok_or_else(|| Fail::job(&part.place, why()))?);
+    let (name, bytes) = (args.scenario.display().to_string(), read(&args.scenario, MOST_BYTES)?);
+    let job = Job::open(name, &bytes, args.rows, args.seed)?;
+    let place = Place { out: args.out.as_deref(), resume: args.resume, threads: args.threads };
+    let counted = watched(|watch| job.carry_out(place, watch))?;
+    print(&if args.json { counted.json } else { report(&counted.text, &counted.found, counted.folder.as_ref()) })
+}
+
+/// A population that is asked to do a job.
+pub(crate) struct Job {
+    study: Study,
+    asked: Asked,
+    seed: u32,
+}
+
+/// The folder for the results, if any, and how they are computed.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub(crate) out: Option<&'a Path>,
+    pub(crate) resume: bool,
+    pub(crate) threads: Option<NonZero<usize>>,
+}
+
+/// The counted answers of a population.
+pub(crate) struct Counted {
+    pub(crate) text: PopulationText,
+    pub(crate) found: Population,
+    /// `population.json`.
+    pub(crate) json: String,
+    /// `population.csv`.
+    pub(crate) table: String,
+    folder: Option<ResultSet>,
+}
+
+impl Counted {
+    /// The page `population.html`.
+    pub(crate) fn page(&self) -> String {
+        report_of_population(&self.text, &self.found)
     }
-    let found = Population::new(&study, &answers, asked.seconds / 60.0, args.seed);
-    if found.sexes.iter().all(|people| people.number == 0) {
-        let why = found.first_note.as_deref().unwrap_or("no reason is known");
-        return Err(Fail::Job(format!("none of the {} bodies could be judged; the first: {why}", answers.len())));
-    }
-    let files = folder.as_ref().map_or(vec![], |_| POPULATION_FILES.map(str::to_owned).to_vec());
-    let text = PopulationText::new(&asked, &study, &found, args.seed, files);
-    let json = json_text(POPULATION_FILES[0], &text)?;
-    if let Some(folder) = &folder {
-        let (table, page) = (table(&parts), report_of_population(&text, &found));
-        let contents = [json.as_bytes(), table.as_bytes(), page.as_bytes()];
-        folder.write(&POPULATION_FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
-    }
-    print(&if args.json { json } else { report(&text, &found, folder.as_ref()) })
 }
 
 /// A part of the table.
@@ -61,45 +68,88 @@ struct Part {
     text: String,
 }
 
-/// The plans of the population over the scenario. The scenario is read as it stands, so that one that is none ends the command before anything
-/// is written.
-fn open(args: &PopulationArgs) -> Result<(Study, Asked), Fail> {
-    let (name, bytes) = (args.scenario.display().to_string(), read(&args.scenario, MOST_BYTES)?);
-    if let Some(file) = scenario_model(&name, &bytes)? {
-        let why = "a population takes scenarios of the built-in adult, `adult = { ... }` in [model], whose size, strength and passive torque \
-            are known for women and men";
-        return Err(Fail::Refused(format!("{name}: [model] names the model file {:?}; {why}", file.file)));
+impl Job {
+    /// The plans of the population over the scenario. The scenario is read as it stands, so that one that is none ends the command before
+    /// anything is written.
+    pub(crate) fn open(name: String, bytes: &[u8], rows: usize, seed: u32) -> Result<Self, Fail> {
+        if let Some(file) = scenario_model(&name, bytes)? {
+            let why = "a population takes scenarios of the built-in adult, `adult = { ... }` in [model], whose size, strength and passive torque \
+                are known for women and men";
+            return Err(Fail::Refused(format!("{name}: [model] names the model file {:?}; {why}", file.file)));
+        }
+        let scenario = read_run(&name, bytes, None)?.scenario;
+        let study = Study::in_turn(&name, bytes, &plans(&name, rows, seed))?;
+        let asked = Asked { scenario: name, title: scenario.title, seconds: scenario.run.duration };
+        Ok(Self { study, asked, seed })
     }
-    let scenario = read_run(&name, &bytes, None)?.scenario;
-    let study = Study::in_turn(&name, &bytes, &plans(&name, args.rows, args.seed))?;
-    let asked = Asked { scenario: name, title: scenario.title, seconds: scenario.run.duration };
-    Ok((study, asked))
-}
 
-/// All parts, which are kept in a folder.
-fn kept(study: &Study, out: &Path, args: &PopulationArgs) -> Result<Vec<Part>, Fail> {
-    let whole = fill(study, (&out.join(ROWS), Others::Kept), args.resume, args.threads)?;
-    let part = |name: &String| {
-        let path = whole.folder.path(name);
-        let text = std::fs::read_to_string(&path).map_err(|error| Fail::job(path.display(), error))?;
-        Ok(Part { place: path.display().to_string(), text })
-    };
-    whole.names.iter().map(part).collect()
-}
-
-/// All parts, of which nothing is written.
-fn computed(study: &Study, args: &PopulationArgs) -> Result<Vec<Part>, Fail> {
-    let all: Vec<usize> = (0..study.parts()).collect();
-    let mut parts = BTreeMap::new();
-    let done = compute(study, &all, args.threads, |part, text| {
-        parts.insert(part, Part { place: format!("part {part}"), text });
-        Ok(())
-    })?;
-    if done < all.len() {
-        let why = "nothing was written; with --out DIR the bodies that are done are kept, and --resume continues";
-        return Err(Fail::Job(format!("interrupted: {done} of {} parts were done; {why}", all.len())));
+    /// Computes and counts all bodies.
+    ///
+    /// # Errors
+    /// A folder that is refused, an interruption, and a job of which no body can be judged.
+    pub(crate) fn carry_out(&self, place: Place<'_>, watch: &Watch<'_>) -> Result<Counted, Fail> {
+        let folder = place.out.map(|out| ResultSet::open(out, &POPULATION_FILES)).transpose()?;
+        let parts = match place.out {
+            Some(out) => self.kept(out, place, watch)?,
+            None => self.computed(place, watch)?,
+        };
+        let answers = self.answers(&parts)?;
+        let found = Population::new(&self.study, &answers, self.asked.seconds / 60.0, self.seed);
+        if found.sexes.iter().all(|people| people.number == 0) {
+            let why = found.first_note.as_deref().unwrap_or("no reason is known");
+            return Err(Fail::Job(format!("none of the {} bodies could be judged; the first: {why}", answers.len())));
+        }
+        let files = folder.as_ref().map_or(vec![], |_| POPULATION_FILES.map(str::to_owned).to_vec());
+        let text = PopulationText::new(&self.asked, &self.study, &found, self.seed, files);
+        let json = json_text(POPULATION_FILES[0], &text)?;
+        let counted = Counted { text, found, json, table: table(&parts), folder };
+        if let Some(folder) = &counted.folder {
+            let page = counted.page();
+            let contents = [counted.json.as_bytes(), counted.table.as_bytes(), page.as_bytes()];
+            folder.write(&POPULATION_FILES.into_iter().zip(contents).collect::<Vec<_>>())?;
+        }
+        Ok(counted)
     }
-    Ok(parts.into_values().collect())
+
+    fn answers(&self, parts: &[Part]) -> Result<Vec<Answer>, Fail> {
+        let mut answers: Vec<Answer> = vec![];
+        for (i, part) in parts.iter().enumerate() {
+            let rows = self.study.rows_of(i);
+            let why = || {
+                let (first, last) = (rows.start, rows.end - 1);
+                format!("rows {first} to {last} are expected, each whole; remove this file and use --resume")
+            };
+            answers.extend(read_part(&part.text, rows.clone()).ok_or_else(|| Fail::job(&part.place, why()))?);
+        }
+        Ok(answers)
+    }
+
+    /// All parts, which are kept in a folder.
+    fn kept(&self, out: &Path, place: Place<'_>, watch: &Watch<'_>) -> Result<Vec<Part>, Fail> {
+        let filling = Filling::open(&self.study, (&out.join(ROWS), Others::Kept), place.resume)?;
+        filling.fill(&self.study, place.threads, watch)?;
+        let part = |name: &String| {
+            let path = filling.folder.path(name);
+            let text = std::fs::read_to_string(&path).map_err(|error| Fail::job(path.display(), error))?;
+            Ok(Part { place: path.display().to_string(), text })
+        };
+        filling.names.iter().map(part).collect()
+    }
+
+    /// All parts, of which nothing is written.
+    fn computed(&self, place: Place<'_>, watch: &Watch<'_>) -> Result<Vec<Part>, Fail> {
+        let all: Vec<usize> = (0..self.study.parts()).collect();
+        let mut parts = BTreeMap::new();
+        let done = compute(&self.study, &all, place.threads, watch, |part, text| {
+            parts.insert(part, Part { place: format!("part {part}"), text });
+            Ok(())
+        })?;
+        if done < all.len() {
+            let why = "nothing was written; with --out DIR the bodies that are done are kept, and --resume continues";
+            return Err(Fail::Job(format!("interrupted: {done} of {} parts were done; {why}", all.len())));
+        }
+        Ok(parts.into_values().collect())
+    }
 }
 
 /// One table of all parts: the first line of each but the first is left out.

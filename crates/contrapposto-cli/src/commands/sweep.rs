@@ -8,46 +8,104 @@ use contrapposto_formats::{
     Design, Distribution, MOST_BYTES, Parameter, Plan, Value, read_plan, read_run, scenario_model,
 };
 use contrapposto_sweep::{COLUMNS, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use self::parts::{Others, fill};
+use self::parts::{Filling, Others, watched};
 use crate::args::SweepArgs;
 use crate::fail::Fail;
 use crate::input::{confined, read};
 use crate::output::{json_text, print};
 
 /// The file that lists the parts of a finished sweep.
-const LIST: &str = "sweep.json";
+pub(crate) const LIST: &str = "sweep.json";
+/// Rows of which one at least must be a scenario.
+const FIRST_ROWS: usize = 64;
 
 pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Fail> {
-    let (study, plan) = open(&args.plan)?;
-    let whole = fill(&study, (&args.out, Others::Removed(LIST)), args.resume, args.threads)?;
-    whole.folder.write(&[(LIST, list(&plan, &whole.names)?)])?;
-    let kept = if whole.kept > 0 { format!(", {} of them kept", whole.kept) } else { String::new() };
-    print(&format!("{} rows in {} parts{kept}: {}\n", plan.rows, whole.names.len(), args.out.display()))
+    let source = PlanSource::read(&args.plan)?;
+    let (study, plan) = source.open()?;
+    let filling = Filling::open(&study, (&args.out, Others::Removed), args.resume)?;
+    watched(|watch| filling.fill(&study, args.threads, watch))?;
+    filling.finish(LIST, &source.list(&plan, &filling.names)?)?;
+    let kept = if filling.kept() > 0 { format!(", {} of them kept", filling.kept()) } else { String::new() };
+    print(&format!("{} rows in {} parts{kept}: {}\n", plan.rows, filling.names.len(), args.out.display()))
 }
 
-/// The plan of a file with its base scenario. The scenario of the first row is read, so that a wrong key ends the command before anything
-/// is written.
-fn open(path: &Path) -> Result<(Study, Plan), Fail> {
-    let plan = read_plan(&path.display().to_string(), &read(path, MOST_BYTES)?)?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // A plan may stand in a folder beside the scenarios.
-    let base = folder.join(&plan.base);
-    let base = match folder.join("..").canonicalize() {
-        Ok(above) if base.canonicalize().is_ok_and(|base| base.starts_with(&above)) => base,
-        _ => confined(folder, &plan.base)
-            .map_err(|why| Fail::Refused(format!("{}: base = {:?}: {why}", path.display(), plan.base)))?,
-    };
-    let (name, bytes) = (base.display().to_string(), read(&base, MOST_BYTES)?);
-    if scenario_model(&name, &bytes)?.is_some() {
-        let why = "the scenario names a model file; a sweep takes scenarios of the built-in adult";
-        return Err(Fail::Refused(format!("{name}: {why}")));
+/// The bytes of a plan and of its base scenario, with their names for messages.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PlanSource {
+    plan: (String, Vec<u8>),
+    base: (String, Vec<u8>),
+}
+
+impl PlanSource {
+    /// The plan of a file.
+    pub(crate) fn read(path: &Path) -> Result<Self, Fail> {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Self::of((path.display().to_string(), read(path, MOST_BYTES)?), folder)
     }
-    let study = Study::new(&name, &bytes, &plan)?;
-    read_run(&name, study.scenario(0).as_bytes(), None)?;
-    Ok((study, plan))
+
+    /// The plan of these bytes, whose base is seen from a folder.
+    pub(crate) fn of((name, bytes): (String, Vec<u8>), folder: &Path) -> Result<Self, Fail> {
+        let plan = read_plan(&name, &bytes)?;
+        // A plan may stand in a folder beside the scenarios.
+        let base = folder.join(&plan.base);
+        let base = match folder.join("..").canonicalize() {
+            Ok(above) if base.canonicalize().is_ok_and(|base| base.starts_with(&above)) => base,
+            _ => confined(folder, &plan.base)
+                .map_err(|why| Fail::Refused(format!("{name}: base = {:?}: {why}", plan.base)))?,
+        };
+        let base = (base.display().to_string(), read(&base, MOST_BYTES)?);
+        Ok(Self { plan: (name, bytes), base })
+    }
+
+    /// The plan with its base scenario. Scenarios of rows are read until one is a scenario, so that a wrong key ends the command before
+    /// anything is written.
+    pub(crate) fn open(&self) -> Result<(Study, Plan), Fail> {
+        let (name, bytes) = &self.base;
+        let plan = read_plan(&self.plan.0, &self.plan.1)?;
+        if scenario_model(name, bytes)?.is_some() {
+            let why = "the scenario names a model file; a sweep takes scenarios of the built-in adult";
+            return Err(Fail::Refused(format!("{name}: {why}")));
+        }
+        let study = Study::new(name, bytes, &plan)?;
+        let read = |row: usize| {
+            let name = format!("{name} with the values of row {row}");
+            read_run(&name, study.scenario(row).as_bytes(), None)
+        };
+        let first = read(0);
+        if first.is_err() && !(1..study.rows().min(FIRST_ROWS)).any(|row| read(row).is_ok()) {
+            first?;
+        }
+        Ok((study, plan))
+    }
+
+    /// The text of `sweep.json`.
+    pub(crate) fn list(&self, plan: &Plan, parts: &[String]) -> Result<String, Fail> {
+        let row = ColumnText { name: "row", meaning: "number of the row in the plan, from 0".to_owned() };
+        let parameters = plan.parameters.iter().map(|parameter| ColumnText {
+            name: &parameter.key,
+            meaning: "key of the scenario, in the unit that its name ends in".to_owned(),
+        });
+        let answer = COLUMNS.iter().map(|(name, meaning)| ColumnText { name, meaning: (*meaning).to_owned() });
+        json_text(
+            LIST,
+            &ListText {
+                program: concat!("contrapposto ", env!("CARGO_PKG_VERSION")),
+                base: &plan.base,
+                design: plan.design.word(),
+                seed: plan.seed,
+                rows: plan.rows,
+                rows_per_part: plan.rows_per_part,
+                parameters: plan.parameters.iter().map(|parameter| distribution(plan.design, parameter)).collect(),
+                columns: std::iter::once(row).chain(parameters).chain(answer).collect(),
+                plan: &String::from_utf8_lossy(&self.plan.1),
+                scenario: &String::from_utf8_lossy(&self.base.1),
+                parts,
+            },
+        )
+    }
 }
 
 /// The file `sweep.json`.
@@ -61,6 +119,9 @@ struct ListText<'a> {
     rows_per_part: usize,
     parameters: Vec<serde_json::Value>,
     columns: Vec<ColumnText<'a>>,
+    /// The text of the plan, and of the base scenario.
+    plan: &'a str,
+    scenario: &'a str,
     parts: &'a [String],
 }
 
@@ -71,30 +132,7 @@ struct ColumnText<'a> {
     meaning: String,
 }
 
-fn list(plan: &Plan, parts: &[String]) -> Result<String, Fail> {
-    let row = ColumnText { name: "row", meaning: "number of the row in the plan, from 0".to_owned() };
-    let parameters = plan.parameters.iter().map(|parameter| ColumnText {
-        name: &parameter.key,
-        meaning: "key of the scenario, in the unit that its name ends in".to_owned(),
-    });
-    let answer = COLUMNS.iter().map(|(name, meaning)| ColumnText { name, meaning: (*meaning).to_owned() });
-    json_text(
-        LIST,
-        &ListText {
-            program: concat!("contrapposto ", env!("CARGO_PKG_VERSION")),
-            base: &plan.base,
-            design: plan.design.word(),
-            seed: plan.seed,
-            rows: plan.rows,
-            rows_per_part: plan.rows_per_part,
-            parameters: plan.parameters.iter().map(|parameter| distribution(plan.design, parameter)).collect(),
-            columns: std::iter::once(row).chain(parameters).chain(answer).collect(),
-            parts,
-        },
-    )
-}
-
-/// A parameter with its distribution in the words of a plan. The correlation of parameters is in the plan alone.
+/// A parameter with its distribution in the words of a plan. The correlation of parameters is in the text of the plan.
 fn distribution(design: Design, parameter: &Parameter) -> serde_json::Value {
     let value = |value: &Value| match value {
         Value::Number(number) => json!(number),

@@ -35,6 +35,9 @@ pub struct ModelOptions {
     pub person: Option<String>,
 }
 
+/// A model with its muscles, where they are used.
+pub type OpenedModel = (SourcedModel, Option<JointMuscles>);
+
 /// All bytes and words that a model is made of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelSource {
@@ -164,10 +167,7 @@ impl ModelSource {
     ///
     /// # Errors
     /// As [`ModelSource::open`]; and a use of muscles that the model does not have.
-    pub fn open_with_muscles(
-        &self,
-        uses: Option<MuscleUse>,
-    ) -> Result<((SourcedModel, Option<JointMuscles>), Vec<Note>), Failure> {
+    pub fn open_with_muscles(&self, uses: Option<MuscleUse>) -> Result<(OpenedModel, Vec<Note>), Failure> {
         with_notes(|| self.opened(uses).map(|(opened, muscles, _)| (opened, muscles)))
     }
 

@@ -12,72 +12,115 @@ use contrapposto_sweep::Study;
 use crate::fail::Fail;
 use crate::interruption;
 use crate::output::Folder;
-use crate::progress::{Progress, rows_bar};
+use crate::progress::rows_bar;
 
 /// The file that is locked while a sweep writes into a folder, so that a second one is refused.
 const SWEEP_LOCK: &str = "sweep.lock";
 /// Most threads.
 const MOST_THREADS: usize = 256;
 
-/// A folder with all parts of a study.
-pub(crate) struct WholeParts {
+/// Parts in a folder that are none of a study.
+#[derive(Clone, Copy)]
+pub(crate) enum Others {
+    /// Such parts are removed when all parts of the study are there, and the file that lists them.
+    Removed,
+    /// Parts behind the last one, and parts of the same bodies with fewer or more rows, stay; others are refused.
+    Kept,
+}
+
+/// A folder that takes the parts of a study.
+pub(crate) struct Filling {
     /// Goes before the folder, which is removed where nothing is in it.
     _lock: Lock,
     pub(crate) folder: Folder,
     /// Names of the parts in their order.
     pub(crate) names: Vec<String>,
-    /// Number of parts that were there before.
-    pub(crate) kept: usize,
+    /// Numbers of the parts that the folder lacks.
+    pub(crate) missing: Vec<usize>,
+    /// Parts that are none of the study.
+    foreign: Vec<String>,
 }
 
-/// Parts in a folder that are none of a study.
-#[derive(Clone, Copy)]
-pub(crate) enum Others<'a> {
-    /// Such parts are removed, and so is the file of this name, which a sweep has once it is whole.
-    Removed(&'a str),
-    /// Parts behind the last one, and parts of the same bodies with fewer or more rows, stay; others are refused.
-    Kept,
-}
-
-/// Computes the parts of a study that the folder `out` lacks.
-///
-/// # Errors
-/// A folder that has parts, without `resume`; parts that are refused; and the user's interruption.
-pub(crate) fn fill(
-    study: &Study,
-    (out, others): (&Path, Others<'_>),
-    resume: bool,
-    threads: Option<NonZero<usize>>,
-) -> Result<WholeParts, Fail> {
-    let parts = study.parts();
-    let there = parts_in(out)?;
-    if !there.is_empty() && !resume {
-        let why = match others {
-            Others::Removed(_) => "has parts of a sweep; --resume keeps those of this plan and removes the others",
-            Others::Kept => "has bodies of a population; --resume keeps them and computes those that are missing",
-        };
-        return Err(Fail::Refused(format!("--out {}: {why}", out.display())));
-    }
-    let names: Vec<String> = (0..parts).map(|part| part_name(part, &study.key(part))).collect();
-    if let Others::Kept = others {
-        refuse_foreign(study, out, &there, &names)?;
-    }
-    let folder = Folder::open(out)?;
-    let lock = Lock::of(&folder)?;
-    if let Others::Removed(list) = others {
-        folder.remove(list)?;
+impl Filling {
+    /// Locks the folder `out`, which is made if it is not there; nothing in it changes yet.
+    ///
+    /// # Errors
+    /// A folder that has parts, without `resume`; parts that are refused; a folder in which another sweep writes.
+    pub(crate) fn open(study: &Study, (out, others): (&Path, Others), resume: bool) -> Result<Self, Fail> {
+        let parts = study.parts();
+        let there = parts_in(out)?;
+        if !there.is_empty() && !resume {
+            let why = match others {
+                Others::Removed => "has parts of a sweep; --resume keeps those of this plan and removes the others",
+                Others::Kept => "has bodies of a population; --resume keeps them and computes those that are missing",
+            };
+            return Err(Fail::Refused(format!("--out {}: {why}", out.display())));
+        }
+        let names: Vec<String> = (0..parts).map(|part| part_name(part, &study.key(part))).collect();
+        if let Others::Kept = others {
+            refuse_foreign(study, out, &there, &names)?;
+        }
+        let folder = Folder::open(out)?;
+        let lock = Lock::of(&folder)?;
+        let missing = (0..parts).filter(|part| !there.contains(&names[*part])).collect();
         let wanted: BTreeSet<&String> = names.iter().collect();
-        there.iter().filter(|name| !wanted.contains(name)).try_for_each(|name| folder.remove(name))?;
+        let foreign = there.iter().filter(|name| !wanted.contains(name)).cloned().collect();
+        Ok(Self { _lock: lock, folder, names, missing, foreign })
     }
-    let missing: Vec<usize> = (0..parts).filter(|part| !there.contains(&names[*part])).collect();
-    let written = compute(study, &missing, threads, |part, text| folder.write(&[(names[part].as_str(), text)]))?;
-    let kept = parts - missing.len();
-    if written < missing.len() {
-        let (whole, out) = (kept + written, out.display());
-        let more = "the same command with --resume continues";
-        return Err(Fail::Job(format!("interrupted: {whole} of {parts} parts are in {out}: {more}")));
+
+    /// Number of parts that were there before.
+    pub(crate) fn kept(&self) -> usize {
+        self.names.len() - self.missing.len()
     }
-    Ok(WholeParts { _lock: lock, folder, names, kept })
+
+    /// Writes a part, whole or not at all.
+    pub(crate) fn write(&self, part: usize, text: &str) -> Result<(), Fail> {
+        self.folder.write(&[(self.names[part].as_str(), text)])
+    }
+
+    /// Computes the missing parts.
+    ///
+    /// # Errors
+    /// The user's interruption, and parts that cannot be written.
+    pub(crate) fn fill(&self, study: &Study, threads: Option<NonZero<usize>>, watch: &Watch<'_>) -> Result<(), Fail> {
+        let written = compute(study, &self.missing, threads, watch, |part, text| self.write(part, &text))?;
+        if written < self.missing.len() {
+            let (whole, parts, out) = (self.kept() + written, self.names.len(), self.folder.path(""));
+            let more = "the same command with --resume continues";
+            return Err(Fail::Job(format!("interrupted: {whole} of {parts} parts are in {}: {more}", out.display())));
+        }
+        Ok(())
+    }
+
+    /// Writes the list of all parts under its name, and then removes those that are none of the study.
+    pub(crate) fn finish(&self, name: &str, list: &str) -> Result<(), Fail> {
+        self.folder.write(&[(name, list)])?;
+        self.foreign.iter().try_for_each(|name| self.folder.remove(name))
+    }
+}
+
+/// Looks after a computation from outside.
+pub(crate) struct Watch<'a> {
+    /// Called once with the number of rows.
+    pub(crate) begin: &'a (dyn Fn(usize) + Sync),
+    /// Whether to go on.
+    pub(crate) go_on: &'a (dyn Fn() -> bool + Sync),
+    /// Called after every row.
+    pub(crate) done: &'a (dyn Fn() + Sync),
+}
+
+/// Carries out a computation under a bar on standard error, which ends at the first Ctrl-C.
+pub(crate) fn watched<T>(job: impl FnOnce(&Watch<'_>) -> Result<T, Fail>) -> Result<T, Fail> {
+    interruption::watch();
+    let bar = rows_bar(0);
+    let watch = Watch {
+        begin: &|rows| bar.set_length(rows as u64),
+        go_on: &|| !interruption::is_requested(),
+        done: &|| bar.inc(1),
+    };
+    let result = job(&watch);
+    bar.finish();
+    result
 }
 
 /// Refuses a folder with a part that should have the same bodies as one of the study, and has others.
@@ -123,23 +166,22 @@ impl Drop for Lock {
 }
 
 /// Computes parts in threads, as many as there are cores where their number is not given, and gives each to `write` in this thread; gives
-/// the number of parts that were written, fewer than asked for where the user interrupts.
+/// the number of parts that were written, fewer than asked for where the computation is told to end.
 pub(crate) fn compute(
     study: &Study,
     parts: &[usize],
     threads: Option<NonZero<usize>>,
+    watch: &Watch<'_>,
     mut write: impl FnMut(usize, String) -> Result<(), Fail>,
 ) -> Result<usize, Fail> {
-    interruption::watch();
     let threads = threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
     let threads = threads.min(parts.len()).clamp(1, MOST_THREADS);
-    let rows = parts.iter().map(|part| study.rows_of(*part).len()).sum::<usize>();
-    let bar = rows_bar(rows as u64);
-    let work = Work { study, parts, bar, next: AtomicUsize::new(0), stop: AtomicBool::new(false) };
+    (watch.begin)(parts.iter().map(|part| study.rows_of(*part).len()).sum());
+    let work = Work { study, parts, watch, next: AtomicUsize::new(0), stop: AtomicBool::new(false) };
     // A thread that is ahead waits, so that no more parts are in memory than two for each thread.
     let (sender, finished) = sync_channel(threads);
     let mut written = 0;
-    let result = std::thread::scope(|scope| {
+    std::thread::scope(|scope| {
         for _ in 0..threads {
             let (sender, work) = (sender.clone(), &work);
             scope.spawn(move || work.carry_out(&sender));
@@ -150,17 +192,15 @@ pub(crate) fn compute(
             write(part, text).inspect_err(|_| work.stop.store(true, Ordering::Relaxed))?;
             written += 1;
         }
-        Ok(())
-    });
-    work.bar.finish();
-    result.map(|()| written)
+        Ok(written)
+    })
 }
 
 /// The parts that threads share.
 struct Work<'a> {
     study: &'a Study,
     parts: &'a [usize],
-    bar: Progress,
+    watch: &'a Watch<'a>,
     /// Place in `parts` of the next part that no thread has taken.
     next: AtomicUsize,
     /// A part could not be written.
@@ -168,11 +208,11 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Computes one part after another until none is left, or the user interrupts.
+    /// Computes one part after another until none is left, or the computation is told to end.
     fn carry_out(&self, finished: &SyncSender<(usize, String)>) {
-        let go_on = || !interruption::is_requested() && !self.stop.load(Ordering::Relaxed);
+        let go_on = || (self.watch.go_on)() && !self.stop.load(Ordering::Relaxed);
         while let Some(&part) = self.parts.get(self.next.fetch_add(1, Ordering::Relaxed)) {
-            let Some(text) = self.study.part(part, go_on, || self.bar.inc(1)) else { break };
+            let Some(text) = self.study.part(part, go_on, self.watch.done) else { break };
             if finished.send((part, text)).is_err() {
                 break;
             }

@@ -73,6 +73,12 @@ def _frozen(value: Any) -> Any:
     return value
 
 
+def framed(page: str, height: int) -> str:
+    """A page inside another one, `height` pixels high."""
+    inside = html.escape(page, quote=True)
+    return f'<iframe srcdoc="{inside}" style="width:100%;height:{height}px;border:0" sandbox="allow-scripts"></iframe>'
+
+
 class Result:
     """The result of a job. Each array has one row a moment or posture, and one column a coordinate."""
 
@@ -153,8 +159,7 @@ class Result:
         return path
 
     def _repr_html_(self) -> str:
-        page = html.escape(self.html(), quote=True)
-        return f'<iframe srcdoc="{page}" style="width:100%;height:{PAGE_HEIGHT}px;border:0" sandbox="allow-scripts"></iframe>'
+        return framed(self.html(), PAGE_HEIGHT)
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row a moment or posture (index `t`, s), and columns (coordinate, quantity)."""
