@@ -130,6 +130,19 @@ def test_a_joint_that_one_of_them_lacks_is_named(woman: Model, tmp_path: Path) -
         interop.from_mujoco(ours, np.zeros(3), theirs)
 
 
+def test_coordinates_that_follow_others_have_the_values_that_these_ask_for(tmp_path: Path) -> None:
+    mujoco: Any = pytest.importorskip("mujoco")
+    follows = '<equality><joint joint1="elbow" joint2="wrist" polycoef="0.1 0.5 0 0 0"/></equality></mujoco>'
+    hand = """<body name="hand" pos="0 0 -0.3"><joint name="wrist" axis="0 1 0" range="-1 1"/>
+      <inertial mass="0.4" pos="0 0 -0.1" diaginertia="0.01 0.01 0.01"/></body></body></body></body>"""
+    text = MJCF.replace("</body></body></body>", hand).replace("</mujoco>", follows)
+    path = written(tmp_path, "hand.xml", text)
+    ours, theirs = Model.from_file(path), mujoco.MjModel.from_xml_path(str(path))
+    qpos = interop.to_mujoco(ours, {"wrist": 0.4}, theirs)
+    assert qpos[theirs.joint("elbow").qposadr[0]] == pytest.approx(0.1 + 0.5 * 0.4)
+    assert qpos[theirs.joint("wrist").qposadr[0]] == 0.4
+
+
 def test_a_motion_is_written_and_read(woman: Model, tmp_path: Path, program: str) -> None:
     low, high = woman.ranges.T
     times = np.linspace(0.5, 2, 7)
