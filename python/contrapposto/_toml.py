@@ -17,7 +17,12 @@ def toml(words: Mapping[str, Any]) -> str:
 def _key(key: object) -> str:
     if not isinstance(key, str):
         raise InputError(f"the key {key!r} of a scenario is no text")
-    return json.dumps(key)
+    return _text(key)
+
+
+def _text(text: str) -> str:
+    """A text as TOML takes it: JSON's, but for characters beyond 16 bits, which JSON writes as two, and for DEL."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _toml(value: Any) -> str:
@@ -28,8 +33,10 @@ def _toml(value: Any) -> str:
         value = value.tolist()
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if isinstance(value, (bool, str)):
-        return json.dumps(value)
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if isinstance(value, (int, float)):
         # TOML writes inf and nan as Python does.
         return repr(value)

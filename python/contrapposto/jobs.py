@@ -43,11 +43,11 @@ def minimize(problem: Mapping[str, Any], *, literal: bool = False) -> Record:
 
 
 def source_of(scenario: Scenario) -> tuple[str, bool]:
-    """The scenario, and whether it is a text (else a path). A text has more than one line, or an `=`."""
+    """The scenario, and whether it is a text (else a path). A text has more than one line, or an `=` and is the name of no file."""
     if isinstance(scenario, Mapping):
         return toml(scenario), True
     if isinstance(scenario, os.PathLike):
         return os.fspath(scenario), False
     if isinstance(scenario, str):
-        return scenario, "\n" in scenario or "=" in scenario
+        return scenario, "\n" in scenario or ("=" in scenario and not os.path.exists(scenario))
     raise InputError(f"scenario is {type(scenario).__name__}; it must be a path, a text (TOML) or a dictionary")

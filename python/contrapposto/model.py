@@ -223,6 +223,11 @@ class Model:
         """Greatest voluntary torque (N m, both positive) of the muscle groups of the positive and the negative sense of a coordinate at
         angles (rad), shape (N, 2). Muscles of a model file have no part in it; `contrapposto.muscles` gives their strength."""
         angles = line("angles", angles)
+        odd = angles[~np.isfinite(angles)]
+        if odd.size:
+            error = InputError(f"an angle of `{coordinate}` is {odd[0]}; it must be finite (rad)")
+            error.coordinate, error.value, error.unit, error.limit = coordinate, float(odd[0]), "rad", "finite"
+            raise error
         both = [_native.strength(self._native, coordinate, positive, angles) for positive in (True, False)]
         return np.stack(both, axis=1)
 

@@ -58,6 +58,8 @@ def test_a_group_fails_at_its_endurance_time(woman: Model) -> None:
 
 
 def test_odd_loads_and_senses_are_refused(woman: Model) -> None:
+    with pytest.raises(InputError, match="an angle of `elbow_flex_r` is nan"):
+        woman.strength("elbow_flex_r", [0.1, float("nan")])
     with pytest.raises(InputError, match="relative load is -1"):
         woman.endurance_time("elbow_flex_r", [0.2, -1.0])
     with pytest.raises(InputError, match="relative load is nan"):

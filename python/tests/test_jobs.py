@@ -120,6 +120,19 @@ def test_a_text_and_a_dictionary_give_the_same_as_the_file(results: dict[str, Re
     assert contrapposto.simulate(text).q.tobytes() == results["simulate"].q.tobytes()
 
 
+def test_texts_of_dictionaries_and_odd_names_arrive_as_they_are(tmp_path: Path) -> None:
+    title = 'a "tool" \\ 🧍 ü'
+    words = {"format": 1, "title": title, "run": {"duration_s": 1}, "strategy": {"kind": "active"}}
+    words |= {"coordinates": {"free": ["elbow_flex_r"]}}
+    assert contrapposto.simulate(words).summary.title == title
+    for odd in ("\x7f", "\x01", "\n"):
+        with pytest.raises(InputError, match="the title holds control characters"):
+            contrapposto.simulate({**words, "title": odd})
+    path = tmp_path / "a=b.toml"
+    path.write_text(SCENARIOS["simulate"].read_text())
+    assert contrapposto.simulate(str(path)).verdict == contrapposto.simulate(path).verdict
+
+
 def test_errors_of_scenarios_have_their_place(tmp_path: Path) -> None:
     path = tmp_path / "job.toml"
     path.write_text(SCENARIOS["simulate"].read_text() + "\nnonsense = 3\n")
