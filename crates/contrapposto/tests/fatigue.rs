@@ -649,7 +649,7 @@ fn strength_outside_the_tested_angles_is_that_of_the_nearer_end() {
             assert!(strength.is_extrapolated(outside) && !strength.is_extrapolated(end));
         }
         let angle = rng.random_range(-4.0..4.0);
-        assert_eq!(strength.mirrored().torque(-angle), strength.torque(angle));
+        assert_eq!(strength.clone().mirrored().torque(-angle), strength.torque(angle));
         assert!(strength.torque(angle) <= strength.greatest());
     }
 }

@@ -165,7 +165,7 @@ fn differences(task: &Task, model: &Model, posture: &posture::Posture, loads: &[
 fn kinks(task: &Task, model: &Model, posture: &posture::Posture, values: &[f64], row: usize) -> bool {
     let Task::Effort(effort) = task else { return false };
     let i = effort.coordinates[row];
-    let strength = model.coordinates()[i].groups.as_ref().unwrap()[Side::of(values[row]).index()].strength;
+    let strength = &model.coordinates()[i].groups.as_ref().unwrap()[Side::of(values[row]).index()].strength;
     let mut body = JointTorques::new(model);
     body.update(model, posture, &[], Quantities::TORQUES).unwrap();
     let q = body.angles()[i];
