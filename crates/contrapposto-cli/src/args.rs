@@ -6,10 +6,12 @@ mod joint;
 mod model;
 mod muscles;
 mod population;
+mod repeat;
 mod scale;
 mod scenario;
 mod studio;
 mod sweep;
+mod time;
 mod track;
 
 use std::path::PathBuf;
@@ -25,6 +27,7 @@ pub(crate) use model::{
 };
 pub(crate) use muscles::use_muscles;
 pub(crate) use population::PopulationArgs;
+pub(crate) use repeat::RepeatArgs;
 pub(crate) use scale::ScaleArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;

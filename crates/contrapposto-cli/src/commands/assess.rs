@@ -1,5 +1,6 @@
 //! `contrapposto assess`: the muscle group that fails first in a recorded motion, its time, and its relief.
 
+mod repeats;
 mod support_doubts;
 mod warnings;
 
@@ -13,13 +14,14 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
-use contrapposto::suggestions::{Advice, Change, Job, Trial, Worked, changes, with_breaks};
+use contrapposto::suggestions::{Advice, Change, Job, Trial, Worked, changes, with_breaks, with_breaks_in_repeats};
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::motion::write_sto;
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use nalgebra::Vector3;
 
+use self::repeats::ends_apart;
 use self::support_doubts::support_doubts;
 use self::warnings::{WHAT_CARRIES, warnings};
 use crate::args::{AssessArgs, SuggestArgs};
@@ -72,6 +74,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         .assess(&mut tables, assessed_frames.as_mut())
         .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
     let new = [
+        settings.repetition.and_then(|_| ends_apart(model, &motion)).into_iter().collect(),
         support_doubts(model, &motion, &settings.supports),
         warnings(args, &opened, (&settings, &found), motion.len()),
     ]
@@ -169,10 +172,13 @@ fn advice(given: &Motion<'_>, found: &Assessment, verdict: &Verdict, suggest: Su
     }
     let start = &motion[0].1;
     let (supports, loads) = (&settings.supports, if ground.is_none() { vec![held] } else { vec![] });
-    let job = Job { model, start, supports, levels: vec![], loads, asked: Some(end - begin), strategy: None };
+    let job = Job { model, start, supports, levels: vec![], loads, asked: verdict.asked, strategy: None };
     let all = || changes(&job, &verdict.hazards).into_iter().filter(|change| *change != Change::OtherFoot).collect();
     let groups = Worked::in_motion(model, found);
-    let breaks = || with_breaks(&groups, end - begin, (begin, end), verdict);
+    let breaks = || match found.repetition {
+        Some(_) => with_breaks_in_repeats(model, found, verdict),
+        None => with_breaks(&groups, end - begin, (begin, end), verdict),
+    };
     let trial = |change: &Change| {
         let mut loads = held.to_vec();
         change.apply_to_loads(&mut loads);
@@ -198,7 +204,7 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
     let span = &args.under.frames;
     let all = read_whole_motion(&args.motion, accepted, span, model, &mut notes)?;
     let mut recorded = Recorded::new(&args.motion.display().to_string(), all, (&args.dynamics, span), model)?;
-    let (held, ground) = loads_of(&args.under, model, &mut notes)?;
+    let (held, ground) = loads_of(&args.under, model, &recorded.frames, &mut notes)?;
     keep_overlap(&mut recorded, ground.as_ref())?;
     if let ([(first, _), .., (last, _)], frames) = (recorded.frames.as_slice(), recorded.frames.len())
         && first >= last
@@ -213,7 +219,9 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
     }
     let usual = if opened.is_exported_adult() { 0.0 } else { ANGLE_ERROR };
     let angle_error = args.angle_error.map_or(usual, f64::to_radians);
+    let seconds = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
     let settings = AssessSettings {
+        repetition: args.repeat.repetition(seconds).map_err(Fail::Refused)?,
         supports: supports(args, model)?,
         rates,
         root_held: args.fixed_root,

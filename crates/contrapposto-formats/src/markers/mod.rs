@@ -8,7 +8,7 @@ mod scale_setup;
 mod tasks;
 mod trc;
 
-pub use c3d::{C3dError, is_c3d, read_c3d};
+pub use c3d::{C3dError, ForcePlate, ForcePlates, is_c3d, read_c3d, read_force_plates};
 pub use marker_set::marker_set;
 pub use measurement::{Measurement, MeasurementError};
 pub use scale_setup::{ACCEPTED_FACTORS, Order, ScaleSetup, scale_setup};

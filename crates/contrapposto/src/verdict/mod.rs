@@ -24,6 +24,7 @@ mod missed;
 mod motion;
 mod motors;
 mod posture;
+mod repeats;
 mod run;
 mod spread;
 mod words;
@@ -34,8 +35,9 @@ pub use lines::Line;
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest};
 pub use motors::{has_motors, muscles_or_motors};
 pub use posture::HeldPosture;
-pub use spread::spread;
+use repeats::Repeats;
 pub(crate) use spread::{failure, laws_and_variation};
+pub use spread::{spread, spread_of_repeats};
 pub(crate) use words::A_DAY;
 pub use words::{error_in_words, how_long, slip_in_words};
 
@@ -236,6 +238,8 @@ pub(crate) struct Findings {
     pub(crate) fast: Option<f64>,
     /// Inertia of the motion counts.
     pub(crate) dynamics: bool,
+    /// The motion is repeated.
+    pub(crate) repeats: Option<Repeats>,
     /// The run was left before its end, at that time, s.
     pub(crate) interrupted: Option<f64>,
 }
