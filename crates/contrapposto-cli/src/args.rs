@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 pub(crate) use capacity::CapacityArgs;
-pub(crate) use dynamics::DynamicsArgs;
+pub(crate) use dynamics::{CutOff, DynamicsArgs};
 pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
 pub(crate) use model::{
     AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,
@@ -32,7 +32,7 @@ pub(crate) use scale::ScaleArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;
 pub(crate) use sweep::SweepArgs;
-pub(crate) use track::{TrackArgs, UnitChoice};
+pub(crate) use track::{TrackArgs, UnitChoice, UpChoice};
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.
 #[derive(Debug, Parser)]

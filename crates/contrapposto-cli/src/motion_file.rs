@@ -7,7 +7,7 @@ use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError, PlateOn};
-use contrapposto_formats::markers::{is_c3d, read_force_plates};
+use contrapposto_formats::markers::{is_c3d, read_force_plates, turn_upright};
 use contrapposto_formats::motion::{self, Postures, Units, postures, read_table};
 use contrapposto_formats::nearest;
 use contrapposto_formats::tissue::SourcedModel;
@@ -88,7 +88,7 @@ fn force_plates(
     }
     let mut read = read_force_plates(name, bytes, None).map_err(|error| Fail::Refused(error.to_string()))?;
     let up = (-model.gravity()).try_normalize(1e-9);
-    if let Some(turn) = up.and_then(|up| read.turn_to(up)) {
+    if let Some(turn) = up.and_then(|up| turn_upright(read.up, up)) {
         read.turn(&turn);
         print_note("note", &turned(name));
     }

@@ -4,7 +4,7 @@ use contrapposto::fatigue::{Breaks, Repetition};
 
 use super::time::time;
 
-/// How a motion is repeated.
+/// Time, pauses and breaks of a motion that is repeated.
 #[derive(Debug, clap::Args)]
 pub(crate) struct RepeatArgs {
     /// Repeat the motion for this time, breaks included: 30min, 2h, 8h. The motion is one whole cycle, such as a step or a lift, whose end meets

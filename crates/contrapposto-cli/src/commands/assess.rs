@@ -73,12 +73,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let found = whole
         .assess(&mut tables, assessed_frames.as_mut())
         .map_err(|error| Fail::Refused(format!("{}: {error}", args.motion.display())))?;
-    let new = [
-        settings.repetition.and_then(|_| ends_apart(model, &motion)).into_iter().collect(),
-        support_doubts(model, &motion, &settings.supports),
-        warnings(args, &opened, (&settings, &found), motion.len()),
-    ]
-    .concat();
+    let new = new_doubts(args, &opened, (&settings, &found), &motion);
     new.iter().for_each(|warning| print_note("warning", warning));
     let warnings = [of_muscles, doubts, new].concat();
 
@@ -119,6 +114,18 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     }
     print(&if args.json { json } else { answer.in_words(model, "", &report(&text)) })?;
     answered(&answer.verdict)
+}
+
+/// Reasons to doubt the motion and its assessment.
+fn new_doubts(
+    args: &AssessArgs,
+    opened: &SourcedModel,
+    (settings, found): (&AssessSettings, &Assessment),
+    motion: &[(f64, Posture)],
+) -> Vec<String> {
+    let apart = settings.repetition.and_then(|_| ends_apart(&opened.model, motion));
+    let supports = support_doubts(&opened.model, motion, &settings.supports);
+    [apart.into_iter().collect(), supports, warnings(args, opened, (settings, found), motion.len())].concat()
 }
 
 /// The motion of an assessment, and its loads.
@@ -212,7 +219,7 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
         let why = format!("its {frames} frames all have the time {first} s; times must rise, or give one frame");
         return Err(Fail::Refused(format!("{}: {why}", args.motion.display())));
     }
-    let Recorded { frames: motion, rates, said } = recorded;
+    let Recorded { frames: motion, rates, said, doubts } = recorded;
     if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
         let why = "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
         return Err(Fail::Refused(why.to_owned()));
@@ -230,7 +237,7 @@ fn given(args: &AssessArgs, opened: &mut SourcedModel, muscles: Option<JointMusc
         angle_error,
         ..AssessSettings::default()
     };
-    let warnings = note_values_out_of_range(opened, &motion, &mut notes);
+    let warnings = [doubts, note_values_out_of_range(opened, &motion, &mut notes)].concat();
     warnings.iter().for_each(|warning| print_note("warning", warning));
     said.iter().chain(&notes).for_each(|note| print_note("note", note));
     let folder = args.out.as_deref().map(|out| ResultSet::open(out, &ASSESS_FILES)).transpose()?;

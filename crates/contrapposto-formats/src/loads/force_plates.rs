@@ -16,7 +16,8 @@ const GREATEST_DISTANCE: f64 = 0.3;
 /// Pauses in a stance up to this, s, do not end it (assumed).
 const SHORT: f64 = 0.05;
 /// Names of feet.
-const FEET: [&str; 8] = ["calcn_r", "calcn_l", "foot_r", "foot_l", "right_foot", "left_foot", "r_foot", "l_foot"];
+const NAMES_OF_FEET: [&str; 8] =
+    ["calcn_r", "calcn_l", "foot_r", "foot_l", "right_foot", "left_foot", "r_foot", "l_foot"];
 
 /// The segment that a plate acts on; `None` for a plate that does not act on the body.
 pub type PlateOn = (usize, Option<usize>);
@@ -36,7 +37,7 @@ pub enum ForcePlateError {
         number: usize,
     },
     /// The model has no segment that is known to be a foot.
-    #[error("{file}: no segment of the model is named like a foot ({}); name a segment for each plate", FEET.join(", "))]
+    #[error("{file}: no segment of the model is named like a foot ({}); name a segment for each plate", NAMES_OF_FEET.join(", "))]
     NoFeet {
         /// Name of the file.
         file: String,
@@ -57,7 +58,7 @@ pub enum ForcePlateError {
         to: f64,
         /// Name of the nearest foot.
         segment: String,
-        /// Its distance, m.
+        /// Distance of that foot, m.
         distance: f64,
     },
 }
@@ -66,17 +67,9 @@ pub enum ForcePlateError {
 type Stance = std::ops::RangeInclusive<usize>;
 
 impl ForcePlates {
-    /// The turn from the laboratory's upward axis, which is nearest to the normals of the plates, to `up`; `None` where they agree.
-    pub fn turn_to(&self, up: Vector3<f64>) -> Option<Rotation3<f64>> {
-        let sum: Vector3<f64> = self.plates.iter().map(|plate| plate.up).sum();
-        let axis = sum.iamax();
-        let own = Vector3::from_fn(|i, _| if i == axis { sum[axis].signum() } else { 0.0 });
-        let turn = Rotation3::rotation_between(&own, &up)?;
-        (turn.angle() > 0.1).then_some(turn)
-    }
-
-    /// All vectors turned.
+    /// Turns all vectors.
     pub fn turn(&mut self, turn: &Rotation3<f64>) {
+        self.up = turn * self.up;
         for plate in &mut self.plates {
             let one = [&mut plate.up, &mut plate.center];
             let all = plate.corners.iter_mut().chain(&mut plate.forces).chain(&mut plate.moments).chain(one);
@@ -150,7 +143,7 @@ impl GroundReaction {
         if let Some((number, _)) = given.iter().find(|(plate, _)| !(1..=count).contains(plate)) {
             return Err(ForcePlateError::Number { file: file(), count, number: *number });
         }
-        let segments: Vec<usize> = FEET.iter().filter_map(|foot| model.segment(foot)).collect();
+        let segments: Vec<usize> = NAMES_OF_FEET.iter().filter_map(|foot| model.segment(foot)).collect();
         let mut feet = Feet { model, motion, segments, kinematics: Kinematics::new(model) };
         let mut table = Table { times: read.times.clone(), warnings: read.warnings.clone(), ..Table::default() };
         table.rows = vec![vec![]; read.times.len()];

@@ -13,7 +13,7 @@ pub use marker_set::marker_set;
 pub use measurement::{Measurement, MeasurementError};
 pub use scale_setup::{ACCEPTED_FACTORS, Order, ScaleSetup, scale_setup};
 pub use tasks::{CoordinateTask, MarkerTask, TaskFileError, TaskValue, TrackingTasks, tracking_tasks};
-pub use trc::{MarkerUnit, Markers, read_trc};
+pub use trc::{MarkerUnit, Markers, read_trc, turn_upright};
 
 use nalgebra::Vector3;
 

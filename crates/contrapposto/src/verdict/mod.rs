@@ -35,13 +35,13 @@ pub use lines::Line;
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest};
 pub use motors::{has_motors, muscles_or_motors};
 pub use posture::HeldPosture;
-use repeats::Repeats;
 pub(crate) use spread::{failure, laws_and_variation};
 pub use spread::{spread, spread_of_repeats};
 pub(crate) use words::A_DAY;
 pub use words::{error_in_words, how_long, slip_in_words};
 
 use crate::contact::{Missing, Slip};
+use crate::fatigue::Repetition;
 use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Side;
 use crate::statics::Load;
@@ -197,6 +197,16 @@ impl Verdict {
     pub(crate) fn risks(&self) -> usize {
         self.hazards.len() + self.hands.len()
     }
+}
+
+/// A motion that is repeated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Repeats {
+    /// Length of the motion, s.
+    pub(crate) cycle: f64,
+    pub(crate) repetition: Repetition,
+    /// The group that asks for relief first, and when, s.
+    pub(crate) relief: Option<(Who, f64)>,
 }
 
 /// The findings of a job.

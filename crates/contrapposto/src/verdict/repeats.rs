@@ -3,20 +3,10 @@
 use super::holding::least;
 use super::spread::spread_of_repeats;
 use super::words::how_long;
-use super::{Failure, Findings, Tired, Who};
+use super::{Failure, Findings, Repeats, Tired, Who};
 use crate::assessment::{Assessment, GroupAssessment};
 use crate::fatigue::{Breaks, Repetition};
 use crate::model::Model;
-
-/// How a motion is repeated, and what that asks for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Repeats {
-    /// Length of the motion, s.
-    cycle: f64,
-    repetition: Repetition,
-    /// The group that asks for relief first, and when, s.
-    relief: Option<(Who, f64)>,
-}
 
 impl Findings {
     /// Takes in what becomes of the groups of a motion of `cycle` seconds when it is repeated.
@@ -48,7 +38,7 @@ fn who(group: &GroupAssessment) -> Who {
     Who { coordinate: group.coordinate, side: group.side, load: group.peak_load.value }
 }
 
-/// When a group fails, however long the motion is repeated; `None` of a group that does not work.
+/// The time at which a group fails, however long the motion is repeated; `None` of a group that does not work.
 fn failure(model: &Model, group: &GroupAssessment, repetition: Repetition) -> Option<Failure> {
     let muscles = &model.coordinates()[group.coordinate].groups.as_ref()?[group.side.index()];
     let time = group.repeated?.fails_at;

@@ -33,7 +33,7 @@ pub(crate) struct AssessText {
     frames: usize,
     start_s: f64,
     end_s: f64,
-    /// How the motion is repeated; left out where it is not.
+    /// Times of a motion that is repeated; left out of another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     repeats: Option<RepeatsText>,
     /// Error of the angles within which groups that work against passive torque are judged.

@@ -17,6 +17,7 @@ use crate::motion::{MOST_NAME_BYTES, MOST_NUMBERS};
 use crate::xml::shorten;
 use contrapposto::model::LARGEST;
 use layout::Layout;
+use nalgebra::Vector3;
 use parameters::Parameters;
 pub use plates::{ForcePlate, ForcePlates, read_force_plates};
 pub use refusal::C3dError;
@@ -65,7 +66,26 @@ fn markers(bytes: &[u8], unit: Option<MarkerUnit>) -> Result<Markers, C3dError> 
     let places = places(&layout, &columns, data, &mut warnings)?;
     let times = (0..there).map(|index| (layout.first + index) as f64 / layout.rate).collect();
     let names = columns.into_iter().map(|(name, _)| name).collect();
-    Ok(Markers { names, times, places, unit, warnings })
+    Ok(Markers { names, times, places, unit, up: up(&parameters), warnings })
+}
+
+/// The axis of the laboratory that points up: along the normal of the first force plate, or else that which is drawn upwards on a screen.
+fn up(parameters: &Parameters<'_>) -> Option<Vector3<f64>> {
+    let corners = parameters.list("FORCE_PLATFORM:CORNERS", true).unwrap_or_default();
+    let plates = parameters.number("FORCE_PLATFORM:USED").is_some_and(|count| count > 0.0);
+    let corner = |at: usize| Vector3::from_column_slice(&corners[at..at + 3]);
+    let corners = (plates && corners.len() >= 12).then(|| [0, 3, 6, 9].map(corner));
+    if let Some(axes) = corners.as_ref().and_then(plates::axes) {
+        let axis = axes.column(2).iamax();
+        return Some(Vector3::from_fn(|i, _| f64::from(u8::from(i == axis))));
+    }
+    let word = parameters.texts("POINT:Y_SCREEN", 1)?.into_iter().next()?;
+    match word.as_str() {
+        "+X" => Some(Vector3::x()),
+        "+Y" => Some(Vector3::y()),
+        "+Z" => Some(Vector3::z()),
+        _ => None,
+    }
 }
 
 /// Parameters and layout of a file, and the bytes of its whole frames.

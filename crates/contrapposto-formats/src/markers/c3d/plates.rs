@@ -16,13 +16,12 @@ use super::analog::{Analog, no_value};
 use super::layout::Layout;
 use super::parameters::Parameters;
 use super::refusal::C3dError;
-use super::trial;
+use super::{trial, up};
 use crate::markers::trc::MarkerUnit;
+use crate::motion::MOST_NUMBERS;
 
 /// Most plates of a file (assumed).
 const MOST_PLATES: usize = 64;
-/// Most numbers of all plates: as of a table.
-const MOST_NUMBERS: usize = crate::motion::MOST_NUMBERS;
 
 /// Forces of the plates of a C3D file.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,11 +30,13 @@ pub struct ForcePlates {
     pub times: Vec<f64>,
     /// All plates.
     pub plates: Vec<ForcePlate>,
+    /// The axis of the laboratory that points up.
+    pub up: Vector3<f64>,
     /// Faults of the file that do not keep it from being read.
     pub warnings: Vec<String>,
 }
 
-/// What acts on the body at one plate, in the axes of the laboratory.
+/// Forces and moments of one plate on the body, in the axes of the laboratory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForcePlate {
     /// Corners of the surface, m.
@@ -50,7 +51,7 @@ pub struct ForcePlate {
     pub moments: Vec<Vector3<f64>>,
 }
 
-/// What a plate is made of.
+/// Type, channels and place of a plate.
 struct Plate {
     kind: usize,
     /// Number of each channel, from 0.
@@ -98,7 +99,7 @@ fn force_plates(bytes: &[u8], unit: Option<MarkerUnit>) -> Result<ForcePlates, C
         ));
     }
     let plates: Vec<Plate> =
-        (0..count).map(|i| Plate::new(&parameters, &layout, &analog, i, &mut warnings)).collect::<Result<_, _>>()?;
+        (0..count).map(|i| Plate::new(&parameters, &layout, &analog, i)).collect::<Result<_, _>>()?;
     let mut found: Vec<ForcePlate> = plates.iter().map(Plate::empty).collect();
     let mut times = vec![];
     for (number, frame) in frames.chunks_exact(layout.frame).enumerate() {
@@ -119,7 +120,8 @@ fn force_plates(bytes: &[u8], unit: Option<MarkerUnit>) -> Result<ForcePlates, C
             }),
         );
     }
-    Ok(ForcePlates { times, plates: found, warnings })
+    let up = up(&parameters).unwrap_or_else(Vector3::z);
+    Ok(ForcePlates { times, plates: found, up, warnings })
 }
 
 impl ForcePlate {
@@ -141,13 +143,7 @@ impl ForcePlate {
 }
 
 impl Plate {
-    fn new(
-        parameters: &Parameters<'_>,
-        layout: &Layout,
-        analog: &Analog,
-        i: usize,
-        warnings: &mut Vec<String>,
-    ) -> Result<Self, C3dError> {
+    fn new(parameters: &Parameters<'_>, layout: &Layout, analog: &Analog, i: usize) -> Result<Self, C3dError> {
         let named = |name: &str| format!("FORCE_PLATFORM:{name}");
         let numbers = |name: &str, count: usize| -> Result<Vec<f64>, C3dError> {
             let all = parameters.list(&named(name), true).unwrap_or_default();
@@ -171,22 +167,19 @@ impl Plate {
             C3dError::at(parameters.byte(&named("CORNERS")), message, "four corners in their order are accepted")
         })?;
         let origin = unit * Vector3::from_vec(numbers("ORIGIN", 3)?);
-        let turned = origin.z > 0.0 && kind != 1;
-        warnings.extend(turned.then(|| {
-            format!("FORCE_PLATFORM:ORIGIN of plate {} lies above its surface; it is taken with the other sign", i + 1)
-        }));
         let origin = match kind {
             1 => Vector3::zeros(),
             // Distances of the sensors.
             3 => Vector3::new(origin.x.abs(), origin.y.abs(), -origin.z.abs()),
-            _ if turned => -origin,
+            // The sensors lie below the surface; many programs write the vector the other way round.
+            _ if origin.z > 0.0 => -origin,
             _ => origin,
         };
         let calibration = if kind == 4 { Matrix6::from_vec(numbers("CAL_MATRIX", 36)?) } else { Matrix6::identity() };
         // Of the centre of pressure, or of a moment.
         let metres = match (kind, analog.unit(channels[3]).as_str()) {
-            (1, "m") | (2, "nm") => 1.0,
-            (1, "mm") | (2, "nmm") => 1e-3,
+            (1, "m") | (2, "nm" | "ntm") => 1.0,
+            (1, "mm") | (2, "nmm" | "ntmm") => 1e-3,
             _ => unit,
         };
         Ok(Self { kind, channels, axes, corners, origin, calibration, metres })
@@ -242,8 +235,8 @@ impl Plate {
     /// Length of the unit of the couple of type 1, m.
     fn metres_of_couple(&self, analog: &Analog, layout: &Layout) -> f64 {
         match analog.unit(self.channels[5]).as_str() {
-            "nm" => 1.0,
-            "nmm" => 1e-3,
+            "nm" | "ntm" => 1.0,
+            "nmm" | "ntmm" => 1e-3,
             _ => layout.unit(),
         }
     }
@@ -263,7 +256,7 @@ fn channels(parameters: &Parameters<'_>, analog: &Analog, (i, count): (usize, us
 }
 
 /// Axes of a plate in the laboratory, as columns; `None` of corners that span no area.
-fn axes(corners: &[Vector3<f64>; 4]) -> Option<Matrix3<f64>> {
+pub(super) fn axes(corners: &[Vector3<f64>; 4]) -> Option<Matrix3<f64>> {
     let (x, y) = (corners[0] - corners[1], corners[0] - corners[3]);
     let z = x.cross(&y).try_normalize(1e-12)?;
     let x = x.try_normalize(1e-9)?;
