@@ -209,11 +209,7 @@ fn integers_other_senses_and_origins_are_read() {
         .filter(|(_, name, ..)| *name == "ORIGIN")
         .for_each(|o| o.3.iter_mut().for_each(|x| *x = -*x));
     let read = read_force_plates("a.c3d", &above.bytes(), None).unwrap();
-    assert!(
-        read.warnings[0].contains("FORCE_PLATFORM:ORIGIN of plate 1 lies above its surface"),
-        "{:?}",
-        read.warnings
-    );
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
     assert!((read.plates[0].center_of_pressure(0).unwrap() - at).norm() < 1e-5);
     // A unit of the moments that is said counts.
     let mut metres = plain;
@@ -405,8 +401,15 @@ fn forces_of_published_files_are_those_of_ezc3d() {
                 continue;
             }
         };
-        let rows: Vec<Vec<f64>> =
-            peer.lines().map(|line| line.split('\t').map(|cell| cell.parse().unwrap()).collect()).collect();
+        let rows: Vec<Vec<f64>> = peer
+            .lines()
+            .filter(|line| !line.is_empty())
+            .map(|line| line.split('\t').map(|cell| cell.parse().unwrap()).collect())
+            .collect();
+        if rows.is_empty() {
+            println!("{name}: ezc3d gives no sample");
+            continue;
+        }
         if rows.len() != read.times.len() || rows[0].len() != 6 * read.plates.len() {
             faults.push(format!("{name}: {} samples, {} wanted", read.times.len(), rows.len()));
             continue;
