@@ -40,7 +40,7 @@ impl Surface {
     }
 }
 
-/// What a plate carries, in its own axes: force (N), centre of pressure (m), couple about its normal (N m).
+/// Load of a plate in its own axes: force (N), centre of pressure (m), couple about its normal (N m).
 #[derive(Clone, Copy)]
 struct Carried {
     force: Vector3<f64>,

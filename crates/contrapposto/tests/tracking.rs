@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{Adult, CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec, adult};
+use contrapposto::model::{Adult, CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec, adult};
 use contrapposto::posture::Posture;
 use contrapposto::tracking::{CoordinateGoal, Goals, GoalsError, MarkerGoal, Tracker, first_posture, track};
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -310,13 +310,14 @@ fn a_free_root_that_is_turned_far_is_found() {
         in_segment: Isometry3::identity(),
         coordinates,
     };
-    builder.segment(spec("root", None, JointKind::Free, vec![])).unwrap();
+    let slides = ["x", "y", "z"].map(|name| CoordinateSpec::new(name, (-5.0, 5.0))).to_vec();
+    builder.segment(spec("root", None, JointKind::Free, slides)).unwrap();
     let hinge = vec![CoordinateSpec::new("bend", (-1.0, 1.0))];
     builder.segment(spec("tail", Some("root"), JointKind::Hinge(V::x_axis()), hinge)).unwrap();
     let model = builder.build();
     let mut rng = random();
     let goals = Goals { markers: markers(&model, &mut rng), ..Goals::default() };
-    let ball = (0..model.coordinates().len()).find(|&i| model.coordinates()[i].name.ends_with("_qw")).unwrap();
+    let ball = model.coordinates().iter().position(|c| c.kind == CoordinateKind::Quaternion).unwrap();
     let mut turned = 0;
     for _ in 0..60 {
         let mut posture = model.default_posture();

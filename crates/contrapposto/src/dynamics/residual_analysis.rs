@@ -13,7 +13,7 @@ use crate::posture::Posture;
 /// Least and greatest cut-off that is suggested, Hz: that of slow posture, and that of impacts (assumed).
 const SUGGESTED: (f64, f64) = (2.0, 20.0);
 /// Step of cut-offs, Hz.
-const STEP: f64 = 0.5;
+const CUTOFF_STEP: f64 = 0.5;
 /// The line is fitted to cut-offs from this share of half of the frame rate to `LAST` of it (assumed: human motion has little above a quarter of 100 Hz).
 const FIRST: f64 = 0.5;
 const LAST: f64 = 0.9;
@@ -35,8 +35,8 @@ pub fn suggested_cutoff(
     let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
     let half_rate = 0.5 * (times.len() - 1) as f64 / span;
     let last = LAST * half_rate;
-    let count = (last / STEP).floor() as usize;
-    let cutoffs: Vec<f64> = (2..=count).map(|k| STEP * k as f64).collect();
+    let count = (last / CUTOFF_STEP).floor() as usize;
+    let cutoffs: Vec<f64> = (2..=count).map(|k| CUTOFF_STEP * k as f64).collect();
     let filters = cutoffs.iter().map(|cutoff| Sampling::new(times.clone(), smoothing(*cutoff)));
     let filters: Vec<Sampling> = filters.collect::<Result<_, _>>()?;
     let mut suggested = vec![];
@@ -101,7 +101,7 @@ mod tests {
         // 1 - f / 50 + 2 (5 - f) = 1 where f = 10 / 2.02; between 4.5 and 5 the residuals are a straight line.
         let found = of_residuals(&cutoffs, &residuals, 25.0).unwrap();
         assert!((found - 10.0 / 2.02).abs() < 1e-9, "{found}");
-        assert_eq!(of_residuals(&cutoffs, &residuals, 44.0), None);
+        assert_eq!(of_residuals(&cutoffs, &residuals, 44.3), None);
     }
 
     /// A swing at 1 Hz with noise of half a degree: the suggestion lies between the swing and the noise, and more noise lowers it.
@@ -115,8 +115,9 @@ mod tests {
                 .map(|i| {
                     let time = f64::from(i) / 100.0;
                     let mut posture = model.default_posture();
-                    let swing: f64 =
-                        (1..=4).map(|k| 0.6 / f64::from(k).powi(3) * (6.283 * f64::from(k) * time).sin()).sum();
+                    let swing: f64 = (1..=4)
+                        .map(|k| 0.6 / f64::from(k).powi(3) * (std::f64::consts::TAU * f64::from(k) * time).sin())
+                        .sum();
                     posture.values_mut()[elbow] = 1.0 + swing + noise * rng.random_range(-1.0..1.0);
                     (time, posture)
                 })

@@ -16,7 +16,7 @@ use super::analog::{Analog, no_value};
 use super::layout::Layout;
 use super::parameters::Parameters;
 use super::refusal::C3dError;
-use super::{trial, up};
+use super::trial::{axes, trial, up};
 use crate::markers::trc::MarkerUnit;
 use crate::motion::MOST_NUMBERS;
 
@@ -253,12 +253,4 @@ fn channels(parameters: &Parameters<'_>, analog: &Analog, (i, count): (usize, us
         let accepted = format!("numbers from 1 to {}, that of analog channels, are accepted", analog.channels);
         C3dError::at(parameters.byte(NAME), message, accepted)
     })
-}
-
-/// Axes of a plate in the laboratory, as columns; `None` of corners that span no area.
-pub(super) fn axes(corners: &[Vector3<f64>; 4]) -> Option<Matrix3<f64>> {
-    let (x, y) = (corners[0] - corners[1], corners[0] - corners[3]);
-    let z = x.cross(&y).try_normalize(1e-12)?;
-    let x = x.try_normalize(1e-9)?;
-    Some(Matrix3::from_columns(&[x, z.cross(&x), z]))
 }
