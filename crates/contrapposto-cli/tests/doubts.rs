@@ -188,7 +188,7 @@ fn compressed_files_and_marker_files_say_what_to_do() {
         let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n5,60\n");
         let said = refused(&["assess", "adult", &motion, "--grf", &markers]);
         assert!(
-            said.contains("is a marker file, which holds no forces; --grf is a table of ground reactions"),
+            said.contains("is a marker file, which holds no forces; --grf is a C3D file with force plates, a table"),
             "{said}"
         );
     }
