@@ -141,7 +141,7 @@ fn stretch_time(repetition: &Repetition, cycles: u64) -> f64 {
 fn a_constant_load_that_is_repeated_fails_at_its_endurance_time() {
     for law in laws() {
         let mut cycle = LoadCycle::default();
-        [0.0, 0.7, 2.0].map(|time| cycle.push(time, 0.4));
+        [0.0, 0.7, 2.0].into_iter().for_each(|time| cycle.push(time, 0.4));
         let repetition = Repetition { seconds: 3600.0, every: 2.0, breaks: None };
         let (time, held) = (Repeated::new(&law, &cycle, 1.0, repetition).time_of(0.0, 1.0), law.endurance_time(0.4));
         assert!((time - held).abs() < 3e-3 * held || time == held, "{}: {time} {held}", law.name());
