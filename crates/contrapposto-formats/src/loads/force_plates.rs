@@ -6,11 +6,9 @@ use contrapposto::posture::Posture;
 use nalgebra::{Rotation3, Vector3};
 
 use super::ground_reaction::{GroundReaction, Plate};
-use crate::markers::{ForcePlate, ForcePlates};
+use crate::markers::{ForcePlate, ForcePlates, LEAST_FORCE};
 use crate::motion::Table;
 
-/// Least upward force of a stance, N: amplifiers of plates drift by some newtons (assumed). Below it nothing acts.
-const LEAST_FORCE: f64 = 20.0;
 /// Greatest mean distance of the centre of pressure from the centre of mass of the foot that stands on the plate, measured along the floor, m (assumed: a long foot).
 const GREATEST_DISTANCE: f64 = 0.3;
 /// Pauses in a stance up to this, s, do not end it (assumed).
@@ -79,7 +77,7 @@ impl ForcePlates {
 }
 
 impl ForcePlate {
-    /// The times in which the plate carries something, as numbers of samples.
+    /// The times in which the plate pushes up with [`LEAST_FORCE`] or more, as numbers of samples.
     fn stances(&self, times: &[f64]) -> Vec<Stance> {
         let mut found: Vec<Stance> = vec![];
         for (i, force) in self.forces.iter().enumerate() {

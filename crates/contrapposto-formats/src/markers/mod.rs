@@ -8,6 +8,7 @@ mod scale_setup;
 mod tasks;
 mod trc;
 
+pub(crate) use c3d::LEAST_FORCE;
 pub use c3d::{C3dError, ForcePlate, ForcePlates, is_c3d, read_c3d, read_force_plates};
 pub use marker_set::marker_set;
 pub use measurement::{Measurement, MeasurementError};

@@ -19,6 +19,7 @@ use crate::xml::shorten;
 use contrapposto::model::LARGEST;
 use layout::Layout;
 use parameters::Parameters;
+pub(crate) use plates::LEAST_FORCE;
 pub use plates::{ForcePlate, ForcePlates, read_force_plates};
 pub use refusal::C3dError;
 use trial::{KEY, read_unit, trial, up};

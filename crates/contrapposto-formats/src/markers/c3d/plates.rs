@@ -20,6 +20,8 @@ use super::trial::{axes, trial, up};
 use crate::markers::trc::MarkerUnit;
 use crate::motion::MOST_NUMBERS;
 
+/// Least force along the normal of a plate that carries something, N: amplifiers of plates drift by some newtons (assumed).
+pub(crate) const LEAST_FORCE: f64 = 20.0;
 /// Most plates of a file (assumed).
 const MOST_PLATES: usize = 64;
 
@@ -127,7 +129,8 @@ fn force_plates(bytes: &[u8], unit: Option<MarkerUnit>) -> Result<ForcePlates, C
 impl ForcePlate {
     /// Turns forces and moments round where the plate pulls the body into the floor: some laboratories record what acts on the plate.
     fn push_up(&mut self) -> bool {
-        let pull = self.forces.iter().map(|force| force.dot(&self.up)).sum::<f64>() < 0.0;
+        let along = self.forces.iter().map(|force| force.dot(&self.up));
+        let pull = along.filter(|force| force.abs() >= LEAST_FORCE).sum::<f64>() < 0.0;
         if pull {
             self.forces.iter_mut().chain(&mut self.moments).for_each(|vector| *vector = -*vector);
         }
