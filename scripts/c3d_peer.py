@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Points of C3D files by ezc3d, and by Python's c3d where ezc3d does not read a file (MIPS), for a test that compares them with ours.
+"""Points and force plates of C3D files by ezc3d, and by Python's c3d where ezc3d does not read a file (MIPS), for a test that compares them with ours.
 
     python3 -m venv venv && venv/bin/pip install ezc3d==1.7.2 c3d==0.6.0 numpy
     venv/bin/python scripts/c3d_peer.py FOLDER
@@ -7,6 +7,11 @@
 
 FOLDER holds files that are not a part of this project, such as Input/C3DSamples of the repository Biomechanical-ToolKit/BTKData. Beside each one
 comes NAME.points: the unit and the reader, the labels, and a row for each frame: time in s, and x, y, z of each point in the file's unit, NaN for gaps.
+NAME.forces, of files with force plates that ezc3d reads: a row for each analog sample with the force (N) and the moment about the middle of the surface (N m) of
+each plate in the axes of the laboratory. ezc3d takes POINT:UNITS for the length in moments. Its moments of type 1 are left out: they are those of the centre of
+pressure and the couple, from which they are computed here.
+
+    CONTRAPPOSTO_C3D=FOLDER cargo test -p contrapposto-formats --test force_plates -- --ignored --nocapture
 """
 
 import pathlib
@@ -45,8 +50,32 @@ def by_c3d(path):
         return unit, labels, float(reader.point_rate), reader.first_frame - 1, points[:, :, :3]
 
 
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
+
+
+def forces(path):
+    read = ezc3d.c3d(str(path), extract_forceplat_data=True)
+    parameters, rows = read["parameters"], []
+    metres = METRES[parameters["POINT"]["UNITS"]["value"][0].strip()]
+    for plate, kind in zip(read["data"]["platform"], parameters["FORCE_PLATFORM"]["TYPE"]["value"]):
+        force, moment = plate["force"], metres * plate["moment"]
+        if kind == 1:
+            arm = plate["center_of_pressure"] - plate["corners"].mean(axis=1, keepdims=True)
+            moment = metres * (numpy.cross(arm.T, force.T).T + plate["Tz"])
+        rows.append(numpy.vstack([force, moment]))
+    return numpy.vstack(rows).T
+
+
 def main(folder):
     for path in sorted(p for p in pathlib.Path(folder).iterdir() if p.suffix.lower() == ".c3d"):
+        target = path.with_suffix(".forces")
+        target.unlink(missing_ok=True)
+        try:
+            rows = forces(path)
+            target.write_text("\n".join("\t".join(repr(float(x)) for x in row) for row in rows) + "\n")
+            print(f"{path.name}: {rows.shape[1] // 6} force plates, {len(rows)} samples")
+        except Exception as error:
+            print(f"{path.name}: forces: {str(error)[:90]}")
         target = path.with_suffix(".points")
         target.unlink(missing_ok=True)
         for reader in (by_ezc3d, by_c3d):

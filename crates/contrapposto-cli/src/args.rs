@@ -6,10 +6,12 @@ mod joint;
 mod model;
 mod muscles;
 mod population;
+mod repeat;
 mod scale;
 mod scenario;
 mod studio;
 mod sweep;
+mod time;
 mod track;
 
 use std::path::PathBuf;
@@ -17,7 +19,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 pub(crate) use capacity::CapacityArgs;
-pub(crate) use dynamics::DynamicsArgs;
+pub(crate) use dynamics::{CutOff, DynamicsArgs};
 pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
 pub(crate) use model::{
     AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,
@@ -25,11 +27,12 @@ pub(crate) use model::{
 };
 pub(crate) use muscles::use_muscles;
 pub(crate) use population::PopulationArgs;
+pub(crate) use repeat::RepeatArgs;
 pub(crate) use scale::ScaleArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;
 pub(crate) use sweep::SweepArgs;
-pub(crate) use track::{TrackArgs, UnitChoice};
+pub(crate) use track::{TrackArgs, UnitChoice, UpChoice};
 
 /// Ready and relaxed human postures: joint torques, fatigue, and where a tired joint finds relief.
 #[derive(Debug, Parser)]

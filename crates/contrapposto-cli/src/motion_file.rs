@@ -6,8 +6,8 @@ use contrapposto::assessment::{NEARLY_ALL, share_outside};
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
-use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError};
-use contrapposto_formats::markers::is_c3d;
+use contrapposto_formats::loads::{self, GroundReaction, GroundReactionError, PlateOn};
+use contrapposto_formats::markers::{is_c3d, read_force_plates, turn_upright};
 use contrapposto_formats::motion::{self, Postures, Units, postures, read_table};
 use contrapposto_formats::nearest;
 use contrapposto_formats::tissue::SourcedModel;
@@ -21,6 +21,7 @@ use crate::output::print_note;
 pub(crate) fn loads_of(
     args: &LoadArgs,
     model: &Model,
+    motion: &[(f64, Posture)],
     notes: &mut Vec<String>,
 ) -> Result<(Vec<Load>, Option<GroundReaction>), Fail> {
     let mut loads = vec![];
@@ -30,7 +31,7 @@ pub(crate) fn loads_of(
     for text in &args.force {
         loads.push(loads::force(model, text).map_err(|error| Fail::Refused(format!("--force \"{text}\": {error}")))?);
     }
-    let ground = args.grf.as_deref().map(|path| ground_reaction(path, &args.grf_on, model, notes)).transpose()?;
+    let ground = args.grf.as_deref().map(|path| ground_reaction(path, args, (model, motion), notes)).transpose()?;
     Ok((loads, ground))
 }
 
@@ -40,14 +41,26 @@ fn holds_markers(name: &str, bytes: &[u8]) -> bool {
     [".trc", ".c3d"].iter().any(|ending| name.ends_with(ending)) || bytes.starts_with(b"PathFileType") || is_c3d(bytes)
 }
 
-/// The table of --grf; notes say on which segments its plates are taken to act.
-fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<String>) -> Result<GroundReaction, Fail> {
-    let name = path.display().to_string();
+/// The forces of --grf; notes say on which segments its plates are taken to act.
+fn ground_reaction(
+    path: &Path,
+    args: &LoadArgs,
+    (model, motion): (&Model, &[(f64, Posture)]),
+    notes: &mut Vec<String>,
+) -> Result<GroundReaction, Fail> {
+    let (name, on) = (path.display().to_string(), &args.grf_on);
     let bytes = read(path, motion::MOST_TABLE_BYTES as u64)?;
+    if is_c3d(&bytes) {
+        return force_plates(&name, &bytes, args, (model, motion));
+    }
     if holds_markers(&name, &bytes) {
-        let holds = if is_c3d(&bytes) { "whose forces are not read" } else { "which holds no forces" };
-        let accepted = "--grf is a table of ground reactions (.mot, .sto) or an ExternalLoads file";
-        return Err(Fail::Refused(format!("{name}: is a marker file, {holds}; {accepted}")));
+        let accepted =
+            "--grf is a C3D file with force plates, a table of ground reactions (.mot, .sto) or an ExternalLoads file";
+        return Err(Fail::Refused(format!("{name}: is a marker file, which holds no forces; {accepted}")));
+    }
+    if !args.plate.is_empty() {
+        let why = "--plate names force plates of a C3D file; --grf-on names the segments of a table's columns";
+        return Err(Fail::Refused(format!("{name}: is no C3D file; {why}")));
     }
     let is_xml = bytes.trim_ascii_start().first() == Some(&b'<');
     let ground = if is_xml {
@@ -60,6 +73,53 @@ fn ground_reaction(path: &Path, on: &[String], model: &Model, notes: &mut Vec<St
         notes.push(format!("`{label}` of {name} is taken to act on `{segment}`; --grf-on says otherwise"));
     }
     Ok(ground)
+}
+
+/// The force plates of a C3D file. What each of them acts on is said.
+fn force_plates(
+    name: &str,
+    bytes: &[u8],
+    args: &LoadArgs,
+    (model, motion): (&Model, &[(f64, Posture)]),
+) -> Result<GroundReaction, Fail> {
+    if !args.grf_on.is_empty() {
+        let why = "--grf-on names the segments of a table's columns; --plate 1=calcn_r names that of a force plate";
+        return Err(Fail::Refused(format!("{name}: is a C3D file; {why}")));
+    }
+    let mut read = read_force_plates(name, bytes, None).map_err(|error| Fail::Refused(error.to_string()))?;
+    let up = (-model.gravity()).try_normalize(1e-9);
+    if let Some(turn) = up.and_then(|up| turn_upright(read.up, up)) {
+        read.turn(&turn);
+        print_note("note", &turned(name));
+    }
+    let mut given: Vec<PlateOn> = vec![];
+    for text in &args.plate {
+        given.push(plate_on(text, model).map_err(|why| Fail::Refused(format!("--plate {text}: {why}")))?);
+    }
+    let ground = GroundReaction::of_force_plates(name, &read, &given, (model, motion));
+    let ground = ground.map_err(|error| {
+        Fail::Refused(format!("{error}; --plate 1=calcn_r says what plate 1 acts on, --plate 1=none leaves it out"))
+    })?;
+    ground.warnings().iter().for_each(|warning| print_note("warning", warning));
+    ground.assigned().iter().for_each(|said| print_note("note", said));
+    Ok(ground)
+}
+
+/// The note that places and forces of a laboratory are turned.
+pub(crate) fn turned(name: &str) -> String {
+    format!(
+        "{name}: its laboratory counts heights along another axis than the model; it is turned upright (x, y, z become x, z, -y where z points up)"
+    )
+}
+
+/// `1=calcn_r`, `2=none`.
+fn plate_on(text: &str, model: &Model) -> Result<PlateOn, String> {
+    let (number, segment) = text.split_once('=').ok_or("NUMBER=SEGMENT is accepted, such as 1=calcn_r, or 1=none")?;
+    let number = number.trim().parse().map_err(|_| format!("`{}` is no number of a plate", number.trim()))?;
+    match segment.trim() {
+        "none" => Ok((number, None)),
+        name => Ok((number, Some(model.segment(name).ok_or_else(|| loads::no_segment(model, name))?))),
+    }
 }
 
 /// The table that OpenSim's ExternalLoads file at `path` names.

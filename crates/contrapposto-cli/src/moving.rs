@@ -1,16 +1,21 @@
 //! Decides whether the inertia of a motion counts, and prepares its speeds and accelerations.
 
+use std::f64::consts::TAU;
+
 use contrapposto::assessment::{FAST_SHARE, Peak, acceleration};
-use contrapposto::dynamics::{Moving, Rates, Smoothing, differentiate};
+use contrapposto::dynamics::{MotionError, Moving, Rates, Smoothing, differentiate, suggested_cutoff};
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::Model;
+use contrapposto::model::{CoordinateKind, Model};
 use contrapposto::posture::Posture;
 use contrapposto_formats::loads::GroundReaction;
 
-use crate::args::{DynamicsArgs, FrameArgs};
+use crate::args::{CutOff, DynamicsArgs, FrameArgs};
 use crate::fail::Fail;
 use crate::motion_file::cut;
 use crate::output::print_note;
+
+/// Share of the frames that the padding of a filter reaches from which on a warning says so (assumed: of a second at 6 Hz a third).
+const MOST_REACHED: f64 = 0.3;
 
 /// A motion, at rest in every posture or moving.
 pub(crate) struct Recorded {
@@ -19,12 +24,14 @@ pub(crate) struct Recorded {
     pub(crate) rates: Vec<Rates>,
     /// The sentence that says that inertia counts, why, and with which filter.
     pub(crate) said: Option<String>,
+    /// Reasons to doubt speeds and accelerations.
+    pub(crate) doubts: Vec<String>,
 }
 
 impl Recorded {
     /// Postures at rest.
     pub(crate) fn at_rest(frames: Vec<(f64, Posture)>) -> Self {
-        Self { frames, rates: vec![], said: None }
+        Self { frames, rates: vec![], said: None, doubts: vec![] }
     }
 
     /// The frames of the file `name` between the times that are asked for. The filter sees all frames.
@@ -38,28 +45,38 @@ impl Recorded {
         if args.at_rest {
             return Ok(Self::at_rest(kept(all)?));
         }
-        let smoothing = args.smoothing();
         if args.dynamics {
-            let moving = differentiate(model, &all, smoothing)
+            let moving = Smoothed::new(model, all, args)
                 .map_err(|error| Fail::Refused(format!("{name}: --dynamics: {error}")))?;
-            return Self::moving(name, moving, span, format!("inertia counts: {}", filtered(smoothing)));
+            return Self::moving(name, moving, span, "inertia counts");
         }
         let frames = kept(all.clone())?;
-        let why = fast(acceleration(&frames, &centers(model, &frames)));
-        match why.map(|why| (why, differentiate(model, &all, smoothing))) {
-            Some((why, Ok(moving))) => {
-                let said = format!("inertia counts, because {why}: {}; --static leaves it out", filtered(smoothing));
-                Self::moving(name, moving, span, said)
+        let Some(why) = fast(acceleration(&frames, &centers(model, &frames))) else {
+            return Ok(Self::at_rest(frames));
+        };
+        match Smoothed::new(model, all, args) {
+            Ok(moving) => {
+                let mut recorded = Self::moving(name, moving, span, &format!("inertia counts, because {why}"))?;
+                recorded.said = recorded.said.map(|said| said + "; --static leaves it out");
+                Ok(recorded)
             }
-            Some((_, Err(_))) | None => Ok(Self::at_rest(frames)),
+            Err(error) => {
+                let doubts = vec![format!("inertia is left out, although {why}: {error}")];
+                Ok(Self { doubts, ..Self::at_rest(frames) })
+            }
         }
     }
 
-    fn moving(name: &str, moving: Moving, span: &FrameArgs, said: String) -> Result<Self, Fail> {
-        let mut recorded = Self { frames: moving.motion, rates: moving.rates, said: Some(said) };
+    fn moving(name: &str, moving: Smoothed, span: &FrameArgs, said: &str) -> Result<Self, Fail> {
+        let Smoothed { moving, smoothing, filtered, mut doubts } = moving;
+        let said = Some(format!("{said}: {filtered}"));
+        let ends = moving.motion.first().zip(moving.motion.last()).map_or((0.0, 0.0), |(a, b)| (a.0, b.0));
+        let mut recorded = Self { frames: moving.motion, rates: moving.rates, said, doubts: vec![] };
         let frames = cut(name, recorded.frames.clone(), span)?;
         let (from, to) = (frames[0].0, frames[frames.len() - 1].0);
         recorded.keep(|time| (from..=to).contains(&time));
+        doubts.extend(filter_doubts(smoothing, ends, &recorded.frames));
+        recorded.doubts = doubts;
         Ok(recorded)
     }
 
@@ -97,6 +114,82 @@ pub(crate) fn keep_overlap(recorded: &mut Recorded, ground: Option<&GroundReacti
         );
     }
     Ok(())
+}
+
+/// A motion that is smoothed, with speeds and accelerations.
+struct Smoothed {
+    moving: Moving,
+    smoothing: Smoothing,
+    /// The words for the filter.
+    filtered: String,
+    doubts: Vec<String>,
+}
+
+impl Smoothed {
+    fn new(model: &Model, mut all: Vec<(f64, Posture)>, args: &DynamicsArgs) -> Result<Self, MotionError> {
+        let doubts = unwrap(model, &mut all);
+        let (smoothing, how) = match args.cutoff_hz {
+            CutOff::None => (Smoothing::None, ""),
+            CutOff::Hertz(cutoff) => (args.smoothing(cutoff), ""),
+            CutOff::Auto => {
+                let cutoff = suggested_cutoff(model, &all, |cutoff| args.smoothing(cutoff))?;
+                (args.smoothing((10.0 * cutoff).round() / 10.0), ", as residual analysis suggests")
+            }
+        };
+        let filtered = filtered(smoothing) + how;
+        Ok(Self { moving: differentiate(model, &all, smoothing)?, smoothing, filtered, doubts })
+    }
+}
+
+/// Lets hinges that jump by more than half a turn between two frames turn on instead, and says so: an angle was recorded between -180 and 180 deg.
+fn unwrap(model: &Model, all: &mut [(f64, Posture)]) -> Vec<String> {
+    let mut doubts = vec![];
+    for (i, coordinate) in model.coordinates().iter().enumerate() {
+        if coordinate.kind != CoordinateKind::Rotation || model.is_dependent(i) {
+            continue;
+        }
+        let (mut turns, mut first) = (0.0, None);
+        let recorded: Vec<f64> = all.iter().map(|(_, posture)| posture.values()[i]).collect();
+        for (frame, pair) in recorded.windows(2).enumerate() {
+            let jump = ((pair[1] - pair[0]) / TAU).round();
+            if jump != 0.0 {
+                turns -= jump;
+                first.get_or_insert((all[frame + 1].0, pair[0], pair[1]));
+            }
+            all[frame + 1].1.values_mut()[i] = pair[1] + TAU * turns;
+        }
+        if let Some((time, before, after)) = first {
+            doubts.push(format!(
+                "`{}` jumps from {:.1} to {:.1} deg at {time} s: a whole turn is added there, so that its speed stays that of the body",
+                coordinate.name,
+                before.to_degrees(),
+                after.to_degrees()
+            ));
+        }
+    }
+    doubts
+}
+
+/// Doubts about a filter: a cut-off that is low for the length of the file, `ends` (s), and frames that its padding reaches.
+fn filter_doubts(smoothing: Smoothing, (first, last): (f64, f64), frames: &[(f64, Posture)]) -> Vec<String> {
+    let (Smoothing::OpenSim(cutoff) | Smoothing::Filtfilt(cutoff)) = smoothing else { return vec![] };
+    let (span, reach) = (last - first, 1.0 / cutoff);
+    if cutoff < 2.0 / span {
+        return vec![format!(
+            "the cut-off of {cutoff} Hz is below two over the length of the motion, {span:.3} s: filtered angles leave the recorded ones; \
+             --cutoff-hz {:.0} or more, or --cutoff-hz none",
+            (2.0 / span).ceil()
+        )];
+    }
+    let reached = frames.iter().filter(|(time, _)| time - first < reach || last - time < reach).count();
+    if (reached as f64) < MOST_REACHED * frames.len() as f64 {
+        return vec![];
+    }
+    vec![format!(
+        "within {reach:.2} s of the ends of the file, one over the cut-off, speeds and accelerations are those of the filter's padding: {reached} \
+         of {} frames; a longer recording that --from and --to cut, or --cutoff-hz none",
+        frames.len()
+    )]
 }
 
 /// The words for the filter.

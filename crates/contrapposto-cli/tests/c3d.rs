@@ -142,7 +142,10 @@ fn c3d_files_in_the_wrong_place_and_without_a_unit_are_refused() {
     );
     let motion = write(bench.folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n5,60\n");
     let said = refused(&["assess", "adult", &motion, "--grf", &c3d]);
-    assert!(said.contains("is a marker file, whose forces are not read; --grf is a table"), "{said}");
+    assert!(
+        said.contains("the file has no force plate (FORCE_PLATFORM:USED); a file with force plates is accepted"),
+        "{said}"
+    );
     let mut trial = bench.trial(Kind::Dec);
     trial.unit = "feet";
     std::fs::write(&c3d, trial.bytes()).unwrap();
@@ -195,4 +198,119 @@ fn two_hundred_mutated_files_get_an_answer_or_a_named_refusal() {
     }
     println!("{answered} answered, {refused} refused");
     assert!(answered > 20 && refused > 20, "{answered}, {refused}");
+}
+
+/// A force plate of a laboratory whose z axis points up, under the right foot: the same torques as by a table of its forces, and by name of the plate.
+#[test]
+fn a_force_plate_gives_the_torques_of_its_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = write(folder.path(), "woman.osim", &marked_woman());
+    let read = SourcedModel::read("woman.osim", marked_woman().as_bytes(), None, &mut |_| Err(String::new())).unwrap();
+    let mut body = Kinematics::new(&read.model);
+    body.update(&read.model, &read.model.default_posture()).unwrap();
+    let foot = read.model.segment("calcn_r").unwrap();
+    let at = body.station(&read.model, foot, read.model.segments()[foot].center_of_mass);
+    let ground = at.y - 0.1;
+    // In the laboratory z points up and y to the left: x, -z, y of the model.
+    let [x, y, z] = [at.x, -at.z, ground].map(|value| 1e3 * value);
+    let mut trial = Trial::new(Kind::Intel, -1.0, &["A"], vec![vec![[1.0, 2.0, 3.0, 0.0]]; 4]);
+    (trial.samples, trial.per_channel) = (6, 1);
+    // Corners in an order that has the plate's x along the laboratory's x, y against its y, z down.
+    let corners = [[0.3, -0.2], [-0.3, -0.2], [-0.3, 0.2], [0.3, 0.2]];
+    let corners = corners.iter().flat_map(|[a, b]| [x + 1e3 * a, y + 1e3 * b, z]).collect();
+    trial.reals = vec![(4, "CORNERS", vec![3, 4, 1], corners), (4, "ORIGIN", vec![3, 1], vec![0.0; 3])];
+    trial.integers = vec![
+        (3, "USED", vec![], vec![6]),
+        (4, "USED", vec![], vec![1]),
+        (4, "TYPE", vec![1], vec![2]),
+        (4, "CHANNEL", vec![6, 1], vec![1, 2, 3, 4, 5, 6]),
+    ];
+    // 40 N ahead, 10 N to the left, 600 N up; moments in N mm about the middle of the surface: 6 N m about x, -9 about y, 2 about z of the plate.
+    trial.analog = vec![vec![40.0, -10.0, -600.0, 6e3, -9e3, 2e3]; 4];
+    let c3d = folder.path().join("force.c3d");
+    std::fs::write(&c3d, trial.bytes()).unwrap();
+    let motion = write(folder.path(), "stand.csv", "time,hip_flexion_r_deg\n0,0\n0.02,1\n0.04,2\n0.06,3\n");
+    // In the model's axes: x as it is, the plate's z is -y, its y is z.
+    let row = format!("40\t600\t-10\t{:.9}\t{:.9}\t{:.9}\t6\t-2\t-9", at.x, ground, at.z);
+    let columns = "time\tground_force_vx\tground_force_vy\tground_force_vz\tground_force_px\tground_force_py\tground_force_pz\tground_torque_x\tground_torque_y\tground_torque_z";
+    let table = write(
+        folder.path(),
+        "force.sto",
+        &format!("forces\nversion=1\nnRows=2\nnColumns=10\ninDegrees=no\nendheader\n{columns}\n0\t{row}\n0.1\t{row}\n"),
+    );
+    let torques = |more: &[&str]| {
+        let said = run(&[&["torques", &model, &motion, "--static", "--json"], more].concat());
+        assert_eq!(said.code, 0, "{}", said.stderr);
+        (serde_json::from_str::<serde_json::Value>(&said.stdout).unwrap(), said.stderr)
+    };
+    let c3d = c3d.to_str().unwrap();
+    let (wanted, _) = torques(&["--grf", &table, "--grf-on", "calcn_r"]);
+    let (by_nearness, said) = torques(&["--grf", c3d]);
+    assert!(said.contains("force plate 1 acts on `calcn_r` (0 s to 0.06 s)"), "{said}");
+    assert!(said.contains("it is turned upright"), "{said}");
+    let (by_name, _) = torques(&["--grf", c3d, "--plate", "1=calcn_r"]);
+    assert_eq!(by_nearness, by_name);
+    let numbers = |value: &serde_json::Value| -> Vec<f64> {
+        let frames = value.as_array().unwrap().iter();
+        let all = frames.flat_map(|frame| frame["coordinates"].as_object().unwrap().values());
+        all.map(|torques| torques["external"].as_f64().unwrap()).collect()
+    };
+    let (wanted, found) = (numbers(&wanted), numbers(&by_name));
+    assert!(wanted.len() > 40 && wanted.len() == found.len());
+    for (a, b) in wanted.iter().zip(&found) {
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+    }
+    let (left, _) = torques(&["--grf", c3d, "--plate", "1=calcn_l"]);
+    assert!(numbers(&left).iter().zip(&wanted).any(|(a, b)| (a - b).abs() > 10.0));
+    for (more, part) in [
+        (["--plate", "one=calcn_r"], "`one` is no number of a plate"),
+        (["--plate", "1"], "NUMBER=SEGMENT is accepted"),
+        (["--plate", "1=calcn_x"], "the model has no segment `calcn_x`"),
+        (["--plate", "3=none"], "has 1 force plates, no number 3"),
+        (["--grf-on", "calcn_r"], "--plate 1=calcn_r names that of a force plate"),
+    ] {
+        let message = refused(&[&["torques", &model, &motion, "--grf", c3d][..], &more].concat());
+        assert!(message.contains(part), "`{part}` is not in\n{message}");
+    }
+    let message = refused(&["torques", &model, &motion, "--grf", &table, "--plate", "1=calcn_r"]);
+    assert!(message.contains("is no C3D file"), "{message}");
+}
+
+/// Markers of a laboratory with z up give the motion of those with y up: by the axis that a C3D file says, and by --up of a `.trc`.
+#[test]
+fn markers_of_a_laboratory_with_z_up_are_turned_upright() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = write(folder.path(), "woman.osim", &marked_woman());
+    let read = SourcedModel::read("woman.osim", marked_woman().as_bytes(), None, &mut |_| Err(String::new())).unwrap();
+    let names: Vec<&str> = read.markers.iter().map(|marker| marker.name.as_str()).collect();
+    let frames = frames(&read);
+    let turned: Vec<Vec<[f64; 4]>> =
+        frames.iter().map(|frame| frame.iter().map(|&[x, y, z, seen]| [x, -z, y, seen]).collect()).collect();
+    let upright = write(folder.path(), "up.trc", &trc(&names, &frames));
+    let lying = write(folder.path(), "z.trc", &trc(&names, &turned));
+    let mut trial = Trial::new(Kind::Intel, -1.0, &names, turned);
+    trial.texts.push((1, "Y_SCREEN", vec!["+Z"]));
+    (trial.rate, trial.ends) = (60.0, (31, 34));
+    let c3d = folder.path().join("z.c3d");
+    std::fs::write(&c3d, trial.bytes()).unwrap();
+    let motion = |markers: &str, more: &[&str], out: &str| {
+        let out = folder.path().join(out);
+        let said = run(&[&["track", &model, markers, "--out", out.to_str().unwrap()], more].concat());
+        assert_eq!(said.code, 0, "{}", said.stderr);
+        (std::fs::read_to_string(out.join("motion.mot")).unwrap(), said.stderr)
+    };
+    let (wanted, said) = motion(&upright, &[], "up");
+    assert!(!said.contains("turned upright") && !said.contains("lies"), "{said}");
+    let (by_name, said) = motion(&lying, &["--up", "z"], "z");
+    assert!(said.contains("turned upright"), "{said}");
+    let (by_file, _) = motion(c3d.to_str().unwrap(), &[], "c3d");
+    let (_, said) = motion(&lying, &[], "lying");
+    assert!(said.contains("the body lies in 4 of 4 frames") && said.contains("--up z turns them"), "{said}");
+    for other in [by_name, by_file] {
+        let numbers =
+            |text: &str| -> Vec<f64> { text.split_whitespace().filter_map(|cell| cell.parse().ok()).collect() };
+        let (a, b) = (numbers(&wanted), numbers(&other));
+        assert_eq!(a.len(), b.len());
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-4), "{wanted}\n{other}");
+    }
 }

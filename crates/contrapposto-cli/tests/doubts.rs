@@ -188,7 +188,7 @@ fn compressed_files_and_marker_files_say_what_to_do() {
         let motion = write(folder.path(), "two.csv", "time,elbow_flex_r_deg\n0,90\n5,60\n");
         let said = refused(&["assess", "adult", &motion, "--grf", &markers]);
         assert!(
-            said.contains("is a marker file, which holds no forces; --grf is a table of ground reactions"),
+            said.contains("is a marker file, which holds no forces; --grf is a C3D file with force plates, a table"),
             "{said}"
         );
     }
@@ -331,9 +331,69 @@ fn dynamics_without_a_motion_or_with_a_cutoff_beyond_the_frames_is_refused() {
     let slow = write(folder.path(), "slow.csv", &format!("time,elbow_flex_r_deg\n{rows}"));
     let said = refused(&["assess", "adult", &slow, "--dynamics"]);
     assert!(said.contains("a cut-off of 6 Hz: it must be above 0 and below half of the 10"), "{said}");
-    for (cutoff, why) in [("0", "a number of Hz above 0, or `none`"), ("x", "a number of Hz above 0, or `none`")] {
+    for (cutoff, why) in
+        [("0", "a number of Hz above 0, `auto` or `none`"), ("x", "a number of Hz above 0, `auto` or `none`")]
+    {
         assert!(refused(&["assess", "adult", &slow, "--dynamics", "--cutoff-hz", cutoff]).contains(why));
     }
+}
+
+/// The ends that padding reaches, a cut-off too low for the length, an angle that wraps, and a fast motion that cannot be differentiated are each
+/// warned of by name; a wrapped motion has the torques of the one that turns on.
+#[test]
+fn doubts_about_the_filter_of_a_motion_are_told_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let swing = |name: &str, frames: u32, value: &dyn Fn(f64) -> f64| {
+        let rows: String =
+            (0..=frames).map(|i| format!("{},{}\n", 0.01 * f64::from(i), value(0.01 * f64::from(i)))).collect();
+        write(folder.path(), name, &format!("time,pelvis_rotation_deg\n{rows}"))
+    };
+    let said = |motion: &str, more: &[&str]| {
+        let run = run(&[&["torques", "adult", motion, "--dynamics", "--json"], more].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        (run.stderr, run.stdout)
+    };
+    let sine = |time: f64| 10.0 * (6.0 * time).sin();
+    let (long, short) = (swing("long.csv", 300, &sine), swing("short.csv", 80, &sine));
+    let (quiet, _) = said(&long, &[]);
+    assert!(!quiet.contains("padding") && !quiet.contains("below two over"), "{quiet}");
+    let (ends, _) = said(&short, &[]);
+    assert!(ends.contains("within 0.17 s of the ends of the file") && ends.contains("34 of 81 frames"), "{ends}");
+    assert!(!said(&short, &["--cutoff-hz", "none"]).0.contains("padding"));
+    let (low, _) = said(&short, &["--cutoff-hz", "2"]);
+    assert!(low.contains("the cut-off of 2 Hz is below two over the length of the motion, 0.800 s"), "{low}");
+    assert!(low.contains("--cutoff-hz 3 or more"), "{low}");
+
+    // 100 deg a second through 180 deg, and the same recorded between -180 and 180.
+    let on = swing("on.csv", 300, &|time| 100.0 * time);
+    let wrapped =
+        swing("wrapped.csv", 300, &|time| if 100.0 * time > 180.0 { 100.0 * time - 360.0 } else { 100.0 * time });
+    let ((plain, a), (warned, b)) = (said(&on, &[]), said(&wrapped, &[]));
+    assert!(!plain.contains("jumps"), "{plain}");
+    assert!(
+        warned.contains("`pelvis_rotation` jumps from 180.0 to -179.0 deg at 1.81 s: a whole turn is added"),
+        "{warned}"
+    );
+    let torques = |text: &str| -> Vec<f64> {
+        let frames: Value = serde_json::from_str(text).unwrap();
+        let all =
+            frames.as_array().unwrap().iter().flat_map(|frame| frame["coordinates"].as_object().unwrap().values());
+        all.map(|torques| torques["external"].as_f64().unwrap()).collect()
+    };
+    assert!(torques(&a).iter().zip(torques(&b)).all(|(a, b)| (a - b).abs() < 1e-6));
+
+    let auto = said(&long, &["--cutoff-hz", "auto"]).0;
+    assert!(auto.contains("low-pass at") && auto.contains("as residual analysis suggests"), "{auto}");
+    // A jump up and down in five frames is fast, and too short for accelerations.
+    let rows: String = [0.0, 0.2, 0.4, 0.2, 0.0]
+        .iter()
+        .enumerate()
+        .map(|(i, y)| format!("{},{}\n", 0.06 * i as f64, 1.0 + y))
+        .collect();
+    let hop = write(folder.path(), "hop.csv", &format!("time,pelvis_ty_m\n{rows}"));
+    let hop = run(&["torques", "adult", &hop]).stderr;
+    assert!(hop.contains("inertia is left out, although the centre of mass accelerates"), "{hop}");
+    assert!(hop.contains("5 frames; accelerations need at least 6"), "{hop}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::model::{Adult, CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec, adult};
+use contrapposto::model::{Adult, CoordinateKind, CoordinateSpec, JointKind, Model, ModelBuilder, SegmentSpec, adult};
 use contrapposto::posture::Posture;
 use contrapposto::tracking::{CoordinateGoal, Goals, GoalsError, MarkerGoal, Tracker, first_posture, track};
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -292,4 +292,69 @@ fn goals_without_meaning_are_refused_by_name() {
         refused(Goals { fixed: vec![9], ..Goals::default() }),
         GoalsError::Index { what: "coordinate", .. }
     ));
+}
+
+/// A root that turns freely (a quaternion) is found however it is turned, with the default posture as the start.
+#[test]
+fn a_free_root_that_is_turned_far_is_found() {
+    let mut builder = ModelBuilder::new("kite", V::zeros());
+    let spec = |name: &str, parent: Option<&str>, kind: JointKind, coordinates: Vec<CoordinateSpec>| SegmentSpec {
+        name: name.to_owned(),
+        parent: parent.map(str::to_owned),
+        mass: 1.0,
+        center_of_mass: V::zeros(),
+        inertia: Matrix3::identity(),
+        joint: format!("j{name}"),
+        kind,
+        in_parent: Isometry3::translation(0.0, if parent.is_some() { 0.3 } else { 0.0 }, 0.0),
+        in_segment: Isometry3::identity(),
+        coordinates,
+    };
+    let slides = ["x", "y", "z"].map(|name| CoordinateSpec::new(name, (-5.0, 5.0))).to_vec();
+    builder.segment(spec("root", None, JointKind::Free, slides)).unwrap();
+    let hinge = vec![CoordinateSpec::new("bend", (-1.0, 1.0))];
+    builder.segment(spec("tail", Some("root"), JointKind::Hinge(V::x_axis()), hinge)).unwrap();
+    let model = builder.build();
+    let mut rng = random();
+    let goals = Goals { markers: markers(&model, &mut rng), ..Goals::default() };
+    let ball = model.coordinates().iter().position(|c| c.kind == CoordinateKind::Quaternion).unwrap();
+    let mut turned = 0;
+    for _ in 0..60 {
+        let mut posture = model.default_posture();
+        let q = nalgebra::UnitQuaternion::from_scaled_axis(V::from_fn(|_, _| rng.random_range(-2.5..2.5)));
+        posture.values_mut()[ball..ball + 4].copy_from_slice(&[q.w, q.i, q.j, q.k]);
+        posture.values_mut()[model.coordinate("bend").unwrap()] = rng.random_range(-0.9..0.9);
+        turned += usize::from(q.angle() > 2.0);
+        let observed = places(&model, &goals, &posture);
+        let answer = track(&model, goals.clone(), &model.default_posture(), [observed.as_slice()]).unwrap();
+        assert!(answer[0].root_mean_square() < 1e-8, "{}: {}", q.angle(), answer[0].root_mean_square());
+    }
+    assert!(turned > 15, "{turned}");
+}
+
+/// A coordinate whose task has a great weight is where its task wants it, and all others are as well solved as with the coordinate held there.
+#[test]
+fn a_task_of_great_weight_leaves_the_others_solved() {
+    let model = adult(&Adult::default()).unwrap();
+    let mut rng = random();
+    let markers = markers(&model, &mut rng);
+    let knee = model.coordinate("knee_angle_r").unwrap();
+    let posture = inside(&mut rng, &model);
+    let mut held = posture.clone();
+    held.values_mut()[knee] = 0.3;
+    let plain = Goals { markers, ..Goals::default() };
+    let observed = places(&model, &plain, &posture);
+    let of = |goals: Goals, start: &Posture| track(&model, goals, start, [observed.as_slice()]).unwrap().remove(0);
+    let mut start = model.default_posture();
+    start.values_mut()[knee] = 0.3;
+    let wanted = of(Goals { fixed: vec![knee], ..plain.clone() }, &start);
+    for weight in [1e3, 1e6, 1e9, 1e12] {
+        let task = CoordinateGoal { coordinate: knee, value: 0.3, weight };
+        let found = of(Goals { coordinates: vec![task], ..plain.clone() }, &model.default_posture());
+        assert!(found.solved.converged, "{weight:e}: {:?}", found.solved);
+        assert!((found.posture.values()[knee] - 0.3).abs() < 1.0 / weight, "{weight:e}");
+        let apart = found.posture.values().iter().zip(wanted.posture.values()).map(|(a, b)| (a - b).abs());
+        let apart = apart.fold(0.0, f64::max);
+        assert!(apart < 1.0 / weight + 1e-6, "{weight:e}: {apart}");
+    }
 }

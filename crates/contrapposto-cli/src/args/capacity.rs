@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
-/// Longest time that a force may be held, s: a day.
-const LONGEST_HOLD: f64 = 86_400.0;
+use super::time::time;
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto capacity scenarios/push.toml --at hand_r --out out\n  \
@@ -42,30 +41,9 @@ fn point(text: &str) -> Result<[f64; 3], String> {
     finite.ok_or_else(|| "three numbers in m, each at most 1000 in size, such as 0,-0.07,0, are accepted".to_owned())
 }
 
-/// A time in s.
-fn time(text: &str) -> Result<f64, String> {
-    let text = text.trim();
-    let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
-    let unit = units.iter().find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, *seconds)));
-    let (number, unit) = unit.unwrap_or((text, f64::NAN));
-    let seconds = number.trim().parse::<f64>().unwrap_or(f64::NAN) * unit;
-    if seconds > 0.0 && seconds <= LONGEST_HOLD {
-        return Ok(seconds);
-    }
-    Err("a time above 0 and up to 24h with its unit is accepted, such as 30s, 2min or 1.5h".to_owned())
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{point, time};
-
-    #[test]
-    fn times_have_a_unit_and_lie_between_nothing_and_a_day() {
-        assert_eq!(["30s", "2min", "1.5h", " 2 min "].map(|text| time(text).unwrap()), [30.0, 120.0, 5400.0, 120.0]);
-        for wrong in ["", "2", "0s", "-1min", "25h", "nans", "min", "2 minutes", "1e400s"] {
-            assert!(time(wrong).is_err(), "{wrong}");
-        }
-    }
+    use super::point;
 
     #[test]
     fn points_have_three_finite_numbers() {

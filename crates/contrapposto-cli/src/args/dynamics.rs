@@ -14,8 +14,8 @@ pub(crate) struct DynamicsArgs {
     /// Leave inertia out: each posture is held at rest, and no motion is filtered.
     #[arg(long = "static")]
     pub(crate) at_rest: bool,
-    /// Cut-off of the low-pass filter of the motion, Hz; `none` for no filter.
-    #[arg(long, value_name = "HZ", value_parser = cutoff, default_value_t = CutOff(Some(PUBLISHED_CUTOFF)), conflicts_with = "at_rest")]
+    /// Cut-off of the low-pass filter of the motion, Hz; `none` for no filter; `auto` for the one that residual analysis suggests.
+    #[arg(long, value_name = "HZ", value_parser = cutoff, default_value_t = CutOff::Hertz(PUBLISHED_CUTOFF), conflicts_with = "at_rest")]
     pub(crate) cutoff_hz: CutOff,
     /// The low-pass filter of the motion.
     #[arg(long, value_enum, default_value = "opensim", conflicts_with = "at_rest")]
@@ -31,33 +31,41 @@ pub(crate) enum FilterChoice {
     Filtfilt,
 }
 
-/// A cut-off in Hz, or none.
+/// A cut-off, or none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CutOff(pub(crate) Option<f64>);
+pub(crate) enum CutOff {
+    Hertz(f64),
+    /// By residual analysis.
+    Auto,
+    None,
+}
 
 impl std::fmt::Display for CutOff {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.0 {
-            Some(hertz) => write!(f, "{hertz}"),
-            None => f.write_str("none"),
+        match self {
+            Self::Hertz(hertz) => write!(f, "{hertz}"),
+            Self::Auto => f.write_str("auto"),
+            Self::None => f.write_str("none"),
         }
     }
 }
 
 impl DynamicsArgs {
-    pub(crate) fn smoothing(&self) -> Smoothing {
-        match (self.cutoff_hz.0, self.filter) {
-            (None, _) => Smoothing::None,
-            (Some(cutoff), FilterChoice::Opensim) => Smoothing::OpenSim(cutoff),
-            (Some(cutoff), FilterChoice::Filtfilt) => Smoothing::Filtfilt(cutoff),
+    /// The filter with a cut-off, Hz.
+    pub(crate) fn smoothing(&self, cutoff: f64) -> Smoothing {
+        match self.filter {
+            FilterChoice::Opensim => Smoothing::OpenSim(cutoff),
+            FilterChoice::Filtfilt => Smoothing::Filtfilt(cutoff),
         }
     }
 }
 
 fn cutoff(text: &str) -> Result<CutOff, String> {
-    if text == "none" {
-        return Ok(CutOff(None));
+    match text {
+        "none" => return Ok(CutOff::None),
+        "auto" => return Ok(CutOff::Auto),
+        _ => {}
     }
     let hertz = text.parse().ok().filter(|hertz: &f64| hertz.is_finite() && *hertz > 0.0);
-    hertz.map(|hertz| CutOff(Some(hertz))).ok_or_else(|| "a cut-off is a number of Hz above 0, or `none`".to_owned())
+    hertz.map(CutOff::Hertz).ok_or_else(|| "a cut-off is a number of Hz above 0, `auto` or `none`".to_owned())
 }

@@ -165,7 +165,8 @@ pub(crate) struct TorquesArgs {
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:\n  contrapposto assess subject.osim lifting.mot --grf forces.mot --out out\n  \
-    contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n\n\
+    contrapposto assess adult standing.csv --support calcn_l,calcn_r --load \"hand_r 3kg\"\n  \
+    contrapposto assess adult lift.csv --support calcn_l,calcn_r --repeat 8h --every 20s --work 50min --break 10min\n\n\
     Inertia counts where the motion is fast, or with --dynamics; otherwise each posture is held at rest. Loads are interpolated linearly \
     between postures. Writes assess.json, \
     report.html, torques.sto, fatigue.sto and motion.glb into DIR.")]
@@ -182,6 +183,8 @@ pub(crate) struct AssessArgs {
     pub(crate) under: LoadArgs,
     #[command(flatten)]
     pub(crate) dynamics: DynamicsArgs,
+    #[command(flatten)]
+    pub(crate) repeat: super::RepeatArgs,
     /// Segments that carry the body in every frame; their forces are computed for the least effort of the muscles.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", conflicts_with = "grf")]
     pub(crate) support: Vec<String>,
@@ -234,12 +237,16 @@ pub(crate) struct LoadArgs {
     #[arg(long, value_name = "FORCE")]
     pub(crate) force: Vec<String>,
     /// Ground reaction forces as OpenSim writes them (ground_force_vx .. ground_torque_z), interpolated in time; or OpenSim's ExternalLoads
-    /// file (.xml), which names them and their segments.
-    #[arg(long, value_name = "FILE.mot")]
+    /// file (.xml), which names them and their segments; or a C3D file with force plates of types 1 to 4, each stance on the foot that is nearest
+    /// to it.
+    #[arg(long, value_name = "FILE")]
     pub(crate) grf: Option<PathBuf>,
     /// Segments that the ground reactions act on, in the order of the file's columns; guessed by name when left out.
     #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", requires = "grf")]
     pub(crate) grf_on: Vec<String>,
+    /// The segment that a force plate of the C3D file of --grf acts on: 1=calcn_r, or 2=none for a plate that does not act on the body.
+    #[arg(long, value_name = "NUMBER=SEG", requires = "grf")]
+    pub(crate) plate: Vec<String>,
     #[command(flatten)]
     pub(crate) frames: FrameArgs,
 }

@@ -32,6 +32,10 @@ pub(crate) struct TrackArgs {
     /// Unit of the markers, whatever the file says; of an animation, whatever its legs say.
     #[arg(long, value_enum)]
     pub(crate) units: Option<UnitChoice>,
+    /// The axis of the laboratory that points up: places of markers are turned so that it points against the gravity of the model. Without it that of
+    /// a C3D file with force plates or a screen axis; other files are taken as they are.
+    #[arg(long, value_enum, conflicts_with = "rig")]
+    pub(crate) up: Option<UpChoice>,
     /// Leave out the frames before this time, s; as the setup file says when left out.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
@@ -52,6 +56,27 @@ pub(crate) enum UnitChoice {
     Cm,
     /// Metres.
     M,
+}
+
+/// The upward axis of a laboratory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum UpChoice {
+    /// x
+    X,
+    /// y, as in OpenSim.
+    Y,
+    /// z
+    Z,
+}
+
+impl UpChoice {
+    pub(crate) fn axis(self) -> nalgebra::Vector3<f64> {
+        match self {
+            Self::X => nalgebra::Vector3::x(),
+            Self::Y => nalgebra::Vector3::y(),
+            Self::Z => nalgebra::Vector3::z(),
+        }
+    }
 }
 
 impl UnitChoice {

@@ -6,14 +6,14 @@ use std::path::Path;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Part, Sex};
-use contrapposto::tracking::{TrackedFrame, track as tracked_frames};
+use contrapposto::tracking::TrackedFrame;
 use contrapposto_formats::MOST_BYTES;
 use contrapposto_formats::motion::MOST_TABLE_BYTES;
 use contrapposto_formats::rigs::{
     Assignment, Fitted, Rig, RigUnit, Sizing, Targets, read_bvh, read_rig_names, settle_branches,
 };
 
-use super::track::{ERRORS, MOST_MOTION_VALUES, MOTION, SAME_TIME, asked, errors, motion};
+use super::track::{ERRORS, MOST_MOTION_VALUES, MOTION, SAME_TIME, asked, errors, left_out, motion, tracked_so_far};
 use crate::args::TrackArgs;
 use crate::fail::Fail;
 use crate::input::read;
@@ -50,20 +50,22 @@ pub(crate) fn animation(args: &TrackArgs) -> Result<(), Fail> {
     say((&rig, &frames), &assignment, (&fitted, &sizing), &targets);
     let model = &fitted.model;
     let places: Vec<_> = frames.iter().map(|&frame| targets.places(frame)).collect();
-    let mut tracked =
-        tracked_frames(model, targets.goals.clone(), &model.default_posture(), places.iter().map(Vec::as_slice))
-            .map_err(|error| refused(&error))?;
+    let mut tracked = tracked_so_far(model, targets.goals.clone(), &model.default_posture(), &places)
+        .map_err(|error| refused(&error))?;
     settle_branches(model, tracked.iter_mut().map(|frame| &mut frame.posture));
-    let times: Vec<f64> = frames.iter().map(|&frame| time(&rig, frame)).collect();
-    let answer = answer(&rig, &targets, (&frames, &times, &tracked), &fitted)?;
-    let motion = motion(model, &times, &tracked).map_err(|error| Fail::job(MOTION, error))?;
-    let errors = errors(&times, &tracked).map_err(|error| Fail::job(ERRORS, error))?;
+    let all: Vec<f64> = frames.iter().map(|&frame| time(&rig, frame)).collect();
+    let left = left_out(&all, tracked.len())?;
+    let (frames, times) = (&frames[..tracked.len()], &all[..tracked.len()]);
+    let answer = answer(&rig, &targets, (frames, times, &tracked), &fitted)?;
+    let motion = motion(model, times, &tracked).map_err(|error| Fail::job(MOTION, error))?;
+    let errors = errors(times, &tracked).map_err(|error| Fail::job(ERRORS, error))?;
     let adult = scenario(&fitted.size);
     out.write(&[(MOTION, motion), (ERRORS, errors), (ADULT, adult)])?;
     let (motion, adult) = (out.path(MOTION).display().to_string(), out.path(ADULT).display().to_string());
     print(&format!("{answer}{motion}, {ERRORS} and {ADULT} beside it\n"))?;
     let (motion, adult) = (quoted(&motion), quoted(&adult));
-    print(&format!("next: contrapposto assess {adult} {motion} --fixed-root --out report\n"))
+    print(&format!("next: contrapposto assess {adult} {motion} --fixed-root --out report\n"))?;
+    left.map_or(Ok(()), Err)
 }
 
 /// A path as a command line has it: in quotes where it holds blanks.

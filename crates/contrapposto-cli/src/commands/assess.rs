@@ -1,6 +1,7 @@
 //! `contrapposto assess`: the muscle group that fails first in a recorded motion, its time, and its relief.
 
 pub(crate) mod job;
+mod repeats;
 mod support_doubts;
 mod warnings;
 

@@ -39,10 +39,10 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let mut notes = std::mem::take(&mut opened.notes);
     let model = &opened.model;
     let mut recorded = recorded(args, model, &mut notes)?;
-    let (loads, ground) = loads_of(&args.under, model, &mut notes)?;
+    let (loads, ground) = loads_of(&args.under, model, &recorded.frames, &mut notes)?;
     keep_overlap(&mut recorded, ground.as_ref())?;
     let warnings = note_values_out_of_range(&opened, &recorded.frames, &mut notes);
-    warnings.iter().for_each(|warning| print_note("warning", warning));
+    recorded.doubts.iter().chain(&warnings).for_each(|warning| print_note("warning", warning));
     let job = Job { opened, muscles, recorded, loads, ground, gradient: args.gradient };
     job.check()?;
     job.recorded.said.iter().for_each(|said| print_note("note", said));

@@ -4,16 +4,20 @@ mod doubts;
 pub(crate) mod matching;
 
 use contrapposto::model::{CoordinateKind, Model};
-use contrapposto::tracking::{self, TrackedFrame};
-use contrapposto_formats::markers::{Markers, TrackingTasks, read_markers, tracking_tasks};
+use contrapposto::posture::Posture;
+use contrapposto::tracking::{self, Goals, TrackedFrame, TrackingError};
+use contrapposto_formats::markers::{Markers, TrackingTasks, read_markers, tracking_tasks, turn_upright};
 use contrapposto_formats::motion::{MOST_TABLE_BYTES, UnwritableTable, write_sto};
 use contrapposto_formats::xml::Limits;
 
-use crate::args::TrackArgs;
+use crate::args::{TrackArgs, UpChoice};
 use crate::fail::Fail;
 use crate::input::read;
+use crate::interruption;
 use crate::model_file::open;
+use crate::motion_file::turned;
 use crate::output::{ResultSet, print, print_note};
+use crate::progress::frames_bar;
 use matching::{Matched, Observed, Source, length};
 
 /// The motion that is written.
@@ -35,8 +39,13 @@ pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let opened = open(&args.model, false)?;
     let model = &opened.model;
     let name = args.markers.display().to_string();
-    let markers =
+    let mut markers =
         read_markers(&name, &read(&args.markers, MOST_TABLE_BYTES as u64)?, args.units.map(|unit| unit.unit()))?;
+    let up = args.up.map(UpChoice::axis).or(markers.up).zip((-model.gravity()).try_normalize(1e-9));
+    if let Some(turn) = up.and_then(|(own, up)| turn_upright(own, up)) {
+        markers.turn(&turn);
+        print_note("note", &turned(&name));
+    }
     let tasks = tasks(args)?;
     tasks.iter().flat_map(|tasks| &tasks.notes).for_each(|note| print_note("note", note));
     markers.warnings.iter().for_each(|warning| print_note("warning", warning));
@@ -46,10 +55,13 @@ pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let matched = Matched::new(&opened, &markers, tasks.as_ref(), source)?;
     matched.warnings.iter().for_each(|warning| print_note("warning", warning));
     matched.notes.iter().for_each(|note| print_note("note", note));
-    let (times, frames) = frames(args, &name, &markers, (&matched, model.coordinates().len()), tasks.as_ref())?;
+    let (mut times, mut frames) = frames(args, &name, &markers, (&matched, model.coordinates().len()), tasks.as_ref())?;
     let start = model.default_posture();
-    let tracked = tracking::track(model, matched.goals.clone(), &start, frames.iter().map(Vec::as_slice))
+    let tracked = tracked_so_far(model, matched.goals.clone(), &start, &frames)
         .map_err(|error| Fail::Refused(format!("{}: {error}", args.model.model.display())))?;
+    let left = left_out(&times, tracked.len())?;
+    times.truncate(tracked.len());
+    frames.truncate(tracked.len());
     for warning in doubts::doubts(model, &matched, markers.unit, (&times, &frames, &tracked)) {
         print_note("warning", &warning);
     }
@@ -57,7 +69,34 @@ pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     let errors = errors(&times, &tracked).map_err(|error| Fail::job(ERRORS, error))?;
     out.write(&[(MOTION, motion), (ERRORS, errors)])?;
     print(&answer(&matched, &times, &tracked))?;
-    print(&format!("{} and {ERRORS} beside it\n", out.path(MOTION).display()))
+    print(&format!("{} and {ERRORS} beside it\n", out.path(MOTION).display()))?;
+    left.map_or(Ok(()), Err)
+}
+
+/// The frames that are tracked until someone asks the program to end.
+pub(super) fn tracked_so_far(
+    model: &Model,
+    goals: Goals,
+    start: &Posture,
+    frames: &[Observed],
+) -> Result<Vec<TrackedFrame>, TrackingError> {
+    interruption::watch();
+    let progress = frames_bar(frames.len());
+    let going = frames.iter().take_while(|_| !interruption::is_requested()).inspect(|_| progress.inc(1));
+    let tracked = tracking::track(model, goals, start, going.map(Vec::as_slice))?;
+    progress.finish();
+    Ok(tracked)
+}
+
+/// The failure that ends the command once the frames so far are written, if there are more of them.
+pub(super) fn left_out(times: &[f64], done: usize) -> Result<Option<Fail>, Fail> {
+    let failure =
+        |so_far: String| Fail::Job(format!("interrupted: {done} of {} frames were tracked{so_far}", times.len()));
+    match (done, times.get(done.wrapping_sub(1))) {
+        (done, _) if done == times.len() => Ok(None),
+        (_, Some(last)) => Ok(Some(failure(format!(", up to {last} s, and written")))),
+        (_, None) => Err(failure(String::new())),
+    }
 }
 
 fn tasks(args: &TrackArgs) -> Result<Option<TrackingTasks>, Fail> {

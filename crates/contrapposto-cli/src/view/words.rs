@@ -6,6 +6,8 @@ pub(crate) use contrapposto::verdict::how_long;
 
 use super::axes::visible;
 
+/// Times from here on, s, count as no limit.
+pub(crate) const A_DAY: f64 = 86_400.0;
 /// Most rows of a table that a reader is shown.
 pub(crate) const MOST_ROWS: usize = 10;
 /// Most joints, muscle groups or directions of a posture that are listed.

@@ -104,13 +104,15 @@ pub struct GroundReaction {
     plates: Vec<Plate>,
     /// Column label and segment name of every plate whose segment was guessed.
     guessed: Vec<(String, &'static str)>,
+    /// Sentences that say what force plates act on.
+    assigned: Vec<String>,
 }
 
 /// Columns x, y and z.
 type Three = [usize; 3];
 
 #[derive(Clone, Debug)]
-struct Plate {
+pub(super) struct Plate {
     segment: usize,
     force: Option<Three>,
     /// None: the segment's origin.
@@ -119,6 +121,14 @@ struct Plate {
     /// The segment in whose axes force and couple are measured, and the one in whose frame the point is; ground where there is none.
     force_in: Option<usize>,
     point_in: Option<usize>,
+}
+
+impl Plate {
+    /// Force, point and couple in nine columns from `first` on.
+    pub(super) fn of_columns(segment: usize, first: usize) -> Self {
+        let [force, point, couple] = [0, 3, 6].map(|at| Some([first + at, first + at + 1, first + at + 2]));
+        Self { segment, force, point, couple, force_in: None, point_in: None }
+    }
 }
 
 impl GroundReaction {
@@ -187,7 +197,7 @@ impl GroundReaction {
                 point_in: None,
             });
         }
-        Ok(Self { name: table_name(), table, plates, guessed })
+        Ok(Self { name: table_name(), table, plates, guessed, assigned: vec![] })
     }
 
     /// Reads a table of the name `name` with the segments and columns that an ExternalLoads file names.
@@ -218,7 +228,16 @@ impl GroundReaction {
             })
         };
         let plates = loads.forces.iter().map(plate).collect::<Result<_, _>>()?;
-        Ok(Self { name: name.to_owned(), table, plates, guessed: vec![] })
+        Ok(Self { name: name.to_owned(), table, plates, guessed: vec![], assigned: vec![] })
+    }
+
+    pub(super) fn of_table(name: &str, table: Table, plates: Vec<Plate>, assigned: Vec<String>) -> Self {
+        Self { name: name.to_owned(), table, plates, guessed: vec![], assigned }
+    }
+
+    /// Sentences that say what the force plates of a C3D file act on.
+    pub fn assigned(&self) -> &[String] {
+        &self.assigned
     }
 
     /// Faults of a table that can be read nevertheless.

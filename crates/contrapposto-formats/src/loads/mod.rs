@@ -1,9 +1,11 @@
 //! Loads on a body from texts and measured tables: held weights, forces, and ground reactions.
 
 mod external_loads;
+mod force_plates;
 mod ground_reaction;
 mod text;
 
 pub use external_loads::{ExternalForce, ExternalLoads, ExternalLoadsError, external_loads};
+pub use force_plates::{ForcePlateError, PlateOn};
 pub use ground_reaction::{GroundReaction, GroundReactionError};
 pub use text::{LoadTextError, force, no_segment, patch, weight};

@@ -8,12 +8,13 @@ mod scale_setup;
 mod tasks;
 mod trc;
 
-pub use c3d::{C3dError, is_c3d, read_c3d};
+pub(crate) use c3d::LEAST_FORCE;
+pub use c3d::{C3dError, ForcePlate, ForcePlates, is_c3d, read_c3d, read_force_plates};
 pub use marker_set::marker_set;
 pub use measurement::{Measurement, MeasurementError};
 pub use scale_setup::{ACCEPTED_FACTORS, Order, ScaleSetup, scale_setup};
 pub use tasks::{CoordinateTask, MarkerTask, TaskFileError, TaskValue, TrackingTasks, tracking_tasks};
-pub use trc::{MarkerUnit, Markers, read_trc};
+pub use trc::{MarkerUnit, Markers, read_trc, turn_upright};
 
 use nalgebra::Vector3;
 

@@ -6,7 +6,7 @@
 
 use std::collections::HashSet;
 
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 
 use crate::input_error::{InputError, Source, utf8};
 use crate::motion::{MOST_COLUMNS, MOST_NAME_BYTES, MOST_NUMBERS};
@@ -62,6 +62,11 @@ impl MarkerUnit {
     }
 }
 
+/// Lines above the names of markers that are read (assumed: files have four).
+const MOST_HEADER_LINES: usize = 1000;
+/// Axes that are turned by less agree, rad.
+const SAME_AXIS: f64 = 0.1;
+
 /// Measured markers over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Markers {
@@ -73,8 +78,23 @@ pub struct Markers {
     pub places: Vec<Vec<Option<Vector3<f64>>>>,
     /// The unit in which the file was read.
     pub unit: MarkerUnit,
+    /// The axis of the laboratory that points up, where the file says it.
+    pub up: Option<Vector3<f64>>,
     /// Faults of a file that can be read nevertheless, a sentence each.
     pub warnings: Vec<String>,
+}
+
+impl Markers {
+    /// Turns all places.
+    pub fn turn(&mut self, turn: &Rotation3<f64>) {
+        self.places.iter_mut().flatten().flatten().for_each(|place| *place = turn * *place);
+        self.up = self.up.map(|up| turn * up);
+    }
+}
+
+/// The turn from the upward axis of a laboratory to `up`; `None` where they agree.
+pub fn turn_upright(own: Vector3<f64>, up: Vector3<f64>) -> Option<Rotation3<f64>> {
+    Rotation3::rotation_between(&own, &up).filter(|turn| turn.angle() > SAME_AXIS)
 }
 
 /// A line without its end, and its number.
@@ -102,22 +122,24 @@ pub fn read_trc(name: &str, bytes: &[u8], unit: Option<MarkerUnit>) -> Result<Ma
     let text = utf8(name, bytes)?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut file = File { source: Source { name, text }, tabs: true };
-    let lines: Vec<Line<'_>> = text.split('\n').map(|line| line.trim_end_matches('\r')).enumerate().collect();
-    let first = |line: &&Line<'_>| line.1.split_whitespace().next().unwrap_or_default().to_ascii_lowercase();
-    let labels = lines.iter().position(|line| ["frame#", "frame"].contains(&first(&line).as_str()));
-    let Some(labels) = labels else {
+    let lines = || {
+        text.split('\n').map(|line| line.trim_end_matches('\r')).enumerate().filter(|line| !line.1.trim().is_empty())
+    };
+    let first = |line: &Line<'_>| line.1.split_whitespace().next().unwrap_or_default().to_ascii_lowercase();
+    let labels = lines().enumerate().find(|(_, line)| ["frame#", "frame"].contains(&first(line).as_str()));
+    let Some((above, labels)) = labels else {
         let help = "a .trc file has a line `Frame#`, `Time` and the names of its markers".to_owned();
         return Err(file.source.error(None, format!("{name}: holds no line of marker names"), "", Some(help)));
     };
-    file.tabs = lines[labels].1.contains('\t');
-    let header = file.header(&lines[..labels]);
+    file.tabs = labels.1.contains('\t');
+    let header = file.header(&lines().take(above.min(MOST_HEADER_LINES)).collect::<Vec<_>>());
     let unit = file.unit(&header, unit)?;
     let mut warnings = vec![];
-    let columns = file.names(lines[labels], &mut warnings)?;
+    let columns = file.names(labels, &mut warnings)?;
     let mut rows = Rows { file: &file, columns: &columns, unit, times: vec![], places: vec![], zeros: 0, ragged: None };
-    for (index, &line) in lines[labels + 1..].iter().enumerate() {
+    for (index, line) in lines().skip(above + 1).enumerate() {
         let is_axes = index < 2 && line.1.trim_start().starts_with(['X', 'x']);
-        if !is_axes && !line.1.trim().is_empty() {
+        if !is_axes {
             rows.read(line)?;
         }
     }
@@ -136,9 +158,9 @@ pub fn read_trc(name: &str, bytes: &[u8], unit: Option<MarkerUnit>) -> Result<Ma
     let (times, places) = (rows.times, rows.places);
     if times.is_empty() {
         let help = "rows of numbers must follow the names".to_owned();
-        return Err(file.error(lines[labels].1, format!("{name}: names markers but has no rows"), Some(help)));
+        return Err(file.error(labels.1, format!("{name}: names markers but has no rows"), Some(help)));
     }
-    Ok(Markers { names, times, places, unit, warnings })
+    Ok(Markers { names, times, places, unit, up: None, warnings })
 }
 
 /// A marker's three columns.

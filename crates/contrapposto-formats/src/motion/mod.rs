@@ -25,7 +25,7 @@ pub const MOST_NUMBERS: usize = 10_000_000;
 pub const MOST_NAME_BYTES: usize = 256;
 
 /// Named columns of numbers over time, in the units of the file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     /// The name that OpenSim's tables begin with; empty where there is none.
     pub name: String,

@@ -4,7 +4,7 @@
 //! the axes that the turns before have left (`R = R1 R2 R3` in the order of the file); places stand instead of the joint's offset.
 
 use contrapposto::model::LARGEST;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{Channel, Rig, RigJoint};
 use crate::input_error::{InputError, Source, utf8};
@@ -140,7 +140,14 @@ fn joint(words: &mut Words<'_>, rig: &mut Rig, parent: Option<usize>) -> Result<
         words.repeated.push((named, name));
     }
     let offset = Vector3::zeros();
-    rig.joints.push(RigJoint { name: name.to_owned(), parent, offset, channels: vec![], first: 0 });
+    rig.joints.push(RigJoint {
+        name: name.to_owned(),
+        parent,
+        offset,
+        rest: UnitQuaternion::identity(),
+        channels: vec![],
+        first: 0,
+    });
     Ok(rig.joints.len() - 1)
 }
 

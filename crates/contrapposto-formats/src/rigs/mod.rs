@@ -42,6 +42,8 @@ pub struct RigJoint {
     pub parent: Option<usize>,
     /// Place in the parent's axes at rest, units of the file.
     pub offset: Vector3<f64>,
+    /// Turn against the parent's axes at rest, and of a joint without channels that turn it.
+    pub rest: UnitQuaternion<f64>,
     /// Channels, in the order in which the file has them.
     pub channels: Vec<Channel>,
     /// Number of the first of them in a frame.
@@ -79,12 +81,13 @@ impl Rig {
         std::iter::successors(Some(joint), |&j| self.joints[j].parent)
     }
 
-    /// Places all joints in the axes of the file: in a frame, or at rest (all angles 0) without one.
+    /// Places all joints in the axes of the file: in a frame, or at rest (in a .bvh file: all angles 0) without one.
     pub fn place(&self, frame: Option<usize>, placed: &mut Vec<Placement>) {
         placed.clear();
         let values = frame.and_then(|frame| self.frames.get(frame));
         for joint in &self.joints {
-            let (mut at, mut turn) = (joint.offset, UnitQuaternion::identity());
+            let turns = values.is_some() && joint.channels.iter().any(|channel| matches!(channel, Channel::Turn(_)));
+            let (mut at, mut turn) = (joint.offset, if turns { UnitQuaternion::identity() } else { joint.rest });
             for (channel, value) in joint.channels.iter().zip(values.into_iter().flat_map(|v| &v[joint.first..])) {
                 match *channel {
                     Channel::Place(axis) => at[axis] = *value,

@@ -58,8 +58,17 @@ pub(crate) struct Trial {
     pub(crate) ends: (u16, u16),
     /// Further parameters of numbers: group (1 POINT, 2 TRIAL, 3 ANALOG), name, words.
     pub(crate) words: Vec<(i8, &'static str, Vec<u16>)>,
-    /// Analog samples of a frame.
+    /// Further parameters of reals: group (4 FORCE_PLATFORM, too), name, dimensions, numbers.
+    pub(crate) reals: Vec<(i8, &'static str, Vec<usize>, Vec<f64>)>,
+    /// Further parameters of integers with dimensions.
+    pub(crate) integers: Vec<(i8, &'static str, Vec<usize>, Vec<i16>)>,
+    /// Further parameters of texts.
+    pub(crate) texts: Vec<(i8, &'static str, Vec<&'static str>)>,
+    /// Analog samples of a frame, and of a channel in it.
     pub(crate) samples: u16,
+    pub(crate) per_channel: u16,
+    /// Raw analog numbers of each frame; some numbers where it is empty.
+    pub(crate) analog: Vec<Vec<f64>>,
     pub(crate) frames: Vec<Vec<[f64; 4]>>,
 }
 
@@ -67,12 +76,27 @@ impl Trial {
     pub(crate) fn new(kind: Kind, scale: f64, labels: &[&str], frames: Vec<Vec<[f64; 4]>>) -> Self {
         let labels = labels.iter().map(|&label| label.to_owned()).collect();
         let ends = (1, frames.len() as u16);
-        Self { kind, scale, rate: 50.0, unit: "mm", labels, ends, words: vec![], samples: 3, frames }
+        Self {
+            kind,
+            scale,
+            rate: 50.0,
+            unit: "mm",
+            labels,
+            ends,
+            words: vec![],
+            reals: vec![],
+            integers: vec![],
+            texts: vec![],
+            samples: 3,
+            per_channel: 1,
+            analog: vec![],
+            frames,
+        }
     }
 
     fn parameters(&self) -> Vec<u8> {
         let mut bytes = vec![1, 0x50, 0, [84, 85, 86][self.kind as usize]];
-        for (id, name) in [(1, "POINT"), (2, "TRIAL"), (3, "ANALOG")] {
+        for (id, name) in [(1, "POINT"), (2, "TRIAL"), (3, "ANALOG"), (4, "FORCE_PLATFORM")] {
             bytes.extend([name.len() as u8, (256 - id) as u8]);
             bytes.extend(name.as_bytes());
             bytes.extend(self.kind.word(3));
@@ -101,6 +125,18 @@ impl Trial {
             let data: Vec<u8> = words.iter().flat_map(|word| self.kind.word(*word)).collect();
             add(*group, name, 2, &[words.len()], &data);
         }
+        for (group, name, dimensions, numbers) in &self.reals {
+            let data: Vec<u8> = numbers.iter().flat_map(|number| self.kind.real(*number)).collect();
+            add(*group, name, 4, dimensions, &data);
+        }
+        for (group, name, dimensions, numbers) in &self.integers {
+            let data: Vec<u8> = numbers.iter().flat_map(|number| self.kind.word(*number as u16)).collect();
+            add(*group, name, 2, dimensions, &data);
+        }
+        for (group, name, texts) in &self.texts {
+            let data: String = texts.iter().map(|text| format!("{text:8}")).collect();
+            add(*group, name, -1, &[8, texts.len()], data.as_bytes());
+        }
         bytes.resize(bytes.len().next_multiple_of(512), 0);
         bytes[2] = (bytes.len() / 512) as u8;
         bytes
@@ -115,17 +151,18 @@ impl Trial {
         }
         bytes.extend(self.kind.real(self.scale));
         bytes.extend(self.kind.word(2 + (parameters.len() / 512) as u16));
-        bytes.extend(self.kind.word(1));
+        bytes.extend(self.kind.word(self.per_channel));
         bytes.extend(self.kind.real(self.rate));
         bytes.resize(512, 0);
         bytes.extend(parameters);
-        for frame in &self.frames {
-            for number in frame.iter().flatten().copied().chain((0..self.samples).map(|sample| f64::from(sample) - 7.0))
-            {
+        for (i, frame) in self.frames.iter().enumerate() {
+            let some = || (0..self.samples).map(|sample| f64::from(sample) - 7.0).collect();
+            let analog: Vec<f64> = self.analog.get(i).cloned().unwrap_or_else(some);
+            for number in frame.iter().flatten().copied().chain(analog) {
                 if self.scale < 0.0 {
                     bytes.extend(self.kind.real(number));
                 } else {
-                    bytes.extend(self.kind.word(number as i16 as u16));
+                    bytes.extend(self.kind.word(if number < 0.0 { number as i16 as u16 } else { number as u16 }));
                 }
             }
         }

@@ -46,4 +46,16 @@ pub enum AssessError {
     /// The motion lasts for days.
     #[error("the motion lasts {0} s; 1e5 s at most")]
     TooLong(f64),
+    /// A cycle is repeated faster than it lasts, or not once in the time of the job or between two breaks; or times are no numbers.
+    #[error(
+        "a cycle of {cycle} s every {every} s does not fit into {room} s: a cycle lasts more than 0 s, as long as `every` at most, and that as long as the job and the work between breaks at most"
+    )]
+    Repetition {
+        /// Length of the motion, s.
+        cycle: f64,
+        /// Time from one start to the next, s.
+        every: f64,
+        /// Length of the job, or of the work between breaks where that is shorter, s.
+        room: f64,
+    },
 }

@@ -75,13 +75,10 @@ impl<'a> Evaluation<'a> {
             None => torques.apply(model, &self.loads, Quantities::TORQUES),
         }
         .map_err(refused)?;
-        match &mut self.inertia {
-            Some(inertia) => {
-                let update = inertia.update_about_axes(model, torques.kinematics_by_axes());
-                update.map_err(|error| AssessError::Inertia { index, error })
-            }
-            None => Ok(()),
+        if let Some(inertia) = &mut self.inertia {
+            inertia.update_about_axes(model, torques.kinematics_by_axes());
         }
+        Ok(())
     }
 
     /// Torque of inertia of a rate about its axis, N m.

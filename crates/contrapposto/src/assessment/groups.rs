@@ -2,16 +2,9 @@
 
 use super::evaluation::Evaluation;
 use super::result::{AngleInDoubt, GroupAssessment, Peak, PeakTorques};
-use crate::fatigue::{FatigueLaw, FatigueState, LoadHistory};
+use crate::fatigue::{FatigueLaw, FatigueState, Interval, LoadCycle, LoadHistory};
 use crate::joint_torques::relative_load;
 use crate::model::{Model, Side};
-
-/// Longest piece of time under one load, s.
-const PIECE: f64 = 0.25;
-/// Most pieces between two postures.
-const MOST_PIECES: f64 = 1000.0;
-/// Bisections of the piece in which a group fails: to a part in a million.
-const BISECTIONS: usize = 20;
 
 /// All groups of known strength over time.
 pub(super) struct Groups {
@@ -20,47 +13,12 @@ pub(super) struct Groups {
     /// By coordinate.
     pub(super) fatigue: Vec<[f64; 2]>,
     pub(super) load: Vec<[f64; 2]>,
-}
-
-/// The time between two postures for one group; its relative load changes in a straight line.
-struct Interval<'l> {
-    law: &'l FatigueLaw,
-    /// Relative load before and after.
-    load: (f64, f64),
-    /// Length, s.
-    seconds: f64,
-    /// Number of pieces under one load each.
-    pieces: f64,
-}
-
-impl Interval<'_> {
-    /// Relative load at a share of the interval.
-    fn load_at(&self, share: f64) -> f64 {
-        self.load.0 + share * (self.load.1 - self.load.0)
-    }
-
-    /// State and fatigue at the share `to`, from the state `start` at the share `from`.
-    fn advance(&self, start: FatigueState, from: f64, to: f64) -> (FatigueState, f64) {
-        if self.seconds <= 0.0 {
-            return (start, start.level(self.load.1));
-        }
-        let state = self.law.advance(start, self.load_at(f64::midpoint(from, to)), (to - from) * self.seconds);
-        (state, state.level(self.load_at(to)))
-    }
-
-    /// The share at which fatigue reaches 1, between the shares `from` (state `start`) and `to`.
-    fn exhaustion(&self, start: FatigueState, from: f64, to: f64) -> f64 {
-        let (mut held, mut failed) = (from, to);
-        for _ in 0..BISECTIONS {
-            let middle = f64::midpoint(held, failed);
-            if self.advance(start, from, middle).1 >= 1.0 { failed = middle } else { held = middle }
-        }
-        failed
-    }
+    /// Keeps the load of every instant.
+    cyclic: bool,
 }
 
 impl Groups {
-    pub(super) fn new(model: &Model) -> Self {
+    pub(super) fn new(model: &Model, cyclic: bool) -> Self {
         let known = |i: &usize| {
             let coordinate = &model.coordinates()[*i];
             coordinate.groups.is_some() && coordinate.rate.is_some() && !model.is_dependent(*i)
@@ -73,6 +31,8 @@ impl Groups {
             peak_torque: 0.0,
             at_peak: PeakTorques::default(),
             loads: LoadHistory::default(),
+            cycle: LoadCycle::default(),
+            repeated: None,
             peak_fatigue: Peak::default(),
             fatigue: 0.0,
             load: 0.0,
@@ -86,12 +46,12 @@ impl Groups {
             states: vec![],
             fatigue: vec![[0.0; 2]; n],
             load: vec![[0.0; 2]; n],
+            cyclic,
         }
     }
 
     /// Adds the next instant, `seconds` after the one before: load, peak and fatigue of every group.
     pub(super) fn add(&mut self, evaluation: &mut Evaluation<'_>, index: usize, time: f64, seconds: f64) {
-        let pieces = (seconds / PIECE).ceil().clamp(1.0, MOST_PIECES);
         for (place, summary) in self.summaries.iter_mut().enumerate() {
             let (i, side) = (summary.coordinate, summary.side);
             let eased = evaluation.eased_passive(i);
@@ -126,24 +86,32 @@ impl Groups {
             });
             summary.peak_load.take(load, index, time);
             summary.loads.push(time, load);
+            if self.cyclic {
+                summary.cycle.push(time, load);
+            }
             summary.load = load;
-            let interval = Interval { law, load: (before, load), seconds, pieces };
-            tire(summary, &mut self.states[place], &interval, index, time);
+            let interval = Interval { load: (before, load), seconds };
+            tire(summary, law, &mut self.states[place], (index, time), interval);
             self.fatigue[i][side.index()] = summary.fatigue;
         }
     }
 }
 
-/// Advances the fatigue of one group through an interval that ends at `time`.
-fn tire(summary: &mut GroupAssessment, state: &mut FatigueState, interval: &Interval<'_>, index: usize, time: f64) {
-    let Interval { seconds, pieces, .. } = *interval;
-    for piece in 0..pieces as u64 {
-        let (from, to) = (piece as f64 / pieces, (piece + 1) as f64 / pieces);
+/// Advances the fatigue of one group through an interval that ends at an instant.
+fn tire(
+    summary: &mut GroupAssessment,
+    law: &FatigueLaw,
+    state: &mut FatigueState,
+    (index, time): (usize, f64),
+    interval: Interval,
+) {
+    let seconds = interval.seconds;
+    for piece in interval.pieces() {
         let start = *state;
-        (*state, summary.fatigue) = interval.advance(start, from, to);
-        summary.peak_fatigue.take(summary.fatigue, index, time - (1.0 - to) * seconds);
+        (*state, summary.fatigue) = interval.advance(law, start, piece);
+        summary.peak_fatigue.take(summary.fatigue, index, time - (1.0 - piece.1) * seconds);
         if summary.fatigue >= 1.0 && summary.exhausted_at.is_none() {
-            let exhaustion = interval.exhaustion(start, from, to);
+            let exhaustion = interval.share_of(law, start, piece, 1.0);
             summary.exhausted_at = Some(time - (1.0 - exhaustion) * seconds);
         }
     }

@@ -5,6 +5,7 @@
 //! `tau_a = -(tau_p + tau_e)` (Rodriguez & Boulic 2007, Eq. 1), contact forces of supports included; between two of them the relative
 //! load of every group changes in a straight line, and the group tires under it by its own law. At the peaks of load and of fatigue
 //! the hybrid minimisation says where relief would lie if that joint alone moved.
+//! A motion can be one cycle of a job that repeats it for hours ([`AssessSettings::repetition`]).
 //!
 //! Passive torque grows e-fold within a few degrees at the end of a joint's range, and recorded angles have errors of that size: a straight elbow
 //! recorded at 0 deg would need 13 N m of its extensors, at 5 deg 2.7. So a group that works against the passive torque of its own joint
@@ -16,6 +17,7 @@ mod error;
 mod evaluation;
 mod groups;
 mod range;
+mod repetition;
 mod result;
 mod settings;
 
@@ -32,8 +34,10 @@ pub use error::AssessError;
 use evaluation::Evaluation;
 use groups::Groups;
 pub use range::{NEARLY_ALL, share_outside};
-pub use result::{AngleInDoubt, Assessment, GroupAssessment, Instant, Peak, PeakKind, PeakTorques, Proposal};
-pub use settings::{ANGLE_ERROR, AssessSettings};
+pub use result::{
+    AngleInDoubt, Assessment, GroupAssessment, Instant, Peak, PeakKind, PeakTorques, Proposal, RepeatedGroup,
+};
+pub use settings::{ANGLE_ERROR, AssessSettings, CRITICAL_LEVEL};
 
 /// Share of its weight above which a body lacks a force in every instant for nothing to carry it. Assumed: measured ground reaction of a
 /// walk leaves less in most of its instants, a motion without ground reaction leaves all of it.
@@ -62,7 +66,7 @@ pub fn assess(
         return Err(AssessError::Rates { given: settings.rates.len(), needed: motion.len() });
     }
     let mut evaluation = Evaluation::new(model, settings)?;
-    let mut groups = Groups::new(model);
+    let mut groups = Groups::new(model, settings.repetition.is_some());
     let mut found = Assessment::of_motion(model, motion, settings);
     let mut centers: Vec<Vector3<f64>> = vec![];
     let mut before: Option<f64> = None;
@@ -92,6 +96,7 @@ pub fn assess(
     found.uncarried = found.uncarried.filter(|_| uncarried == motion.len() && !settings.root_held);
     (found.acceleration, found.fast_share) = acceleration(motion, &centers);
     found.groups = groups.summaries;
+    found.repeat(model, motion, settings)?;
     for group in &mut found.groups {
         for (at, peak) in [(PeakKind::Load, group.peak_load), (PeakKind::Fatigue, group.peak_fatigue)] {
             if peak.value > 0.0 && (at == PeakKind::Load || peak.index != group.peak_load.index) {
@@ -120,7 +125,12 @@ impl Assessment {
     /// The findings before the first instant.
     fn of_motion(model: &Model, motion: &[(f64, Posture)], settings: &AssessSettings) -> Self {
         let out_of_range = (0..model.coordinates().len()).filter_map(|i| Some((i, out_of_range(model, motion, i)?)));
-        Self { dynamics: !settings.rates.is_empty(), out_of_range: out_of_range.collect(), ..Self::default() }
+        Self {
+            dynamics: !settings.rates.is_empty(),
+            repetition: settings.repetition,
+            out_of_range: out_of_range.collect(),
+            ..Self::default()
+        }
     }
 
     /// Whether loads leave a body without supports more than half of its weight; takes in what the first such instant lacks.
@@ -169,6 +179,6 @@ fn sort(groups: &mut [GroupAssessment]) {
     groups.sort_by(|a, b| {
         let greater = |of: fn(&GroupAssessment) -> f64| of(b).total_cmp(&of(a));
         let first = failure(a).total_cmp(&failure(b));
-        first.then(greater(|g| g.peak_fatigue.value)).then(greater(|g| g.peak_load.value))
+        first.then(greater(GroupAssessment::greatest_fatigue)).then(greater(|g| g.peak_load.value))
     });
 }

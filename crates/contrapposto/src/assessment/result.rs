@@ -2,7 +2,7 @@
 
 use crate::contact::{ContactForces, Missing};
 use crate::dynamics::Inertia;
-use crate::fatigue::LoadHistory;
+use crate::fatigue::{LoadCycle, LoadHistory, Repetition};
 use crate::hybrid::{Decision, Strategy};
 use crate::joint_torques::{Hazard, JointTorques};
 use crate::model::{Model, Side};
@@ -62,18 +62,44 @@ pub struct GroupAssessment {
     pub at_peak: PeakTorques,
     /// Relative load over the motion.
     pub loads: LoadHistory,
-    /// Greatest fatigue, 0..=1.
+    /// Relative load of every instant of a motion that is repeated; empty of another one.
+    pub cycle: LoadCycle,
+    /// Findings of a motion that is repeated.
+    pub repeated: Option<RepeatedGroup>,
+    /// Greatest fatigue, 0..=1: of one cycle, where the motion is repeated.
     pub peak_fatigue: Peak,
-    /// Fatigue at the end.
+    /// Fatigue at the end: of the last cycle, where the motion is repeated.
     pub fatigue: f64,
     /// Relative load at the end.
     pub load: f64,
-    /// Time at which the fatigue of the group first reached 1, s.
+    /// Time at which the fatigue of the group first reached 1, s; of a motion that is repeated, from its first instant on.
     pub exhausted_at: Option<f64>,
     /// The instant in which the error of the recorded angle counts most; `None` where it counts nowhere.
     pub in_doubt: Option<AngleInDoubt>,
     /// Reliefs at both peaks, by both strategies; none where the group rested or has no falling passive curve.
     pub proposals: Vec<Proposal>,
+}
+
+impl GroupAssessment {
+    /// Greatest fatigue in the motion, or where it is repeated in the last cycle.
+    pub fn greatest_fatigue(&self) -> f64 {
+        self.repeated.map_or(self.peak_fatigue.value, |repeated| repeated.fatigue)
+    }
+}
+
+/// Load and fatigue of one group over a motion that is repeated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RepeatedGroup {
+    /// Share of a cycle, with its pause, in which the group works.
+    pub duty: f64,
+    /// Mean relative load over a cycle with its pause.
+    pub mean_load: f64,
+    /// Greatest fatigue in the last cycle of the job; 1 of a group that has failed.
+    pub fatigue: f64,
+    /// Time from the start of the job at which the group asks for relief, s; infinite where it never does, however long the motion is repeated.
+    pub relief_at: f64,
+    /// Time from the start of the job at which the group fails, s; infinite likewise.
+    pub fails_at: f64,
 }
 
 /// Angle and torques of a coordinate at the greatest load of one of its groups.
@@ -175,6 +201,8 @@ pub struct Assessment {
     pub missing: Option<(Missing, f64)>,
     /// Inertia counts in all torques.
     pub dynamics: bool,
+    /// The motion is one cycle of a job that repeats it.
+    pub repetition: Option<Repetition>,
     /// Force and torque that a body without supports lacks, where in every instant more than half of its weight is carried by no load.
     pub uncarried: Option<Missing>,
     /// Greatest acceleration of the centre of mass, m/s^2.

@@ -2,6 +2,7 @@
 
 use crate::contact::Support;
 use crate::dynamics::Rates;
+use crate::fatigue::Repetition;
 use crate::joint_torques::JointMuscles;
 
 /// Error of recorded joint angles, rad: 5 deg. Inter-session errors of marker-based gait analysis are mostly below it (McGinley, Baker, Wolfe &
@@ -9,6 +10,9 @@ use crate::joint_torques::JointMuscles;
 /// to a degree (4.2 deg, Cleffken et al. 2007, J. Shoulder Elbow Surg., abstract), and half the greatest error against radiographs (10.3 deg,
 /// Chapleau et al. 2011, Clin. Orthop. Relat. Res. 469:3134-3140, abstract).
 pub const ANGLE_ERROR: f64 = 5.0 * std::f64::consts::PI / 180.0;
+
+/// Fatigue at which a muscle group asks for relief. Chosen, as the default of scenarios: the paper gives no number.
+pub const CRITICAL_LEVEL: f64 = 0.6;
 
 /// Supports, ranges of passive torque, the error of the angles, and the settings of the proposals.
 #[derive(Clone, Debug)]
@@ -27,6 +31,10 @@ pub struct AssessSettings {
     /// its own joint, where that outweighs the external torque, is judged by the passive torque within this error of the angle at which it asks
     /// least of the group.
     pub angle_error: f64,
+    /// The motion is one cycle of a job that repeats it.
+    pub repetition: Option<Repetition>,
+    /// Fatigue at which a group of a repeated job asks for relief, 0..=1.
+    pub critical_level: f64,
     /// `R_min` of the proposals, 0..=1.
     pub minimum_decrease_ratio: f64,
     /// `eps` of the proposals, N m.
@@ -42,6 +50,8 @@ impl Default for AssessSettings {
             passive_ranges: vec![],
             muscles: None,
             angle_error: 0.0,
+            repetition: None,
+            critical_level: CRITICAL_LEVEL,
             minimum_decrease_ratio: 0.9,
             torque_tolerance: 0.05,
         }

@@ -57,6 +57,9 @@ pub enum MotionError {
         /// The reason.
         error: PostureError,
     },
+    /// No rotation moves, or there are too few cut-offs below half of the frame rate.
+    #[error("residual analysis suggests no cut-off: it needs rotations that move, and 12 frames a second or more")]
+    NoCutoff,
     /// No spline.
     #[error(transparent)]
     Spline(#[from] SplineError),

@@ -3,9 +3,10 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::acceleration::{Acceleration, SpeedError};
+use super::backward::{Wrench, WrenchTorques};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
-use crate::statics::{ExternalTorque, FixedIn, Load, LoadError, LoadKind};
+use crate::statics::{FixedIn, Load, LoadError, LoadKind};
 
 /// The reason for which the inertia of a body is not known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -37,9 +38,11 @@ pub struct Inertia {
     bodies: Vec<Body>,
     acceleration: Acceleration,
     loads: Vec<Load>,
-    torque: ExternalTorque,
+    /// The same forces and couples about the ground origin.
+    wrenches: Vec<Wrench>,
+    torque: WrenchTorques,
     /// About the axes of three-axis joints, for a body with such joints.
-    about_axes: Option<ExternalTorque>,
+    about_axes: Option<WrenchTorques>,
 }
 
 impl Inertia {
@@ -58,8 +61,9 @@ impl Inertia {
             bodies: (0..model.segments.len()).filter_map(body).collect(),
             acceleration: Acceleration::new(model),
             loads: vec![],
-            torque: ExternalTorque::new(model),
-            about_axes: (!model.three_axis_joints().is_empty()).then(|| ExternalTorque::new(model.by_axes())),
+            wrenches: vec![],
+            torque: WrenchTorques::new(model),
+            about_axes: (!model.three_axis_joints().is_empty()).then(|| WrenchTorques::new(model.by_axes())),
         }
     }
 
@@ -77,38 +81,41 @@ impl Inertia {
     ) -> Result<(), InertiaError> {
         self.acceleration.update(model, kinematics, speeds, accelerations)?;
         self.loads.clear();
+        self.wrenches.clear();
         for body in &self.bodies {
-            let (force, couple) = self.acceleration.inertia(kinematics, body);
+            let (force, couple, arm) = self.acceleration.inertia(kinematics, body);
             let load = |kind| Load { segment: body.segment, point: model.segments[body.segment].center_of_mass, kind };
             self.loads.push(load(LoadKind::Force(force, FixedIn::World)));
             self.loads.push(load(LoadKind::Couple(couple, FixedIn::World)));
+            let moment = (kinematics.origins[body.mobility] + arm).cross(&force) + couple;
+            self.wrenches.push(Wrench { segment: body.segment, force, moment });
         }
         for load in held {
             load.check(model)?;
             if let LoadKind::Weight(mass) = load.kind {
                 let force = -mass * self.acceleration.station(model, kinematics, load.segment, load.point);
                 self.loads.push(Load { kind: LoadKind::Force(force, FixedIn::World), ..*load });
+                let moment = kinematics.station(model, load.segment, load.point).cross(&force);
+                self.wrenches.push(Wrench { segment: load.segment, force, moment });
             }
         }
-        Ok(self.torque.update_weightless(model, kinematics, &self.loads)?)
+        self.loads.iter().try_for_each(|load| load.check(model))?;
+        self.torque.update(model, kinematics, &self.wrenches);
+        Ok(())
     }
 
     /// Computes the torques about axes that the loads of the last update give; `kinematics` are the frames of [`Model::by_axes`] in the
     /// same posture. Does not allocate.
-    ///
-    /// # Errors
-    /// As [`Inertia::update`].
-    pub fn update_about_axes(&mut self, model: &Model, kinematics: &Kinematics) -> Result<(), InertiaError> {
-        match &mut self.about_axes {
-            Some(torque) => Ok(torque.update_weightless(model.by_axes(), kinematics, &self.loads)?),
-            None => Ok(()),
+    pub fn update_about_axes(&mut self, model: &Model, kinematics: &Kinematics) {
+        if let Some(torque) = &mut self.about_axes {
+            torque.update(model.by_axes(), kinematics, &self.wrenches);
         }
     }
 
     /// As [`Inertia::torques`], with the torques of three-axis joints about the axes that stand for their coordinates, from the last
     /// [`Inertia::update_about_axes`].
     pub fn about_axes(&self) -> &[f64] {
-        self.about_axes.as_ref().map_or(self.torque.torques(), ExternalTorque::torques)
+        &self.about_axes.as_ref().unwrap_or(&self.torque).torques
     }
 
     /// Forces and couples of inertia, to be added to the other loads of the same posture.
@@ -119,12 +126,12 @@ impl Inertia {
     /// Torque of inertia alone, by rate: the part of the external torque that the body at rest would not have, N m (N for slides).
     /// Dependent coordinates are folded into their independent ones.
     pub fn torques(&self) -> &[f64] {
-        self.torque.torques()
+        &self.torque.torques
     }
 
     /// As [`Inertia::torques`], but as if no coordinate followed another one.
     pub fn uncoupled_torques<'a>(&'a self, model: &Model) -> &'a [f64] {
-        self.torque.uncoupled_torques(model)
+        if model.direct { &self.torque.torques } else { &self.torque.raw }
     }
 
     /// Velocities and accelerations of the segments.
@@ -134,14 +141,14 @@ impl Inertia {
 }
 
 impl Acceleration {
-    /// Force (N) and couple (N m) of the inertia of a segment, ground axes.
-    fn inertia(&self, kinematics: &Kinematics, body: &Body) -> (Vector3<f64>, Vector3<f64>) {
+    /// Force (N) and couple (N m) of the inertia of a segment, and its centre seen from the mobility's origin (m), ground axes.
+    fn inertia(&self, kinematics: &Kinematics, body: &Body) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
         let Body { mobility, mass, center, inertia, .. } = body;
         let rotation = &kinematics.rotations[*mobility];
         let (omega, alpha) = (self.omega[*mobility], self.alpha[*mobility]);
         let arm = rotation * center;
         let force = -*mass * (self.origin[*mobility] + alpha.cross(&arm) + omega.cross(&omega.cross(&arm)));
         let in_ground = |v: &Vector3<f64>| rotation * (inertia * rotation.tr_mul(v));
-        (force, -(in_ground(&alpha) + omega.cross(&in_ground(&omega))))
+        (force, -(in_ground(&alpha) + omega.cross(&in_ground(&omega))), arm)
     }
 }

@@ -13,13 +13,16 @@
 //! of Featherstone 2008, "Rigid Body Dynamics Algorithms", section 5.3). `docs/dynamics.md` derives all of it.
 
 mod acceleration;
+mod backward;
 mod error;
 mod inertia;
 mod motion;
+mod residual_analysis;
 mod sampling;
 
 pub use acceleration::{Acceleration, SpeedError};
 pub use error::MotionError;
 pub use inertia::{Inertia, InertiaError};
 pub use motion::{Moving, Rates, differentiate};
+pub use residual_analysis::suggested_cutoff;
 pub use sampling::{PUBLISHED_CUTOFF, Smoothing};

@@ -4,6 +4,7 @@
 //! exhausted at 1. The integral knows no recovery, so a named one is added: at rest fatigue falls as `exp(-k t)`.
 
 use super::REST_LOAD;
+use super::linear_step::LinearStep;
 
 /// The published shapes, times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,5 +129,13 @@ impl Endurance {
         }
         let time = self.curve.time(load);
         if time > 0.0 { (share + seconds / time).min(1.0) } else { 1.0 }
+    }
+    /// The same as a step, of a group that does not fail.
+    pub(super) fn linear_step(&self, load: f64, seconds: f64) -> LinearStep {
+        if load <= REST_LOAD {
+            return LinearStep::of_share((-self.recovery_rate * seconds).exp(), 0.0);
+        }
+        let time = self.curve.time(load);
+        if time > 0.0 { LinearStep::of_share(1.0, seconds / time) } else { LinearStep::of_share(0.0, 1.0) }
     }
 }

@@ -6,14 +6,22 @@
 
 use serde::{Deserialize, Serialize};
 
+mod cycle;
 mod endurance;
 mod hysteresis;
+mod interval;
+mod linear_step;
 mod load_history;
+mod repeated;
 mod three_compartment;
 
+pub use cycle::LoadCycle;
 pub use endurance::{Endurance, EnduranceCurve, EnduranceForm};
 pub use hysteresis::Hysteresis;
+pub use interval::Interval;
+use linear_step::{LinearStep, Shares};
 pub use load_history::LoadHistory;
+pub use repeated::{Breaks, Repeated, Repetition};
 pub use three_compartment::{Compartments, ThreeCompartment};
 
 /// Relative load at or below which a group counts as resting (3CC-r: Looft et al. 2018; the same for the integral).
@@ -109,6 +117,39 @@ impl FatigueLaw {
             Self::ThreeCompartment(law) => law.steady_fatigue(load) <= level * (1.0 - judged.clamp(0.0, 1.0)),
             Self::Endurance(_) => load <= REST_LOAD,
             Self::Tireless => judged <= 1.0,
+        }
+    }
+}
+
+impl FatigueLaw {
+    /// The change within `seconds` under relative load `load` (>= 0), of a group that does not fail.
+    fn linear_step(&self, load: f64, seconds: f64) -> LinearStep {
+        match self {
+            Self::ThreeCompartment(law) => law.linear_step(load, seconds),
+            Self::Endurance(law) => law.linear_step(load, seconds),
+            Self::Tireless => LinearStep::of_share(0.0, overload(load)),
+        }
+    }
+
+    /// The value of `MF`, or of the share, at which fatigue is `level` under relative load `load`.
+    fn threshold(&self, level: f64, load: f64) -> f64 {
+        match self {
+            Self::ThreeCompartment(_) => level * (1.0 - load),
+            Self::Endurance(_) | Self::Tireless => level,
+        }
+    }
+
+    fn shares(&self, state: FatigueState) -> Shares {
+        match state {
+            FatigueState::Compartments(c) => (c.active, c.fatigued),
+            FatigueState::Share(share) => (0.0, share),
+        }
+    }
+
+    fn state_of(&self, (active, fatigued): Shares) -> FatigueState {
+        match self {
+            Self::ThreeCompartment(_) => FatigueState::Compartments(Compartments::of(active, fatigued)),
+            Self::Endurance(_) | Self::Tireless => FatigueState::Share(fatigued.clamp(0.0, 1.0)),
         }
     }
 }

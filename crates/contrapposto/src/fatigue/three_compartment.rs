@@ -7,6 +7,7 @@
 //! Older codes use `r R` whenever `MA >= TL`, which speeds recovery up during a constant hold; we do not.
 
 use super::REST_LOAD;
+use super::linear_step::LinearStep;
 use serde::{Deserialize, Serialize};
 
 /// Rate of development and relaxation `LD = LR`, 1/s (the published value for both).
@@ -50,7 +51,7 @@ impl Compartments {
     }
 
     /// The rest of one rests; rounding and the last step of the integration leave no share outside 0..=1.
-    fn of(active: f64, fatigued: f64) -> Self {
+    pub(super) fn of(active: f64, fatigued: f64) -> Self {
         let fatigued = fatigued.clamp(0.0, 1.0);
         let active = active.clamp(0.0, 1.0 - fatigued);
         Self { active, resting: (1.0 - active - fatigued).max(0.0), fatigued }
@@ -69,28 +70,29 @@ impl ThreeCompartment {
     /// controller catches up with a jump of the load. More than 1e5 s count as that.
     pub fn advance(&self, start: Compartments, load: f64, seconds: f64) -> Compartments {
         let load = load.clamp(0.0, 1.0);
-        let seconds = seconds.clamp(0.0, LONGEST_TIME);
-        let steps = (seconds / STEP).ceil().max(1.0);
-        let h = seconds / steps;
-        let (mut active, mut fatigued) = (start.active, start.fatigued);
-        for _ in 0..steps as u64 {
-            let k1 = self.rates(active, fatigued, load);
-            let k2 = self.rates(active + 0.5 * h * k1.0, fatigued + 0.5 * h * k1.1, load);
-            let k3 = self.rates(active + 0.5 * h * k2.0, fatigued + 0.5 * h * k2.1, load);
-            let k4 = self.rates(active + h * k3.0, fatigued + h * k3.1, load);
-            active += h / 6.0 * (k1.0 + 2.0 * (k2.0 + k3.0) + k4.0);
-            fatigued += h / 6.0 * (k1.1 + 2.0 * (k2.1 + k3.1) + k4.1);
+        let (steps, h) = steps(seconds);
+        let mut shares = (start.active, start.fatigued);
+        for _ in 0..steps {
+            shares = runge_kutta(shares, h, |active, fatigued| {
+                let (missing, resting) = (load - active, 1.0 - active - fatigued);
+                self.rates(active, fatigued, load, if missing > 0.0 { missing.min(resting) } else { missing })
+            });
         }
-        Compartments::of(active, fatigued)
+        Compartments::of(shares.0, shares.1)
     }
 
-    /// `(MA', MF')`; `MR` follows from the sum.
-    fn rates(&self, active: f64, fatigued: f64, load: f64) -> (f64, f64) {
-        let resting = 1.0 - active - fatigued;
-        let missing = load - active;
-        let drive = if missing > 0.0 { DRIVE * missing.min(resting) } else { DRIVE * missing };
+    /// The same as a step, of a group that does not fail: enough of it rests, so that the controller drives `L (TL - MA)`.
+    pub(super) fn linear_step(&self, load: f64, seconds: f64) -> LinearStep {
+        let load = load.clamp(0.0, 1.0);
+        let (steps, h) = steps(seconds);
+        let rates = |active: f64, fatigued: f64| self.rates(active, fatigued, load, load - active);
+        LinearStep::of(|active, fatigued| runge_kutta((active, fatigued), h, rates)).repeated(steps)
+    }
+
+    /// `(MA', MF')` with a controller that drives `L` times `driven`; `MR` follows from the sum.
+    fn rates(&self, active: f64, fatigued: f64, load: f64, driven: f64) -> (f64, f64) {
         let recovery = if load <= REST_LOAD { self.rest_multiplier * self.recovery_rate } else { self.recovery_rate };
-        (drive - self.fatigue_rate * active, self.fatigue_rate * active - recovery * fatigued)
+        (DRIVE * driven - self.fatigue_rate * active, self.fatigue_rate * active - recovery * fatigued)
     }
 
     /// The share `MF` under constant relative load `load` in the end: `MF' = 0` with `MA = TL`, or all of the group where the load
@@ -127,4 +129,21 @@ impl ThreeCompartment {
         }
         ((-share * level.max(0.0)).ln_1p() - (-share).ln_1p()) / self.recovery_rate
     }
+}
+
+/// Number and length (s) of the steps of an integration.
+fn steps(seconds: f64) -> (u64, f64) {
+    let seconds = seconds.clamp(0.0, LONGEST_TIME);
+    let steps = (seconds / STEP).ceil().max(1.0);
+    (steps as u64, seconds / steps)
+}
+
+/// A step of `h` s of the classical Runge-Kutta method of fourth order, with the rates of two shares.
+fn runge_kutta((a, b): (f64, f64), h: f64, rates: impl Fn(f64, f64) -> (f64, f64)) -> (f64, f64) {
+    let k1 = rates(a, b);
+    let k2 = rates(a + 0.5 * h * k1.0, b + 0.5 * h * k1.1);
+    let k3 = rates(a + 0.5 * h * k2.0, b + 0.5 * h * k2.1);
+    let k4 = rates(a + h * k3.0, b + h * k3.1);
+    let sum = |k1: f64, k2: f64, k3: f64, k4: f64| h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
+    (a + sum(k1.0, k2.0, k3.0, k4.0), b + sum(k1.1, k2.1, k3.1, k4.1))
 }

@@ -101,7 +101,7 @@ impl Gradient {
 
 impl Kinematics {
     /// Torques of elementary motions become torques of rates.
-    pub(super) fn fold_elements(&self, model: &Model, elements: &[f64], rates: &mut [f64]) {
+    pub(crate) fn fold_elements(&self, model: &Model, elements: &[f64], rates: &mut [f64]) {
         rates.fill(0.0);
         for ((rate, torque), (slope, _)) in model.elements.iter().zip(elements).zip(&self.drives) {
             if let Some(rate) = *rate {

@@ -2,7 +2,7 @@
 
 use super::trial::Suggestion;
 use crate::assessment::{Assessment, GroupAssessment};
-use crate::fatigue::{FatigueLaw, LoadHistory};
+use crate::fatigue::{Breaks, FatigueLaw, LoadHistory, Repeated, Repetition};
 use crate::model::{Model, MuscleGroup, Side};
 use crate::simulation::{Scenario, Summary};
 use crate::verdict::{self, A_DAY, Verdict, VerdictKind};
@@ -79,8 +79,31 @@ pub fn with_breaks(
         let (laws, variation) = verdict::laws_and_variation(group.muscles);
         least = laws.iter().fold(least, |least, law| least.min(course.failure(law, 1.0 - variation, least)));
     }
+    Some(suggestion(verdict, asked, (first, longest), least))
+}
+
+/// As [`with_breaks`], of a motion that is repeated. `None` where it has breaks, or is too short for one.
+pub fn with_breaks_in_repeats(model: &Model, found: &Assessment, verdict: &Verdict) -> Option<Suggestion> {
+    let asked = found.repetition.filter(|repetition| repetition.breaks.is_none() && repetition.every <= BREAK_EVERY)?;
+    if asked.seconds <= BREAK_EVERY {
+        return None;
+    }
+    let repetition = Repetition { breaks: Some(Breaks { work: BREAK_EVERY, rest: BREAK }), ..asked };
+    let longest = A_DAY.max(asked.seconds);
+    let (mut first, mut least) = (longest, longest);
+    for group in &found.groups {
+        let Some(groups) = &model.coordinates()[group.coordinate].groups else { continue };
+        let muscles = &groups[group.side.index()];
+        first = first.min(Repeated::new(&muscles.fatigue, &group.cycle, 1.0, repetition).time_of(0.0, 1.0));
+        least = least.min(verdict::spread_of_repeats(muscles, &group.cycle, repetition).0);
+    }
+    Some(suggestion(verdict, asked.seconds, (first, longest), least))
+}
+
+/// The suggestion, given the first failure of the mean person and the least of two of three people; from `longest` on they are no limit, s.
+fn suggestion(verdict: &Verdict, asked: f64, (first, longest): (f64, f64), least: f64) -> Suggestion {
     let kind = if first >= asked { VerdictKind::Holds } else { VerdictKind::HeldUntil };
-    Some(Suggestion {
+    Suggestion {
         change: "a break of a minute every ten minutes".to_owned(),
         kind,
         asked: Some(asked),
@@ -89,7 +112,7 @@ pub fn with_breaks(
         hazards: verdict.hazards.len(),
         hands: verdict.hands.len(),
         load: verdict.hardest.map(|group| group.load),
-    })
+    }
 }
 
 /// The loads of a group over work, which begins at `begin` and lasts `end` s; after that they stay the same.

@@ -19,7 +19,7 @@ mod trial;
 mod words;
 
 pub use advice::Advice;
-pub use breaks::{BREAK, BREAK_EVERY, Worked, with_breaks};
+pub use breaks::{BREAK, BREAK_EVERY, Worked, with_breaks, with_breaks_in_repeats};
 pub use budget::{BUDGET_FACTOR, Budget, LEAST_BUDGET, Trial};
 pub use change::{Change, Job, JointAngle, changes};
 pub use gain::Gains;

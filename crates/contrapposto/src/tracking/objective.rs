@@ -25,6 +25,8 @@ pub(super) struct Objective {
     /// Row after row, whole.
     pub(super) matrix: Vec<f64>,
     pub(super) curvature: Vec<f64>,
+    /// The greatest entry on the diagonal of `matrix` by markers; by coordinates where no marker gives any.
+    pub(super) scale: f64,
     /// Rates that may change.
     pub(super) free: Vec<usize>,
     /// Place in `free` of each rate.
@@ -52,6 +54,7 @@ impl Objective {
             gradient: vec![0.0; n],
             matrix: vec![0.0; n * n],
             curvature: vec![0.0; n * n],
+            scale: 0.0,
             free,
             place,
             rows: vec![0.0; 3 * rates],
@@ -109,6 +112,7 @@ impl Objective {
                 self.add_rows(weight, error);
             }
         }
+        self.scale = self.greatest_diagonal();
         for goal in &goals.coordinates {
             let error = self.kinematics.values()[goal.coordinate] - goal.value;
             if let Some(rate) = model.coordinates()[goal.coordinate].rate.filter(|_| goal.weight > 0.0) {
@@ -118,6 +122,9 @@ impl Objective {
                 self.add_rows(goal.weight, Vector3::new(error, 0.0, 0.0));
             }
         }
+        if self.scale <= 0.0 {
+            self.scale = self.greatest_diagonal();
+        }
         self.bend(model);
         let n = self.free.len();
         for row in 0..n {
@@ -125,6 +132,11 @@ impl Objective {
                 self.matrix[row * n + column] = self.matrix[column * n + row];
             }
         }
+    }
+
+    fn greatest_diagonal(&self) -> f64 {
+        let n = self.free.len();
+        (0..n).map(|i| self.matrix[i * n + i]).fold(0.0, f64::max)
     }
 
     /// Adds the three rows of `rows` with a weight and their errors.

@@ -215,7 +215,8 @@ impl Tracker {
     fn fill_matrix(&mut self, damping: f64, share: f64) {
         let n = self.objective.free.len();
         let diagonal = |i: usize| self.objective.matrix[i * n + i];
-        let most = (0..n).map(diagonal).fold(0.0, f64::max);
+        // A coordinate with a task of great weight must not set the scale of all others.
+        let most = self.objective.scale;
         let entries = self.objective.matrix.iter().zip(&self.objective.curvature);
         self.matrix.iter_mut().zip(entries).for_each(|(to, (first, second))| *to = first + share * second);
         for i in 0..n {
@@ -260,7 +261,7 @@ impl Tracker {
         let n = self.objective.free.len();
         let residual = (2.0 * self.objective.value).sqrt().max(LEAST_RESIDUAL);
         let change = |i: usize| self.objective.matrix[i * n + i].sqrt();
-        let greatest = (0..n).map(change).fold(0.0, f64::max);
+        let greatest = self.objective.scale.sqrt();
         let mut worst: f64 = 0.0;
         for (i, (slope, (low, high))) in self.objective.gradient.iter().zip(&self.room).enumerate() {
             let held = (*low >= 0.0 && *slope >= 0.0) || (*high <= 0.0 && *slope <= 0.0);

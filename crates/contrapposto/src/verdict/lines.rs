@@ -12,7 +12,7 @@ const NO_WORK: f64 = 0.005;
 /// A finding behind a verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// `Fails first`, `Hardest worked`, `Most tired`, `Hazard`, `Later`, `Grip`, `Missed besides` or `Slip`.
+    /// `Fails first`, `Hardest worked`, `Most tired`, `Repeats`, `Relief`, `Hazard`, `Later`, `Grip`, `Missed besides` or `Slip`.
     pub name: &'static str,
     /// The finding, without a full stop.
     pub text: String,
@@ -43,6 +43,12 @@ impl Findings {
         if kind == VerdictKind::HeldUntil {
             line("Later", self.overload(model));
         }
+        if kind.is_done()
+            && let Some(repeats) = &self.repeats
+        {
+            line("Repeats", Some(repeats.in_words()));
+            line("Relief", repeats.relief_in_words(model));
+        }
         if kind.is_done() {
             self.hazards_in_words(model).into_iter().for_each(|text| line(Line::HAZARD, Some(text)));
             line(Line::HAZARD, self.no_hazard(model));
@@ -64,15 +70,18 @@ impl Findings {
         if let Some(Failure { who, time, range }) = self.fails_later().filter(|failure| failure.time < A_DAY) {
             let (load, name) = (percent(who.load), who.name(model));
             let (time, range) = (how_long(*time), in_words(*range));
-            return Some(format!(
-                "{name} ({load} of its strength), after about {time} in all if the posture of the end is held on ({range})"
-            ));
+            return Some(format!("{name} ({load} of its strength), after about {time} in all {} ({range})", self.on()));
         }
         let Some(Failure { who, range: (least, _), .. }) = self.weakest() else {
-            return (!self.later.is_empty()).then(|| "no muscle, if the posture of the end is held on".to_owned());
+            return (!self.later.is_empty()).then(|| format!("no muscle, {}", self.on()));
         };
         let (who, least) = (who.name(model), how_long(*least));
         Some(format!("no muscle of a person of mean strength; in weaker people (one in six) {who} within {least}"))
+    }
+
+    /// The job after its end.
+    fn on(&self) -> &'static str {
+        if self.repeats.is_some() { "if it is repeated on" } else { "if the posture of the end is held on" }
     }
 
     /// `right hip extension, 17 % of its strength; it fails later, after about 32 min`, or `..., 17 % of its strength at 7.9 min (11 % at the end)`.
@@ -83,7 +92,9 @@ impl Findings {
         let greatest = percent(group.load);
         let is_it = |who: &Who| (who.coordinate, who.side) == (group.coordinate, group.side);
         let own = self.later.iter().find(|failure| is_it(&failure.who));
-        let end = time.zip(own.map(|own| percent(own.who.load)).filter(|end| *end != greatest));
+        let end = time
+            .filter(|_| self.repeats.is_none())
+            .zip(own.map(|own| percent(own.who.load)).filter(|end| *end != greatest));
         let end = end.map(|(time, end)| match how_long(time) {
             at if self.asked.map(how_long).as_ref() == Some(&at) => {
                 format!(" shortly before the end ({end} at the end)")
@@ -94,6 +105,7 @@ impl Findings {
         let apart = first.zip(own).filter(|(first, own)| how_long(first.time) != how_long(own.time));
         let fails = apart.map(|(_, own)| match own.time {
             time if time < A_DAY => format!("; it fails later, after about {}", how_long(time)),
+            _ if self.repeats.is_some() => "; it does not fail, however long it goes on".to_owned(),
             _ => "; it does not fail at its load of the end".to_owned(),
         });
         if self.fails_weaker().is_none() && end.is_none() && fails.is_none() {
@@ -106,7 +118,11 @@ impl Findings {
     /// `right shoulder flexion, 82 % at the end (at 100 % it fails)`.
     fn most_tired(&self, model: &Model) -> Option<String> {
         let tired = self.tired.filter(|tired| tired.fatigue > TIRED)?;
-        let lasts = if tired.lasts { "; at its load it becomes no more tired" } else { "" };
+        let lasts = match (tired.lasts, self.repeats) {
+            (false, _) => "",
+            (true, Some(_)) => "; it does not fail, however long it goes on",
+            (true, None) => "; at its load it becomes no more tired",
+        };
         Some(format!(
             "{}, {} at the end (at 100\u{a0}% it fails){lasts}",
             tired.who.name(model),

@@ -24,6 +24,7 @@ mod missed;
 mod motion;
 mod motors;
 mod posture;
+mod repeats;
 mod run;
 mod spread;
 mod words;
@@ -34,12 +35,13 @@ pub use lines::Line;
 pub use missed::{MISSED_ANGLE, MISSED_DISTANCE, Missed, Nearest};
 pub use motors::{has_motors, muscles_or_motors};
 pub use posture::HeldPosture;
-pub use spread::spread;
 pub(crate) use spread::{failure, laws_and_variation};
+pub use spread::{spread, spread_of_repeats};
 pub(crate) use words::A_DAY;
 pub use words::{error_in_words, how_long, slip_in_words};
 
 use crate::contact::{Missing, Slip};
+use crate::fatigue::Repetition;
 use crate::joint_torques::{GroupLoad, Hazard};
 use crate::model::Side;
 use crate::statics::Load;
@@ -197,6 +199,16 @@ impl Verdict {
     }
 }
 
+/// A motion that is repeated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Repeats {
+    /// Length of the motion, s.
+    pub(crate) cycle: f64,
+    pub(crate) repetition: Repetition,
+    /// The group that asks for relief first, and when, s.
+    pub(crate) relief: Option<(Who, f64)>,
+}
+
 /// The findings of a job.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
@@ -236,6 +248,8 @@ pub(crate) struct Findings {
     pub(crate) fast: Option<f64>,
     /// Inertia of the motion counts.
     pub(crate) dynamics: bool,
+    /// The motion is repeated.
+    pub(crate) repeats: Option<Repeats>,
     /// The run was left before its end, at that time, s.
     pub(crate) interrupted: Option<f64>,
 }

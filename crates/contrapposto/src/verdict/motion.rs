@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::statics::Load;
 
 impl Verdict {
-    /// Of a motion of `seconds` that was assessed. Its times count from the start of the motion.
+    /// Of a motion of `seconds` that was assessed. Its times count from the start of the motion, or of the job that repeats it.
     pub fn of_motion(model: &Model, found: &Assessment, seconds: f64) -> Self {
         Self::of_motion_with(model, found, seconds, &[])
     }
@@ -44,6 +44,10 @@ impl Verdict {
             loads: held.to_vec(),
             ..Findings::default()
         };
+        if found.repetition.is_some() {
+            findings.take_repeats(model, found, seconds);
+            return findings.verdict(model);
+        }
         // The posture at the end of a fast motion is not held on.
         if findings.kind().is_done() && found.fast_share <= FAST_SHARE {
             let groups: Vec<_> = found.groups.iter().filter_map(|group| at_end(model, group)).collect();

@@ -5,7 +5,7 @@
 //! below the mean (two of three people lie between them) carries the load over `1 + cv` or `1 - cv`. The posture is that of the mean
 //! person throughout.
 
-use crate::fatigue::{FatigueLaw, FatigueState, LoadHistory};
+use crate::fatigue::{FatigueLaw, FatigueState, LoadCycle, LoadHistory, Repeated, Repetition};
 use crate::model::MuscleGroup;
 use crate::model::data::library;
 
@@ -15,10 +15,19 @@ const HALVINGS: usize = 20;
 /// Least and greatest time (s) at which a group fails under the loads of `history`, with fatigue `start` (0..=1) at first;
 /// the last load lasts for ever.
 pub fn spread(group: &MuscleGroup, history: &LoadHistory, start: f64) -> (f64, f64) {
+    over_laws_and_people(group, |law, strength| failure(law, history, strength, start))
+}
+
+/// As [`spread`], of a group that is rested at first and repeats a cycle: times from the start of the job.
+pub fn spread_of_repeats(group: &MuscleGroup, cycle: &LoadCycle, repetition: Repetition) -> (f64, f64) {
+    over_laws_and_people(group, |law, strength| Repeated::new(law, cycle, strength, repetition).time_of(0.0, 1.0))
+}
+
+/// Least and greatest time over laws and people, given the time by a law and a strength over the mean.
+fn over_laws_and_people(group: &MuscleGroup, time: impl Fn(&FatigueLaw, f64) -> f64) -> (f64, f64) {
     let (laws, variation) = laws_and_variation(group);
-    let times = laws
-        .iter()
-        .flat_map(|law| [1.0 - variation, 1.0, 1.0 + variation].map(|strength| failure(law, history, strength, start)));
+    let strengths = [1.0 - variation, 1.0, 1.0 + variation];
+    let times = laws.iter().flat_map(|law| strengths.map(|strength| time(law, strength)));
     times.fold((f64::INFINITY, 0.0), |(least, greatest), time| (time.min(least), time.max(greatest)))
 }
 

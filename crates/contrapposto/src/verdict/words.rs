@@ -142,10 +142,12 @@ impl Findings {
     fn held_until(&self, model: &Model) -> String {
         let Some(Failure { who, time, range }) = self.fails else { return String::new() };
         let (who, range) = (who.name(model), in_words(range));
+        let done = if self.repeats.is_some() { "repeated" } else { "held" };
         if time <= 0.0 {
-            return format!("Cannot be held: {who} fails at once ({range}).");
+            return format!("Cannot be {done}: {who} fails at once ({range}).");
         }
-        format!("Can be held {} ({range}), then {who} fails first.", self.held(time))
+        let for_ = if self.repeats.is_some() { "for " } else { "" };
+        format!("Can be {done} {for_}{} ({range}), then {who} fails first.", self.held(time))
     }
 
     /// `10 min of the 2.0 h asked`, `598 s of the 600 s asked`, or `10 min` where no time was asked for.
@@ -168,6 +170,7 @@ impl Findings {
                 .to_owned();
         }
         let head = match self.asked {
+            Some(time) if self.repeats.is_some() => format!("Can be repeated for the {} asked", how_long(time)),
             Some(time) => format!("Holds through the run ({})", how_long(time)),
             None => "Holds without a limit by muscles".to_owned(),
         };

@@ -8,12 +8,15 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
-use contrapposto::suggestions::{Advice, Change, Job as Asked, Trial, Worked, changes, with_breaks};
+use contrapposto::suggestions::{
+    Advice, Change, Job as Asked, Trial, Worked, changes, with_breaks, with_breaks_in_repeats,
+};
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use nalgebra::Vector3;
 
+use super::repeats::ends_apart;
 use super::support_doubts::support_doubts;
 use super::warnings::{WHAT_CARRIES, warnings};
 use crate::args::{AssessArgs, SuggestArgs};
@@ -68,7 +71,7 @@ impl Job {
         let model = &opened.model;
         let all = read(model, &mut notes)?;
         let mut recorded = Recorded::new(name, all, (&args.dynamics, &args.under.frames), model)?;
-        let (held, ground) = loads_of(&args.under, model, &mut notes)?;
+        let (held, ground) = loads_of(&args.under, model, &recorded.frames, &mut notes)?;
         keep_overlap(&mut recorded, ground.as_ref())?;
         if let ([(first, _), .., (last, _)], frames) = (recorded.frames.as_slice(), recorded.frames.len())
             && first >= last
@@ -76,7 +79,7 @@ impl Job {
             let why = format!("its {frames} frames all have the time {first} s; times must rise, or give one frame");
             return Err(Fail::Refused(format!("{name}: {why}")));
         }
-        let Recorded { frames: motion, rates, said } = recorded;
+        let Recorded { frames: motion, rates, said, doubts } = recorded;
         if !model.coordinates().iter().any(|coordinate| coordinate.groups.is_some()) {
             let why =
                 "no strength of this model is known, so nothing can tire; lay one over it with --overlay FILE.toml";
@@ -84,7 +87,9 @@ impl Job {
         }
         let usual = if opened.is_exported_adult() { 0.0 } else { ANGLE_ERROR };
         let angle_error = args.angle_error.map_or(usual, f64::to_radians);
+        let seconds = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
         let settings = AssessSettings {
+            repetition: args.repeat.repetition(seconds).map_err(Fail::Refused)?,
             supports: supports(args, model)?,
             rates,
             root_held: args.fixed_root,
@@ -93,10 +98,10 @@ impl Job {
             angle_error,
             ..AssessSettings::default()
         };
-        let out_of_range = note_values_out_of_range(&opened, &motion, &mut notes);
-        out_of_range.iter().for_each(|warning| print_note("warning", warning));
+        let of_motion = [doubts, note_values_out_of_range(&opened, &motion, &mut notes)].concat();
+        of_motion.iter().for_each(|warning| print_note("warning", warning));
         said.iter().chain(&notes).for_each(|note| print_note("note", note));
-        let doubts = [of_muscles, out_of_range].concat();
+        let doubts = [of_muscles, of_motion].concat();
         Ok(Self { opened, motion, held, ground, settings, said, doubts })
     }
 
@@ -109,7 +114,9 @@ impl Job {
         };
         let assessment = assessed(model, &self.motion, loads, &self.settings, visit)
             .map_err(|error| Fail::Refused(format!("{name}: {error}")))?;
+        let apart = self.settings.repetition.and_then(|_| ends_apart(model, &self.motion));
         let new = [
+            apart.into_iter().collect(),
             support_doubts(model, &self.motion, &self.settings.supports),
             warnings(args, &self.opened, (&self.settings, &assessment), self.motion.len()),
         ]
@@ -130,8 +137,9 @@ impl Job {
     /// The words of `assess.json` about the motion `name`.
     pub(crate) fn text(&self, name: &str, found: &Found, files: Vec<String>) -> AssessText {
         let warnings = found.warnings.clone();
+        let times: Vec<f64> = self.motion.iter().map(|(time, _)| *time).collect();
         let numbers = (self.settings.angle_error, &found.assessment);
-        AssessText::new(&self.opened, name, (self.motion.len(), self.ends()), numbers, &found.answer, warnings, files)
+        AssessText::new(&self.opened, name, &times, numbers, &found.answer, warnings, files)
     }
 
     /// Times of the first and the last posture, s.
@@ -153,11 +161,14 @@ impl Job {
             return Advice::default();
         }
         let (supports, loads) = (&settings.supports, if ground.is_none() { vec![held.as_slice()] } else { vec![] });
-        let job = Asked { model, start, supports, levels: vec![], loads, asked: Some(end - begin), strategy: None };
+        let job = Asked { model, start, supports, levels: vec![], loads, asked: verdict.asked, strategy: None };
         let all =
             || changes(&job, &verdict.hazards).into_iter().filter(|change| *change != Change::OtherFoot).collect();
         let groups = Worked::in_motion(model, found);
-        let breaks = || with_breaks(&groups, end - begin, (begin, end), verdict);
+        let breaks = || match found.repetition {
+            Some(_) => with_breaks_in_repeats(model, found, verdict),
+            None => with_breaks(&groups, end - begin, (begin, end), verdict),
+        };
         let trial = |change: &Change| {
             let mut loads = held.clone();
             change.apply_to_loads(&mut loads);

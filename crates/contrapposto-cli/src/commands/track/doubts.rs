@@ -175,8 +175,8 @@ fn lying(model: &Model, (_, _, tracked): Motion<'_>) -> Option<String> {
     let count = tracked.iter().filter(is_lying).count();
     (count as f64 >= NEARLY_ALL * tracked.len() as f64 && count > 0).then(|| {
         format!(
-            "the body lies in {count} of {} frames; does the vertical axis of the markers point along z? Gravity acts along {}: turn the \
-             markers first",
+            "the body lies in {count} of {} frames; does the vertical axis of the markers point along z? Gravity acts along {}: --up z turns \
+             them",
             tracked.len(),
             axis_of(&-up)
         )

@@ -1,6 +1,6 @@
 //! The page of `assess`: a recorded motion, the muscle groups that fail, and relief.
 
-use contrapposto::assessment::{Assessment, GroupAssessment, Instant, PeakKind, Proposal};
+use contrapposto::assessment::{Assessment, GroupAssessment, Instant, PeakKind, Proposal, RepeatedGroup};
 use contrapposto::contact::Support;
 use contrapposto::hybrid::Outcome;
 use contrapposto::kinematics::Kinematics;
@@ -22,7 +22,7 @@ use crate::view::scene::Scene;
 use crate::view::scene::hazard::hazards;
 use crate::view::selection::shown;
 use crate::view::stage::Stage;
-use crate::view::text::assess::times_from;
+use crate::view::text::assess::{after, times_from};
 use crate::view::text::sources::StrengthAtText;
 use crate::view::words::{MOST_ROWS, group, how_long, moment_in_words, percent, plain, sentence, value};
 
@@ -130,7 +130,8 @@ pub(crate) fn report_of_assessment(
         let place = shown.iter().position(|&i| i == group.coordinate);
         let shown_group = place.and_then(|place| report.joints[place].groups.as_mut());
         if let Some(groups) = shown_group {
-            groups[group.side.index()].fails = group.exhausted_at;
+            // The chart shows one cycle of a motion that is repeated.
+            groups[group.side.index()].fails = group.exhausted_at.filter(|_| group.repeated.is_none());
         }
     }
     report.open = assessed_frames.nearest(moment(found, verdict));
@@ -141,7 +142,7 @@ pub(crate) fn report_of_assessment(
     report.facts.retain(|fact| hazards.is_empty() || fact.name != Line::HAZARD);
     report.facts.extend(hazards.into_iter().map(|text| Fact { name: Line::HAZARD.to_owned(), text }));
     report.reasons.extend(warnings.iter().map(|warning| sentence(warning) + "."));
-    report.reasons.extend(times_from(first.time));
+    report.reasons.extend(times_from(first.time).filter(|_| found.repetition.is_none()));
     let basis = inertia.map_or_else(|| "Each posture is treated as held at rest".to_owned(), sentence);
     report.reasons.push(format!("{basis}; loads are interpolated linearly between postures."));
     report.figures = figures(model, found, &working, format!("{} postures", assessed_frames.instants), span);
@@ -158,7 +159,9 @@ pub(crate) fn report_of_assessment(
 fn moment(found: &Assessment, verdict: &Verdict) -> f64 {
     let hardest = found.groups.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value));
     let time = match verdict.kind {
-        VerdictKind::HeldUntil => found.groups.iter().filter_map(|group| group.exhausted_at).min_by(f64::total_cmp),
+        VerdictKind::HeldUntil if found.repetition.is_none() => {
+            found.groups.iter().filter_map(|group| group.exhausted_at).min_by(f64::total_cmp)
+        }
         VerdictKind::CannotStand => found.missing.map(|(_, time)| time),
         _ => hardest.map(|group| group.peak_load.time),
     };
@@ -174,12 +177,15 @@ fn figures(
 ) -> Vec<Figure> {
     let figure = |label: &str, value: String, note: String| Figure { label: label.to_owned(), value, note };
     let failed: Vec<f64> = found.groups.iter().filter_map(|group| group.exhausted_at).collect();
-    let earliest = failed.first().map_or_else(String::new, |time| format!("the first at {}", how_long(*time)));
+    let earliest = failed.first().map_or_else(String::new, |time| {
+        let first = working.iter().find_map(|group| Some(group.repeated?.fails_at)).unwrap_or(*time);
+        format!("the first at {}", how_long(first))
+    });
     let mut figures =
         vec![figure("Muscle groups that fail", format!("{} of {}", failed.len(), working.len()), earliest)];
     // Of equals the first to fail.
-    if let Some(tired) = working.iter().rev().max_by(|a, b| a.peak_fatigue.value.total_cmp(&b.peak_fatigue.value)) {
-        figures.push(figure("Greatest fatigue", percent(tired.peak_fatigue.value), name(model, tired)));
+    if let Some(tired) = working.iter().rev().max_by(|a, b| a.greatest_fatigue().total_cmp(&b.greatest_fatigue())) {
+        figures.push(figure("Greatest fatigue", percent(tired.greatest_fatigue()), name(model, tired)));
     }
     if let Some(hard) = working.iter().max_by(|a, b| a.peak_load.value.total_cmp(&b.peak_load.value)) {
         let note = format!("{}, at {}", name(model, hard), moment_in_words(hard.peak_load.time));
@@ -190,21 +196,31 @@ fn figures(
 }
 
 fn table(opened: &SourcedModel, working: &[&GroupAssessment]) -> Table {
+    let repeats = working.iter().any(|group| group.repeated.is_some());
     let row = |group: &&GroupAssessment| {
-        vec![
+        let mut row = vec![
             name(&opened.model, group),
             percent(group.peak_load.value),
             moment_in_words(group.peak_load.time),
             StrengthAtText::new(opened, group).map(|strength| strength.words()).unwrap_or_default(),
             percent(group.fatigue),
-            group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at\u{a0}{}", how_long(time))),
-        ]
+        ];
+        match group.repeated {
+            Some(RepeatedGroup { duty, relief_at, fails_at, .. }) => {
+                row.extend([percent(duty), after(Some(relief_at)), after(Some(fails_at))]);
+            }
+            None => row.push(
+                group.exhausted_at.map_or_else(|| "holds".to_owned(), |time| format!("at\u{a0}{}", how_long(time))),
+            ),
+        }
+        row
     };
+    let of_repeats = if repeats { &["Duty cycle", "Asks for relief"][..] } else { &[] };
+    let columns = ["Muscle group", "Peak load", "At", "Of a strength of", "Fatigue at the end"];
+    let columns = columns.into_iter().chain(of_repeats.iter().copied()).chain(["Fails"]);
     Table {
-        heading: "Over the whole motion".to_owned(),
-        columns: ["Muscle group", "Peak load", "At", "Of a strength of", "Fatigue at the end", "Fails"]
-            .map(str::to_owned)
-            .to_vec(),
+        heading: if repeats { "Over all repeats" } else { "Over the whole motion" }.to_owned(),
+        columns: columns.map(str::to_owned).collect(),
         rows: working.iter().take(MOST_ROWS).map(row).collect(),
     }
 }
@@ -216,9 +232,13 @@ fn entries(assessed_frames: &AssessedFrames<'_>, working: &[&GroupAssessment], s
     for found in working.iter().take(MOST_ROWS) {
         let Some(joint) = shown.iter().position(|&i| i == found.coordinate) else { continue };
         if let Some(time) = found.exhausted_at {
-            let text = format!("{} fails: it cannot give the torque that is needed.", name(model, found));
-            let frame = assessed_frames.nearest(time);
-            failures.push(Entry { frame, time: Some(time), joint: Some(joint), text });
+            let why = "it cannot give the torque that is needed.";
+            // After so many repeats: no moment of the motion that is shown.
+            let after = found.repeated.map(|repeated| format!(" after {} of repeats", how_long(repeated.fails_at)));
+            let at = after.is_none().then_some(time);
+            let text = format!("{} fails{}: {why}", name(model, found), after.unwrap_or_default());
+            let frame = assessed_frames.nearest(at.unwrap_or(found.peak_load.time));
+            failures.push(Entry { frame, time: at, joint: Some(joint), text });
         }
         if model.coordinates()[found.coordinate].kind != CoordinateKind::Rotation {
             continue;

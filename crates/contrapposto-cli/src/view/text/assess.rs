@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use contrapposto::assessment::{AngleInDoubt, Assessment, GroupAssessment, Peak, PeakKind, Proposal};
+use contrapposto::assessment::{AngleInDoubt, Assessment, GroupAssessment, Peak, PeakKind, Proposal, RepeatedGroup};
+use contrapposto::fatigue::Repetition;
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::CoordinateKind;
 use contrapposto_formats::tissue::SourcedModel;
@@ -13,7 +14,7 @@ use super::group::GroupName;
 use super::plain_table;
 use super::sources::StrengthAtText;
 use crate::view::answer::Answer;
-use crate::view::words::{MOST_ROWS, how_long, moment_in_words, percent};
+use crate::view::words::{A_DAY, MOST_ROWS, how_long, moment_in_words, percent};
 
 /// Most groups whose relief is listed.
 const RELIEVED: usize = 3;
@@ -31,6 +32,9 @@ pub(crate) struct AssessText {
     frames: usize,
     start_s: f64,
     end_s: f64,
+    /// Times of a motion that is repeated; left out of another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    repeats: Option<RepeatsText>,
     /// Error of the angles within which groups that work against passive torque are judged.
     angle_error_deg: f64,
     /// Every group of known strength, the worst first.
@@ -47,6 +51,34 @@ pub(crate) struct AssessText {
     fast_share: f64,
     warnings: Vec<String>,
     files: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct RepeatsText {
+    asked_minutes: f64,
+    /// Length of the motion.
+    cycle_s: f64,
+    /// Time from one start to the next.
+    every_s: f64,
+    /// Number of whole cycles in the asked time.
+    cycles: u64,
+    /// Work before each break; `null`: no breaks.
+    work_minutes: Option<f64>,
+    break_minutes: Option<f64>,
+}
+
+/// A group over the repeats.
+#[derive(Serialize)]
+struct RepeatedText {
+    /// Share of a cycle, with its pause, in which the group works.
+    duty_cycle: f64,
+    mean_load: f64,
+    /// Greatest fatigue in the last cycle.
+    fatigue: f64,
+    /// Time after which the group asks for relief; `null`: never, however long the motion is repeated.
+    relief_after_s: Option<f64>,
+    /// Time after which the group fails; `null` likewise.
+    fails_after_s: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -73,6 +105,8 @@ struct AssessedGroupText {
     fatigue_at_end: f64,
     /// `null`: it holds.
     exhausted_at_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    repeated: Option<RepeatedText>,
     /// The instant in which the error of the recorded angle counts most.
     #[serde(skip_serializing_if = "Option::is_none")]
     angle_in_doubt: Option<AngleInDoubtText>,
@@ -114,7 +148,7 @@ impl AssessText {
     pub(crate) fn new(
         opened: &SourcedModel,
         motion: &str,
-        (frames, (start, end)): (usize, (f64, f64)),
+        times: &[f64],
         (angle_error, found): (f64, &Assessment),
         answer: &Answer,
         warnings: Vec<String>,
@@ -126,9 +160,10 @@ impl AssessText {
             motion: motion.to_owned(),
             verdict: VerdictText::new(model, &answer.verdict),
             advice: (&answer.advice).into(),
-            frames,
-            start_s: start,
-            end_s: end,
+            frames: times.len(),
+            start_s: times.first().copied().unwrap_or_default(),
+            end_s: times.last().copied().unwrap_or_default(),
+            repeats: found.repetition.map(|repetition| RepeatsText::new(repetition, times)),
             angle_error_deg: angle_error.to_degrees(),
             groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group, found.dynamics)).collect(),
             residual_force_n: found.residual_force.into(),
@@ -157,6 +192,7 @@ impl AssessedGroupText {
             peak_fatigue: found.peak_fatigue.into(),
             fatigue_at_end: found.fatigue,
             exhausted_at_s: found.exhausted_at,
+            repeated: found.repeated.map(RepeatedText::from),
             angle_in_doubt: found.in_doubt.as_ref().map(AngleInDoubtText::new),
             // Relief of a slide is no angle.
             proposals: match model.coordinates()[found.coordinate].kind {
@@ -164,6 +200,27 @@ impl AssessedGroupText {
                 _ => vec![],
             },
         }
+    }
+}
+
+impl RepeatsText {
+    fn new(Repetition { seconds, every, breaks }: Repetition, times: &[f64]) -> Self {
+        Self {
+            asked_minutes: seconds / 60.0,
+            cycle_s: times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first),
+            every_s: every,
+            cycles: Repetition { seconds, every, breaks }.cycles(),
+            work_minutes: breaks.map(|breaks| breaks.work / 60.0),
+            break_minutes: breaks.map(|breaks| breaks.rest / 60.0),
+        }
+    }
+}
+
+impl From<RepeatedGroup> for RepeatedText {
+    fn from(RepeatedGroup { duty, mean_load, fatigue, relief_at, fails_at }: RepeatedGroup) -> Self {
+        let finite = |time: f64| time.is_finite().then_some(time);
+        let [relief_after_s, fails_after_s] = [relief_at, fails_at].map(finite);
+        Self { duty_cycle: duty, mean_load, fatigue, relief_after_s, fails_after_s }
     }
 }
 
@@ -217,20 +274,8 @@ pub(crate) fn times_from(start: f64) -> Option<String> {
 /// The worst groups, their relief, and the group that fails first.
 pub(crate) fn report(text: &AssessText) -> String {
     let working: Vec<&AssessedGroupText> = text.groups.iter().filter(|group| group.peak_load.value > 0.0).collect();
-    let mut table = plain_table();
-    table.set_header(["muscle group", "peak load", "at", "of a strength of", "fatigue at the end", "fails"]);
-    for group in working.iter().take(MOST_ROWS) {
-        table.add_row([
-            group.name.to_string(),
-            percent(group.peak_load.value),
-            moment_in_words(group.peak_load.at_s),
-            group.strength_at_peak.as_ref().map(StrengthAtText::words).unwrap_or_default(),
-            format!("{:.2}", group.fatigue_at_end),
-            group.exhausted_at_s.map_or_else(|| "holds".to_owned(), |time| format!("at {}", how_long(time))),
-        ]);
-    }
-    let mut out = format!("{table}\n");
-    if let Some(note) = times_from(text.start_s) {
+    let mut out = format!("{}\n", table(&working));
+    if let Some(note) = times_from(text.start_s).filter(|_| text.repeats.is_none()) {
         let _ = writeln!(out, "{note}");
     }
     if working.len() > MOST_ROWS {
@@ -255,14 +300,53 @@ pub(crate) fn report(text: &AssessText) -> String {
             }
         }
     }
-    let first = working.first().and_then(|group| Some((group, group.exhausted_at_s?)));
-    let _ = match first {
-        Some((group, time)) => writeln!(out, "\nfails first: {} at {}", group.name, how_long(time)),
-        None => {
-            writeln!(out, "\nno group fails from {} to {}", moment_in_words(text.start_s), moment_in_words(text.end_s))
-        }
-    };
+    if text.repeats.is_none() {
+        out.push_str(&fails_first(text, &working));
+    }
     out
+}
+
+/// The line of the group that fails first.
+fn fails_first(text: &AssessText, working: &[&AssessedGroupText]) -> String {
+    match working.first().and_then(|group| Some((group, group.exhausted_at_s?))) {
+        Some((group, time)) => format!("\nfails first: {} at {}\n", group.name, how_long(time)),
+        None => {
+            format!("\nno group fails from {} to {}\n", moment_in_words(text.start_s), moment_in_words(text.end_s))
+        }
+    }
+}
+
+/// The groups that fail first, or work hardest; where the motion is repeated with duty cycle and relief.
+fn table(working: &[&AssessedGroupText]) -> comfy_table::Table {
+    let mut table = plain_table();
+    let repeats = working.iter().any(|group| group.repeated.is_some());
+    let of_repeats = if repeats { &["duty cycle", "asks for relief"][..] } else { &[] };
+    let columns = ["muscle group", "peak load", "at", "of a strength of", "fatigue at the end"];
+    table.set_header(columns.into_iter().chain(of_repeats.iter().copied()).chain(["fails"]));
+    for group in working.iter().take(MOST_ROWS) {
+        let mut row = vec![
+            group.name.to_string(),
+            percent(group.peak_load.value),
+            moment_in_words(group.peak_load.at_s),
+            group.strength_at_peak.as_ref().map(StrengthAtText::words).unwrap_or_default(),
+            format!("{:.2}", group.fatigue_at_end),
+        ];
+        if let Some(RepeatedText { duty_cycle, fails_after_s, relief_after_s, .. }) = &group.repeated {
+            row.extend([percent(*duty_cycle), after(*relief_after_s), after(*fails_after_s)]);
+        } else {
+            row.push(group.exhausted_at_s.map_or_else(|| "holds".to_owned(), |time| format!("at {}", how_long(time))));
+        }
+        table.add_row(row);
+    }
+    table
+}
+
+/// `after 24 min`, `never`: in a job that is repeated.
+pub(crate) fn after(time: Option<f64>) -> String {
+    match time {
+        Some(time) if time < A_DAY => format!("after {}", how_long(time)),
+        _ => "never".to_owned(),
+    }
 }
 
 /// The sentences of the strategies at a peak; one where they agree.

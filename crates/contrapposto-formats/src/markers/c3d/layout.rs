@@ -36,6 +36,8 @@ pub(super) struct Layout {
     pub(super) start: usize,
     /// Bytes of a frame: points, and analog samples.
     pub(super) frame: usize,
+    /// Analog channels, and samples of each in a frame.
+    pub(super) analog: (usize, usize),
 }
 
 /// Bytes of the header at which its entries begin: points, analog samples of a frame, first and last frame, scale, block of the first frame,
@@ -97,12 +99,32 @@ impl Layout {
         };
         let samples = samples(parameters, (word(entry::SAMPLES), word(entry::PER_CHANNEL)), &fits, warnings);
         let frame = of_frame(samples);
-        Ok(Self { processor, points, first, frames, rate, scale, metres, start, frame })
+        let per_channel = word(entry::PER_CHANNEL).max(1);
+        let analog = (samples / per_channel, per_channel);
+        Ok(Self { processor, points, first, frames, rate, scale, metres, start, frame, analog })
     }
 
     /// Bytes of a point.
     pub(super) fn point(&self) -> usize {
         OF_POINT * if self.scale.is_none() { 4 } else { 2 }
+    }
+
+    /// Length of a unit of places, m.
+    pub(super) fn unit(&self) -> f64 {
+        self.metres
+    }
+
+    /// The analog sample of a channel in a frame, as it stands there; integers without a sign where `unsigned` is true.
+    pub(super) fn sample(&self, frame: &[u8], (channel, sample): (usize, usize), unsigned: bool) -> Option<f64> {
+        let place = self.points * self.point() + (sample * self.analog.0 + channel) * (self.point() / OF_POINT);
+        match (self.scale, frame.get(place..)?) {
+            (None, [a, b, c, d, ..]) => Some(self.processor.float([*a, *b, *c, *d])),
+            (Some(_), [a, b, ..]) => {
+                let word = self.processor.word([*a, *b]);
+                Some(if unsigned { f64::from(word) } else { f64::from(word as i16) })
+            }
+            _ => None,
+        }
     }
 
     /// A point of a frame in m: three places, then its residual. `None` where it was not seen; the number that is no place otherwise.

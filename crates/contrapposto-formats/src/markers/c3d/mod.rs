@@ -1,13 +1,15 @@
-//! Reads the points of C3D files: the binary files of motion capture (Motion Lab Systems, The C3D File Format, User Guide, 2008).
+//! Reads points and force plates of C3D files: the binary files of motion capture (Motion Lab Systems, The C3D File Format, User Guide, 2008).
 //!
 //! A header of 512 bytes, a section of parameters, and frames of points and of analog samples. Numbers are those of Intel, DEC or MIPS
-//! computers; places are reals, or integers with a scale. A point whose fourth number is negative was not seen. Analog samples and events
-//! are passed over.
+//! computers; places are reals, or integers with a scale. A point whose fourth number is negative was not seen. Events are passed over.
 
+mod analog;
 mod layout;
 mod numbers;
 mod parameters;
+mod plates;
 mod refusal;
+mod trial;
 
 use std::collections::HashSet;
 
@@ -17,10 +19,11 @@ use crate::xml::shorten;
 use contrapposto::model::LARGEST;
 use layout::Layout;
 use parameters::Parameters;
+pub(crate) use plates::LEAST_FORCE;
+pub use plates::{ForcePlate, ForcePlates, read_force_plates};
 pub use refusal::C3dError;
+use trial::{KEY, read_unit, trial, up};
 
-/// Second byte of every C3D file.
-const KEY: u8 = 0x50;
 /// Labels of a parameter; more go on in further ones.
 const LABELS_OF_ONE: usize = 255;
 
@@ -43,27 +46,11 @@ pub fn read_c3d(name: &str, bytes: &[u8], unit: Option<MarkerUnit>) -> Result<Ma
 }
 
 fn markers(bytes: &[u8], unit: Option<MarkerUnit>) -> Result<Markers, C3dError> {
-    let Some(header) = bytes.first_chunk().filter(|header| header[1] == KEY) else {
-        let message = "the file is no C3D file";
-        return Err(C3dError::at(0, message, "its header has 512 bytes, the second is 0x50"));
-    };
-    let parameters = Parameters::read(bytes)?;
-    let unit = read_unit(&parameters, unit)?;
     let mut warnings = vec![];
-    let layout = Layout::new((header, bytes.len()), &parameters, unit, &mut warnings)?;
+    let (parameters, layout, data) = trial(bytes, unit, &mut warnings)?;
+    let unit = read_unit(&parameters, unit)?;
     let columns = names(&parameters, layout.points, &mut warnings)?;
-    let data = bytes.get(layout.start..).unwrap_or_default();
-    let there = layout.frames.min(data.len() / layout.frame);
-    if there == 0 {
-        let (message, frames) = (format!("the file holds no whole frame of {} bytes", layout.frame), layout.frames);
-        return Err(C3dError::at(layout.start, message, format!("the header says {frames} frames; was it cut off?")));
-    }
-    if there < layout.frames {
-        let frames = layout.frames;
-        warnings.push(format!(
-            "the header says {frames} frames, but there are {there}, which are read; was the file cut off?"
-        ));
-    }
+    let there = data.len() / layout.frame;
     if there.saturating_mul(3 * columns.len()) > MOST_NUMBERS {
         let message = format!("{there} frames of {} markers have more than {MOST_NUMBERS} numbers", columns.len());
         return Err(C3dError::at(layout.start, message, "a shorter part of the trial is accepted"));
@@ -76,10 +63,10 @@ fn markers(bytes: &[u8], unit: Option<MarkerUnit>) -> Result<Markers, C3dError> 
             "times up to 1e9 s are accepted",
         ));
     }
-    let places = places(&layout, &columns, &data[..there * layout.frame], &mut warnings)?;
+    let places = places(&layout, &columns, data, &mut warnings)?;
     let times = (0..there).map(|index| (layout.first + index) as f64 / layout.rate).collect();
     let names = columns.into_iter().map(|(name, _)| name).collect();
-    Ok(Markers { names, times, places, unit, warnings })
+    Ok(Markers { names, times, places, unit, up: up(&parameters), warnings })
 }
 
 /// Places of the named points in whole frames.
@@ -115,17 +102,6 @@ fn places(
         warnings.push(format!("{zeros} places of markers are 0, 0, 0, which are read as gaps"));
     }
     Ok(places)
-}
-
-fn read_unit(parameters: &Parameters<'_>, given: Option<MarkerUnit>) -> Result<MarkerUnit, C3dError> {
-    // Some programs name the unit of every point.
-    let word = parameters.texts("POINT:UNITS", 1).and_then(|words| words.into_iter().next()).unwrap_or_default();
-    given.or_else(|| MarkerUnit::named(&word)).ok_or_else(|| {
-        let message = format!("the unit of the points (POINT:UNITS) is `{}`", shorten(&word));
-        let accepted =
-            "mm, cm and m are known units; --units mm, --units cm or --units m says it, whatever the file says";
-        C3dError::at(parameters.byte("POINT:UNITS"), message, accepted)
-    })
 }
 
 /// Names of the points that are markers, each with the number of its point.
