@@ -42,6 +42,10 @@ def assess(
     angle_error: float | None = None,
     start: float | None = None,
     end: float | None = None,
+    repeat: float | None = None,
+    every: float | None = None,
+    work: float | None = None,
+    rest: float | None = None,
     suggest: bool = False,
 ) -> Assessment:
     """Finds the muscle group that fails first in a recorded motion, when, and its relief, as `contrapposto assess`.
@@ -61,6 +65,8 @@ def assess(
     angle_error: error of the given angles, rad: muscles that work against ligaments are judged at the angle within it where they work
         least; 5 degrees when left out.
     start, end: leave out postures before and after, s.
+    repeat: the motion, one whole cycle, is repeated for this time, s, breaks included; `every`: time from the start of a cycle to that of
+        the next, s; `work`, `rest`: time before each break and length of a break, s.
     suggest: changes of a motion that does not hold are tried, too: `summary.suggestions`.
     """
     if isinstance(support, str) or isinstance(patch, str) or isinstance(grf_on, str):
@@ -75,6 +81,8 @@ def assess(
         words.append(f"--grf-on={','.join(grf_on)}")
     error = None if angle_error is None else math.degrees(angle_error)
     numbers = {"cutoff-hz": cutoff_hz, "angle-error": error, "from": start, "to": end}
+    spans = {"repeat": repeat, "every": every, "work": work, "break": rest}
+    words += [f"--{key}={value!r}s" for key, value in spans.items() if value is not None]
     names = {"muscles": muscles, "fatigue": fatigue, "fatigue-sex": fatigue_sex}
     words += [f"--{key}={value!r}" for key, value in numbers.items() if value is not None]
     words += [f"--{key}={value}" for key, value in names.items() if value is not None]

@@ -60,6 +60,16 @@ def test_a_file_and_options_are_those_of_the_program(woman: Model, program: str,
     assert ours.summary == contrapposto.Record(theirs)
 
 
+def test_repeats_are_those_of_the_program(woman: Model, program: str, table: Path) -> None:
+    command = [program, "assess", "adult:female,1.65m,60kg", str(table), "--radians", "--fixed-root", "--json", "--no-suggest"]
+    command += ["--repeat", "8h", "--every", "3min", "--work", "50min", "--break", "10min"]
+    theirs = json.loads(subprocess.run(command, capture_output=True, text=True).stdout)
+    ours = contrapposto.assess(woman, MOTION, TIMES, fixed_root=True, repeat=8 * 3600, every=180, work=3000, rest=600)
+    assert ours.summary == contrapposto.Record({**theirs, "motion": "motion"}) and ours.summary.repeats.cycles > 100
+    with pytest.raises(InputError, match="--repeat"):
+        contrapposto.assess(woman, MOTION, TIMES, fixed_root=True, every=180)
+
+
 def test_arrays_have_a_row_a_posture(woman: Model) -> None:
     found = contrapposto.assess(woman, MOTION, TIMES, loads=LOADS, fixed_root=True, angle_error=0.0)
     np.testing.assert_array_equal(found.t, TIMES)
