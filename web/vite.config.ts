@@ -11,7 +11,8 @@ function filesForServiceWorker(): Plugin {
     name: "files-for-service-worker",
     apply: "build",
     configResolved: (config) => void (folder = join(config.root, config.build.outDir)),
-    closeBundle() {
+    closeBundle(error?: Error) {
+      if (error) return;
       const entries = readdirSync(folder, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
       const paths = entries.map((entry) => join(entry.parentPath, entry.name)).filter((path) => !path.endsWith(worker)).sort();
       const digest = createHash("sha256");

@@ -4,17 +4,22 @@ import { Files } from "./files";
 import { Hand } from "./hand";
 import { scenarioPart } from "./link";
 import type { Request } from "./messages";
+import { button, make } from "./dom";
 import { keepForOffline } from "./offline";
 import { Page, byId } from "./page";
 import { Panel } from "./panel";
 import { duration, texts } from "./texts";
-import { View } from "./view";
+import { View, sides } from "./view";
 
 const page = new Page();
 const hand = new Hand(page);
 const files = new Files(page);
 
 page.panel = new Panel(byId("panel"), {
+  figure: (wooden) => {
+    if (page.view) page.view.wooden = wooden;
+    page.dress();
+  },
   adult: (sex, stature, mass) => page.change({ do: "adult", sex, stature, mass }),
   nudge: (handle, way) => hand.nudge(handle, way),
   free: (segment) => page.change({ do: "free", segment }),
@@ -66,6 +71,8 @@ function listen(): void {
 }
 
 page.view = makeView();
+byId("views").ariaLabel = texts.views;
+byId("views").append(make("span", { textContent: texts.views }), ...sides.map((side) => button(texts.sides[side], `view-${side}`, () => page.view?.lookFrom(side))));
 listen();
 files.openLink(scenarioPart(location.hash));
 
@@ -77,6 +84,9 @@ const probe = {
   },
   times: () => page.solver.times,
   ask: (request: Request) => page.ask(request),
+  skin: () => page.view?.skinPlaces,
+  figure: () => (page.view?.wooden === false && page.view.dressed ? "person" : "wooden"),
+  shown: () => page.shown,
   geometries: () => page.view?.geometries ?? 0,
 };
 Object.assign(window, { studio: probe, duration });

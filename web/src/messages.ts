@@ -18,6 +18,7 @@ export type Request =
   | { do: "play"; samples: number }
   | { do: "stop"; take: boolean }
   | { do: "balance"; coordinate: string }
+  | { do: "skin" }
   | { do: "export" }
   | { do: "state" }
   | { do: "restore"; state: string }
@@ -41,6 +42,7 @@ export interface Shown {
   active: number[];
   load: number[];
   places: Place[];
+  bones: Place[];
   center: Vector;
   contacts: { force: Vector; share: number; at: Vector | null }[];
   patches: Vector[];
@@ -48,6 +50,16 @@ export interface Shown {
   verdict: Verdict;
   miss: number | null;
   settled: boolean;
+}
+
+export interface SkinScene {
+  vertices: Vector[];
+  triangles: Vector[];
+  bones: [number, number, number, number][];
+  weights: [number, number, number, number][];
+  light: number[];
+  heads: Vector[];
+  segments: number[];
 }
 
 export interface Handle {
@@ -112,6 +124,7 @@ export type Answer =
   | ({ is: "shown" } & Shown)
   | ({ is: "played" } & Played)
   | ({ is: "balance" } & Balance)
+  | { is: "skin"; skin: SkinScene | null }
   | { is: "text"; text: string }
   | { is: "refused"; sentence: string };
 

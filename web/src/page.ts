@@ -161,6 +161,16 @@ export class Page {
     });
   }
 
+  /** Fits the skin to a body that may have one, unless it stays wooden. */
+  dress(): void {
+    if (!this.scene || !this.view || this.view.dressed || this.view.wooden || this.scene.shown.bones.length === 0) return;
+    const body = this.view.bodyShown;
+    void this.guard(async () => {
+      const answer = await this.solver.ask({ do: "skin" });
+      if (answer.is === "skin" && answer.skin && body === this.view?.bodyShown) this.view.dress(answer.skin);
+    });
+  }
+
   private take(answer: Answer): void {
     if (answer.is === "scene") {
       this.scene = answer;
@@ -170,6 +180,7 @@ export class Page {
       this.view?.open(answer);
       this.panel.open(answer);
       this.show(answer.shown);
+      this.dress();
       this.chart(true);
     } else if (answer.is === "shown") {
       this.show(answer);

@@ -10,6 +10,7 @@ const NUDGE = 0.02;
 const SPEEDS = [1, 10, 60, 600];
 
 export interface Doing {
+  figure(wooden: boolean): void;
   adult(sex: string, stature: number, mass: number): void;
   nudge(handle: Handle, way: Vector): void;
   free(segment: string): void;
@@ -44,6 +45,7 @@ export class Panel {
   private readonly part = make("select", { id: "part" });
   private readonly held = make("ul", { id: "held" });
   private readonly weight: Slider;
+  private readonly figure: HTMLSelectElement;
   private readonly sex: HTMLSelectElement;
   private readonly stature: Slider;
   private readonly mass: Slider;
@@ -75,6 +77,13 @@ export class Panel {
       make("option", { value: "male", textContent: texts.male }),
     );
     this.sex.addEventListener("change", size);
+    this.figure = make(
+      "select",
+      { id: "figure" },
+      make("option", { value: "person", textContent: texts.person }),
+      make("option", { value: "wooden", textContent: texts.wooden }),
+    );
+    this.figure.addEventListener("change", () => doing.figure(this.figure.value === "wooden"));
     this.stature = new Slider(texts.stature, "stature", [1.2, 2.3, 0.01], "m", size);
     this.mass = new Slider(texts.mass, "mass", [30, 250, 1], "kg", size);
     this.weight = new Slider(texts.weight, "weight", [0, 30, 0.5], "kg", (mass) => {
@@ -133,7 +142,7 @@ export class Panel {
         this.count,
       ),
       section(texts.jointTitle, labelled(texts.joint, this.jointChoice), this.chart as unknown as HTMLElement, this.numbers, make("h3", { textContent: texts.contacts }), this.contacts),
-      section(texts.body, labelled(texts.sex, this.sex), this.stature.element, this.mass.element),
+      section(texts.body, labelled(texts.figure, this.figure), labelled(texts.sex, this.sex), this.stature.element, this.mass.element),
       section(texts.files, make("div", { className: "row" }, this.undo, this.redo, button(texts.reset, "reset", () => this.doing.reset())), files, make("p", { className: "quiet", textContent: texts.about }), make("h3", { textContent: texts.notes }), this.notes),
     ];
   }
@@ -175,6 +184,7 @@ export class Panel {
     const free = ({ label, segment }: Handle) => make("li", {}, button(texts.free(label), `free-${segment}`, () => this.doing.free(segment)));
     this.held.replaceChildren(...(scene.held.length ? scene.held.map(free) : [make("li", { className: "quiet", textContent: texts.nothingHeld })]));
     for (const control of [this.sex, this.stature, this.mass]) control.disabled = scene.person === null;
+    this.figure.disabled = scene.shown.bones.length === 0;
     [this.undo.disabled, this.redo.disabled] = [!scene.can_undo, !scene.can_redo];
     this.notes.replaceChildren(...scene.notes.map((textContent) => make("li", { textContent })));
     this.restore();

@@ -27,10 +27,22 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { colourOf } from "./colours";
 import { hull } from "./figure";
-import type { Handle, Place, Scene, Shown, Vector } from "./messages";
+import type { Handle, Place, Scene, Shown, SkinScene, Vector } from "./messages";
+import { Skin } from "./skin";
 
 /** Length of an arrow of the whole weight, m. */
 const ARROW = 0.6;
+
+/** Directions from which the body is looked at: x ahead, y up, z right. */
+const SIDES = {
+  aslant: [2.25, 0.55, 2.1],
+  front: [1, 0.08, 0],
+  right: [0, 0.08, 1],
+  back: [-1, 0.08, 0],
+  left: [0, 0.08, -1],
+} satisfies Record<string, Vector>;
+export type Side = keyof typeof SIDES;
+export const sides = Object.keys(SIDES) as Side[];
 
 /** What the view tells the page. */
 export interface Dragging {
@@ -66,9 +78,14 @@ export class View {
   private marks = new Group();
   private segments: Group[] = [];
   private materials: MeshLambertMaterial[][] = [];
+  private solids: Mesh[] = [];
   private things: Group[] = [];
   private scene?: Scene;
   private shown?: Shown;
+  private skin?: Skin;
+  private woodenOnly = false;
+  /** Of the body that is shown: another number for another body. */
+  private bodyNumber = 0;
   private due = false;
   private readonly colours = new Map<string, Color>();
 
@@ -77,23 +94,32 @@ export class View {
     private readonly dragging: Dragging,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-    this.camera.position.set(2.3, 1.45, 2.1);
+    this.camera.position.set(1.95, 1.35, 1.8);
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.target.set(0.05, 0.9, 0);
+    this.controls.target.set(0.05, 0.87, 0);
     this.controls.enablePan = false;
     this.controls.minDistance = 0.8;
     this.controls.maxDistance = 8;
     this.controls.addEventListener("change", () => this.redraw());
-    this.world.add(new HemisphereLight("#ffffff", "#8a8f98", 2.1), this.body, this.marks);
-    const lamp = new DirectionalLight("#ffffff", 1.6);
-    lamp.position.set(2, 4, 3);
-    this.world.add(lamp);
+    this.world.add(new HemisphereLight("#ffffff", "#a3a8b0", 2.9), this.body, this.marks, this.camera);
+    // A lamp beside the eye: no side of the body is dark.
+    const lamp = new DirectionalLight("#ffffff", 1.3);
+    lamp.position.set(1, 2, 1.5);
+    this.camera.add(lamp);
     this.listen();
     new ResizeObserver(() => this.redraw()).observe(canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.colours.clear();
       this.paint();
     });
+    this.controls.update();
+  }
+
+  /** Looks at the middle of what is shown from a side, as far away as now. */
+  lookFrom(side: Side): void {
+    const { target } = this.controls;
+    const distance = this.camera.position.distanceTo(target);
+    this.camera.position.copy(target).addScaledVector(new Vector3(...SIDES[side]).normalize(), distance);
     this.controls.update();
   }
 
@@ -117,9 +143,12 @@ export class View {
   }
 
   private build(scene: Scene): void {
+    if (this.skin) discard(this.skin.mesh);
+    this.skin = undefined;
+    this.bodyNumber++;
     this.segments.forEach((segment) => discard(segment));
     this.segments = [];
-    this.materials = [];
+    [this.materials, this.solids] = [[], []];
     for (const [index, segment] of scene.segments.entries()) {
       const group = new Group();
       const materials: MeshLambertMaterial[] = [];
@@ -127,6 +156,7 @@ export class View {
         const material = new MeshLambertMaterial();
         const mesh = new Mesh(hull(balls), material);
         mesh.userData.segment = index;
+        this.solids.push(mesh);
         materials.push(material);
         group.add(mesh);
       }
@@ -136,11 +166,63 @@ export class View {
     }
   }
 
+  /** Names the body that is shown. */
+  get bodyShown(): number {
+    return this.bodyNumber;
+  }
+
+  /** Whether the body has its skin, shown or not. */
+  get dressed(): boolean {
+    return this.skin !== undefined;
+  }
+
+  /** The wooden figure is shown though there is a skin. */
+  get wooden(): boolean {
+    return this.woodenOnly;
+  }
+
+  set wooden(wooden: boolean) {
+    this.woodenOnly = wooden;
+    this.showFigure();
+  }
+
+  /** Gives the body its skin. */
+  dress(scene: SkinScene): void {
+    this.skin = new Skin(scene);
+    this.body.add(this.skin.mesh);
+    this.showFigure();
+  }
+
+  private showFigure(): void {
+    const skin = this.skin && !this.woodenOnly;
+    if (this.skin) this.skin.mesh.visible = !this.woodenOnly;
+    for (const solid of this.solids) solid.visible = !skin;
+    this.pose();
+    this.paint();
+  }
+
+  /** Puts the parts of the body where they are in the posture that is shown. */
+  private pose(): void {
+    this.shown?.places.forEach((place, i) => put(this.segments[i], place));
+    if (this.shown && this.skin && !this.woodenOnly) this.skin.move(this.shown.bones);
+  }
+
+  /** The segment at the end of a ray, and the point. */
+  private hit(ray: Raycaster): { index: number; point: Vector3 } | undefined {
+    const { skin } = this;
+    if (!skin || this.woodenOnly) {
+      const [found] = ray.intersectObjects(this.solids);
+      return found && { index: found.object.userData.segment as number, point: found.point };
+    }
+    const [found] = ray.intersectObject(skin.mesh);
+    return found?.face ? { index: skin.segmentAt(found.face.a), point: found.point } : undefined;
+  }
+
   /** Another posture. */
   show(shown: Shown, held: Handle[]): void {
     if (!this.scene) return;
     this.shown = shown;
-    shown.places.forEach((place, i) => put(this.segments[i], place));
+    this.pose();
     this.mark(shown, held);
     this.paint();
   }
@@ -148,15 +230,13 @@ export class View {
   private paint(): void {
     const { scene, shown } = this;
     if (!scene || !shown) return;
-    const unknown = this.colour("--none");
-    scene.segments.forEach(({ coordinates: [from, to] }, i) => {
+    const colours = scene.segments.map(({ coordinates: [from, to] }) => {
       let share: number | null = null;
       for (let c = from; c < to; c++) if (scene.coordinates[c].groups) share = Math.max(share ?? 0, shown.load[c]);
-      for (const material of this.materials[i]) {
-        if (share === null) material.color.copy(unknown);
-        else colourOf(share, material.color);
-      }
+      return share === null ? this.colour("--none") : colourOf(share, new Color());
     });
+    if (this.skin && !this.woodenOnly) this.skin.paint(colours);
+    else this.materials.forEach((materials, i) => materials.forEach(({ color }) => color.copy(colours[i])));
     this.world.background = this.colour("--scene");
     this.redraw();
   }
@@ -231,6 +311,11 @@ export class View {
     return this.renderer.info.memory.geometries;
   }
 
+  /** Places of the vertices of the skin; undefined without one. */
+  get skinPlaces(): number[] | undefined {
+    return this.skin && [...(this.skin.mesh.geometry.getAttribute("position").array as Float32Array)];
+  }
+
   /** Where a point of ground is on the canvas, px. */
   onCanvas(at: Vector): [number, number] {
     this.camera.updateMatrixWorld();
@@ -255,9 +340,9 @@ export class View {
       (event) => {
         if (pointer !== null || event.button !== 0 || !this.scene) return;
         aim(event);
-        const hit = ray.intersectObjects(this.body.children, true).find(({ object }) => "segment" in object.userData);
+        const hit = this.hit(ray);
         if (!hit) return;
-        const index = hit.object.userData.segment as number;
+        const { index } = hit;
         pointer = event.pointerId;
         this.controls.enabled = false;
         this.canvas.setPointerCapture(pointer);

@@ -1,6 +1,7 @@
 // Runs the session beside the page: requests in, answers out, in their order.
 import init, { Session, last_panic, version } from "./module/contrapposto_web.js";
 import address from "./module/contrapposto_web_bg.wasm?url";
+import skinAddress from "./module/adult.skin?url";
 import type { Answer, FromWorker, ToWorker } from "./messages";
 
 let session: Session | undefined;
@@ -22,6 +23,19 @@ function answer({ id, request }: ToWorker): void {
   }
 }
 
+/** Loads the file of the skin, once; a file that cannot be had is told by the answer to the request. */
+async function loadSkin(): Promise<void> {
+  const response = await fetch(skinAddress).catch(() => undefined);
+  if (response?.ok) session?.take_skin(new Uint8Array(await response.arrayBuffer()));
+}
+
+let skin: Promise<void> | undefined;
+
+function receive(asked: ToWorker): void {
+  if (asked.request.do === "skin") void (skin ??= loadSkin()).catch(() => undefined).then(() => answer(asked));
+  else answer(asked);
+}
+
 /** A lock of this worker's name, until it ends: so the page learns of an end of which nothing else tells. */
 function lock(): Promise<void> {
   if (!navigator.locks) return Promise.resolve();
@@ -35,7 +49,7 @@ function lock(): Promise<void> {
 
 const waiting: ToWorker[] = [];
 self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
-  if (session) answer(event.data);
+  if (session) receive(event.data);
   else waiting.push(event.data);
 });
 
@@ -43,7 +57,7 @@ Promise.all([init({ module_or_path: address }), lock()]).then(
   () => {
     session = new Session();
     send({ kind: "ready", version: version() });
-    for (const request of waiting.splice(0)) answer(request);
+    for (const request of waiting.splice(0)) receive(request);
   },
   (error: unknown) => send({ kind: "broken", id: -1, sentence: String(error) }),
 );

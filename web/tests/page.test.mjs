@@ -8,8 +8,8 @@ import { test } from "node:test";
 import { gzipSync } from "node:zlib";
 import { close, dist, open, result, root, useBrowser } from "./browser.mjs";
 
-// Of everything that the first visit loads, compressed by gzip, bytes.
-const MOST_LOADED = 1_350_000;
+// Of everything that the first visit loads, compressed by gzip, bytes; the skin (0.29 MB) is loaded after the first picture.
+const MOST_LOADED = 1_600_000;
 
 useBrowser();
 

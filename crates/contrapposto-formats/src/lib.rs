@@ -32,6 +32,7 @@ mod summary;
 mod sweep;
 mod thing;
 mod toml_file;
+mod toml_value;
 mod trajectory_csv;
 mod verdict;
 

@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::input_error::{InputError, Source, suggestion, utf8};
+use crate::toml_value::{Misfit, typed};
 
 /// Reads a file and converts it. `convert` checks everything that the grammar and the keys leave open.
 pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
@@ -17,7 +18,7 @@ pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(
 ) -> Result<R, InputError> {
     let text = utf8(name, bytes)?;
     let (source, tree) = parse_toml(name, text)?;
-    let parsed: T = toml::from_str(text).map_err(|error| reworded(&source, &error))?;
+    let parsed: T = typed(tree.get_ref()).map_err(|error| reworded(&source, &error))?;
     convert(&Located { source, tree: tree.get_ref(), aliases: vec![] }, &parsed)
 }
 
@@ -145,8 +146,8 @@ fn entry<'a>(value: &'a Spanned<DeValue<'a>>, key: &str) -> Option<(Range<usize>
 }
 
 /// An error of the TOML reader in the words of the file formats, with a suggestion where the reader lists what it expected.
-fn reworded(source: &Source, error: &toml::de::Error) -> InputError {
-    let message = error.message();
+fn reworded(source: &Source, error: &Misfit) -> InputError {
+    let message = error.message.as_str();
     let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let all_keys = || Some("`contrapposto schema` lists all keys".to_owned());
     let (message, help) = match words.split_first() {
@@ -169,7 +170,7 @@ fn reworded(source: &Source, error: &toml::de::Error) -> InputError {
             (plain.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to)), None)
         }
     };
-    source.error(placed(error.span()), message, "here", help)
+    source.error(placed(error.span.clone()), message, "here", help)
 }
 
 /// Refuses `nan` and `inf`, which TOML has and these files have not.

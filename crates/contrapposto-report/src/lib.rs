@@ -141,8 +141,8 @@ pub struct Skin {
     pub vertices: Vec<[f64; 3]>,
     /// Corners of triangles, counterclockwise seen from outside; those with an index out of range are left out.
     pub triangles: Vec<[u16; 3]>,
-    /// Colour of each vertex, sRGB. The page shows by its brightness that cloth is no skin, a little only.
-    pub colors: Vec<[u8; 3]>,
+    /// Brightness of each vertex, as a share of 255; of vertices without one 255. The page shows by it that cloth is no skin.
+    pub light: Vec<u8>,
     /// Bones that move each vertex, as indices in `nodes`; those out of range count as the first one.
     pub bones: Vec<[u8; 4]>,
     /// Weights of these bones, as shares of 255.

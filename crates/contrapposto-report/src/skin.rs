@@ -6,11 +6,6 @@ use serde_json::{Value, json};
 
 use crate::Skin;
 
-/// Least brightness of a vertex, of the brightest one; colours show load, so that cloth and hair may differ a little only.
-const DARKEST: f64 = 0.68;
-/// Brightness that the hem of cloth loses, halfway between the brightness of cloth and that of skin.
-const HEM: f64 = 0.4;
-
 /// The mesh. Vertices are multiples of a step from the lowest corner of their box, 65,535 at most.
 pub(crate) fn mesh(skin: &Skin) -> Value {
     let known = |v: &f64| if v.is_finite() { *v } else { 0.0 };
@@ -34,7 +29,7 @@ pub(crate) fn mesh(skin: &Skin) -> Value {
         "triangles": base64(corners.flat_map(|i| i.to_le_bytes())),
         "bones": base64(bones),
         "weights": base64(bytes(&skin.weights)),
-        "light": base64(light(skin)),
+        "light": base64((0..vertices.len()).map(|i| skin.light.get(i).copied().unwrap_or(u8::MAX))),
     })
 }
 
@@ -42,32 +37,10 @@ fn base64(bytes: impl IntoIterator<Item = u8>) -> String {
     BASE64_STANDARD.encode(bytes.into_iter().collect::<Vec<u8>>())
 }
 
-/// Brightness of every vertex, as a share of 255. Cloth ends in a dark hem, so that it is seen as cloth under the colours of load.
-fn light(skin: &Skin) -> Vec<u8> {
-    let of = |[r, g, b]: [u8; 3]| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
-    let brightest = skin.colors.iter().copied().map(of).fold(1.0, f64::max);
-    let darkest = skin.colors.iter().copied().map(of).fold(brightest, f64::min);
-    let share = |color: Option<&[u8; 3]>| {
-        let bright = color.map_or(brightest, |color| of(*color));
-        let place = (bright - darkest) / (brightest - darkest).max(1.0);
-        let hem = HEM * (1.0 - (2.0 * place - 1.0).abs());
-        DARKEST + (1.0 - DARKEST) * bright / brightest - hem
-    };
-    (0..skin.vertices.len()).map(|i| (255.0 * share(skin.colors.get(i))).round() as u8).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Bone;
-
-    #[test]
-    fn the_hem_between_cloth_and_skin_is_darker_than_both() {
-        let colors = vec![[40; 3], [120; 3], [200; 3]];
-        let skin = Skin { vertices: vec![[0.0; 3]; 3], colors, ..Skin::default() };
-        let [cloth, hem, bare] = light(&skin)[..] else { panic!("three vertices") };
-        assert!(hem < cloth && cloth < bare && bare == 255, "{cloth} {hem} {bare}");
-    }
 
     #[test]
     fn odd_numbers_and_lists_that_are_too_short_are_written_as_something_within_bounds() {

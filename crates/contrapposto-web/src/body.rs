@@ -8,7 +8,7 @@ use contrapposto::model::{CoordinateKind, Model, plain_group_name, plain_name};
 use contrapposto::posture::Posture;
 use contrapposto::statics::LoadKind;
 use contrapposto::tasks::Task;
-use contrapposto_formats::animation::{joined_by, solids};
+use contrapposto_formats::animation::{Skeleton, joined_by, solids};
 use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
 use contrapposto_formats::{ModelFile, RelaxScenario, RunScenario, Thing, read_relax, read_run, scenario_model};
 use nalgebra::{Isometry3, Vector3};
@@ -46,6 +46,8 @@ enum At {
 pub(crate) struct Body {
     pub(crate) model: Arc<Model>,
     pub(crate) scenario: RelaxScenario,
+    /// Of the built-in adult.
+    skeleton: Option<Skeleton>,
 }
 
 impl Body {
@@ -54,7 +56,14 @@ impl Body {
         let text = document.text();
         let model = model_file(&document.files, &text)?;
         let scenario = read_relax(NAME, text.as_bytes(), model)?;
-        Ok(Self { model: Arc::new(scenario.model.clone()), scenario })
+        Ok(Self { model: Arc::new(scenario.model.clone()), skeleton: Skeleton::of(&scenario.model), scenario })
+    }
+
+    /// Places of the bones of the skin; none of a body without one.
+    pub(crate) fn bones(&self, kinematics: &Kinematics) -> Vec<[f64; 7]> {
+        let Some(skeleton) = &self.skeleton else { return vec![] };
+        let places = skeleton.place_by(&self.model, kinematics);
+        places.iter().take(skeleton.bones().len()).map(place).collect()
     }
 
     /// The segment of this name.

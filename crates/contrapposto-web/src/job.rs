@@ -2,7 +2,7 @@
 //!
 //! Figure, scene and history of a request are built whole before they are put in place, so a request that is refused changes nothing.
 
-use contrapposto::model::plain_name;
+use contrapposto::model::{Model, plain_name};
 use contrapposto::posture::Posture;
 
 use crate::balance::balance;
@@ -45,10 +45,16 @@ impl Job {
         Ok(Answer::Scene(Box::new(self.figure.scene(document, can)?)))
     }
 
+    pub(crate) fn model(&self) -> &Model {
+        &self.figure.body.model
+    }
+
     /// Answers a request that is not to open another job.
     pub(crate) fn answer(&mut self, request: Request) -> Result<Answer, Refusal> {
         match request {
-            Request::Open { .. } | Request::OpenModel { .. } => Err(Refusal::of("this job is open")),
+            Request::Open { .. } | Request::OpenModel { .. } | Request::Skin {} => {
+                Err(Refusal::of("no request to a job"))
+            }
             Request::Adult { sex, stature, mass } => self.change(|document| document.set_adult(&sex, stature, mass)),
             Request::Grab { segment, point } => self.grab(segment, point),
             Request::Drag { target } => self.drag(target),

@@ -12,6 +12,7 @@
 //! | `body` | what the readers make of the document |
 //! | `mover` | steps of a posture: dragged, or settling |
 //! | `figure` | a body in a posture, with its mover |
+//! | `skin` | the mesh of the built-in adult |
 //! | `shown` | everything that is shown of one posture |
 //! | `balance` | the torques of one joint over its range |
 //! | `sample`, `play` | a run over time |
@@ -30,6 +31,7 @@ mod mover;
 mod play;
 mod sample;
 mod shown;
+mod skin;
 mod studio;
 
 use std::cell::RefCell;
@@ -57,6 +59,11 @@ impl Session {
             LAST_PANIC.with(|last| *last.borrow_mut() = panic.to_string());
         }));
         Self(Studio::new())
+    }
+
+    /// Takes the bytes of the file of the skin, which the request `skin` needs.
+    pub fn take_skin(&mut self, file: Vec<u8>) {
+        self.0.take_skin(file);
     }
 
     /// Answers a request.

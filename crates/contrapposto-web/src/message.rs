@@ -39,6 +39,8 @@ pub(crate) enum Request {
     Stop { take: bool },
     /// The torques of a coordinate over its range.
     Balance { coordinate: String },
+    /// The skin of the body, from the file that the session was given.
+    Skin {},
     /// The scenario as a file.
     Export {},
     /// All of the present document as a text, for `restore` in another session.
@@ -65,6 +67,8 @@ pub(crate) enum Answer {
     Played(Box<Played>),
     /// Torques of a coordinate.
     Balance(Balance),
+    /// The skin of the body; `None` of a body without one.
+    Skin { skin: Option<SkinScene> },
     /// A text.
     Text { text: String },
     /// The request was refused; nothing has changed.
@@ -119,6 +123,25 @@ pub(crate) struct SegmentScene {
     pub(crate) coordinates: [usize; 2],
 }
 
+/// A mesh that bones move, in the T-pose.
+#[derive(Debug, Serialize)]
+pub(crate) struct SkinScene {
+    /// Vertices, m.
+    pub(crate) vertices: Vec<[f64; 3]>,
+    /// Corners of triangles, anticlockwise seen from outside.
+    pub(crate) triangles: Vec<[u16; 3]>,
+    /// Bones that move a vertex, as indices in [`Self::heads`] and [`Shown::bones`].
+    pub(crate) bones: Vec<[u8; 4]>,
+    /// Weights of these bones, which sum to 255.
+    pub(crate) weights: Vec<[u8; 4]>,
+    /// Brightness of every vertex, as a share of 255.
+    pub(crate) light: Vec<u8>,
+    /// Place of every bone, m.
+    pub(crate) heads: Vec<[f64; 3]>,
+    /// The segment that every bone follows.
+    pub(crate) segments: Vec<usize>,
+}
+
 /// A point of a segment that can be dragged or is held.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Handle {
@@ -156,6 +179,8 @@ pub(crate) struct Shown {
     pub(crate) load: Vec<f64>,
     /// Position and quaternion x, y, z, w of every segment, in ground.
     pub(crate) places: Vec<[f64; 7]>,
+    /// The same of every bone of the skin, which no bone turns in the T-pose; empty of a body without one.
+    pub(crate) bones: Vec<[f64; 7]>,
     pub(crate) center: [f64; 3],
     pub(crate) contacts: Vec<ContactShown>,
     /// Corners of the patches on supports, in ground.

@@ -118,6 +118,7 @@ impl Numbers {
             passive: self.passive,
             load: self.load,
             places: (0..model.segments().len()).map(|s| place(&kinematics.placement(model, s))).collect(),
+            bones: body.bones(kinematics),
             center: kinematics.center_of_mass(model).unwrap_or_default().into(),
             contacts,
             patches: body.scenario.supports.iter().flat_map(patch).collect(),

@@ -4,6 +4,7 @@ use crate::document::{Document, FIRST};
 use crate::error::Refusal;
 use crate::job::Job;
 use crate::message::{Answer, Request};
+use crate::skin;
 
 /// The scenario of a model file that is opened on its own; the name stands for `{}`.
 const OF_MODEL: &str = "format = 1\ntitle = \"{}\"\n[model]\nfile = \"{}\"\n[[task]]\nkind = \"effort\"\n";
@@ -12,12 +13,19 @@ const OF_MODEL: &str = "format = 1\ntitle = \"{}\"\n[model]\nfile = \"{}\"\n[[ta
 #[derive(Debug, Default)]
 pub struct Studio {
     job: Option<Job>,
+    /// The file of the skin.
+    skin: Option<Vec<u8>>,
 }
 
 impl Studio {
     /// A session without a body; every request before the first scenario opens a standing adult.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Takes the bytes of the file of the skin, which the request `skin` needs.
+    pub fn take_skin(&mut self, file: Vec<u8>) {
+        self.skin = Some(file);
     }
 
     /// Answers a request; both are JSON. A request that is refused changes nothing.
@@ -46,7 +54,9 @@ impl Studio {
                     self.open(Document::new(FIRST, Default::default())?)?;
                 }
                 let job = self.job.as_mut().ok_or_else(|| Refusal::of("no scenario is open"))?;
-                job.answer(request)
+                let Request::Skin {} = request else { return job.answer(request) };
+                let file = self.skin.as_ref().ok_or_else(|| Refusal::of("the skin has not been loaded"))?;
+                Ok(Answer::Skin { skin: skin::scene(job.model(), file) })
             }
         }
     }

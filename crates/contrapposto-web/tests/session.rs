@@ -2,8 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use contrapposto::kinematics::Kinematics;
+use contrapposto::model::{Adult, Sex, adult};
+use contrapposto::posture::Posture;
 use contrapposto_web::Studio;
 use serde_json::{Value, json};
+
+/// A bar on a hinge with a motor.
+const ARM: &str = r#"<robot name="arm"><link name="base"/><link name="bar"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="hinge" type="revolute"><parent link="base"/>
+<child link="bar"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="20" velocity="1"/></joint></robot>"#;
 
 fn ask(studio: &mut Studio, request: Value) -> Value {
     let answer: Value = serde_json::from_str(&studio.call(&request.to_string())).unwrap();
@@ -363,4 +371,49 @@ fn another_session_takes_over_a_state_with_its_held_points_events_and_files() {
     ask(&mut other, json!({ "do": "undo" }));
     ask(&mut other, json!({ "do": "undo" }));
     refused(&mut other, json!({ "do": "restore", "state": "table = 3" }));
+}
+
+/// Drags a hand of adults of several sizes through 20 places: a bone of the skin is where the joint of its segment is, by the model.
+#[test]
+fn bones_of_the_skin_are_at_the_joint_centres_in_every_posture() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../contrapposto-formats/data/skin/adult.skin");
+    let mut studio = Studio::new();
+    assert_eq!(refused(&mut studio, json!({ "do": "skin" })), "the skin has not been loaded");
+    studio.take_skin(std::fs::read(file).unwrap());
+    let (mut postures, mut farthest) = (0, 0.0_f64);
+    for (sex, stature, mass) in [("female", 1.5, 45.0), ("male", 1.95, 110.0)] {
+        let scene = ask(&mut studio, json!({ "do": "adult", "sex": sex, "stature": stature, "mass": mass }));
+        let answer = ask(&mut studio, json!({ "do": "skin" }));
+        let skin = &answer["skin"];
+        let count = |key: &str| skin[key].as_array().unwrap().len();
+        assert_eq!((count("vertices"), count("heads"), count("segments")), (count("light"), 41, 41));
+        let heights = skin["vertices"].as_array().unwrap().iter().map(|vertex| number(&vertex[1]));
+        let tall = heights.clone().fold(0.0, f64::max) - heights.fold(f64::INFINITY, f64::min);
+        assert!((tall - stature).abs() < 0.03 * stature, "{tall} m for {stature} m");
+        let sex = if sex == "male" { Sex::Male } else { Sex::Female };
+        let model = adult(&Adult { sex, stature, mass, ..Adult::default() }).unwrap();
+        let hand = handle(&scene, "right hand");
+        ask(&mut studio, json!({ "do": "grab", "segment": hand["segment"], "point": hand["point"] }));
+        for k in 0..10 {
+            let turn = f64::from(k) * 0.7;
+            let target = [0.3 + 0.2 * turn.sin(), 1.1 + 0.4 * turn.cos(), 0.2];
+            let mut shown = Value::Null;
+            (0..8).for_each(|_| shown = ask(&mut studio, json!({ "do": "drag", "target": target })));
+            let q: Vec<f64> = shown["q"].as_array().unwrap().iter().map(number).collect();
+            let mut kinematics = Kinematics::new(&model);
+            kinematics.update(&model, &Posture::new(q)).unwrap();
+            for (bone, segment) in shown["bones"].as_array().unwrap().iter().zip(skin["segments"].as_array().unwrap()) {
+                let segment = segment.as_u64().unwrap() as usize;
+                let center = kinematics.station(&model, segment, model.segments()[segment].in_segment.translation.vector);
+                let at = nalgebra::Vector3::new(number(&bone[0]), number(&bone[1]), number(&bone[2]));
+                farthest = farthest.max((at - center).norm());
+            }
+            postures += 1;
+        }
+        ask(&mut studio, json!({ "do": "release", "hold": false }));
+    }
+    assert!(postures == 20 && farthest < 1e-9, "{farthest} m in {postures} postures");
+    let scene = ask(&mut studio, json!({ "do": "open_model", "name": "arm.urdf", "text": ARM }));
+    assert_eq!(scene["shown"]["bones"], json!([]));
+    assert_eq!(ask(&mut studio, json!({ "do": "skin" }))["skin"], Value::Null);
 }

@@ -20,7 +20,7 @@ pub use bvh::bvh;
 pub(crate) use euler::zyx;
 pub use glb::glb;
 pub use hull::Solid;
-pub use skin::{Bone, Skin};
+pub use skin::{Bone, Skeleton, Skin};
 pub use skinned::skinned_glb;
 pub use solid::{joined_by, solids};
 

@@ -19,22 +19,22 @@ use super::{AnimationError, Clip, Skin};
 /// # Errors
 /// [`AnimationError`] says which time or posture does not fit.
 pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationError> {
-    let drawn = clip.drawn();
+    let (drawn, skeleton) = (clip.drawn(), &skin.skeleton);
     let turn = UnitQuaternion::from_rotation_matrix(&drawn);
-    let rests: Vec<Vector3<f64>> = (0..skin.nodes.len()).map(|node| drawn * skin.head(node)).collect();
-    let (times, courses) = courses(clip, skin.nodes.len(), |frames| {
+    let rests: Vec<Vector3<f64>> = (0..skeleton.nodes.len()).map(|node| drawn * skeleton.head(node)).collect();
+    let (times, courses) = courses(clip, skeleton.nodes.len(), |frames| {
         let in_file = |place: Placement| {
             let at = drawn * place.translation.vector;
             Placement::from_parts(at.into(), turn * place.rotation * turn.inverse())
         };
-        let places: Vec<Placement> = skin.place(frames).into_iter().map(in_file).collect();
+        let places: Vec<Placement> = skeleton.place(frames).into_iter().map(in_file).collect();
         let in_parent = |(node, place): (usize, &Placement)| {
-            skin.nodes[node].parent.map_or_else(|| *place, |parent| places[parent].inv_mul(place))
+            skeleton.nodes[node].parent.map_or_else(|| *place, |parent| places[parent].inv_mul(place))
         };
         places.iter().enumerate().map(in_parent).collect()
     })?;
     let local_rest =
-        |node: usize| rests[node] - skin.nodes[node].parent.map_or_else(Vector3::zeros, |parent| rests[parent]);
+        |node: usize| rests[node] - skeleton.nodes[node].parent.map_or_else(Vector3::zeros, |parent| rests[parent]);
     let channels: Vec<_> = courses
         .iter()
         .enumerate()
@@ -42,12 +42,12 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
         .collect();
     let mut buffer = Buffer::default();
     let mesh = mesh(skin, &drawn, &mut buffer);
-    let bind: Vec<[f32; 16]> = rests[..skin.bone_count()].iter().map(back).collect();
+    let bind: Vec<[f32; 16]> = rests[..skeleton.bones().len()].iter().map(back).collect();
     let bind = buffer.matrices(&bind);
     let animation = animation(clip, &channels, &times, &mut buffer);
     let mut nodes = nodes(clip, skin, local_rest);
     nodes.push(json!({ "name": "skin", "mesh": 0, "skin": 0 }));
-    let joints: Vec<usize> = (1..=skin.bone_count()).collect();
+    let joints: Vec<usize> = (1..=skeleton.bones().len()).collect();
     let look = json!({ "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.75 });
     let mut file = json!({
         "asset": {
@@ -107,17 +107,18 @@ fn linear(channel: u8) -> u8 {
 
 /// The body, then all nodes of the skeleton, in T-pose.
 fn nodes(clip: &Clip<'_>, skin: &Skin, local_rest: impl Fn(usize) -> Vector3<f64>) -> Vec<Value> {
-    let mut children: Vec<Vec<usize>> = vec![vec![]; skin.nodes.len() + 1];
-    for node in 0..skin.nodes.len() {
-        children[skin.nodes[node].parent.map_or(0, |parent| parent + 1)].push(node + 1);
+    let skeleton = &skin.skeleton;
+    let mut children: Vec<Vec<usize>> = vec![vec![]; skeleton.nodes.len() + 1];
+    for node in 0..skeleton.nodes.len() {
+        children[skeleton.nodes[node].parent.map_or(0, |parent| parent + 1)].push(node + 1);
     }
     let name = if clip.model.name().is_empty() { "body" } else { clip.model.name() };
     let mut nodes = vec![json!({ "name": name })];
-    for node in 0..skin.nodes.len() {
+    for node in 0..skeleton.nodes.len() {
         nodes.push(json!({
-            "name": skin.nodes[node].name,
+            "name": skeleton.nodes[node].name,
             "translation": floats(local_rest(node)),
-            "extras": { "segment": clip.model.segments()[skin.nodes[node].segment].name },
+            "extras": { "segment": clip.model.segments()[skeleton.nodes[node].segment].name },
         }));
     }
     for (node, children) in nodes.iter_mut().zip(children).filter(|(_, children)| !children.is_empty()) {

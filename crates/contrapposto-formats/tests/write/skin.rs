@@ -68,7 +68,7 @@ fn a_skin_has_stature_and_mass_of_its_adult_and_stands_on_the_ground() {
         assert!(numbers.into_iter().all(|v| v.is_finite()));
         assert!(skin.normals.iter().all(|n| (n.norm() - 1.0).abs() < 1e-9));
         assert!(skin.weights.iter().all(|w| w.iter().map(|&w| u32::from(w)).sum::<u32>() == 255));
-        let bones = skin.bones.iter().flatten().all(|&bone| usize::from(bone) < skin.bone_count());
+        let bones = skin.bones.iter().flatten().all(|&bone| usize::from(bone) < skin.skeleton.bones().len());
         assert!(bones, "a vertex has a bone that is not there");
         let heights = || skin.vertices.iter().map(|v| v.y);
         let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
@@ -90,11 +90,11 @@ fn bones_are_at_the_joint_centres_in_any_posture() {
         let mut least = f64::INFINITY;
         for _ in 0..20 {
             let posture = random(&model, &mut numbers);
-            let places = skin.place_in(&model, &posture).unwrap();
+            let places = skin.skeleton.place_in(&model, &posture).unwrap();
             let centers = joints(&model, &posture);
             for (node, place) in places.iter().enumerate() {
                 // The nodes of the clavicles are at the joint of the torso.
-                worst = worst.max((place.translation.vector - centers[skin.nodes[node].segment]).norm());
+                worst = worst.max((place.translation.vector - centers[skin.skeleton.nodes[node].segment]).norm());
             }
             let moved = skin.moved(&places);
             assert!(moved.iter().all(|v| v.iter().all(|v| v.is_finite())));
@@ -143,7 +143,7 @@ fn girths(skin: &Skin, model: &Model, posture: &Posture, ends: [&str; 2], slices
     let along = |p: &Vector3<f64>| (p - rest[ends[0]]).dot(&(rest[ends[1]] - rest[ends[0]]).normalize());
     let length = (rest[ends[1]] - rest[ends[0]]).norm();
     let axis = (now[ends[1]] - now[ends[0]]).normalize();
-    let moved = skin.moved(&skin.place_in(model, posture).unwrap());
+    let moved = skin.moved(&skin.skeleton.place_in(model, posture).unwrap());
     let mut sums = vec![(0.0, 0.0); slices];
     for (vertex, moved) in skin.vertices.iter().zip(&moved) {
         let share = along(vertex) / length;

@@ -118,7 +118,7 @@ fn bones_and_skin_of_the_file_are_where_kinematics_is() {
                 let frame = &frames[node["name"].as_str().unwrap()];
                 worst[0] = worst[0].max((place(frame) - drawn(centers[segment])).norm());
             }
-            let places = skin.place_in(&model, posture).unwrap();
+            let places = skin.skeleton.place_in(&model, posture).unwrap();
             let wanted: Vec<Vector3<f64>> = skin.moved(&places).into_iter().map(drawn).collect();
             worst[1] = worst[1].max(farthest(&moved(&file, &frames), &wanted));
         }

@@ -20,7 +20,7 @@ pub(super) struct Course<'a> {
 /// The skin; `None` for a body without one. `shown`: the coordinates of the page's joints.
 pub(super) fn skin(course: &Course<'_>, shown: &[usize], turn: &Turn) -> Result<Option<page::Skin>, Fail> {
     let Some(skin) = Skin::of(course.model) else { return Ok(None) };
-    let bones = &skin.nodes[..skin.bone_count()];
+    let bones = skin.skeleton.bones();
     let mut segments: Vec<usize> = bones.iter().flat_map(|bone| [bone.from, bone.segment]).collect();
     segments.sort_unstable();
     segments.dedup();
@@ -34,7 +34,7 @@ pub(super) fn skin(course: &Course<'_>, shown: &[usize], turn: &Turn) -> Result<
     Ok(Some(page::Skin {
         vertices: skin.vertices.iter().map(|vertex| turn.point(*vertex)).collect(),
         triangles: skin.triangles.clone(),
-        colors: skin.colors.clone(),
+        light: skin.light(),
         bones: skin.bones.clone(),
         weights: skin.weights.clone(),
         nodes: bones.iter().map(bone).collect(),
@@ -54,7 +54,11 @@ fn followed(
     let new = |&segment: &usize| {
         let coordinates = joined_by(model, segment);
         let joints = shown.iter().enumerate().filter(|(_, i)| coordinates.contains(i)).map(|(place, _)| place);
-        page::Followed { joints: joints.collect(), rest: turn.place(&skin.rest[segment]), ..page::Followed::default() }
+        page::Followed {
+            joints: joints.collect(),
+            rest: turn.place(&skin.skeleton.rest[segment]),
+            ..page::Followed::default()
+        }
     };
     let mut list: Vec<page::Followed> = segments.iter().map(new).collect();
     let mut kinematics = Kinematics::new(model);

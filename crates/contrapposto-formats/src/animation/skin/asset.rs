@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-const BYTES: &[u8] = include_bytes!("../../../data/skin/adult.skin");
+/// The embedded file; a test reads all of it.
+pub(super) const BYTES: &[u8] = include_bytes!("../../../data/skin/adult.skin");
 /// Decimetres in metres.
 const DECIMETRE: f64 = 0.1;
 /// Landmarks of the middle of the body, and those of one side, as they stand in the file.
@@ -85,12 +86,8 @@ impl Cursor<'_> {
 }
 
 impl Asset {
-    /// The embedded file; a test reads all of it.
-    pub(super) fn embedded() -> Option<Self> {
-        Self::read(BYTES)
-    }
-
-    fn read(bytes: &[u8]) -> Option<Self> {
+    /// From the bytes of a file; `None` unless it is whole.
+    pub(super) fn read(bytes: &[u8]) -> Option<Self> {
         let mut file = Cursor(bytes);
         let known = file.array()? == *b"SKIN" && file.count()? == 1;
         let [vertices, quads, shapes, landmarks] = [file.count()?, file.count()?, file.count()?, file.count()?];
@@ -137,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_embedded_file_is_whole_and_any_other_length_is_refused() {
-        let asset = Asset::embedded().unwrap();
+        let asset = Asset::read(BYTES).unwrap();
         assert_eq!(asset.bones.len(), asset.weights.len());
         assert!(asset.weights.iter().all(|w| w.iter().map(|&w| u32::from(w)).sum::<u32>() == 255));
         let corners = asset.quads.iter().flatten();

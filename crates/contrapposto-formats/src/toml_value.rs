@@ -1,0 +1,188 @@
+//! Gives the values of a parsed TOML file to the types that stand for them.
+//!
+//! The reader of `toml` itself gives a struct the same keys in several ways (as a table, as a date, with places), each of which is a copy
+//! of the struct's code: a quarter of the module of the studio. These files have no dates, so here is one way.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use serde::de::value::{MapAccessDeserializer, StrDeserializer};
+use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
+use serde::forward_to_deserialize_any;
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+/// The reason for which a value is not what its key takes, and where it stands.
+#[derive(Debug)]
+pub(crate) struct Misfit {
+    pub(crate) message: String,
+    pub(crate) span: Option<Range<usize>>,
+}
+
+/// The values of a file's tables.
+pub(crate) fn typed<T: DeserializeOwned>(table: &DeTable<'_>) -> Result<T, Misfit> {
+    let span = 0..0;
+    T::deserialize(Value { span: span.clone(), kind: Kind::Table(table) })
+}
+
+impl Misfit {
+    /// The same, at a place, unless its own is known.
+    fn at(self, span: &Range<usize>) -> Self {
+        Self { span: self.span.or_else(|| Some(span.clone())), ..self }
+    }
+}
+
+impl Display for Misfit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Misfit {}
+
+impl serde::de::Error for Misfit {
+    fn custom<T: Display>(message: T) -> Self {
+        Self { message: message.to_string(), span: None }
+    }
+}
+
+/// A value and its place.
+struct Value<'a> {
+    span: Range<usize>,
+    kind: Kind<'a>,
+}
+
+#[derive(Clone, Copy)]
+enum Kind<'a> {
+    /// The whole file, or a table in it.
+    Table(&'a DeTable<'a>),
+    Other(&'a DeValue<'a>),
+}
+
+impl<'a> From<&'a Spanned<DeValue<'a>>> for Value<'a> {
+    fn from(value: &'a Spanned<DeValue<'a>>) -> Self {
+        let kind = match value.get_ref() {
+            DeValue::Table(table) => Kind::Table(table),
+            other => Kind::Other(other),
+        };
+        Self { span: value.span(), kind }
+    }
+}
+
+impl<'de> Deserializer<'de> for Value<'_> {
+    type Error = Misfit;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+        let Self { span, kind } = self;
+        let value = match kind {
+            Kind::Table(table) => return visitor.visit_map(Entries::of(table)).map_err(|error| error.at(&span)),
+            Kind::Other(value) => value,
+        };
+        match value {
+            DeValue::String(text) => visitor.visit_str(text),
+            DeValue::Integer(number) => match i128::from_str_radix(number.as_str(), number.radix()) {
+                Ok(number) => whole(number, visitor),
+                Err(_) => Err(Misfit::custom("integer number overflowed")),
+            },
+            DeValue::Float(number) => match number.as_str().parse() {
+                Ok(number) => visitor.visit_f64(number),
+                Err(_) => Err(Misfit::custom("floating-point number overflowed")),
+            },
+            DeValue::Boolean(truth) => visitor.visit_bool(*truth),
+            DeValue::Datetime(_) => Err(Misfit::invalid_type(Unexpected::Other("date"), &visitor)),
+            DeValue::Array(list) => visitor.visit_seq(Items(list.iter())),
+            DeValue::Table(table) => visitor.visit_map(Entries::of(table)),
+        }
+        .map_err(|error| error.at(&span))
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Misfit> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Misfit> {
+        match self.kind {
+            Kind::Other(DeValue::String(text)) => visitor.visit_enum(StrDeserializer::new(text)),
+            Kind::Table(table) if table.len() == 1 => {
+                visitor.visit_enum(MapAccessDeserializer::new(Entries::of(table)))
+            }
+            Kind::Table(_) => Err(Misfit::custom("wanted exactly 1 element")),
+            Kind::Other(_) => Err(Misfit::custom("wanted string or table")),
+        }
+        .map_err(|error| error.at(&self.span))
+    }
+
+    forward_to_deserialize_any! {
+        bool u8 u16 u32 u64 u128 i8 i16 i32 i64 i128 f32 f64 char str string seq bytes byte_buf map unit struct
+        ignored_any unit_struct tuple_struct tuple identifier
+    }
+}
+
+/// A whole number, as the smallest kind that holds it.
+fn whole<'de, V: Visitor<'de>>(number: i128, visitor: V) -> Result<V::Value, Misfit> {
+    if let Ok(number) = i64::try_from(number) {
+        return visitor.visit_i64(number);
+    }
+    match u64::try_from(number) {
+        Ok(number) => visitor.visit_u64(number),
+        Err(_) => visitor.visit_i128(number),
+    }
+}
+
+type Entry<'a> = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>);
+
+/// Keys and values of a table, in the order of the file's reader.
+struct Entries<'a> {
+    left: std::vec::IntoIter<Entry<'a>>,
+    value: Option<&'a Spanned<DeValue<'a>>>,
+}
+
+impl<'a> Entries<'a> {
+    fn of(table: &'a DeTable<'a>) -> Self {
+        Self { left: table.iter().collect::<Vec<_>>().into_iter(), value: None }
+    }
+}
+
+impl<'de> MapAccess<'de> for Entries<'_> {
+    type Error = Misfit;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Misfit> {
+        let Some((key, value)) = self.left.next() else { return Ok(None) };
+        self.value = Some(value);
+        let name = StrDeserializer::new(key.get_ref());
+        seed.deserialize(name).map(Some).map_err(|error: Misfit| error.at(&key.span()))
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Misfit> {
+        let value = self.value.take().ok_or_else(|| Misfit::custom("a value comes after its key"))?;
+        seed.deserialize(Value::from(value)).map_err(|error| error.at(&value.span()))
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.left.len())
+    }
+}
+
+/// Values of an array.
+struct Items<'a>(std::slice::Iter<'a, Spanned<DeValue<'a>>>);
+
+impl<'de> SeqAccess<'de> for Items<'_> {
+    type Error = Misfit;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Misfit> {
+        self.0.next().map(|value| seed.deserialize(Value::from(value))).transpose()
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.0.len())
+    }
+}
