@@ -1,7 +1,7 @@
 // Lets time run, at the speed that is chosen, until something else begins.
 import type { Played } from "./messages";
 import { frame, type Page } from "./page";
-import { texts } from "./texts";
+import { duration, texts } from "./texts";
 import type { GoesOn } from "./turns";
 
 /** A call that lets time run should take no longer, ms. */
@@ -16,6 +16,9 @@ export class Clock {
   /** Simulated time before the present run, and in it, s. */
   private before = 0;
   private time = 0;
+  /** The moment of the run that is to be looked at, s, as long as it is not shown. */
+  private wanted?: number;
+  private looking = false;
 
   constructor(private readonly page: Page) {
     page.watching = {
@@ -40,6 +43,21 @@ export class Clock {
       await this.page.stop(take);
       this.before = passed;
       this.page.tell("");
+    });
+  }
+
+  /** Shows the run as it was at a moment, s; without one as it is now. Time stops. */
+  look(moment: number | undefined): void {
+    const waits = this.wanted !== undefined;
+    this.wanted = moment ?? this.time;
+    if (waits) return;
+    void this.page.turn(async () => {
+      const { page, wanted: time } = this;
+      this.wanted = undefined;
+      if (!page.inRun || time === undefined) return;
+      this.looking = time < this.time;
+      page.tell(this.looking ? texts.looked(duration(this.before + time)) : "");
+      await page.ask({ do: "look", time });
     });
   }
 
@@ -70,6 +88,7 @@ export class Clock {
 
   private async runOn(goesOn: GoesOn): Promise<string | null> {
     const { page } = this;
+    this.looking = false;
     page.tell(page.inRun ? "" : texts.preparing);
     const first = await page.ask({ do: "play", samples: 2 });
     if (first.is !== "played") return null;
@@ -95,12 +114,13 @@ export class Clock {
   }
 
   private played(played: Played): void {
-    this.time = played.time;
-    this.page.panel.played(played, this.before);
+    if (!this.looking) this.time = played.time;
+    this.page.panel.played(played, this.before, this.time);
   }
 
   private ended(): void {
     this.before = this.time = 0;
+    this.looking = false;
     this.page.panel.ended();
     this.page.panel.running(this.running);
   }

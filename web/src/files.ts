@@ -52,10 +52,32 @@ export class Files {
   }
 
   async save(): Promise<void> {
-    const url = URL.createObjectURL(new Blob([await this.exported()], { type: "application/toml" }));
-    make("a", { href: url, download: NAME }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+    this.give(NAME, await this.exported(), "application/toml");
     this.page.tell(texts.saved(NAME));
+  }
+
+  /** The posture that is shown, or the run so far, for programs that draw. */
+  async drawn(kind: "gltf" | "bvh"): Promise<void> {
+    const wooden = this.page.view?.wooden ?? true;
+    const answer = await this.page.ask(kind === "bvh" ? { do: "bvh" } : { do: "gltf", wooden });
+    const name = kind === "bvh" ? "studio.bvh" : "studio.glb";
+    if (answer.is === "text") this.give(name, answer.text, "text/plain");
+    if (answer.is === "bytes") this.give(name, Uint8Array.from(answer.bytes), "model/gltf-binary");
+    this.page.tell(texts.given(name));
+  }
+
+  /** The picture as it is. */
+  async picture(): Promise<void> {
+    const picture = await this.page.view?.whole();
+    if (!picture) return this.page.tell(texts.noWebgl);
+    this.give("studio.png", picture, "image/png");
+    this.page.tell(texts.given("studio.png"));
+  }
+
+  private give(name: string, content: string | Blob | Uint8Array<ArrayBuffer>, type: string): void {
+    const url = URL.createObjectURL(new Blob([content], { type }));
+    make("a", { href: url, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 10_000);
   }
 
   async link(): Promise<void> {

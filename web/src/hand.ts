@@ -1,6 +1,6 @@
 // Moves a part of the body: by the pointer as long as it is pressed, or by one press of a button.
 import type { Handle, Vector } from "./messages";
-import { byId, frame, type Page } from "./page";
+import { frame, type Page } from "./page";
 import type { GoesOn } from "./turns";
 
 /** Steps of a drag by a button. */
@@ -15,8 +15,6 @@ export class Hand {
   grab(segment: string, point: Vector): void {
     const drags: { target?: Vector } = {};
     this.drags = drags;
-    // A sentence that grows would move the picture under the pointer.
-    byId("verdict").style.height = `${byId("verdict").getBoundingClientRect().height}px`;
     void this.page
       .turn((goesOn) => this.dragAlong(segment, point, drags, goesOn))
       .finally(() => {
@@ -30,7 +28,6 @@ export class Hand {
 
   /** The pointer is let go. A press without a motion, or of a part that cannot be dragged, ends here, too. */
   release(): void {
-    byId("verdict").style.height = "";
     void this.page.turn(async (goesOn) => {
       if (!this.page.inRun) await this.page.settle(goesOn);
     });

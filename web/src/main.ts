@@ -5,9 +5,12 @@ import { Hand } from "./hand";
 import { scenarioPart } from "./link";
 import type { Request } from "./messages";
 import { button, make } from "./dom";
+import { Help } from "./help";
+import { recall } from "./kept";
 import { keepForOffline } from "./offline";
 import { Page, byId } from "./page";
 import { Panel } from "./panel";
+import { Rest } from "./rest";
 import { duration, texts } from "./texts";
 import { View, sides } from "./view";
 
@@ -24,15 +27,22 @@ page.panel = new Panel(byId("panel"), {
   nudge: (handle, way) => hand.nudge(handle, way),
   free: (segment) => page.change({ do: "free", segment }),
   load: (segment, mass) => page.change({ do: "load", segment, mass }),
+  put: (word, keys) => page.change({ do: "put", word, keys }),
+  takeAway: (word, number) => page.change({ do: "take_away", word, number }),
   strategy: (kind) => clock.setStrategy(kind),
   play: () => clock.toggle(),
   endPlay: (take) => clock.end(take),
   joint: () => page.chart(true),
   undo: () => page.change({ do: "undo" }, false),
   redo: () => page.change({ do: "redo" }, false),
+  mirror: () => page.change({ do: "mirror" }, false),
+  look: (time) => clock.look(time),
+  now: () => clock.look(undefined),
   reset: () => page.change({ do: "reset" }),
   openFiles: (given) => void page.guard(() => files.openFiles(given)),
   save: () => void page.guard(() => files.save()),
+  picture: () => void page.guard(() => files.picture()),
+  drawn: (kind) => void page.guard(() => files.drawn(kind)),
   link: () => void page.guard(() => files.link()),
 });
 const clock = new Clock(page);
@@ -71,10 +81,15 @@ function listen(): void {
 }
 
 page.view = makeView();
+page.rest = new Rest(page);
 byId("views").ariaLabel = texts.views;
 byId("views").append(make("span", { textContent: texts.views }), ...sides.map((side) => button(texts.sides[side], `view-${side}`, () => page.view?.lookFrom(side))));
+new Help();
 listen();
-files.openLink(scenarioPart(location.hash));
+const linked = scenarioPart(location.hash);
+const kept = linked === undefined ? recall() : undefined;
+if (kept) page.restore(kept, () => files.openLink(undefined));
+else files.openLink(linked);
 
 /** For tests and for measuring: where a part is on the canvas, how long calls took, ms, and how many objects the graphics card holds. */
 const probe = {

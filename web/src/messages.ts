@@ -14,11 +14,19 @@ export type Request =
   | { do: "free"; segment: string }
   | { do: "settle" }
   | { do: "load"; segment: string; mass: number }
+  | { do: "put"; word: string; keys: Keys }
+  | { do: "take_away"; word: string; number: number }
   | { do: "strategy"; kind: string }
   | { do: "play"; samples: number }
   | { do: "stop"; take: boolean }
   | { do: "balance"; coordinate: string }
+  | { do: "relax" }
+  | { do: "go"; q: number[] }
+  | { do: "mirror" }
+  | { do: "look"; time: number }
   | { do: "skin" }
+  | { do: "gltf"; wooden: boolean }
+  | { do: "bvh" }
   | { do: "export" }
   | { do: "state" }
   | { do: "restore"; state: string }
@@ -32,6 +40,7 @@ export interface Verdict {
   who: string | null;
   load: number | null;
   sentence: string;
+  lines?: string[];
 }
 
 export interface Shown {
@@ -50,6 +59,12 @@ export interface Shown {
   verdict: Verdict;
   miss: number | null;
   settled: boolean;
+}
+
+export interface Way {
+  effort: number;
+  on_ligaments: string[];
+  shown: Shown;
 }
 
 export interface SkinScene {
@@ -84,6 +99,15 @@ export interface Segment {
   coordinates: [number, number];
 }
 
+/** Keys of a table of the scenario file. */
+export type Keys = Record<string, unknown>;
+
+export interface ThingTable {
+  word: string;
+  number: number;
+  keys: Keys;
+}
+
 export interface Scene {
   title: string;
   person: { sex: string; stature: number; mass: number } | null;
@@ -94,6 +118,7 @@ export interface Scene {
   supports: string[];
   things: { name: string; size: Vector; place: Place; segment: number | null }[];
   loads: { segment: string; mass: number }[];
+  tables: ThingTable[];
   strategy: string;
   notes: string[];
   can_undo: boolean;
@@ -124,14 +149,18 @@ export type Answer =
   | ({ is: "shown" } & Shown)
   | ({ is: "played" } & Played)
   | ({ is: "balance" } & Balance)
+  | { is: "ways"; ways: Way[] }
   | { is: "skin"; skin: SkinScene | null }
+  | { is: "bytes"; bytes: number[] }
   | { is: "text"; text: string }
   | { is: "refused"; sentence: string };
 
 /** What the worker sends: an answer with the duration of the call, ms; or the reason why the module is gone. */
 export type FromWorker =
+  | { kind: "here" }
   | { kind: "ready"; version: string }
   | { kind: "answer"; id: number; answer: Answer; ms: number }
+  | { kind: "sought"; count: number }
   | { kind: "broken"; id: number; sentence: string };
 
 export interface ToWorker {

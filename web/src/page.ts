@@ -2,7 +2,9 @@
 import { make } from "./dom";
 import { bands } from "./colours";
 import type { Answer, Played, Request, Scene, Shown } from "./messages";
+import { forget, keep, type Kept } from "./kept";
 import type { Panel } from "./panel";
+import type { Rest } from "./rest";
 import { Refused, Solver } from "./solver";
 import { texts } from "./texts";
 import { Turns, type GoesOn } from "./turns";
@@ -36,6 +38,7 @@ export class Page {
   );
   panel!: Panel;
   view?: View;
+  rest?: Rest;
   watching?: Watching;
   scene?: Scene;
   shown?: Shown;
@@ -79,6 +82,17 @@ export class Page {
       else this.tell(error.message);
       this.panel.restore();
     }
+  }
+
+  /** The scenario that was opened, and what has become of it; a run ends. */
+  async document(): Promise<{ opened: Request; state: string }> {
+    let state = "";
+    await this.turns.begin(async () => {
+      await this.leaveRun();
+      const answer = await this.solver.ask({ do: "state" });
+      if (answer.is === "text") state = answer.text;
+    });
+    return { opened: this.opened, state };
   }
 
   /** Something that moves the body, after everything before it. */
@@ -127,6 +141,7 @@ export class Page {
   /** Opens a scenario or a model in place of the present one. */
   async open(request: Request): Promise<void> {
     await this.ask(request);
+    this.rest?.clear();
     this.opened = request;
     this.state = undefined;
   }
@@ -199,6 +214,11 @@ export class Page {
     this.panel.show(shown);
     const verdictLine = byId("verdict");
     if (verdictLine.textContent !== shown.verdict.sentence) verdictLine.textContent = shown.verdict.sentence;
+    const lines = shown.verdict.lines ?? [];
+    if (byId("lines").dataset.shown !== lines.join("\n")) {
+      byId("lines").dataset.shown = lines.join("\n");
+      byId("lines").replaceChildren(...lines.map((textContent) => make("li", { textContent })));
+    }
     const { q, external, active, verdict } = shown;
     const names = this.scene.coordinates.map(({ name }) => name);
     byId("result").textContent = JSON.stringify({ names, q, external, active, verdict, time: played?.time ?? null, asking: played?.asking ?? [] });
@@ -210,7 +230,24 @@ export class Page {
     if (!this.changed || this.inRun) return;
     this.changed = false;
     const answer = await this.solver.ask({ do: "state" });
-    if (answer.is === "text") this.state = answer.text;
+    if (answer.is !== "text") return;
+    this.state = answer.text;
+    keep({ opened: this.opened, state: this.state });
+  }
+
+  /** Shows what was kept before a reload of the page; where that cannot be opened any more, it is forgotten. */
+  restore(kept: Kept, otherwise: () => void): void {
+    void this.turn(async () => {
+      try {
+        await this.open(kept.opened);
+        await this.ask({ do: "restore", state: kept.state });
+        this.tell(texts.restored);
+      } catch (error) {
+        if (!(error instanceof Refused) || error.broken) throw error;
+        forget();
+        otherwise();
+      }
+    });
   }
 
   /** Opens in another session what was there in the one that has failed; gives the sentence about it. */

@@ -3,13 +3,14 @@ import { draw } from "./chart";
 import { Slider, button, labelled, make } from "./dom";
 import type { Balance, Handle, Played, Scene, Shown, Vector } from "./messages";
 import { duration, texts } from "./texts";
+import { Things, type Putting } from "./things";
 
 /** Way of a press of a button, m. */
 const NUDGE = 0.02;
 /** Simulated seconds in a second. */
 const SPEEDS = [1, 10, 60, 600];
 
-export interface Doing {
+export interface Doing extends Putting {
   figure(wooden: boolean): void;
   adult(sex: string, stature: number, mass: number): void;
   nudge(handle: Handle, way: Vector): void;
@@ -22,8 +23,13 @@ export interface Doing {
   undo(): void;
   redo(): void;
   reset(): void;
+  mirror(): void;
+  look(time: number): void;
+  now(): void;
   openFiles(files: File[]): void;
   save(): void;
+  picture(): void;
+  drawn(kind: "gltf" | "bvh"): void;
   link(): void;
 }
 
@@ -57,6 +63,10 @@ export class Panel {
   private readonly log = make("ol", { id: "log" });
   private readonly count = make("p", { className: "quiet" });
   private readonly run: HTMLElement;
+  private readonly things: Things;
+  private readonly past: HTMLInputElement;
+  private readonly pastTime = make("output");
+  private readonly looking: HTMLElement;
   private readonly jointChoice = make("select", { id: "joint" });
   private readonly numbers = make("p", { id: "torques" });
   private readonly chart = document.createElementNS("http://www.w3.org/2000/svg", "svg");
@@ -108,6 +118,15 @@ export class Panel {
       button(texts.keep, "keep", () => doing.endPlay(true)),
       button(texts.back, "back", () => doing.endPlay(false)),
     );
+    this.things = new Things(doing);
+    this.past = make("input", { type: "range", id: "past", min: "0", step: "any", ariaLabel: texts.look });
+    this.past.addEventListener("input", () => doing.look(Number(this.past.value)));
+    this.looking = make(
+      "div",
+      { className: "row" },
+      make("label", { className: "slider" }, make("span", { textContent: texts.look }), this.past, this.pastTime),
+      button(texts.now, "now", () => doing.now()),
+    );
     this.speeds.value = "60";
     root.append(...this.sections());
     this.ended();
@@ -126,6 +145,9 @@ export class Panel {
       { className: "row" },
       button(texts.open, "open", () => picker.click()),
       button(texts.export, "export", () => this.doing.save()),
+      button(texts.png, "png", () => this.doing.picture()),
+      button(texts.gltf, "gltf", () => this.doing.drawn("gltf")),
+      button(texts.bvh, "bvh", () => this.doing.drawn("bvh")),
       button(texts.link, "link", () => this.doing.link()),
       picker,
     );
@@ -135,15 +157,17 @@ export class Panel {
         texts.time,
         make("div", { className: "row" }, this.playing, labelled(texts.speed, this.speeds), this.clock),
         this.run,
+        this.looking,
         this.asking,
         make("fieldset", {}, make("legend", { textContent: texts.strategyTitle }), strategy(this.strategies[0], texts.relaxed), strategy(this.strategies[1], texts.ready)),
         make("h3", { textContent: texts.log }),
         this.log,
         this.count,
       ),
+      section(texts.things.title, ...this.things.elements),
       section(texts.jointTitle, labelled(texts.joint, this.jointChoice), this.chart as unknown as HTMLElement, this.numbers, make("h3", { textContent: texts.contacts }), this.contacts),
       section(texts.body, labelled(texts.figure, this.figure), labelled(texts.sex, this.sex), this.stature.element, this.mass.element),
-      section(texts.files, make("div", { className: "row" }, this.undo, this.redo, button(texts.reset, "reset", () => this.doing.reset())), files, make("p", { className: "quiet", textContent: texts.about }), make("h3", { textContent: texts.notes }), this.notes),
+      section(texts.files, make("div", { className: "row" }, this.undo, this.redo, button(texts.reset, "reset", () => this.doing.reset()), button(texts.mirror, "mirror", () => this.doing.mirror())), files, make("p", { className: "quiet", textContent: texts.about }), make("h3", { textContent: texts.notes }), this.notes),
     ];
   }
 
@@ -186,6 +210,7 @@ export class Panel {
     for (const control of [this.sex, this.stature, this.mass]) control.disabled = scene.person === null;
     this.figure.disabled = scene.shown.bones.length === 0;
     [this.undo.disabled, this.redo.disabled] = [!scene.can_undo, !scene.can_redo];
+    this.things.open(scene);
     this.notes.replaceChildren(...scene.notes.map((textContent) => make("li", { textContent })));
     this.restore();
     this.show(scene.shown);
@@ -230,8 +255,11 @@ export class Panel {
     if (index >= 0) draw(this.chart, balance, shown, index, this.scene!.coordinates[index].label);
   }
 
-  /** A run goes on. */
-  played(played: Played, before: number): void {
+  /** A run goes on, or is looked at as it was; `end`: the time that has passed in it, s. */
+  played(played: Played, before: number, end: number): void {
+    [this.past.max, this.past.value] = [String(end), String(played.time)];
+    this.pastTime.textContent = this.past.ariaValueText = duration(before + played.time);
+    this.looking.hidden = false;
     this.clock.textContent = duration(before + played.time);
     this.asking.textContent = played.asking.length ? texts.asking(played.asking.join(", ")) : texts.nobody;
     if (this.log.childElementCount !== played.log.length || this.log.dataset.last !== played.log.at(-1)?.sentence) {
@@ -250,7 +278,7 @@ export class Panel {
   /** No run is under way. */
   ended(): void {
     this.running(false);
-    this.run.hidden = true;
+    this.run.hidden = this.looking.hidden = true;
     this.clock.textContent = duration(0);
     this.asking.textContent = "";
     this.count.textContent = "";

@@ -11,6 +11,9 @@ export class Refused extends Error {
   }
 }
 
+/** A worker that has said nothing for so long has not begun, ms. */
+const SILENT_MS = 60_000;
+
 type Waiting = { resolve: (answer: Answer) => void; reject: (error: Refused) => void; request: Request };
 
 const opens = (request: Request) => request.do === "open" || request.do === "open_model";
@@ -23,8 +26,11 @@ export class Solver {
   private next = 0;
   private reason?: string;
 
-  /** `failed`: the session has ended while nothing was asked of it. */
-  constructor(private readonly failed: () => void) {
+  /** `failed`: the session has ended while nothing was asked of it; `sought`: a search has sought so many postures. */
+  constructor(
+    private readonly failed: () => void,
+    private readonly sought: (count: number) => void = () => undefined,
+  ) {
     this.worker = this.start();
   }
 
@@ -43,15 +49,25 @@ export class Solver {
     });
   }
 
+  /** Ends the session in the midst of whatever it does. */
+  end(sentence: string): void {
+    if (this.worker) this.fail(this.worker, sentence);
+  }
+
   private start(): Worker {
     // A lock that the worker has until it ends, in whatever way. There are locks in secure contexts alone.
     const name = `contrapposto-${Math.random()}`;
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module", name });
+    const silent = setTimeout(() => this.fail(worker, "the worker did not begin"), SILENT_MS);
     worker.addEventListener("message", ({ data }: MessageEvent<FromWorker>) => {
       if (worker !== this.worker) return;
       if (data.kind === "answer") this.receive(data);
       else if (data.kind === "broken") this.fail(worker, data.sentence);
-      else void navigator.locks?.request(name, () => this.fail(worker, "the worker has ended"));
+      else if (data.kind === "sought") this.sought(data.count);
+      else if (data.kind === "here") {
+        clearTimeout(silent);
+        void navigator.locks?.request(name, () => this.fail(worker, "the worker has ended"));
+      }
     });
     worker.addEventListener("error", (event) => this.fail(worker, event.message || "the worker did not start"));
     return worker;

@@ -4,6 +4,34 @@
 const sentence = (text: string) => text.replace(/\.\s*$/, "");
 
 export const texts = {
+  help: {
+    open: "Help",
+    close: "Close",
+    tour: "Tour of six steps",
+    title: "The studio",
+    lines: [
+      "Drag a part of the body: the feet stay, the body keeps its balance, and where you let go the part stays. Drag beside the body to turn the view.",
+      "With the keyboard: Tab goes through all controls. With the picture in focus, arrow keys, Page Up and Page Down move the chosen part; Ctrl+Z takes a change back.",
+      "Colours are the load of muscles as a share of their strength: light below 8 %, dark from half of it on; grey has no muscles. Green arrows are contact forces, the dark ball the centre of mass, pink balls are held in place.",
+      "The sentence on top says how long the posture can be held, and which muscles give up first. Play lets time run: muscles tire, ask for relief, and the body goes to another posture, ready or relaxed.",
+      "Find ways to rest searches for all postures of least effort. The scenario that you save gives the same numbers in the program `contrapposto`.",
+      "Nothing leaves this page. What you do stays in this browser until you open something else.",
+    ],
+    skin: "The skin is made from MakeHuman's base mesh, which is free for all (CC0 1.0)",
+    licence: "its licence",
+  },
+  tour: {
+    next: "Next",
+    steps: [
+      ["canvas", "1 of 6: Drag the right hand of the body forward and up. It follows, and the feet stay where they are."],
+      ["verdict", "2 of 6: This sentence says how long the posture can be held, and who fails first."],
+      ["weight", "3 of 6: Hang 5 kg on the hand, and see shoulder and back change their colours."],
+      ["joint", "4 of 6: The torques of one joint over its range. Where the curves are apart, muscles work."],
+      ["play", "5 of 6: Let time run. Who tires asks for relief, and the list of decisions says what the body does about it."],
+      ["rest", "6 of 6: Search for the ways to rest in this job, and go to one of them."],
+    ] as [string, string][],
+  },
+  restored: "This is the body as you left it. “As opened” goes back to the scenario that you opened.",
   loading: "Loading the body …",
   preparing: "Preparing the run …",
   hint: "Drag a part of the body. Drag beside the body to turn the view, with the wheel or two fingers to come nearer.",
@@ -40,6 +68,21 @@ export const texts = {
   free: (label: string) => `Let go: ${label}`,
   nothingHeld: "Nothing: a part that you drag stays where you leave it.",
   weight: "Weight on this part",
+  things: {
+    title: "Things",
+    thing: "Thing",
+    put: "Put it there",
+    anew: "The body begins anew, but for a bag. Heights are above the floor, distances ahead of the hips of the standing body.",
+    away: (name: string) => `Take away: ${name}`,
+    names: {
+      box: "box in both hands", bag: "bag", tool: "tool in one hand", handle: "handle to push or pull", step: "step under a foot", floor: "one foot ahead",
+      seat: "seat", table: "table", counter: "counter", wall: "wall",
+    } as Record<string, string>,
+    fields: {
+      mass: "Mass", ahead: "Ahead", height: "Height", on: "Carried on", hand: "Hand", up: "Pressed upward", way: "Way", force: "Force", hands: "Hands",
+      under: "Under", stride: "Stride", foot: "Foot ahead", stepping: "Feet may step", backrest: "Backrest", edge: "Near edge", side: "Side", distance: "Distance",
+    } as Record<string, string>,
+  },
   strategyTitle: "When a muscle is tired",
   ready: "ready: joints stay where muscles work well",
   relaxed: "relaxed: ligaments take the load",
@@ -63,6 +106,19 @@ export const texts = {
   load: "load",
   angle: "angle",
   chart: (joint: string) => `External and passive torque of ${joint} over its range; the distance of the curves is the torque of muscles.`,
+  rest: {
+    find: "Find ways to rest",
+    stop: "Stop",
+    stopped: "The search was stopped.",
+    sought: (count: number) => `Searching: ${count} postures sought so far …`,
+    found: (count: number) => (count === 1 ? "One way to rest. A press goes there." : `${count} ways to rest, the one of least effort first. A press goes there.`),
+    way: (number: number, effort: number, joints: string[]) =>
+      `${number}: effort ${effort.toFixed(4)}${joints.length ? `; on ligaments: ${joints.slice(0, 3).join(", ")}${joints.length > 3 ? ` and ${joints.length - 3} more` : ""}` : "; nothing on ligaments"}`,
+  },
+  look: "Look back",
+  now: "Now",
+  looked: (at: string) => `You look back at ${at}. “Now” returns; every change begins from now.`,
+  mirror: "Mirror",
   changes: "Changes",
   undo: "Undo",
   redo: "Redo",
@@ -73,6 +129,10 @@ export const texts = {
   link: "Copy a link",
   copied: "The link is copied. It holds the whole scenario.",
   linkIs: (link: string) => `The link: ${link}`,
+  png: "Picture (PNG)",
+  gltf: "Body (glTF)",
+  bvh: "Motion (BVH)",
+  given: (name: string) => `Saved as ${name}.`,
   saved: (name: string) => `Saved as ${name}; \`contrapposto simulate ${name}\` gives the same numbers.`,
   noFile: "This file is no scenario (.toml) and no model (.osim, .urdf, .xml).",
   tooLarge: (name: string, most: string) => `${name} is larger than ${most}; such a file is not read here.`,
@@ -93,10 +153,10 @@ export const texts = {
   about: "Nothing leaves this page: bodies, files and links stay on this machine.",
 };
 
-/** A duration in words: `12 s`, `3 min 05 s`, `1 h 20 min`. */
+/** A moment in words, as the program and its report have it: `0.52 s`, `52.0 s`, `7.95 min`, `1.667 h`. */
 export function duration(seconds: number): string {
-  const whole = Math.floor(seconds + 1e-9);
-  if (whole < 60) return `${whole} s`;
-  if (whole < 3600) return `${Math.floor(whole / 60)} min ${String(whole % 60).padStart(2, "0")} s`;
-  return `${Math.floor(whole / 3600)} h ${String(Math.floor((whole % 3600) / 60)).padStart(2, "0")} min`;
+  if (seconds < 9.95) return `${seconds.toFixed(2)}\u00a0s`;
+  if (seconds < 100) return `${seconds.toFixed(1)}\u00a0s`;
+  if (seconds < 5970) return `${(seconds / 60).toFixed(2)}\u00a0min`;
+  return `${(seconds / 3600).toFixed(3)}\u00a0h`;
 }

@@ -44,6 +44,9 @@ const SIDES = {
 export type Side = keyof typeof SIDES;
 export const sides = Object.keys(SIDES) as Side[];
 
+/** Width and height of a small picture, px. */
+const PICTURE = [192, 288] as const;
+
 /** What the view tells the page. */
 export interface Dragging {
   grab(segment: string, point: Vector): void;
@@ -216,6 +219,36 @@ export class View {
     }
     const [found] = ray.intersectObject(skin.mesh);
     return found?.face ? { index: skin.segmentAt(found.face.a), point: found.point } : undefined;
+  }
+
+  /** The picture as PNG. */
+  whole(): Promise<Blob | null> {
+    this.renderer.render(this.world, this.camera);
+    return new Promise((resolve) => this.canvas.toBlob(resolve));
+  }
+
+  /** A small picture of another posture of the same body, from the side it is looked at now. */
+  picture(shown: Shown): string {
+    const [before, size] = [this.shown, this.renderer.getSize(new Vector2())];
+    const { aspect } = this.camera;
+    this.shown = shown;
+    this.marks.visible = false;
+    this.pose();
+    this.paint();
+    this.renderer.setPixelRatio(1);
+    this.renderer.setSize(PICTURE[0], PICTURE[1], false);
+    this.camera.aspect = PICTURE[0] / PICTURE[1];
+    this.camera.zoom = 1.1;
+    this.camera.updateProjectionMatrix();
+    this.renderer.render(this.world, this.camera);
+    const url = this.canvas.toDataURL();
+    this.marks.visible = true;
+    this.shown = before;
+    this.pose();
+    this.paint();
+    [this.camera.aspect, this.camera.zoom] = [aspect, 1];
+    this.renderer.setSize(size.x, size.y, false);
+    return url;
   }
 
   /** Another posture. */

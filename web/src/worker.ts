@@ -4,6 +4,9 @@ import address from "./module/contrapposto_web_bg.wasm?url";
 import skinAddress from "./module/adult.skin?url";
 import type { Answer, FromWorker, ToWorker } from "./messages";
 
+// The module calls this function while it searches.
+Object.assign(self, { tellSought: (count: number) => send({ kind: "sought", count }) });
+
 let session: Session | undefined;
 
 function send(message: FromWorker): void {
@@ -32,7 +35,8 @@ async function loadSkin(): Promise<void> {
 let skin: Promise<void> | undefined;
 
 function receive(asked: ToWorker): void {
-  if (asked.request.do === "skin") void (skin ??= loadSkin()).catch(() => undefined).then(() => answer(asked));
+  const { request } = asked;
+  if (request.do === "skin" || (request.do === "gltf" && !request.wooden)) void (skin ??= loadSkin()).catch(() => undefined).then(() => answer(asked));
   else answer(asked);
 }
 
@@ -53,8 +57,11 @@ self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
   else waiting.push(event.data);
 });
 
-Promise.all([init({ module_or_path: address }), lock()]).then(
-  () => {
+void lock().then(() => send({ kind: "here" }));
+init({ module_or_path: address }).then(
+  ({ memory }) => {
+    // For measuring: the memory of the module, bytes.
+    Object.assign(self, { memoryBytes: () => memory.buffer.byteLength });
     session = new Session();
     send({ kind: "ready", version: version() });
     for (const request of waiting.splice(0)) receive(request);

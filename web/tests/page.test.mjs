@@ -38,6 +38,41 @@ test("time runs until the tired hip asks; the saved scenario gives the same verd
   assert.equal(run.stdout.split("\n")[0], verdict.sentence, run.stderr);
 });
 
+test("picture, body and motion come out as files, and findings stand below the picture", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await page.waitForFunction(() => window.studio.skin());
+  for (const [id, name, head] of [["png", "studio.png", "\u0089PNG"], ["gltf", "studio.glb", "glTF"], ["bvh", "studio.bvh", "HIERARCHY"]]) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click(`#${id}`)]);
+    assert.equal(download.suggestedFilename(), name);
+    const bytes = readFileSync(await download.path());
+    assert.equal(bytes.subarray(0, head.length).toString("latin1"), head);
+    // A picture of the body, not an empty one; a body with its skin.
+    assert.ok(bytes.length > { png: 8_000, gltf: 300_000, bvh: 2_000 }[id], `${name}: ${bytes.length} bytes`);
+  }
+  assert.ok((await page.locator("#lines li").count()) > 0);
+  await close(opened);
+});
+
+test("a box, a bag, a tool, a handle, a step, a seat and a table are put there and taken away", async (t) => {
+  const opened = await open();
+  const { page } = opened;
+  await page.waitForFunction(() => document.querySelector("#stage").getAttribute("aria-busy") === "false");
+  for (const word of ["bag", "box", "tool", "handle", "step", "seat", "table"]) {
+    await page.selectOption("#thing", word);
+    await page.click("#put");
+    await page.waitForSelector(`#away-${word}-0`);
+    t.diagnostic(`${word}: ${(await result(page)).verdict.sentence}`);
+    await page.click(`#away-${word}-0`);
+    await page.waitForFunction((word) => !document.querySelector(`#away-${word}-0`), word);
+  }
+  await page.selectOption("#thing", "box");
+  await page.fill("#thing-mass", "500");
+  await page.click("#put");
+  assert.equal(await page.locator("#things li").count(), 0, "a box of 500 kg is not put there");
+  await close(opened);
+});
+
 test("a broken file is refused in a sentence with its line, and the body stays", async () => {
   const opened = await open();
   const { page } = opened;
@@ -62,11 +97,11 @@ test("every control is reached by the keyboard, and arrow keys on the picture mo
   await page.keyboard.press("PageUp");
   await page.waitForSelector("#free-hand_r");
   const seen = new Set();
-  for (let k = 0; k < 60 && !seen.has("link"); k++) {
+  for (let k = 0; k < 80 && !seen.has("link"); k++) {
     await page.keyboard.press("Tab");
     seen.add(await page.evaluate(() => document.activeElement.id));
   }
-  for (const id of ["part", "weight", "move-up", "play", "speed", "joint", "sex", "stature", "mass", "export", "open", "link"]) {
+  for (const id of ["part", "weight", "move-up", "play", "speed", "joint", "figure", "mirror", "sex", "stature", "mass", "export", "open", "link"]) {
     assert.ok(seen.has(id), `${id} is not reached: ${[...seen]}`);
   }
   await close(opened);

@@ -32,7 +32,6 @@ mod summary;
 mod sweep;
 mod thing;
 mod toml_file;
-mod toml_value;
 mod trajectory_csv;
 mod verdict;
 

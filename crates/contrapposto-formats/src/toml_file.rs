@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
+use contrapposto::toml_value::{Misfit, typed};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::input_error::{InputError, Source, suggestion, utf8};
-use crate::toml_value::{Misfit, typed};
 
 /// Reads a file and converts it. `convert` checks everything that the grammar and the keys leave open.
 pub(crate) fn read_toml<T: serde::de::DeserializeOwned, R>(

@@ -6,12 +6,16 @@
 use std::collections::BTreeMap;
 
 use contrapposto::hybrid::Strategy;
+use contrapposto::toml_value::typed;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use toml::de::DeTable;
 use toml::{Table, Value};
 
 use crate::error::Refusal;
 use crate::events;
-use crate::message::Handle;
+use crate::message::{Handle, ThingTable};
+use crate::things;
 
 /// The scenario of a new page.
 pub(crate) const FIRST: &str = include_str!("first.toml");
@@ -34,7 +38,7 @@ pub(crate) struct Document {
 impl Document {
     /// From the text of a scenario and of the files that it names. Only the grammar is checked here.
     pub(crate) fn new(text: &str, files: BTreeMap<String, String>) -> Result<Self, Refusal> {
-        let mut table: Table = text.parse().map_err(Refusal::of)?;
+        let mut table: Table = parsed(text)?;
         let strategy = table.entry("strategy").or_insert_with(|| Value::Table(Table::new()));
         if let Value::Table(strategy) = strategy {
             strategy.entry("kind").or_insert_with(|| Value::String("passive".to_owned()));
@@ -51,7 +55,7 @@ impl Document {
 
     /// From a text of [`Document::state`].
     pub(crate) fn from_state(state: &str) -> Result<Self, Refusal> {
-        toml::from_str(state).map_err(Refusal::of)
+        parsed(state)
     }
 
     /// All of it as a text. Unlike the file, it keeps held points apart from tasks, and other files are in it.
@@ -147,8 +151,7 @@ impl Document {
         adult.insert("stature_m".to_owned(), Value::Float(stature));
         adult.insert("mass_kg".to_owned(), Value::Float(mass));
         adult.remove("lengths_m");
-        self.held.clear();
-        self.posture.clear();
+        self.begin_anew();
         Ok(())
     }
 
@@ -173,6 +176,30 @@ impl Document {
         Ok(())
     }
 
+    /// Things that its tables put there.
+    pub(crate) fn things(&self) -> Vec<ThingTable> {
+        things::all(&self.table)
+    }
+
+    /// Adds a thing. The body begins anew, unless it only carries it.
+    pub(crate) fn put(&mut self, word: &str, keys: Table) -> Result<(), Refusal> {
+        if !things::is_only_carried(word, &keys) {
+            self.begin_anew();
+        }
+        things::put(&mut self.table, word, keys)
+    }
+
+    /// Takes a thing away. The body begins anew.
+    pub(crate) fn take_away(&mut self, word: &str, number: usize) -> Result<(), Refusal> {
+        self.begin_anew();
+        things::take_away(&mut self.table, word, number)
+    }
+
+    fn begin_anew(&mut self) {
+        self.held.clear();
+        self.posture.clear();
+    }
+
     /// Strategy of the whole body. Other strategies of regions go.
     pub(crate) fn set_strategy(&mut self, kind: &str) {
         if let Some(Value::Table(strategy)) = self.table.get_mut("strategy") {
@@ -194,10 +221,21 @@ impl Document {
         }
     }
 
+    /// Changes the tables of the file.
+    pub(crate) fn exchange(&mut self, change: impl FnOnce(&mut Table) -> Result<(), Refusal>) -> Result<(), Refusal> {
+        change(&mut self.table)
+    }
+
     /// `active` or `passive`.
     pub(crate) fn strategy(&self) -> &str {
         self.table.get("strategy").and_then(|strategy| strategy.get("kind")?.as_str()).unwrap_or_default()
     }
+}
+
+/// A text of TOML as values of a type.
+fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
+    let table = DeTable::parse(text).map_err(Refusal::of)?;
+    typed(table.get_ref()).map_err(Refusal::of)
 }
 
 /// The task that holds a point at a place in ground.

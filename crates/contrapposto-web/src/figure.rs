@@ -78,6 +78,12 @@ impl Figure {
         Ok(shown)
     }
 
+    /// Another posture, held still, with the same tasks.
+    pub(crate) fn shown_in(&self, posture: &Posture) -> Result<Shown, Refusal> {
+        let mut mover = Mover::settling(&self.body, &self.body.scenario.start)?;
+        shown::held(&self.body, &mut mover.engine, posture, Moved::default())
+    }
+
     /// The posture, held still.
     pub(crate) fn shown(&mut self) -> Result<Shown, Refusal> {
         shown::held(&self.body, &mut self.mover.engine, &self.posture, Moved::default())
@@ -100,6 +106,7 @@ impl Figure {
             supports: scenario.supports.iter().map(support).collect(),
             things: body.things(),
             loads: body.hung(),
+            tables: document.things(),
             strategy: document.strategy().to_owned(),
             notes: scenario.notes.clone(),
             can_undo: can.0,

@@ -7,11 +7,14 @@ use contrapposto::posture::Posture;
 
 use crate::balance::balance;
 use crate::document::Document;
+use crate::drawn::{self, Motion};
 use crate::error::Refusal;
 use crate::figure::Figure;
 use crate::history::History;
 use crate::message::{Answer, Handle, Request};
 use crate::play::Play;
+use crate::rest;
+use crate::sides;
 
 /// Most samples of one call, so that a call ends.
 const MOST_SAMPLES: u32 = 100_000;
@@ -49,10 +52,28 @@ impl Job {
         &self.figure.body.model
     }
 
-    /// Answers a request that is not to open another job.
-    pub(crate) fn answer(&mut self, request: Request) -> Result<Answer, Refusal> {
+    /// The posture that is shown, or the run so far, as glTF.
+    pub(crate) fn gltf(&self, skin: Option<&[u8]>) -> Result<Answer, Refusal> {
+        Ok(Answer::Bytes { bytes: drawn::gltf(self.model(), self.title(), &self.motion(), skin)? })
+    }
+
+    fn title(&self) -> &str {
+        &self.figure.body.scenario.title
+    }
+
+    /// Times and postures of the run so far, at even steps; without a run the posture that is shown.
+    fn motion(&self) -> Motion<'_> {
+        let figure = self.grab.as_ref().map_or(&self.figure, |grab| &grab.figure);
+        match &self.play {
+            Some(play) => play.motion(),
+            None => (vec![0.0], vec![figure.posture.values()]),
+        }
+    }
+
+    /// Answers a request that is not to open another job; `watch` is told how far a long one has come.
+    pub(crate) fn answer(&mut self, request: Request, watch: &mut dyn FnMut(usize)) -> Result<Answer, Refusal> {
         match request {
-            Request::Open { .. } | Request::OpenModel { .. } | Request::Skin {} => {
+            Request::Open { .. } | Request::OpenModel { .. } | Request::Skin {} | Request::Gltf { .. } => {
                 Err(Refusal::of("no request to a job"))
             }
             Request::Adult { sex, stature, mass } => self.change(|document| document.set_adult(&sex, stature, mass)),
@@ -68,13 +89,34 @@ impl Job {
                 self.figure.body.segment(&segment)?;
                 self.change(|document| document.set_load(&segment, mass))
             }
+            Request::Put { word, keys } => self.change(|document| document.put(&word, keys)),
+            Request::TakeAway { word, number } => self.change(|document| document.take_away(&word, number)),
             Request::Strategy { kind } => self.change(|document| {
                 document.set_strategy(&kind);
                 Ok(())
             }),
             Request::Play { samples } => self.play(samples.min(MOST_SAMPLES)),
             Request::Stop { take } => self.stop(take),
+            Request::Relax {} => {
+                self.check_released()?;
+                self.check_no_run()?;
+                Ok(Answer::Ways { ways: rest::ways(&self.figure, watch)? })
+            }
+            Request::Go { q } => self.go_to(&q),
+            Request::Mirror {} => {
+                self.check_released()?;
+                let Figure { body, posture, .. } = &self.figure;
+                self.replace(sides::exchanged(self.history.document(), &body.model, posture)?)
+            }
+            Request::Look { time } => {
+                let play = self.play.as_ref().ok_or_else(|| Refusal::of("no run is under way"))?;
+                Ok(Answer::Played(Box::new(play.look(&self.figure.body, time)?)))
+            }
             Request::Balance { coordinate } => self.balance(&coordinate),
+            Request::Bvh {} => {
+                let text = drawn::text(self.model(), self.title(), &self.motion())?;
+                Ok(Answer::Text { text })
+            }
             Request::Export {} => Ok(self.export()),
             Request::State {} => Ok(Answer::Text { text: self.document_as_shown().state()? }),
             Request::Restore { state } => {
@@ -110,6 +152,19 @@ impl Job {
         self.history.push(document, before.posture);
         (self.grab, self.play) = (None, None);
         Ok(Answer::Scene(Box::new(scene)))
+    }
+
+    /// Goes to a posture.
+    fn go_to(&mut self, q: &[f64]) -> Result<Answer, Refusal> {
+        let due = self.figure.posture.values().len();
+        if q.len() != due {
+            return Err(Refusal(format!("{} numbers are given; the body has {due} coordinates", q.len())));
+        }
+        let posture = self.figure.body.named(&Posture::new(q.to_vec()));
+        self.change(|document| {
+            document.posture = posture;
+            Ok(())
+        })
     }
 
     /// Undo, or redo: the posture is that in which the state was left. A run ends.
@@ -250,15 +305,15 @@ mod tests {
     #[test]
     fn a_posture_of_a_run_that_cannot_be_kept_leaves_the_run_and_the_body() {
         let mut job = Job::new(Document::new(FIRST, Default::default()).unwrap()).unwrap();
-        job.answer(Request::Play { samples: 2 }).unwrap();
+        job.answer(Request::Play { samples: 2 }, &mut |_| ()).unwrap();
         let (posture, text) = (job.figure.posture.clone(), job.history.document().text());
         let elbow = job.figure.body.model.coordinate("elbow_flex_r").unwrap();
         let angle = std::mem::replace(&mut job.play.as_mut().unwrap().last.posture[elbow], 100.0);
-        let refusal = job.answer(Request::Stop { take: true }).err().unwrap();
+        let refusal = job.answer(Request::Stop { take: true }, &mut |_| ()).err().unwrap();
         assert!(refusal.0.contains("outside its range"), "{refusal:?}");
         assert_eq!((&posture, &text), (&job.figure.posture, &job.history.document().text()));
         job.play.as_mut().unwrap().last.posture[elbow] = angle;
-        job.answer(Request::Play { samples: 1 }).unwrap();
-        job.answer(Request::Stop { take: true }).unwrap();
+        job.answer(Request::Play { samples: 1 }, &mut |_| ()).unwrap();
+        job.answer(Request::Stop { take: true }, &mut |_| ()).unwrap();
     }
 }

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `message` | requests and answers |
 //! | `document`, `events` | the scenario file, its changes, the files that it names |
+//! | `things` | tables of the file that put things there |
 //! | `history` | all states of the document, for undo and redo |
 //! | `body` | what the readers make of the document |
 //! | `mover` | steps of a posture: dragged, or settling |
@@ -15,12 +16,16 @@
 //! | `skin` | the mesh of the built-in adult |
 //! | `shown` | everything that is shown of one posture |
 //! | `balance` | the torques of one joint over its range |
+//! | `drawn` | glTF and BVH |
+//! | `rest` | the different ways to rest |
+//! | `sides` | left and right exchanged |
 //! | `sample`, `play` | a run over time |
 //! | `job`, `studio` | the session |
 
 mod balance;
 mod body;
 mod document;
+mod drawn;
 mod error;
 mod events;
 mod figure;
@@ -29,10 +34,13 @@ mod job;
 mod message;
 mod mover;
 mod play;
+mod rest;
 mod sample;
 mod shown;
+mod sides;
 mod skin;
 mod studio;
+mod things;
 
 use std::cell::RefCell;
 
@@ -42,6 +50,12 @@ pub use studio::Studio;
 
 thread_local! {
     static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(js_name = tellSought)]
+    fn tell_sought(sought: u32);
 }
 
 /// A session of the page.
@@ -66,9 +80,9 @@ impl Session {
         self.0.take_skin(file);
     }
 
-    /// Answers a request.
+    /// Answers a request; a search tells the function `tellSought` of the worker how many postures it has sought.
     pub fn call(&mut self, request: &str) -> String {
-        self.0.call(request)
+        self.0.call_watched(request, &mut |sought| tell_sought(u32::try_from(sought).unwrap_or(u32::MAX)))
     }
 }
 

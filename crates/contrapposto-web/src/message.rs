@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contrapposto_formats::VerdictText;
 use serde::{Deserialize, Serialize};
+use toml::Table;
 
 /// One request. Lengths in m, masses in kg, ground axes: x forward, y up, z to the right.
 #[derive(Clone, Debug, Deserialize)]
@@ -31,6 +32,11 @@ pub(crate) enum Request {
     Settle {},
     /// Hangs a weight on a segment in place of the one that hangs there; 0 takes it off.
     Load { segment: String, mass: f64 },
+    /// Puts a thing there, by a table of the scenario file: its word (`box`, `seat`, ...) and its keys. But for a bag and a tool that is only
+    /// carried, posture and held points begin anew.
+    Put { word: String, keys: Table },
+    /// Takes the thing of a table away; `number` counts the tables of this word from 0.
+    TakeAway { word: String, number: usize },
     /// Strategy of the whole body: `active` or `passive`.
     Strategy { kind: String },
     /// Lets time run for so many samples; the first call begins a run.
@@ -39,8 +45,20 @@ pub(crate) enum Request {
     Stop { take: bool },
     /// The torques of a coordinate over its range.
     Balance { coordinate: String },
+    /// The different ways to rest: the search of `contrapposto relax`, from the posture that is shown.
+    Relax {},
+    /// Goes to a posture, by the values of all coordinates.
+    Go { q: Vec<f64> },
+    /// Exchanges left and right: posture, held points, weights, fatigue, strategies.
+    Mirror {},
+    /// The run at a moment that has passed, s: of the samples that are kept, the last one until then.
+    Look { time: f64 },
     /// The skin of the body, from the file that the session was given.
     Skin {},
+    /// The posture that is shown, or the run so far, as glTF; with the skin, unless `wooden`.
+    Gltf { wooden: bool },
+    /// The same as BVH.
+    Bvh {},
     /// The scenario as a file.
     Export {},
     /// All of the present document as a text, for `restore` in another session.
@@ -67,8 +85,12 @@ pub(crate) enum Answer {
     Played(Box<Played>),
     /// Torques of a coordinate.
     Balance(Balance),
+    /// Postures of least effort, the least first.
+    Ways { ways: Vec<Way> },
     /// The skin of the body; `None` of a body without one.
     Skin { skin: Option<SkinScene> },
+    /// A file.
+    Bytes { bytes: Vec<u8> },
     /// A text.
     Text { text: String },
     /// The request was refused; nothing has changed.
@@ -87,6 +109,8 @@ pub(crate) struct Scene {
     pub(crate) supports: Vec<String>,
     pub(crate) things: Vec<ThingScene>,
     pub(crate) loads: Vec<Hung>,
+    /// Tables of the scenario file that put things there.
+    pub(crate) tables: Vec<ThingTable>,
     pub(crate) strategy: String,
     pub(crate) notes: Vec<String>,
     pub(crate) can_undo: bool,
@@ -121,6 +145,16 @@ pub(crate) struct SegmentScene {
     pub(crate) label: String,
     pub(crate) hulls: Vec<Vec<[f64; 4]>>,
     pub(crate) coordinates: [usize; 2],
+}
+
+/// A way to rest.
+#[derive(Debug, Serialize)]
+pub(crate) struct Way {
+    /// Sum of (active torque / strength)^2.
+    pub(crate) effort: f64,
+    /// Joints whose ligaments carry at least half of the torque, the one with the greatest first.
+    pub(crate) on_ligaments: Vec<String>,
+    pub(crate) shown: Shown,
 }
 
 /// A mesh that bones move, in the T-pose.
@@ -158,6 +192,15 @@ pub(crate) struct ThingScene {
     /// Position and quaternion x, y, z, w, in ground or in the frame of the segment.
     pub(crate) place: [f64; 7],
     pub(crate) segment: Option<usize>,
+}
+
+/// A table of the scenario file that puts a thing there.
+#[derive(Debug, Serialize)]
+pub(crate) struct ThingTable {
+    pub(crate) word: String,
+    /// Counts the tables of this word from 0.
+    pub(crate) number: usize,
+    pub(crate) keys: Table,
 }
 
 /// A weight that hangs on a segment.

@@ -10,6 +10,7 @@ use self_cell::self_cell;
 
 use crate::body::{Body, read_play};
 use crate::document::Document;
+use crate::drawn::Motion;
 use crate::error::Refusal;
 use crate::message::{LogLine, Played};
 use crate::sample::LastSample;
@@ -17,6 +18,8 @@ use crate::shown;
 
 /// An event happens at a sample that is earlier by less, s.
 const TIME_TOLERANCE: f64 = 1e-9;
+/// Most samples of the past that are kept, for looking back.
+const MOST_KEPT: usize = 1_000;
 /// Lines of the log that are given with every answer.
 const MOST_LINES: usize = 40;
 
@@ -35,6 +38,9 @@ self_cell!(
 pub(crate) struct Play {
     course: Course,
     pub(crate) last: LastSample,
+    /// Samples that have passed, one of so many, so that there are never more than [`MOST_KEPT`].
+    past: Vec<LastSample>,
+    every: u64,
 }
 
 impl Play {
@@ -42,17 +48,20 @@ impl Play {
     pub(crate) fn new(document: &Document) -> Result<Self, Refusal> {
         let scenario = read_play(document)?.scenario;
         let course = Course::try_new(scenario, |scenario| Run::new(scenario)).map_err(Refusal::of)?;
-        Ok(Self { course, last: LastSample::default() })
+        Ok(Self { course, last: LastSample::default(), past: vec![], every: 1 })
     }
 
     /// The next samples.
     pub(crate) fn advance(&mut self, body: &Body, samples: u32) -> Result<Played, Refusal> {
-        let Self { course, last } = self;
+        let Self { course, last, past, every } = self;
         let mut ended = false;
         course.with_dependent_mut(|_, run| {
             for _ in 0..samples {
                 match run.next_sample().map_err(Refusal::of)? {
-                    Some(sample) => last.take(&sample),
+                    Some(sample) => {
+                        last.take(&sample);
+                        keep(past, every, last);
+                    }
                     None => {
                         ended = true;
                         break;
@@ -61,32 +70,46 @@ impl Play {
             }
             Ok::<(), Refusal>(())
         })?;
-        self.played(body, ended)
+        self.played(body, &self.last, ended)
+    }
+
+    /// The run at a moment that has passed, s: of the samples that are kept, the last one until then.
+    pub(crate) fn look(&self, body: &Body, time: f64) -> Result<Played, Refusal> {
+        let until = |sample: &&LastSample| sample.time <= time + TIME_TOLERANCE;
+        let sample = if time >= self.last.time { Some(&self.last) } else { self.past.iter().rev().find(until) };
+        let sample = sample.or(self.past.first()).ok_or_else(|| Refusal::of("nothing has passed yet"))?;
+        self.played(body, sample, false)
+    }
+
+    /// Times and postures of the samples that are kept, at even steps.
+    pub(crate) fn motion(&self) -> Motion<'_> {
+        let kept = if self.past.is_empty() { std::slice::from_ref(&self.last) } else { &self.past };
+        kept.iter().map(|sample| (sample.time, sample.posture.as_slice())).unzip()
     }
 
     /// The strategy of every coordinate with muscles, where an event has changed them.
     pub(crate) fn strategies(&self) -> Option<Vec<(String, Strategy)>> {
         let scenario = self.course.borrow_owner();
-        let strategies = self.happened().filter_map(|event| event.strategies.as_ref()).last()?;
+        let strategies = self.happened(self.last.time).filter_map(|event| event.strategies.as_ref()).last()?;
         let coordinates = scenario.model.coordinates().iter().zip(strategies);
         let with_muscles = coordinates.filter(|(coordinate, _)| coordinate.groups.is_some());
         Some(with_muscles.map(|(coordinate, strategy)| (coordinate.name.clone(), *strategy)).collect())
     }
 
-    /// The loads of the last sample.
-    fn loads(&self) -> &[Load] {
+    /// The loads of a sample.
+    fn loads(&self, sample: &LastSample) -> &[Load] {
         let of_start = &self.course.borrow_owner().loads;
-        self.happened().filter_map(|event| event.loads.as_ref()).last().unwrap_or(of_start)
+        self.happened(sample.time).filter_map(|event| event.loads.as_ref()).last().unwrap_or(of_start)
     }
 
-    /// The events until the last sample.
-    fn happened(&self) -> impl Iterator<Item = &Event> {
-        let time = self.last.time + TIME_TOLERANCE;
+    /// The events until a moment, s.
+    fn happened(&self, time: f64) -> impl Iterator<Item = &Event> {
+        let time = time + TIME_TOLERANCE;
         self.course.borrow_owner().events.iter().take_while(move |event| event.time <= time)
     }
 
-    fn played(&self, body: &Body, ended: bool) -> Result<Played, Refusal> {
-        let (scenario, last) = (self.course.borrow_owner(), &self.last);
+    fn played(&self, body: &Body, last: &LastSample, ended: bool) -> Result<Played, Refusal> {
+        let scenario = self.course.borrow_owner();
         let mut summary = self.course.borrow_dependent().summary();
         // What was run is all that is judged: a run as long as that, not one that was broken off.
         let reason = ended.then_some(summary.reason.word());
@@ -104,17 +127,32 @@ impl Play {
             samples: summary.samples,
             fatigue: last.fatigue.clone(),
             asking: last.asking.iter().map(group).collect(),
-            log: log(scenario, &summary),
+            log: log(scenario, &summary, last.time),
             decisions: summary.reliefs.count,
             ended: reason,
-            shown: shown::sample(body, last, self.loads(), verdict)?,
+            shown: shown::sample(body, last, self.loads(last), verdict)?,
         })
     }
 }
 
-/// The latest decisions, in the order in which they came.
-fn log(scenario: &Scenario, summary: &Summary) -> Vec<LogLine> {
+/// Keeps a sample, unless it is one of those that are passed over.
+fn keep(past: &mut Vec<LastSample>, every: &mut u64, sample: &LastSample) {
+    if !sample.number.is_multiple_of(*every) {
+        return;
+    }
+    if past.len() == MOST_KEPT {
+        *every *= 2;
+        past.retain(|sample| sample.number.is_multiple_of(*every));
+    }
+    if sample.number.is_multiple_of(*every) {
+        past.push(sample.clone());
+    }
+}
+
+/// The latest decisions until a moment, in the order in which they came.
+fn log(scenario: &Scenario, summary: &Summary, until: f64) -> Vec<LogLine> {
     let records = &summary.reliefs.records;
+    let records = &records[..records.partition_point(|record| record.time.0 <= until + TIME_TOLERANCE)];
     let latest = &records[records.len().saturating_sub(MOST_LINES)..];
     let line =
         |record: &ReliefRecord| LogLine { time: record.time.0, sentence: relief_sentence(&scenario.model, record) };

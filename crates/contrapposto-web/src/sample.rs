@@ -3,8 +3,10 @@
 use contrapposto::simulation::{Sample, Standing};
 
 /// The last sample, as far as it is shown.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct LastSample {
+    /// The first one is 0.
+    pub(crate) number: u64,
     pub(crate) time: f64,
     pub(crate) posture: Vec<f64>,
     pub(crate) external: Vec<f64>,
@@ -20,6 +22,7 @@ pub(crate) struct LastSample {
 impl LastSample {
     /// Takes in a sample.
     pub(crate) fn take(&mut self, sample: &Sample<'_>) {
+        self.number += u64::from(!self.posture.is_empty());
         (self.time, self.settled) = (sample.time, sample.settled);
         for (own, of_sample) in [
             (&mut self.posture, sample.posture),

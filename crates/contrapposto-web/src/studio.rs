@@ -30,15 +30,20 @@ impl Studio {
 
     /// Answers a request; both are JSON. A request that is refused changes nothing.
     pub fn call(&mut self, request: &str) -> String {
+        self.call_watched(request, &mut |_| ())
+    }
+
+    /// The same; `watch` is told how many postures a search of `relax` has sought so far.
+    pub fn call_watched(&mut self, request: &str, watch: &mut dyn FnMut(usize)) -> String {
         let answer = serde_json::from_str(request)
             .map_err(|error| Refusal(format!("the request cannot be read: {error}")))
-            .and_then(|request| self.answer(request))
+            .and_then(|request| self.answer(request, watch))
             .unwrap_or_else(|Refusal(sentence)| Answer::Refused { sentence });
         // An answer is made of numbers and texts, which JSON can always hold.
         serde_json::to_string(&answer).unwrap_or_default()
     }
 
-    fn answer(&mut self, request: Request) -> Result<Answer, Refusal> {
+    fn answer(&mut self, request: Request, watch: &mut dyn FnMut(usize)) -> Result<Answer, Refusal> {
         match request {
             Request::Open { scenario, files } => {
                 let text = if scenario.trim().is_empty() { FIRST } else { &scenario };
@@ -54,9 +59,15 @@ impl Studio {
                     self.open(Document::new(FIRST, Default::default())?)?;
                 }
                 let job = self.job.as_mut().ok_or_else(|| Refusal::of("no scenario is open"))?;
-                let Request::Skin {} = request else { return job.answer(request) };
-                let file = self.skin.as_ref().ok_or_else(|| Refusal::of("the skin has not been loaded"))?;
-                Ok(Answer::Skin { skin: skin::scene(job.model(), file) })
+                let skin = self.skin.as_deref();
+                match request {
+                    Request::Skin {} => {
+                        let file = skin.ok_or_else(|| Refusal::of("the skin has not been loaded"))?;
+                        Ok(Answer::Skin { skin: skin::scene(job.model(), file) })
+                    }
+                    Request::Gltf { wooden } => job.gltf(if wooden { None } else { skin }),
+                    request => job.answer(request, watch),
+                }
             }
         }
     }

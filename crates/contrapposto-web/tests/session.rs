@@ -5,6 +5,7 @@
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Sex, adult};
 use contrapposto::posture::Posture;
+use contrapposto_formats::RelaxScenario;
 use contrapposto_web::Studio;
 use serde_json::{Value, json};
 
@@ -404,7 +405,8 @@ fn bones_of_the_skin_are_at_the_joint_centres_in_every_posture() {
             kinematics.update(&model, &Posture::new(q)).unwrap();
             for (bone, segment) in shown["bones"].as_array().unwrap().iter().zip(skin["segments"].as_array().unwrap()) {
                 let segment = segment.as_u64().unwrap() as usize;
-                let center = kinematics.station(&model, segment, model.segments()[segment].in_segment.translation.vector);
+                let center =
+                    kinematics.station(&model, segment, model.segments()[segment].in_segment.translation.vector);
                 let at = nalgebra::Vector3::new(number(&bone[0]), number(&bone[1]), number(&bone[2]));
                 farthest = farthest.max((at - center).norm());
             }
@@ -416,4 +418,181 @@ fn bones_of_the_skin_are_at_the_joint_centres_in_every_posture() {
     let scene = ask(&mut studio, json!({ "do": "open_model", "name": "arm.urdf", "text": ARM }));
     assert_eq!(scene["shown"]["bones"], json!([]));
     assert_eq!(ask(&mut studio, json!({ "do": "skin" }))["skin"], Value::Null);
+}
+
+#[test]
+fn ways_to_rest_are_those_of_relax_and_one_goes_there_and_back() {
+    let mut studio = Studio::new();
+    let scenario = scenario("stand-relaxed");
+    ask(&mut studio, json!({ "do": "open", "scenario": scenario }));
+    let (mut told, mut last) = (0, 0);
+    let answer = studio.call_watched(r#"{ "do": "relax" }"#, &mut |sought| {
+        assert_eq!(sought, last + 1);
+        (told, last) = (told + 1, sought);
+    });
+    let answer: Value = serde_json::from_str(&answer).unwrap();
+    assert!(told > 20, "{told}: {answer}");
+    let ways = answer["ways"].as_array().unwrap();
+    let efforts: Vec<f64> = ways.iter().map(|way| number(&way["effort"])).collect();
+    // The same scenario, searched by the library as the program does.
+    let read = contrapposto_formats::read_relax("stand-relaxed.toml", scenario.as_bytes(), None).unwrap();
+    let found = contrapposto::equilibria::equilibria(&read.search(), RelaxScenario::OPTIONS).unwrap();
+    assert_eq!(efforts, found.postures.iter().map(|posture| posture.relaxed.effort).collect::<Vec<_>>());
+    assert!(efforts.len() > 1 && efforts.is_sorted(), "{efforts:?}");
+    assert!(ways.iter().any(|way| {
+        way["on_ligaments"].as_array().unwrap().iter().any(|joint| joint.as_str().unwrap().contains("hip"))
+    }));
+    let standing = ask(&mut studio, json!({ "do": "settle" }))["q"].clone();
+    let scene = ask(&mut studio, json!({ "do": "go", "q": ways[1]["shown"]["q"] }));
+    assert_eq!((&scene["shown"]["q"], &scene["can_undo"]), (&ways[1]["shown"]["q"], &json!(true)));
+    assert_eq!(scene["shown"]["verdict"], ways[1]["shown"]["verdict"]);
+    assert_eq!(ask(&mut studio, json!({ "do": "undo" }))["shown"]["q"], standing);
+    assert!(refused(&mut studio, json!({ "do": "go", "q": [0.0] })).contains("coordinates"));
+}
+
+#[test]
+fn the_mirror_image_has_the_torques_of_the_other_side_and_its_mirror_image_is_the_body_as_it_was() {
+    let mut studio = Studio::new();
+    drag(&mut studio, "right hand", [0.3, 0.35, 0.1], 20);
+    ask(&mut studio, json!({ "do": "release", "hold": true }));
+    let before = ask(&mut studio, json!({ "do": "load", "segment": "hand_r", "mass": 3.0 }));
+    let image = ask(&mut studio, json!({ "do": "mirror" }));
+    let index = |name: &str| {
+        let coordinates = before["coordinates"].as_array().unwrap();
+        coordinates.iter().position(|coordinate| coordinate["name"] == name).unwrap()
+    };
+    let near = |a: &Value, b: &Value, within: f64| assert!((number(a) - number(b)).abs() < within, "{a} and {b}");
+    for name in ["arm_flex", "elbow_flex", "hip_flexion", "knee_angle"] {
+        let [right, left] = ["_r", "_l"].map(|side| index(&format!("{name}{side}")));
+        for key in ["q", "external", "passive", "load"] {
+            near(&before["shown"][key][right], &image["shown"][key][left], 1e-7);
+            near(&before["shown"][key][left], &image["shown"][key][right], 1e-7);
+        }
+    }
+    assert_eq!(image["held"][0]["segment"], "hand_l");
+    assert_eq!(image["loads"], json!([{ "segment": "hand_l", "mass": 3.0 }]));
+    // What is held stays where it is: the body has no reason to move the hand.
+    let [held, at] = [&before, &image].map(|scene| place(scene, &scene["shown"], &scene["held"][0]));
+    assert!((held[0] - at[0]).abs() < 1e-9 && (held[1] - at[1]).abs() < 1e-9 && (held[2] + at[2]).abs() < 1e-9);
+    let again = ask(&mut studio, json!({ "do": "mirror" }));
+    for (a, b) in again["shown"]["q"].as_array().unwrap().iter().zip(before["shown"]["q"].as_array().unwrap()) {
+        near(a, b, 1e-12);
+    }
+    ask(&mut studio, json!({ "do": "open", "scenario": scenario("hold-tool") }));
+    assert!(refused(&mut studio, json!({ "do": "mirror" })).contains("tells left from right"));
+}
+
+#[test]
+fn a_run_is_looked_at_as_it_was_and_goes_on_as_if_nobody_had_looked() {
+    let (mut studio, mut other) = (Studio::new(), Studio::new());
+    let open = json!({ "do": "open", "scenario": scenario("stand-relaxed") });
+    let mut seen: Vec<Value> = vec![];
+    ask(&mut studio, open.clone());
+    ask(&mut other, open);
+    for _ in 0..30 {
+        seen.push(ask(&mut studio, json!({ "do": "play", "samples": 1 })));
+        ask(&mut other, json!({ "do": "play", "samples": 1 }));
+    }
+    for k in [0, 7, 29] {
+        let time = number(&seen[k]["time"]) + 1e-3;
+        let looked = ask(&mut studio, json!({ "do": "look", "time": time }));
+        for key in ["time", "fatigue", "asking"] {
+            assert_eq!(looked[key], seen[k][key]);
+        }
+        for key in ["q", "external", "passive", "load", "contacts", "places"] {
+            assert_eq!(looked["shown"][key], seen[k]["shown"][key], "{key} of sample {k}");
+        }
+    }
+    // Many samples: one of so many is kept, from all of the run.
+    let end = ask(&mut studio, json!({ "do": "play", "samples": 3500 }));
+    assert_eq!(end, ask(&mut other, json!({ "do": "play", "samples": 3500 })));
+    let (last, step) = (number(&end["time"]), number(&seen[1]["time"]) - number(&seen[0]["time"]));
+    for share in [0.0, 0.1, 0.5, 0.99, 1.0] {
+        let looked = ask(&mut studio, json!({ "do": "look", "time": share * last }));
+        let late = share * last - number(&looked["time"]);
+        assert!((-1e-9..4.0 * step).contains(&late), "{late} s late at {share}");
+        assert!(
+            looked["log"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .all(|line| number(&line["time"]) <= number(&looked["time"]) + 1e-9)
+        );
+    }
+    ask(&mut studio, json!({ "do": "stop", "take": false }));
+    refused(&mut studio, json!({ "do": "look", "time": 0.0 }));
+}
+
+#[test]
+fn things_are_put_there_in_the_words_of_the_scenario_file_and_taken_away() {
+    let mut studio = Studio::new();
+    let scene = ask(&mut studio, json!({ "do": "open", "scenario": "" }));
+    let standing = scene["shown"]["q"].clone();
+    let keys = [
+        ("box", json!({ "mass_kg": 8, "size_m": [0.3, 0.25, 0.4], "at_m": [0.4, 1.0, 0.0] })),
+        ("bag", json!({ "mass_kg": 6, "on": "right_shoulder" })),
+        ("tool", json!({ "hand": "right", "mass_kg": 2, "at_m": [0.35, 1.3, 0.2] })),
+        ("handle", json!({ "at_m": [0.5, 1.1, 0.0], "hands": "both", "push_n": 50 })),
+        ("step", json!({ "height_m": 0.2, "under": "right_foot" })),
+        ("floor", json!({ "stride_m": 0.3, "ahead": "right_foot", "may_step": false })),
+        ("seat", json!({ "height_m": 0.43, "backrest": true })),
+        ("table", json!({ "height_m": 0.74, "edge_m": 0.3 })),
+        ("counter", json!({ "height_m": 0.95, "edge_m": 0.25 })),
+        ("wall", json!({ "ahead_m": 0.5 })),
+    ];
+    for (word, keys) in keys {
+        let scene = ask(&mut studio, json!({ "do": "put", "word": word, "keys": keys }));
+        let tables = scene["tables"].as_array().unwrap();
+        let table = tables.iter().find(|table| table["word"] == word).unwrap();
+        for (key, value) in keys.as_object().unwrap() {
+            assert_eq!(table["keys"][key], *value, "{word}");
+        }
+        let text = ask(&mut studio, json!({ "do": "export" }))["text"].as_str().unwrap().to_owned();
+        contrapposto_formats::read_run("studio.toml", text.as_bytes(), None).unwrap();
+        // It can be dragged, settled, and run.
+        ask(&mut studio, json!({ "do": "settle" }));
+        ask(&mut studio, json!({ "do": "play", "samples": 2 }));
+        ask(&mut studio, json!({ "do": "stop", "take": false }));
+        let scene = ask(&mut studio, json!({ "do": "take_away", "word": word, "number": 0 }));
+        assert!(scene["tables"].as_array().unwrap().iter().all(|table| table["word"] != word || word == "floor"));
+        let q = scene["shown"]["q"].as_array().unwrap().iter().zip(standing.as_array().unwrap());
+        if word != "floor" {
+            assert!(
+                q.map(|(a, b)| (number(a) - number(b)).abs()).fold(0.0, f64::max) < 0.2,
+                "{word}: the body does not stand"
+            );
+        }
+    }
+    assert!(refused(&mut studio, json!({ "do": "put", "word": "piano", "keys": {} })).contains("`piano` is no thing"));
+    assert!(
+        refused(&mut studio, json!({ "do": "put", "word": "box", "keys": { "mass": 3 } }))
+            .contains("unknown key `mass`")
+    );
+    assert!(
+        refused(&mut studio, json!({ "do": "take_away", "word": "box", "number": 0 }))
+            .contains("no thing `box` number 1")
+    );
+}
+
+#[test]
+fn a_run_is_written_as_gltf_and_bvh_with_all_samples_that_are_kept() {
+    let mut studio = Studio::new();
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../contrapposto-formats/data/skin/adult.skin");
+    studio.take_skin(std::fs::read(file).unwrap());
+    let gltf = |studio: &mut Studio, wooden: bool| {
+        let answer = ask(studio, json!({ "do": "gltf", "wooden": wooden }));
+        let bytes: Vec<u8> =
+            answer["bytes"].as_array().unwrap().iter().map(|byte| byte.as_u64().unwrap() as u8).collect();
+        assert_eq!(&bytes[..4], b"glTF");
+        let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        serde_json::from_slice::<Value>(&bytes[20..20 + length]).unwrap()
+    };
+    assert_eq!(gltf(&mut studio, false)["skins"].as_array().unwrap().len(), 1);
+    assert_eq!(gltf(&mut studio, true)["skins"], Value::Null);
+    let played = ask(&mut studio, json!({ "do": "play", "samples": 12 }));
+    let file = gltf(&mut studio, false);
+    let times = &file["accessors"][file["animations"][0]["samplers"][0]["input"].as_u64().unwrap() as usize];
+    assert!((number(&times["max"][0]) - number(&played["time"])).abs() < 1e-6, "{times}");
+    let text = ask(&mut studio, json!({ "do": "bvh" }))["text"].as_str().unwrap().to_owned();
+    assert!(text.starts_with("HIERARCHY") && text.contains("Frames: 12"), "{}", &text[..200]);
 }

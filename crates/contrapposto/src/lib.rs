@@ -55,5 +55,6 @@ pub mod statics;
 pub mod strength;
 pub mod suggestions;
 pub mod tasks;
+pub mod toml_value;
 pub mod tracking;
 pub mod verdict;

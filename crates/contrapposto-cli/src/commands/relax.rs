@@ -5,7 +5,6 @@ use std::fmt::Write;
 use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
 use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
-use contrapposto::posture_solver::Options;
 use contrapposto::suggestions::Advice;
 use contrapposto::verdict::{HeldPosture, Verdict};
 use contrapposto_formats::motion::{csv_cell, write_sto};
@@ -37,8 +36,6 @@ const RELAX_FILES: [&str; 8] = [
     "postures.glb",
     "postures.bvh",
 ];
-/// Largest change of a joint in one step, rad, and most steps of the last stage of each posture.
-const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
 
 /// Most times that a posture is sought again with the strength that muscles have in the one before.
 pub(crate) const MOST_STRENGTH_ROUNDS: usize = 20;
@@ -107,7 +104,7 @@ pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
 pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchError> {
     let mut round = 0;
     loop {
-        let found = equilibria(&scenario.search(), OPTIONS)?;
+        let found = equilibria(&scenario.search(), RelaxScenario::OPTIONS)?;
         let Some(best) = found.postures.first() else { return Ok(found) };
         let change = scenario.take_strength(&best.relaxed.posture);
         if change <= SAME_STRENGTH {
@@ -138,14 +135,14 @@ pub(crate) fn answer(scenario: &RelaxScenario, found: &Equilibria, suggest: Sugg
         return Answer::new(verdict, Advice::default());
     };
     let at_best = Search { start: &best.relaxed.posture, ..search.clone() };
-    let advice = advice_of_search(&verdict, (&search, &at_best), (OPTIONS, found.steps), suggest);
+    let advice = advice_of_search(&verdict, (&search, &at_best), (RelaxScenario::OPTIONS, found.steps), suggest);
     Answer::new(verdict, advice)
 }
 
 /// The changes that were tried of a body that cannot stand.
 pub(crate) fn advice_without(scenario: &RelaxScenario, verdict: &Verdict, suggest: SuggestArgs) -> Advice {
     let search = scenario.search();
-    advice_of_search(verdict, (&search, &search), (OPTIONS, 0), suggest)
+    advice_of_search(verdict, (&search, &search), (RelaxScenario::OPTIONS, 0), suggest)
 }
 
 /// Writes all files.

@@ -3,15 +3,8 @@
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Coordinate, CoordinateKind, Model};
 use contrapposto::posture::Posture;
+pub(crate) use contrapposto_formats::animation::directions;
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
-
-/// Right, ahead and up in ground: up is against gravity (y without any), ahead the ground's x axis, or z where x is upright.
-pub(crate) fn directions(model: &Model) -> [Vector3<f64>; 3] {
-    let up = (-model.gravity()).try_normalize(0.0).unwrap_or_else(Vector3::y);
-    let x = if up.x.abs() > 0.9 { Vector3::z() } else { Vector3::x() };
-    let ahead = (x - up * up.dot(&x)).normalize();
-    [ahead.cross(&up), ahead, up]
-}
 
 /// Rotation of ground axes after which x is forward, y up and z right.
 pub(crate) struct Turn(pub(crate) Rotation3<f64>);

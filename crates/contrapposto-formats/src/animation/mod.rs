@@ -29,6 +29,14 @@ use contrapposto::model::{Model, Placement};
 use contrapposto::posture::{Posture, PostureError};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+/// Right, ahead and up in ground: up is against gravity (y without any), ahead the ground's x axis, or z where x is upright.
+pub fn directions(model: &Model) -> [Vector3<f64>; 3] {
+    let up = (-model.gravity()).try_normalize(0.0).unwrap_or_else(Vector3::y);
+    let x = if up.x.abs() > 0.9 { Vector3::z() } else { Vector3::x() };
+    let ahead = (x - up * up.dot(&x)).normalize();
+    [ahead.cross(&up), ahead, up]
+}
+
 /// A motion to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Clip<'a> {

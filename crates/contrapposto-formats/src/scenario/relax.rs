@@ -5,6 +5,7 @@ use contrapposto::equilibria::{SCATTERED_STARTS, Search};
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Model;
 use contrapposto::posture::Posture;
+use contrapposto::posture_solver::Options;
 use contrapposto::statics::Load;
 use contrapposto::tasks::{Effort, PriorityLevel, Task};
 
@@ -49,6 +50,9 @@ pub struct RelaxScenario {
 }
 
 impl RelaxScenario {
+    /// Of its search: largest change of a joint in one step, rad, and most steps of the last stage of each posture.
+    pub const OPTIONS: Options = Options { max_step: 0.1, max_steps: 300, ..Options::least_effort() };
+
     /// The search for its postures of least effort, with all starts.
     pub fn search(&self) -> Search<'_> {
         Search {

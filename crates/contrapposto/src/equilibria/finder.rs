@@ -8,7 +8,7 @@ use super::other_places::other_places;
 use super::outcome::Equilibria;
 use super::raised_limbs::LimbsWithoutTask;
 use super::scattered::scattered;
-use super::search::{Search, SearchError};
+use super::search::{Search, SearchError, Stage};
 use super::ways_to_stand::DifferentWays;
 use crate::contact::{Condition, Missing};
 use crate::effort::hessian::HessianModel;
@@ -38,25 +38,20 @@ const HANGING: f64 = 0.01;
 /// Missing forces of a posture whose numbers are not finite.
 const EVERYTHING: Missing = Missing { force: f64::INFINITY, moment: f64::INFINITY, condition: Condition::Other };
 
-/// Finds the different postures of least effort. `options` are those of the converging solves.
+/// As [`equilibria`](super::equilibria); `watch` is told the number of postures that have been sought so far, each time that another one is.
 ///
 /// # Errors
-/// [`SearchError`] when something does not fit the model, or the body cannot stand.
-pub fn equilibria(search: &Search<'_>, options: Options) -> Result<Equilibria, SearchError> {
-    let mut finder = Finder::new(search, options)?;
+/// The same.
+pub fn equilibria_watched(
+    search: &Search<'_>,
+    options: Options,
+    watch: &mut dyn FnMut(usize),
+) -> Result<Equilibria, SearchError> {
+    let mut finder = Finder::new(search, options, watch)?;
     finder.find_limbs_to_hang();
     finder.explore()?;
     finder.converge();
     finder.finish()
-}
-
-/// Stage of a search: its index in the engines and in the allowed errors.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Stage {
-    Exploratory = 0,
-    Converged = 1,
-    /// Basin hopping from the best postures.
-    Lowest = 2,
 }
 
 /// Engines and what they have found.
@@ -76,6 +71,9 @@ pub(super) struct Finder<'a> {
     /// Error of the first posture whose numbers are not finite.
     refused: Option<EngineError>,
     starts: usize,
+    /// Postures sought in all stages, and who is told.
+    sought: usize,
+    watch: &'a mut dyn FnMut(usize),
     pub(super) steps: usize,
     /// Work beyond the steps.
     pub(super) changes: usize,
@@ -84,7 +82,7 @@ pub(super) struct Finder<'a> {
 }
 
 impl<'a> Finder<'a> {
-    fn new(search: &'a Search<'a>, options: Options) -> Result<Self, SearchError> {
+    fn new(search: &'a Search<'a>, options: Options, watch: &'a mut dyn FnMut(usize)) -> Result<Self, SearchError> {
         let mut levels = search.goals.to_vec();
         let asks = |level: &PriorityLevel| level.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
         let slot = levels.iter().position(asks).unwrap_or(levels.len());
@@ -117,6 +115,8 @@ impl<'a> Finder<'a> {
             fell: vec![],
             refused: None,
             starts: 0,
+            sought: 0,
+            watch,
             steps: 0,
             changes: 0,
             cut: false,
@@ -215,6 +215,8 @@ impl<'a> Finder<'a> {
         let (model, engine) = (self.search.model, &mut self.engines[stage as usize]);
         engine.levels_mut()[self.slot].half_spaces.clear();
         self.starts += 1;
+        self.sought += 1;
+        (self.watch)(self.sought);
         let mut relaxed = match engine.solve_watched(from, |step, _| self.changes += step.work() - 1) {
             Ok(relaxed) => relaxed,
             Err(error) => {

@@ -1,8 +1,9 @@
 //! Makes starts of a search from goal angles: those of both strategies of the tables, all together and one by one.
 
 use super::description::work_of;
-use super::finder::{Finder, Stage};
+use super::finder::Finder;
 use super::search::SearchError;
+use super::search::Stage;
 use crate::constraint::HalfSpace;
 use crate::hybrid::{Problem, Strategy, minimise};
 use crate::model::CoordinateKind;

@@ -34,9 +34,19 @@ mod search;
 mod stability;
 mod ways_to_stand;
 
-pub use finder::equilibria;
+pub use finder::equilibria_watched;
 pub use mirror::Mirror;
 pub use outcome::{Carried, Equilibria, Hanging, RelaxedPosture, Work};
 pub use scattered::SCATTERED_STARTS;
 pub use search::{Search, SearchError};
 pub use stability::{Direction, LEAST_MASS, Stability, stability, stiffness};
+
+use crate::posture_solver::Options;
+
+/// Finds the different postures of least effort. `options` are those of the converging solves.
+///
+/// # Errors
+/// [`SearchError`] when something does not fit the model, or the body cannot stand.
+pub fn equilibria(search: &Search<'_>, options: Options) -> Result<Equilibria, SearchError> {
+    equilibria_watched(search, options, &mut |_| ())
+}

@@ -32,6 +32,15 @@ pub struct Search<'a> {
     pub scattered: usize,
 }
 
+/// Stage of a search: its index in the engines and in the allowed errors.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stage {
+    Exploratory = 0,
+    Converged = 1,
+    /// Basin hopping from the best postures.
+    Lowest = 2,
+}
+
 /// The reason for which no posture was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

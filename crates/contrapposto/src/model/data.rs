@@ -18,6 +18,7 @@ use std::sync::LazyLock;
 
 use super::adult_size::Adult;
 use crate::strength::Strength;
+use crate::toml_value::typed;
 use body_rows::{AdultFile, AnthropometryFile};
 pub(super) use body_rows::{Along, CoordinateRow, InRightArm, SegmentRow};
 pub use fatigue_parameters::FatigueSet;
@@ -34,6 +35,7 @@ pub(super) use shape_rows::ShapeRow;
 pub(super) use strength_rows::GRAVITY;
 use strength_rows::StrengthFile;
 pub use strength_rows::StrengthSources;
+use toml::de::DeTable;
 
 /// All embedded data.
 #[derive(Debug)]
@@ -52,7 +54,11 @@ pub struct Library {
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| {
     // The files are part of the program; the test `embedded_data_parse` reads every one.
     fn parse<T: serde::de::DeserializeOwned>(name: &str, text: &str) -> T {
-        toml::from_str(text).unwrap_or_else(|error| panic!("embedded data/{name}.toml: {error}"))
+        let refused = |error: &dyn std::fmt::Display| -> T { panic!("embedded data/{name}.toml: {error}") };
+        match DeTable::parse(text) {
+            Ok(table) => typed(table.get_ref()).unwrap_or_else(|error| refused(&error)),
+            Err(error) => refused(&error),
+        }
     }
     Library {
         passive: parse("passive", include_str!("../../data/passive.toml")),

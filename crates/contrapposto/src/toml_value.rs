@@ -1,28 +1,42 @@
 //! Gives the values of a parsed TOML file to the types that stand for them.
 //!
 //! The reader of `toml` itself gives a struct the same keys in several ways (as a table, as a date, with places), each of which is a copy
-//! of the struct's code: a quarter of the module of the studio. These files have no dates, so here is one way.
+//! of the struct's code: a quarter of the studio's module. The project's files have no dates, so here is one way, with the same words.
 
 use std::fmt::Display;
 use std::ops::Range;
 
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
-use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
+};
 use serde::forward_to_deserialize_any;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 /// The reason for which a value is not what its key takes, and where it stands.
 #[derive(Debug)]
-pub(crate) struct Misfit {
-    pub(crate) message: String,
-    pub(crate) span: Option<Range<usize>>,
+pub struct Misfit {
+    /// The reason, in the words of `serde`.
+    pub message: String,
+    /// Bytes of the text; `None` of a value that has no place of its own.
+    pub span: Option<Range<usize>>,
 }
 
 /// The values of a file's tables.
-pub(crate) fn typed<T: DeserializeOwned>(table: &DeTable<'_>) -> Result<T, Misfit> {
-    let span = 0..0;
-    T::deserialize(Value { span: span.clone(), kind: Kind::Table(table) })
+///
+/// # Errors
+/// [`Misfit`] of the first value that its key does not take.
+///
+/// ```
+/// use contrapposto::toml_value::typed;
+/// let table = toml::de::DeTable::parse("mass_kg = 3").unwrap();
+/// let masses: std::collections::BTreeMap<String, f64> = typed(table.get_ref())?;
+/// assert_eq!(masses["mass_kg"], 3.0);
+/// # Ok::<(), contrapposto::toml_value::Misfit>(())
+/// ```
+pub fn typed<T: DeserializeOwned>(table: &DeTable<'_>) -> Result<T, Misfit> {
+    T::deserialize(Value { span: 0..0, kind: Kind::Table(table) })
 }
 
 impl Misfit {
@@ -115,7 +129,8 @@ impl<'de> Deserializer<'de> for Value<'_> {
             Kind::Table(table) if table.len() == 1 => {
                 visitor.visit_enum(MapAccessDeserializer::new(Entries::of(table)))
             }
-            Kind::Table(_) => Err(Misfit::custom("wanted exactly 1 element")),
+            Kind::Table(table) if table.is_empty() => Err(Misfit::custom("wanted exactly 1 element, found 0 elements")),
+            Kind::Table(_) => Err(Misfit::custom("wanted exactly 1 element, more than 1 element")),
             Kind::Other(_) => Err(Misfit::custom("wanted string or table")),
         }
         .map_err(|error| error.at(&self.span))
@@ -184,5 +199,82 @@ impl<'de> SeqAccess<'de> for Items<'_> {
 
     fn size_hint(&self) -> Option<usize> {
         Some(self.0.len())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Debug, PartialEq, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Inner {
+        a: f64,
+        list: Option<Vec<u32>>,
+    }
+
+    #[derive(Debug, PartialEq, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    enum Word {
+        One,
+        Two,
+    }
+
+    #[derive(Debug, PartialEq, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Outer {
+        #[serde(default)]
+        inner: Vec<Inner>,
+        word: Option<Word>,
+        flag: Option<bool>,
+        text: Option<String>,
+        by_name: Option<BTreeMap<String, i64>>,
+    }
+
+    /// Both readers: the same values, or the same words at the same place.
+    #[test]
+    fn values_and_refusals_are_those_of_the_reader_of_toml() {
+        let texts = [
+            "",
+            "word = 'two'\nflag = true\ntext = \"a\\nb\"",
+            "[[inner]]\na = 1\n[[inner]]\na = 2.5e-3\nlist = [1, 0x10, 3_000]",
+            "by_name = { x = -9223372036854775808, y = 7 }",
+            "word = 'three'",
+            "word = 3",
+            "word = { one = 1, two = 2 }",
+            "word = {}",
+            "word = { three = 1 }",
+            "flag = 'yes'",
+            "inner = [{ a = true }]",
+            "inner = [{ a = 1, b = 2 }]",
+            "inner = [{ list = [] }]",
+            "inner = [{ a = 1, list = [1, -1] }]",
+            "inner = [{ a = 1, list = [4294967296] }]",
+            "inner = 3",
+            "text = ['a']",
+            "by_name = { x = 9223372036854775808 }",
+            "by_name.x.y = 1",
+            "other = 1",
+        ];
+        let mut refused = 0;
+        for text in texts {
+            let ours = typed::<Outer>(DeTable::parse(text).unwrap().get_ref());
+            match (ours, toml::from_str::<Outer>(text)) {
+                (Ok(ours), Ok(theirs)) => assert_eq!(ours, theirs, "{text}"),
+                (Err(ours), Err(theirs)) => {
+                    refused += 1;
+                    let place = ours.span.filter(|span| *span != (0..0));
+                    assert_eq!((ours.message.as_str(), place), (theirs.message(), theirs.span()), "{text}");
+                }
+                (ours, theirs) => panic!("{text}: {ours:?} and {theirs:?}"),
+            }
+        }
+        assert_eq!(refused, 16);
+        assert!(typed::<Outer>(DeTable::parse("text = 1979-05-27").unwrap().get_ref()).is_err());
     }
 }
