@@ -33,6 +33,11 @@ pub(crate) fn put(table: &mut Table, word: &str, keys: Table) -> Result<(), Refu
 /// Takes a thing away.
 pub(crate) fn take_away(table: &mut Table, word: &str, number: usize) -> Result<(), Refusal> {
     let none = || Refusal(format!("there is no thing `{word}` number {}", number + 1));
+    if word == "floor" {
+        // Without what was said of them both feet stand on it, side by side.
+        table.insert(word.to_owned(), Value::Table(Table::new()));
+        return Ok(());
+    }
     if SINGLE.contains(&word) {
         return table.remove(word).map(|_| ()).ok_or_else(none);
     }
