@@ -73,18 +73,40 @@ impl Job {
     /// Answers a request that is not to open another job; `watch` is told how far a long one has come.
     pub(crate) fn answer(&mut self, request: Request, watch: &mut dyn FnMut(usize)) -> Result<Answer, Refusal> {
         match request {
-            Request::Open { .. } | Request::OpenModel { .. } | Request::Skin {} | Request::Gltf { .. } => {
-                Err(Refusal::of("no request to a job"))
-            }
-            Request::Adult { sex, stature, mass } => self.change(|document| document.set_adult(&sex, stature, mass)),
             Request::Grab { segment, point } => self.grab(segment, point),
             Request::Drag { target } => self.drag(target),
             Request::Release { hold } => self.release(hold),
+            Request::Settle {} => self.settle(),
+            Request::Play { samples } => self.play(samples.min(MOST_SAMPLES)),
+            Request::Stop { take } => self.stop(take),
+            Request::Look { time } => {
+                let play = self.play.as_ref().ok_or_else(|| Refusal::of("no run is under way"))?;
+                Ok(Answer::Played(Box::new(play.look(&self.figure.body, time)?)))
+            }
+            Request::Relax {} => {
+                self.check_released()?;
+                self.check_no_run()?;
+                Ok(Answer::Ways { ways: rest::ways(&self.figure, watch)? })
+            }
+            Request::Balance { coordinate } => self.balance(&coordinate),
+            Request::Bvh {} => {
+                let text = drawn::text(self.model(), self.title(), &self.motion())?;
+                Ok(Answer::Text { text })
+            }
+            Request::Export {} => Ok(self.export()),
+            Request::State {} => Ok(Answer::Text { text: self.document_as_shown().state()? }),
+            request => self.edit(request),
+        }
+    }
+
+    /// Answers a request that makes another document the present one.
+    fn edit(&mut self, request: Request) -> Result<Answer, Refusal> {
+        match request {
+            Request::Adult { sex, stature, mass } => self.change(|document| document.set_adult(&sex, stature, mass)),
             Request::Free { segment } => self.change(|document| {
                 document.free(&segment);
                 Ok(())
             }),
-            Request::Settle {} => self.settle(),
             Request::Load { segment, mass } => {
                 self.figure.body.segment(&segment)?;
                 self.change(|document| document.set_load(&segment, mass))
@@ -95,30 +117,12 @@ impl Job {
                 document.set_strategy(&kind);
                 Ok(())
             }),
-            Request::Play { samples } => self.play(samples.min(MOST_SAMPLES)),
-            Request::Stop { take } => self.stop(take),
-            Request::Relax {} => {
-                self.check_released()?;
-                self.check_no_run()?;
-                Ok(Answer::Ways { ways: rest::ways(&self.figure, watch)? })
-            }
             Request::Go { q } => self.go_to(&q),
             Request::Mirror {} => {
                 self.check_released()?;
                 let Figure { body, posture, .. } = &self.figure;
                 self.replace(sides::exchanged(self.history.document(), &body.model, posture)?)
             }
-            Request::Look { time } => {
-                let play = self.play.as_ref().ok_or_else(|| Refusal::of("no run is under way"))?;
-                Ok(Answer::Played(Box::new(play.look(&self.figure.body, time)?)))
-            }
-            Request::Balance { coordinate } => self.balance(&coordinate),
-            Request::Bvh {} => {
-                let text = drawn::text(self.model(), self.title(), &self.motion())?;
-                Ok(Answer::Text { text })
-            }
-            Request::Export {} => Ok(self.export()),
-            Request::State {} => Ok(Answer::Text { text: self.document_as_shown().state()? }),
             Request::Restore { state } => {
                 self.check_released()?;
                 self.replace(Document::from_state(&state)?)
@@ -132,6 +136,7 @@ impl Job {
                     Ok(())
                 })
             }
+            _ => Err(Refusal::of("no request to a job")),
         }
     }
 

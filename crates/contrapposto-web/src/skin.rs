@@ -6,13 +6,13 @@ use contrapposto_formats::animation::Skin;
 use crate::message::SkinScene;
 
 /// Vertices are given in this step, m.
-const STEP: f64 = 1e-5;
+const VERTEX_STEP: f64 = 1e-5;
 
 /// The skin of a body from the bytes of its file; `None` of a body without one, and of bytes that are no such file.
 pub(crate) fn scene(model: &Model, file: &[u8]) -> Option<SkinScene> {
     let skin = Skin::from_file(model, file)?;
     let bones = skin.skeleton.bones();
-    let rounded = |x: f64| (x / STEP).round() * STEP;
+    let rounded = |x: f64| (x / VERTEX_STEP).round() * VERTEX_STEP;
     Some(SkinScene {
         vertices: skin.vertices.iter().map(|vertex| [vertex.x, vertex.y, vertex.z].map(rounded)).collect(),
         light: skin.light(),
