@@ -23,7 +23,7 @@ const browser = await chromium.launch({
   executablePath: process.env.CONTRAPPOSTO_CHROMIUM ?? "/usr/bin/chromium",
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
-const page = await browser.newPage({ viewport: { width: 1400, height: 900 } });
+const page = await browser.newPage({ viewport: { width: 500, height: 400 } });
 page.setDefaultTimeout(3_600_000);
 const atRest = () => page.waitForFunction(() => document.querySelector("#stage").getAttribute("aria-busy") === "false");
 const load = () => `load of the machine ${loadavg().map((x) => x.toFixed(1)).join(", ")}`;
