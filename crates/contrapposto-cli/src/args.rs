@@ -88,7 +88,7 @@ pub(crate) enum Verb {
     /// Scale an OpenSim model to a person by the markers of a static trial (.trc, .c3d) and the setup file of OpenSim's ScaleTool.
     Scale(ScaleArgs),
     /// Find the motion of an OpenSim model whose markers lie nearest to measured ones (.trc, .c3d): inverse kinematics. Or that of the built-in
-    /// adult which moves as an animation (.bvh).
+    /// adult which moves as an animation (.bvh, .glb).
     Track(TrackArgs),
     /// Find the muscle group that fails first in a recorded motion, when, and which change of posture would relieve it.
     Assess(AssessArgs),

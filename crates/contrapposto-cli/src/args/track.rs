@@ -15,12 +15,12 @@ use super::model::ModelArgs;
     The weighted squared distances of the markers, and the weighted squared errors of coordinates with a task, are least in every frame, as in \
     OpenSim's inverse kinematics. Locked coordinates keep their default, and ranges of clamped ones are hard limits. Writes motion.mot \
     and marker-errors.sto into DIR.\n\n\
-    An animation (.bvh; names of Mixamo, CMU and others, or --rig) moves the adult: `adult` gets the bones of the rig, `adult:female,1.65m,60kg` stays as \
+    An animation (.bvh, .glb, .gltf; names of Mixamo, CMU and others, or --rig) moves the adult: `adult` gets the bones of the rig, `adult:female,1.65m,60kg` stays as \
     it is. adult.toml, written beside motion.mot, is that adult, as MODEL of `assess` and others.")]
 pub(crate) struct TrackArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Measured markers (.trc, .c3d); or an animation (.bvh), which moves the built-in adult.
+    /// Measured markers (.trc, .c3d); or an animation (.bvh, .glb, .gltf), which moves the built-in adult.
     pub(crate) markers: PathBuf,
     /// OpenSim's IKTaskSet, or the setup file (.xml) that holds one: weights of markers, and coordinates with wanted values. Without it
     /// every marker that file and model have counts the same.

@@ -10,7 +10,7 @@ use contrapposto::tracking::TrackedFrame;
 use contrapposto_formats::MOST_BYTES;
 use contrapposto_formats::motion::MOST_TABLE_BYTES;
 use contrapposto_formats::rigs::{
-    Assignment, Fitted, Rig, RigUnit, Sizing, Targets, read_bvh, read_rig_names, settle_branches,
+    Assignment, Fitted, Rig, RigUnit, Sizing, Targets, read_bvh, read_gltf, read_rig_names, settle_branches,
 };
 
 use super::track::{ERRORS, MOST_MOTION_VALUES, MOTION, SAME_TIME, asked, errors, left_out, motion, tracked_so_far};
@@ -28,14 +28,14 @@ const DOUBTFUL_TURN: f64 = 15.0 * std::f64::consts::PI / 180.0;
 
 /// Whether a file is an animation by its name.
 pub(crate) fn is_animation(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("bvh"))
+    path.extension().is_some_and(|ending| ["bvh", "glb", "gltf"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
 pub(crate) fn animation(args: &TrackArgs) -> Result<(), Fail> {
     let out = ResultSet::open(&args.out, &[MOTION, ERRORS, ADULT])?;
     let sizing = sizing(args)?;
     let file = args.markers.display().to_string();
-    let rig = read_bvh(&file, &read(&args.markers, MOST_TABLE_BYTES as u64)?)?;
+    let rig = rig(&args.markers, &file)?;
     rig.warnings.iter().for_each(|warning| print_note("warning", warning));
     let given = match &args.rig {
         Some(path) => read_rig_names(&path.display().to_string(), &read(path, MOST_BYTES)?, &rig)?,
@@ -66,6 +66,15 @@ pub(crate) fn animation(args: &TrackArgs) -> Result<(), Fail> {
     let (motion, adult) = (quoted(&motion), quoted(&adult));
     print(&format!("next: contrapposto assess {adult} {motion} --fixed-root --out report\n"))?;
     left.map_or(Ok(()), Err)
+}
+
+/// The rig of a file, by the ending of its name.
+fn rig(path: &Path, name: &str) -> Result<Rig, Fail> {
+    let bytes = read(path, MOST_TABLE_BYTES as u64)?;
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("bvh")) {
+        return Ok(read_bvh(name, &bytes)?);
+    }
+    read_gltf(name, &bytes).map_err(|error| Fail::Refused(error.to_string()))
 }
 
 /// A path as a command line has it: in quotes where it holds blanks.

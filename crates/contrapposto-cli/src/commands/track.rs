@@ -32,7 +32,7 @@ pub(super) const MOST_MOTION_VALUES: usize = 3_000_000;
 pub(crate) fn track(args: &TrackArgs) -> Result<(), Fail> {
     if args.rig.is_some() {
         return Err(Fail::Refused(
-            "--rig names the joints of an animation (.bvh); markers have names of their own".to_owned(),
+            "--rig names the joints of an animation (.bvh, .glb, .gltf); markers have names of their own".to_owned(),
         ));
     }
     let out = ResultSet::open(&args.out, &[MOTION, ERRORS])?;

@@ -1,4 +1,4 @@
-//! Reads animations of jointed rigs ([`read_bvh`]) and carries them over to the built-in adult ([`Fitted`]).
+//! Reads animations of jointed rigs ([`read_bvh`], [`read_gltf`]) and carries them over to the built-in adult ([`Fitted`]).
 //!
 //! A rig's joints are found by the names of known programs ([`Assignment::find`]), or by a file of names ([`read_rig_names`]). Its rest pose tells which
 //! way is up and ahead, and how each bone lies to the adult's segment; its legs tell the unit.
@@ -7,6 +7,8 @@ mod axes;
 mod branches;
 mod bvh;
 mod fit;
+mod gltf;
+mod gltf_data;
 mod names;
 mod names_file;
 mod size;
@@ -16,6 +18,8 @@ pub use axes::RigAxes;
 pub use branches::settle_branches;
 pub use bvh::read_bvh;
 pub use fit::{Fitted, RigError};
+pub use gltf::read_gltf;
+pub use gltf_data::GltfError;
 pub use names::{Assignment, MissingJoints, names_template};
 pub use names_file::read_rig_names;
 pub use size::{RigUnit, Sizing};
