@@ -72,6 +72,21 @@ fn a_motion_of_the_adult_comes_back_from_its_own_glb() {
     }
 }
 
+/// Joints that rest have no keys, and are joints of the rig nevertheless.
+#[test]
+fn joints_that_rest_are_found() {
+    let model = adult(&Adult::default()).unwrap();
+    let elbow = model.coordinate("elbow_flex_r").unwrap();
+    let bent = |turn: f64| {
+        let mut posture = model.default_posture();
+        posture.values_mut()[elbow] += turn;
+        posture
+    };
+    let rig = read_gltf("a.glb", &own_file(&model, &[0.0, 0.4, 0.8].map(bent))).unwrap();
+    let assignment = Assignment::find(&rig, &BTreeMap::new()).unwrap();
+    assert!(assignment.joint("toes_l").is_some() && assignment.joint("hand_l").is_some());
+}
+
 /// A base64 text of numbers of 32 bits, by the letters of RFC 4648.
 fn base64(numbers: &[f64]) -> String {
     const LETTERS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

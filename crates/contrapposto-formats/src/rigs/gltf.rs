@@ -1,5 +1,5 @@
 //! Reads the first animation of a glTF 2.0 file (`.glb`, or `.gltf` with its buffers inside) as a rig: nodes that move or belong to a skin, and those that
-//! carry them.
+//! carry them; without a skin also those that are carried.
 //!
 //! A node rests where the file has it (Khronos Group, glTF 2.0 Specification, section 3.5). Keys are sampled at even times: linear ones along the
 //! shortest turn, steps, and cubic splines (section C).
@@ -69,11 +69,19 @@ fn rig(bytes: &[u8]) -> Result<Rig, GltfError> {
     let keys = keys(&document, nodes.len(), &mut warnings)?;
     let joints = document.list("skins").iter().flat_map(|skin| skin["joints"].as_array().into_iter().flatten());
     let joints: Vec<usize> = joints.filter_map(|joint| Some(joint.as_u64()? as usize)).collect();
+    let skinless = joints.is_empty();
     for first in keys.iter().map(|keys| keys.node).chain(joints) {
         let mut next = Some(first);
         while let Some(node) = next.and_then(|node| nodes.get_mut(node)).filter(|node| !node.kept) {
             node.kept = true;
             next = node.parent;
+        }
+    }
+    if skinless {
+        // Only its skin tells which nodes at rest are joints.
+        for &node in &order {
+            let carried = nodes[node].parent.is_some_and(|parent| nodes[parent].kept);
+            nodes[node].kept |= carried;
         }
     }
     let (start, frame_time, count) = sampling(&keys);
