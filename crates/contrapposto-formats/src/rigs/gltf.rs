@@ -15,7 +15,7 @@ use crate::xml::shorten;
 /// Most nodes of a file (assumed: rigs with fingers and a face have some hundred).
 const MOST_NODES: usize = 10_000;
 /// Least and greatest time between samples, s: 240 and 10 a second (assumed).
-const FRAME_TIMES: (f64, f64) = (1.0 / 240.0, 0.1);
+const SAMPLE_TIMES: (f64, f64) = (1.0 / 240.0, 0.1);
 /// Scales of a node along its axes that differ by less, as a share, are one.
 const SAME_SCALE: f64 = 0.01;
 /// Channels of a joint: its place, and its turns about z, y, x.
@@ -29,7 +29,7 @@ struct Node {
     place: Vector3<f64>,
     turn: UnitQuaternion<f64>,
     scale: f64,
-    /// It moves, or belongs to a skin, or carries such a node.
+    /// The node moves, or belongs to a skin, or carries such a node.
     kept: bool,
 }
 
@@ -266,11 +266,11 @@ fn sampling(keys: &[Keys]) -> (f64, f64, usize) {
     let mut steps: Vec<f64> =
         most.iter().flat_map(|keys| keys.times.windows(2).map(|pair| pair[1] - pair[0])).collect();
     steps.sort_by(f64::total_cmp);
-    let step = steps.get(steps.len() / 2).copied().unwrap_or(FRAME_TIMES.1).clamp(FRAME_TIMES.0, FRAME_TIMES.1);
+    let step = steps.get(steps.len() / 2).copied().unwrap_or(SAMPLE_TIMES.1).clamp(SAMPLE_TIMES.0, SAMPLE_TIMES.1);
     let count = ((end - start) / step).round() as usize + 1;
     // Even steps that end with the animation.
     let step = if count > 1 { (end - start) / (count - 1) as f64 } else { step };
-    (start, step.clamp(FRAME_TIMES.0, FRAME_TIMES.1), count)
+    (start, step.clamp(SAMPLE_TIMES.0, SAMPLE_TIMES.1), count)
 }
 
 impl Keys {
