@@ -8,7 +8,7 @@ use std::path::Path;
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Adult;
 use contrapposto_formats::model_ir::RootAttachment;
-use contrapposto_formats::tissue::{MuscleUse, SourcedModel};
+use contrapposto_formats::tissue::{MuscleUse, ScenarioMuscles, SourcedModel};
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size, scenario_adult};
 
@@ -40,6 +40,19 @@ pub(crate) fn with_joint_muscles(
     let (muscles, doubts) = library.map_or((None, vec![]), |library| opened.joint_muscles(&library));
     doubts.iter().for_each(|doubt| print_note("warning", doubt));
     Ok((opened, muscles, doubts))
+}
+
+/// As [`open_with_muscles`], for a scenario.
+pub(crate) fn open_for_scenario(
+    args: &ModelArgs,
+    muscles: (Option<MuscleUse>, &str),
+) -> Result<(SourcedModel, Option<ScenarioMuscles>), Fail> {
+    let (mut opened, library) = open_with(args, true, Some(muscles), SourcedModel::read)?;
+    let Some(library) = library else { return Ok((opened, None)) };
+    let refused = |error| Fail::Refused(format!("{}: {error}; write \"strength\" or \"off\"", muscles.1));
+    let (muscles, doubts) = opened.scenario_muscles(&library).map_err(refused)?;
+    doubts.iter().for_each(|doubt| print_note("warning", doubt));
+    Ok((opened, muscles))
 }
 
 /// Opens MODEL for a command in which mass has no part, or which says that it is missing: a body whose mass comes from a mesh has none.

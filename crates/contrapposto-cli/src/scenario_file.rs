@@ -3,16 +3,16 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Model;
 use contrapposto_formats::model_ir::RootAttachment;
+use contrapposto_formats::tissue::{MuscleUse, ScenarioMuscles};
 use contrapposto_formats::{MOST_BYTES, ModelFile, scenario_model};
 use serde_json::Value;
 
 use crate::args::{ModelArgs, RootChoice};
 use crate::fail::Fail;
 use crate::input::{confined, read};
-use crate::model_file::open_with_muscles;
+use crate::model_file::open_for_scenario;
 use crate::output::print_note;
 
 /// A scenario file that was read, not yet understood.
@@ -21,8 +21,8 @@ pub(crate) struct ScenarioFile {
     pub(crate) bytes: Vec<u8>,
     /// The model that it names, if it names one.
     pub(crate) model: Option<Model>,
-    /// The muscles of that model, where the scenario asks for their strength.
-    pub(crate) muscles: Option<JointMuscles>,
+    /// The muscles of that model, where the scenario uses them.
+    pub(crate) muscles: Option<ScenarioMuscles>,
 }
 
 impl ScenarioFile {
@@ -100,11 +100,17 @@ fn refuse_model(path: &Path, name: &str) -> Result<(), Fail> {
 }
 
 /// The model file that a scenario names, if it names one, and its muscles in use.
-fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<(Model, Option<JointMuscles>)>, Fail> {
+fn model_of(scenario: &Path, name: &str, bytes: &[u8]) -> Result<Option<(Model, Option<ScenarioMuscles>)>, Fail> {
     let Some(file) = scenario_model(name, bytes)? else { return Ok(None) };
     let key = format!("{name}: [model] muscles");
-    let asked = (Some(file.muscles), key.as_str());
-    let (opened, muscles, _) = open_with_muscles(&model_args(scenario, name, &file)?, asked)?;
+    let uses = file.muscles.or_else(|| file.multiplies_data.then_some(MuscleUse::Off));
+    let args = model_args(scenario, name, &file)?;
+    let (opened, muscles) = open_for_scenario(&args, (uses, key.as_str()))?;
+    if file.muscles.is_none() && file.multiplies_data && opened.default_muscle_use() != MuscleUse::Off {
+        let why =
+            "[strength] and [passive] spread multiply the built-in data, so that the model's muscles give nothing";
+        print_note("note", why);
+    }
     let opened = opened.with_fatigue(&file.fatigue);
     if opened.model.coordinates().iter().all(|coordinate| coordinate.groups.is_none()) {
         let unknown = "no strength of its joints is known: their load, fatigue and effort are unknown, not 0";

@@ -1,4 +1,4 @@
-//! Runs scenarios of a model whose muscles give strength, and compares every sample with the muscles in its posture.
+//! Runs scenarios of a model whose muscles give strength and passive torque, and compares every sample with the muscles in its posture.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use contrapposto::joint_torques::{JointMuscles, JointTorques, Quantities, active_torque, relative_load};
 use contrapposto::model::{Model, Side};
+use contrapposto::passive::PassiveLaw;
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{Run, Scenario};
 use contrapposto_formats::read_run;
@@ -40,6 +41,13 @@ fn arm() -> String {
     )
 }
 
+/// The same with a bushing about the elbow, so that its passive torque falls with the angle.
+fn sprung_arm() -> String {
+    let bushing = "<BushingForce name=\"capsule\"><socket_frame1>/ground</socket_frame1><socket_frame2>/bodyset/b</socket_frame2>
+        <rotational_stiffness>0 0 3</rotational_stiffness><translational_stiffness>0 0 0</translational_stiffness></BushingForce>";
+    arm().replace("<ForceSet><objects>", &format!("<ForceSet><objects>{bushing}"))
+}
+
 const TIRED: &str = r#"
 format = 1
 [model]
@@ -58,29 +66,44 @@ start = { elbow_flex_r = { positive = 0.7 } }
 duration_s = 20
 "#;
 
-/// The body of a file with the strength of its muscles, and these.
-fn opened(bytes: &[u8]) -> (Model, JointMuscles) {
+/// The body of a file whose muscles are used, and the same with the built-in data alone.
+fn opened(bytes: &[u8], uses: MuscleUse) -> [SourcedModel; 2] {
     let no_includes = &mut |_: &str| Err("none".to_owned());
     let mut opened = SourcedModel::read("arm.osim", bytes, None, no_includes).unwrap();
     let library = opened.clone().fill(&Person::default()).unwrap();
-    assert!(opened.use_muscles(MuscleUse::Strength));
-    let mut opened = opened.fill(&Person::default()).unwrap();
-    let (muscles, _) = opened.joint_muscles(&library);
-    (opened.model, muscles.unwrap())
+    assert!(opened.use_muscles(uses));
+    [opened.fill(&Person::default()).unwrap(), library]
 }
 
-fn scenario(bytes: &[u8], text: &str) -> Scenario {
-    let (model, muscles) = opened(bytes);
-    let mut scenario = read_run("tired.toml", text.as_bytes(), Some(model)).unwrap().scenario;
-    scenario.muscles = Some(muscles);
-    scenario
+/// The scenario, and the notes about it.
+fn scenario(bytes: &[u8], text: &str, uses: MuscleUse) -> (Scenario, Vec<String>) {
+    let [mut model, library] = opened(bytes, uses);
+    let (muscles, _) = model.scenario_muscles(&library).unwrap();
+    let mut run = read_run("tired.toml", text.as_bytes(), Some(model.model)).unwrap();
+    run.notes.clear();
+    run.take_muscles(muscles);
+    (run.scenario, run.notes)
 }
 
-/// Carries out a run and compares each sample with the muscles in its posture, as `torques --muscles strength` takes them. Gives the
-/// number of samples, the largest difference of a relative load, and by how much the strength of a group that works changes in the run.
-fn compare(scenario: &Scenario) -> (usize, f64, f64) {
-    let mut posed = scenario.model.clone();
-    let mut body = JointTorques::new(&posed).with_muscles(scenario.muscles.clone());
+/// The body as `torques --muscles` takes it: the muscles are no laws of it. Joints that the scenario leaves to a curve have that here, too.
+fn body_of_torques(scenario: &Scenario, bytes: &[u8], uses: MuscleUse) -> (Model, JointMuscles) {
+    let [mut opened, library] = opened(bytes, uses);
+    let mut muscles = opened.joint_muscles(&library).0.unwrap();
+    let mut model = opened.model;
+    let laws = scenario.model.coordinates().iter().map(|coordinate| coordinate.passive.clone()).enumerate();
+    let left = |(i, law): &(usize, Option<PassiveLaw>)| {
+        model.coordinates()[*i].passive.is_none() && !matches!(law, Some(PassiveLaw::Slice(_)))
+    };
+    let laws = laws.filter(left).collect();
+    muscles.leave_passive(&mut model, laws);
+    (model, muscles)
+}
+
+/// Carries out a run and compares each sample with the muscles in its posture, as `torques --muscles` takes them. Gives the number of
+/// samples, the largest difference of a relative load or a passive torque, and by how much the strength of a group that works changes.
+fn compare(scenario: &Scenario, bytes: &[u8], uses: MuscleUse) -> (usize, f64, f64) {
+    let (mut posed, muscles) = body_of_torques(scenario, bytes, uses);
+    let mut body = JointTorques::new(&posed).with_muscles(Some(muscles));
     let (mut samples, mut worst) = (0, 0f64);
     let mut spans = vec![(f64::INFINITY, 0f64); 2 * posed.coordinates().len()];
     let mut run = Run::new(scenario).unwrap();
@@ -90,9 +113,8 @@ fn compare(scenario: &Scenario) -> (usize, f64, f64) {
         for (i, coordinate) in posed.coordinates().iter().enumerate() {
             let active = active_torque(sample.external[i], sample.passive[i]);
             assert!((active - sample.active[i]).abs() < 1e-9, "{}", coordinate.name);
-            if coordinate.rate.is_none() {
-                continue;
-            }
+            let Some(rate) = coordinate.rate else { continue };
+            worst = worst.max((body.passive_torque().about_axes()[rate] - sample.passive[i]).abs());
             let load = relative_load(coordinate, body.angles()[i], active);
             worst = worst.max((load - sample.load[i]).abs() / (1.0 + load));
             if let (Some(groups), true) = (&coordinate.groups, load > 0.05) {
@@ -109,17 +131,68 @@ fn compare(scenario: &Scenario) -> (usize, f64, f64) {
 
 #[test]
 fn every_sample_of_a_run_is_judged_by_the_strength_of_the_muscles_in_its_posture() {
-    let scenario = scenario(arm().as_bytes(), TIRED);
-    let (samples, worst, change) = compare(&scenario);
+    let (scenario, _) = scenario(arm().as_bytes(), TIRED, MuscleUse::Strength);
+    let (samples, worst, change) = compare(&scenario, arm().as_bytes(), MuscleUse::Strength);
     println!("{samples} samples, loads differ by {worst:.1e}, strength changes by {:.0} %", 100.0 * change);
     assert!(samples > 100 && worst < 1e-9, "{worst}");
     assert!(change > 0.05, "the elbow moves, so that the strength changes: {change}");
 }
 
 #[test]
+fn a_joint_finds_relief_on_the_passive_torque_of_its_muscles() {
+    for uses in [MuscleUse::Passive, MuscleUse::Both] {
+        let (scenario, notes) = scenario(sprung_arm().as_bytes(), TIRED, uses);
+        assert!(notes.iter().all(|note| note.contains("are levelled")), "{notes:?}");
+        let elbow = &scenario.model.coordinates()[0];
+        assert!(matches!(elbow.passive, Some(PassiveLaw::Slice(_))), "{:?}", elbow.passive);
+        let (samples, worst, _) = compare(&scenario, sprung_arm().as_bytes(), uses);
+        println!("{uses:?}: {samples} samples, torques and loads differ by {worst:.1e}");
+        assert!(samples > 100 && worst < 1e-9, "{worst}");
+        let mut run = Run::new(&scenario).unwrap();
+        let (mut first, mut last) = (None, (0.0, 0.0));
+        while let Some(sample) = run.next_sample().unwrap() {
+            last = (sample.posture[0], sample.active[0].abs());
+            first.get_or_insert(last);
+        }
+        let first = first.unwrap();
+        assert!(
+            (last.0 - first.0).abs() > 0.1 && last.1 < 0.5 * first.1,
+            "the elbow goes where its muscles carry: {first:?} {last:?}"
+        );
+    }
+}
+
+#[test]
+fn a_curve_that_the_scenario_gives_a_joint_is_not_added_to_its_muscles() {
+    let curve = "\n[passive]\nelbow_flex_r = { table_deg_nm = [[0, 13], [60, 0.5], [138, -10]] }\n";
+    let (scenario, notes) = scenario(sprung_arm().as_bytes(), &format!("{TIRED}{curve}"), MuscleUse::Both);
+    assert!(matches!(scenario.model.coordinates()[0].passive, Some(PassiveLaw::Curve(_))));
+    assert!(
+        notes[0].contains("muscles are not added to the passive torque that the scenario gives `elbow_flex_r`"),
+        "{notes:?}"
+    );
+    assert!(compare(&scenario, sprung_arm().as_bytes(), MuscleUse::Both).1 < 1e-9);
+}
+
+#[test]
+fn where_the_passive_torque_of_muscles_rises_the_built_in_one_stands_for_it_and_a_note_says_so() {
+    // A muscle of short fibres that the elbow stretches and lets go of again.
+    let rising = arm().replace("900", "9000").replace("0.28<", "0.2<").replace("0.2</opt", "0.12</opt");
+    let (scenario, notes) = scenario(rising.as_bytes(), TIRED, MuscleUse::Both);
+    assert!(matches!(scenario.model.coordinates()[0].passive, Some(PassiveLaw::Curve(_))), "{notes:?}");
+    assert!(notes[0].contains("that of the muscles rises about `elbow_flex_r` by"), "{notes:?}");
+    assert!(notes[0].contains("`elbow_flex_r` have the built-in passive torque"), "{notes:?}");
+    assert!(compare(&scenario, rising.as_bytes(), MuscleUse::Both).1 < 1e-9);
+}
+
+#[test]
 fn a_run_with_muscles_that_is_resumed_gives_the_same_samples() {
+    [MuscleUse::Strength, MuscleUse::Both].into_iter().for_each(resumes);
+}
+
+fn resumes(uses: MuscleUse) {
     let text = TIRED.replace("duration_s = 20", "duration_s = 45");
-    let scenario = scenario(arm().as_bytes(), &text);
+    let (scenario, _) = scenario(sprung_arm().as_bytes(), &text, uses);
     let samples = |run: &mut Run<'_>| {
         let mut all = vec![];
         while let Some(sample) = run.next_sample().unwrap() {
@@ -143,9 +216,10 @@ const CROUCH: &str = include_str!("../../../scenarios/published/crouch-gait2392.
 #[ignore = "needs ../shared: a published OpenSim model, to crouch on its muscles"]
 fn a_crouch_on_the_muscles_of_gait2392_is_judged_by_them_ten_times_faster_than_it_lasts() {
     let bytes = std::fs::read(shared("models/opensim/gait2392_thelen2003muscle.osim")).unwrap();
-    let scenario = scenario(&bytes, CROUCH);
-    // The body is at rest at once, in a posture whose strength is not that of the default one in the model.
-    let (samples, worst, _) = compare(&scenario);
+    let (scenario, notes) = scenario(&bytes, CROUCH, MuscleUse::Both);
+    let hip = scenario.model.coordinate("hip_flexion_r").unwrap();
+    assert!(matches!(scenario.model.coordinates()[hip].passive, Some(PassiveLaw::Slice(_))), "{notes:?}");
+    let (samples, worst, _) = compare(&scenario, &bytes, MuscleUse::Both);
     assert!(samples > 100 && worst < 1e-9, "{samples} {worst}");
     let start = Instant::now();
     let mut run = Run::new(&scenario).unwrap();

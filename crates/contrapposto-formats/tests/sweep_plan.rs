@@ -197,4 +197,11 @@ fn a_spread_of_strength_beside_the_strength_of_muscles_is_refused() {
     let error = message(&scenario_model("a.toml", text.as_bytes()).unwrap_err());
     assert!(error.0 == 5 && error.2.contains("not that of muscles; leave [strength] out"), "{error:?}");
     assert!(scenario_model("a.toml", text.replace("\"strength\"", "\"off\"").as_bytes()).is_ok());
+    assert!(scenario_model("a.toml", text.replace("\"strength\"", "\"passive\"").as_bytes()).is_ok());
+    let text = "format = 1\n[model]\nfile = \"a.osim\"\nmuscles = \"both\"\n[passive]\nspread = 2\n";
+    let error = message(&scenario_model("a.toml", text.as_bytes()).unwrap_err());
+    assert!(error.2.contains("not that of muscles; leave [passive] spread out"), "{error:?}");
+    // Without the key the data are multiplied, and muscles give nothing.
+    let file = scenario_model("a.toml", text.replace("muscles = \"both\"\n", "").as_bytes()).unwrap().unwrap();
+    assert!(file.muscles.is_none() && file.multiplies_data);
 }

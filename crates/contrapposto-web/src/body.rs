@@ -196,9 +196,9 @@ pub(crate) fn place(placement: &Isometry3<f64>) -> [f64; 7] {
 /// The model of the file that a scenario names, read as the program reads it; `None` for the built-in adult.
 fn model_file(files: &BTreeMap<String, String>, text: &str) -> Result<Option<Model>, Refusal> {
     let Some(file) = scenario_model(NAME, text.as_bytes())? else { return Ok(None) };
-    let ModelFile { file: name, overlay, root, strength, fatigue, person, muscles } = &file;
-    if *muscles != MuscleUse::Off {
-        let why = "the page has no strength of muscles; leave `muscles` out of [model], or use the program";
+    let ModelFile { file: name, overlay, root, strength, fatigue, person, muscles, .. } = &file;
+    if muscles.is_some_and(|uses| uses != MuscleUse::Off) {
+        let why = "the page uses no muscles of model files; write muscles = \"off\", or use the program";
         return Err(Refusal(why.to_owned()));
     }
     let mut include = |name: &str| files.get(name).map(|text| text.clone().into_bytes()).ok_or_else(|| absent(name));

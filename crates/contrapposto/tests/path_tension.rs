@@ -7,7 +7,7 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::math::{Function, Spline};
 use contrapposto::model::{Adult, Model, Placement, adult};
 use contrapposto::muscle::{
-    FiberLaw, FiberState, Ligament, LigamentLaw, Location, MovingPoint, Muscle, MuscleSpec, Musculature, Path,
+    Bushing, FiberLaw, FiberState, Ligament, LigamentLaw, Location, MovingPoint, Muscle, MuscleSpec, Musculature, Path,
     PathGeometry, PathPoint, PathRule, PathWrap, Paths, Quadrant, Tension, Thelen2003, WrapMethod, WrapObject,
     WrapShape, passive_tensions,
 };
@@ -330,4 +330,136 @@ fn passive_torque_of_springs_in_use_is_minus_the_derivative_of_their_energy_abou
     }
     println!("greatest torque {greatest} N m; {joints} moments of three-axis joints above 1 N m");
     assert!(greatest > 10.0 && joints > 20);
+}
+
+/// The adult, the muscles' passive torque of whose right arm is a law near its posture, with the coordinates of these laws; springs and a bushing.
+fn with_laws(bushing: f64) -> (Model, JointMuscles, Vec<usize>) {
+    let model = adult(&Adult::default()).unwrap();
+    let law = LigamentLaw::Spring { slack_length: 0.1, stiffness: 1000.0 };
+    let ligaments = (1..6).map(|path| Ligament { name: format!("spring {path}"), path, law: law.clone() }).collect();
+    let [upper, lower] = ["humerus_r", "ulna_r"].map(|name| segment(&model, name));
+    let bushing = Bushing {
+        name: "elbow".to_owned(),
+        segments: [upper, lower],
+        frames: [Placement::identity(); 2],
+        rotational_stiffness: bushing * V::new(1.0, 2.0, 3.0),
+        translational_stiffness: V::new(10.0, 20.0, 30.0),
+    };
+    let muscles = Musculature { paths: arm(&model), ligaments, bushings: vec![bushing], ..Musculature::default() };
+    let names = ["arm_flex_r", "arm_add_r", "arm_rot_r", "elbow_flex_r", "pro_sup_r"];
+    let coordinates = names.map(|name| model.coordinate(name).unwrap());
+    assert!(model.three_axis_joint_of(coordinates[0]).is_some() && model.three_axis_joint_of(coordinates[3]).is_none());
+    let rates = coordinates.map(|i| model.coordinates()[i].rate.unwrap());
+    let ranges = coordinates.map(|i| (i, model.coordinates()[i].range));
+    let muscles = JointMuscles::new(&model, muscles, &rates, &[]).with_laws(&model, &ranges).unwrap();
+    (model, muscles, coordinates.to_vec())
+}
+
+/// Anywhere inside the ranges, those of angles about axes, too: beyond them laws no longer follow the angle.
+fn inside_about_axes(rng: &mut Pcg64, model: &Model) -> Posture {
+    loop {
+        let posture = inside(rng, model);
+        let all_inside = model.three_axis_joints().iter().all(|joint| {
+            let angles = joint.orientation(posture.values()).angles.values;
+            joint.coordinates.iter().zip(angles).all(|(i, angle)| {
+                let (low, high) = model.coordinates()[*i].range;
+                (low + 0.01..high - 0.01).contains(&angle)
+            })
+        });
+        if all_inside {
+            return posture;
+        }
+    }
+}
+
+/// Passive torque of the laws of `model` about axes, and of `muscles`, at the coordinates with laws.
+fn by_law_and_by_muscles(
+    model: &Model,
+    muscles: &mut JointMuscles,
+    coordinates: &[usize],
+    posture: &Posture,
+) -> [Vec<f64>; 2] {
+    let mut body = JointTorques::new(model);
+    body.update(model, posture, &[], Quantities::TORQUES).unwrap();
+    muscles.update(model, posture, body.kinematics()).unwrap();
+    let of = |torques: &[f64]| coordinates.iter().map(|i| torques[model.coordinates()[*i].rate.unwrap()]).collect();
+    [of(body.passive_torque().about_axes()), of(muscles.passive_torques()[1])]
+}
+
+#[test]
+fn laws_near_a_posture_have_the_torque_of_the_muscles_there_and_its_whole_gradient() {
+    let mut rng = random();
+    let (mut model, mut muscles, coordinates) = with_laws(1.0);
+    let (mut greatest, mut off_torque, mut off_slope, mut greatest_slope) = (0f64, 0f64, 0f64, 0f64);
+    for _ in 0..12 {
+        let posture = inside_about_axes(&mut rng, &model);
+        muscles.pose(&mut model, &posture).unwrap();
+        let change = muscles.pose(&mut model, &posture).unwrap();
+        assert!(change < 1e-9, "the second time nothing changes: {change}");
+        let [law, exact] = by_law_and_by_muscles(&model, &mut muscles, &coordinates, &posture);
+        for (law, exact) in law.iter().zip(&exact) {
+            off_torque = off_torque.max((law - exact).abs());
+            greatest = greatest.max(exact.abs());
+        }
+        // Any direction: the laws must follow every coordinate.
+        for _ in 0..6 {
+            let mut step = vec![0.0; model.rates().len()];
+            step.iter_mut().for_each(|step| *step = rng.random_range(-1.0..1.0));
+            let mut slopes = |h: f64| {
+                let at = [h, -h].map(|h| {
+                    let mut moved = posture.clone();
+                    moved.displace(&model, &step.iter().map(|step| h * step).collect::<Vec<_>>());
+                    by_law_and_by_muscles(&model, &mut muscles, &coordinates, &moved)
+                });
+                let along = |by: usize, i: usize| (at[0][by][i] - at[1][by][i]) / (2.0 * h);
+                (0..coordinates.len()).map(|i| (along(0, i), along(1, i))).collect::<Vec<_>>()
+            };
+            for ((near_law, near), (far_law, far)) in slopes(1e-4).into_iter().zip(slopes(2e-4)) {
+                let (of_law, of_muscles) = (near_law + (near_law - far_law) / 3.0, near + (near - far) / 3.0);
+                off_slope = off_slope.max((of_law - of_muscles).abs());
+                greatest_slope = greatest_slope.max(of_muscles.abs());
+            }
+        }
+    }
+    println!(
+        "torque up to {greatest:.1} N m, off {off_torque:.1e}; slope up to {greatest_slope:.0} N m/rad, off {off_slope:.1e}"
+    );
+    assert!(greatest > 5.0 && off_torque < 1e-9, "{off_torque}");
+    assert!(greatest_slope > 20.0 && off_slope < 1e-4, "{off_slope}");
+}
+
+#[test]
+fn tables_of_laws_are_the_torques_of_the_muscles_along_the_joint() {
+    // A bushing so stiff that the torque of all falls.
+    let (mut model, mut muscles, coordinates) = with_laws(60.0);
+    let elbow = model.coordinate("elbow_flex_r").unwrap();
+    let (low, high) = model.coordinates()[elbow].range;
+    let row = |k: i32| low + (high - low) * f64::from(k) / 24.0;
+    // Neighbours at multiples of two degrees are held as they are.
+    let mut posture = model.default_posture();
+    let rotation = |i: &usize| model.coordinates()[*i].rate.is_some();
+    (0..posture.values().len()).filter(rotation).for_each(|i| posture.values_mut()[i] = 0.0);
+    posture.values_mut()[elbow] = row(9);
+    muscles.pose(&mut model, &posture).unwrap();
+    let rise = muscles.rises(&model, &posture).into_iter().find(|rise| rise.coordinate == elbow).unwrap();
+    let mut body = JointTorques::new(&model);
+    body.update(&model, &posture, &[], Quantities::TORQUES).unwrap();
+    let curve =
+        body.passive_torque().curve_about_axis(&model, body.kinematics(), elbow, (low, high)).unwrap().into_owned();
+    let place = coordinates.iter().position(|i| *i == elbow).unwrap();
+    let mut compared = 0;
+    for k in 0..25 {
+        let mut moved = posture.clone();
+        moved.values_mut()[elbow] = row(k);
+        let exact = by_law_and_by_muscles(&model, &mut muscles, &coordinates, &moved)[1][place];
+        // Rows after a rise are levelled.
+        assert!(
+            (curve.torque(row(k)) - exact).abs() < 1e-9 + rise.rise,
+            "row {k}: {} for {exact}",
+            curve.torque(row(k))
+        );
+        compared += usize::from((curve.torque(row(k)) - exact).abs() < 1e-9);
+    }
+    println!("{compared} of 25 rows are exact; levelled {rise:?}");
+    assert!(compared >= 12 && rise.span > 1.0, "{compared} {rise:?}");
 }

@@ -121,8 +121,8 @@ pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchErr
 /// A warning that the strength of muscles changes by this share still.
 pub(crate) fn unsettled(change: f64) -> String {
     format!(
-        "the strength of the muscles has not settled in {MOST_STRENGTH_ROUNDS} rounds: in the posture that was found, that of a \
-         group differs by {} from the one by which it was found",
+        "strength and passive torque of the muscles have not settled in {MOST_STRENGTH_ROUNDS} rounds: in the posture that was found, one of \
+         them differs by {} of a strength from that by which it was found",
         percent(change)
     )
 }

@@ -67,7 +67,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
 pub(crate) fn read(file: ScenarioFile) -> Result<RunScenario, Fail> {
     let ScenarioFile { name, bytes, model, muscles } = file;
     let mut run = read_run(&name, &bytes, model)?;
-    run.scenario.muscles = muscles;
+    run.take_muscles(muscles);
     Ok(run)
 }
 

@@ -27,8 +27,10 @@ pub struct ModelFile {
     pub strength: bool,
     /// Fatigue law of its muscle groups, for [`SourcedModel::with_fatigue`].
     pub fatigue: FatigueChoice,
-    /// Use of the file's muscles: strength or nothing.
-    pub muscles: MuscleUse,
+    /// Use of the file's muscles; the model's default ([`SourcedModel::default_muscle_use`]) where the scenario says none.
+    pub muscles: Option<MuscleUse>,
+    /// Whether the scenario multiplies strength or passive torque of the data, so that by default muscles give nothing.
+    pub multiplies_data: bool,
     /// The person whom it stands for.
     pub person: Person,
 }
@@ -78,31 +80,34 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
     let fatigue = fatigue_choice(at, scenario)?;
     let person = text.person.as_ref().map_or(Ok(Person::default()), |text| person(at, text))?;
     let strength = text.file_strength.unwrap_or(true);
-    let muscles = text.muscles.map_or(Ok(MuscleUse::Off), |text| muscles(at, text))?;
-    if muscles != MuscleUse::Off && at.holds(&["strength"]) {
-        let help = Some("leave [strength] out, or write muscles = \"off\"".to_owned());
-        return Err(at.key_error(
-            &["strength"],
-            "[strength] multiplies the strength of the data, not that of muscles",
-            help,
-        ));
-    }
-    Ok(Some(ModelFile { file: file.clone(), overlay: text.overlay.clone(), root, strength, fatigue, muscles, person }))
+    let (muscles, multiplies_data) = muscles(at, scenario)?;
+    let (file, overlay) = (file.clone(), text.overlay.clone());
+    Ok(Some(ModelFile { file, overlay, root, strength, fatigue, muscles, multiplies_data, person }))
 }
 
-fn muscles(at: &Located, text: MusclesText) -> Result<MuscleUse, InputError> {
-    let word = match text {
-        MusclesText::Off => return Ok(MuscleUse::Off),
-        MusclesText::Strength => return Ok(MuscleUse::Strength),
-        MusclesText::Passive => "passive",
-        MusclesText::Both => "both",
-    };
-    let message = format!(
-        "muscles is \"{word}\": a scenario has no passive torque of muscles, since relief needs a curve of each joint"
-    );
-    let help =
-        "write \"strength\" or \"off\"; `contrapposto torques` and `assess` take passive torque from muscles, too";
-    Err(at.error(&["model", "muscles"], message, Some(help.to_owned())))
+/// The use of muscles that a scenario asks for, and whether it multiplies the strength or the passive torque of the data.
+fn muscles(at: &Located, scenario: &ScenarioText) -> Result<(Option<MuscleUse>, bool), InputError> {
+    let asked = scenario.model.muscles.map(|text| match text {
+        MusclesText::Off => MuscleUse::Off,
+        MusclesText::Strength => MuscleUse::Strength,
+        MusclesText::Passive => MuscleUse::Passive,
+        MusclesText::Both => MuscleUse::Both,
+    });
+    let spread = scenario.passive.spread.is_some();
+    let (of_strength, of_passive) = asked.map_or((false, false), |uses| (uses.gives_strength(), uses.gives_passive()));
+    for (key, refused, quantity) in [
+        (&["strength"][..], of_strength && at.holds(&["strength"]), "strength"),
+        (&["passive", "spread"][..], of_passive && spread, "passive torque"),
+    ] {
+        if refused {
+            let name = format!("[{}] {}", key[0], key[1..].join(" "));
+            let name = name.trim_end();
+            let help = Some(format!("leave {name} out, or write muscles = \"off\""));
+            let message = format!("{name} multiplies the {quantity} of the data, not that of muscles");
+            return Err(at.key_error(key, message, help));
+        }
+    }
+    Ok((asked, at.holds(&["strength"]) || spread))
 }
 
 fn person(at: &Located, text: &PersonText) -> Result<Person, InputError> {

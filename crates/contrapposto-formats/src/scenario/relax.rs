@@ -14,6 +14,7 @@ use super::setup::{Setup, present};
 use super::text::ScenarioText;
 use crate::input_error::InputError;
 use crate::thing::Thing;
+use crate::tissue::ScenarioMuscles;
 use crate::toml_file::{Located, read_toml};
 
 /// A body whose postures of least effort are sought.
@@ -23,7 +24,7 @@ pub struct RelaxScenario {
     pub title: String,
     /// The body.
     pub model: Model,
-    /// Muscles of its file that give its groups strength: [`RelaxScenario::take_muscles`].
+    /// Muscles of its file that give its joints strength and passive torque: [`RelaxScenario::take_muscles`].
     pub muscles: Option<JointMuscles>,
     /// Posture at the start, inside all ranges.
     pub start: Posture,
@@ -69,12 +70,15 @@ impl RelaxScenario {
     }
 
     /// Takes the muscles of the scenario's model, in the posture of the start.
-    pub fn take_muscles(&mut self, muscles: Option<JointMuscles>) {
-        self.muscles = muscles;
-        self.take_strength(&self.start.clone());
+    pub fn take_muscles(&mut self, muscles: Option<ScenarioMuscles>) {
+        let Some(muscles) = muscles else { return };
+        let (muscles, notes) = muscles.settle(&mut self.model, &self.start);
+        self.notes.extend(notes);
+        self.muscles = Some(muscles);
     }
 
-    /// Gives the body the strength of its muscles in `posture`. Returns the greatest change of one as a share; 0 without muscles.
+    /// Gives the body strength and passive torque of its muscles in `posture`. Returns the greatest change of one as a share
+    /// ([`JointMuscles::pose`]); 0 without muscles.
     pub fn take_strength(&mut self, posture: &Posture) -> f64 {
         // A posture of the body fits it.
         self.muscles.as_mut().and_then(|muscles| muscles.pose(&mut self.model, posture).ok()).unwrap_or(0.0)

@@ -15,6 +15,7 @@ use super::setup::Setup;
 use super::text::{ReliefText, RunText, ScenarioText, StrategyText, TablesText};
 use crate::input_error::InputError;
 use crate::thing::Thing;
+use crate::tissue::ScenarioMuscles;
 use crate::toml_file::{Located, read_toml, shown};
 
 /// A scenario of a run, with the parts of its file that the experiment itself does not need.
@@ -26,6 +27,16 @@ pub struct RunScenario {
     pub things: Vec<Thing>,
     /// Changes and additions of the reader, a sentence each.
     pub notes: Vec<String>,
+}
+
+impl RunScenario {
+    /// Takes the muscles of the scenario's model, in the posture of the start.
+    pub fn take_muscles(&mut self, muscles: Option<ScenarioMuscles>) {
+        let Some(muscles) = muscles else { return };
+        let (muscles, notes) = muscles.settle(&mut self.scenario.model, &self.scenario.start);
+        self.notes.extend(notes);
+        self.scenario.muscles = Some(muscles);
+    }
 }
 
 /// Reads a scenario of a run. `name` is the file's name for messages; `model` is the model of the file that

@@ -144,7 +144,7 @@ pub(crate) struct ModelText {
     pub(crate) root: Option<RootText>,
     /// Whether the joints of a URDF or MJCF file have the strength that it gives to their motors; true when left out.
     pub(crate) file_strength: Option<bool>,
-    /// The use of the muscles of a model file; `off` when left out.
+    /// The use of the muscles of a model file; when left out `both` for an OpenSim file with muscles, else `off`.
     pub(crate) muscles: Option<MusclesText>,
     /// The person whom a model file stands for: size of the built-in strength and passive torque.
     pub(crate) person: Option<PersonText>,
@@ -170,9 +170,9 @@ pub(crate) enum MusclesText {
     Off,
     /// Strength of the joints that they cross, in each posture.
     Strength,
-    /// Refused in scenarios.
+    /// Passive torque of the joints that they cross, in each posture.
     Passive,
-    /// Refused in scenarios.
+    /// Strength and passive torque.
     Both,
 }
 

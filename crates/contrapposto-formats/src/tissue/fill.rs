@@ -260,7 +260,9 @@ fn law_for(
             Ok(PassiveLaw::Coupled(Coupled { law: coupled.law.clone(), neighbours }))
         }
         PassiveLaw::Sum(_) if sign > 0.0 => Ok(law.clone()),
-        PassiveLaw::Sum(_) => Err("it turns the other way round, and its law cannot be mirrored".to_owned()),
+        PassiveLaw::Sum(_) | PassiveLaw::Slice(_) => {
+            Err("it turns the other way round, and its law cannot be mirrored".to_owned())
+        }
     }
 }
 

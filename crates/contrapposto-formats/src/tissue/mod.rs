@@ -11,11 +11,13 @@ mod muscles;
 mod origin;
 mod person;
 mod plausible;
+mod scenario_muscles;
 
 pub use fatigue::{FatigueChoice, FatigueParametersText, FatigueSex, fatigue_notes};
 pub use muscles::MuscleUse;
 pub use origin::{Origin, Origins};
 pub use person::Person;
+pub use scenario_muscles::ScenarioMuscles;
 
 use contrapposto::model::{Adult, AdultError, Model, Sex, adult};
 use contrapposto::muscle::Musculature;

@@ -29,11 +29,13 @@ pub enum MuscleUse {
 }
 
 impl MuscleUse {
-    fn gives_strength(self) -> bool {
+    /// Whether they give strength.
+    pub fn gives_strength(self) -> bool {
         matches!(self, Self::Strength | Self::Both)
     }
 
-    fn gives_passive(self) -> bool {
+    /// Whether they give passive torque.
+    pub fn gives_passive(self) -> bool {
         matches!(self, Self::Passive | Self::Both)
     }
 }

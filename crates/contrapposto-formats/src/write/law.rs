@@ -40,7 +40,7 @@ pub(super) fn summands(law: &PassiveLaw) -> Option<Vec<Part<'_>>> {
             all.extend(added.filter(|text| !text.is_empty()).map(Part::Formula));
             Some(all)
         }
-        PassiveLaw::Coupled(_) => None,
+        PassiveLaw::Coupled(_) | PassiveLaw::Slice(_) => None,
         PassiveLaw::Sum(terms) => terms.iter().map(summand).collect(),
     }
 }

@@ -66,7 +66,7 @@ fn add_law(
         }
     } else if passive.follows(own) {
         let at = passive.angles()[own];
-        let slope = |angle: f64| law.own_slope(angle);
+        let slope = |angle: f64| law.own_slope(own, angle);
         let change = slope(at + PASSIVE_DIFFERENCE_STEP) - slope(at - PASSIVE_DIFFERENCE_STEP);
         add_products(model, body, (own, own), weight * change / (2.0 * PASSIVE_DIFFERENCE_STEP), to);
     }

@@ -8,6 +8,7 @@ use crate::contact::{ContactForces, rates_that_move};
 use crate::joint_torques::JointTorquesError;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, reduced};
+use crate::passive::PassiveLaw;
 use crate::posture::Posture;
 use crate::tasks::PriorityLevel;
 use crate::tasks::{Effort, Task};
@@ -23,6 +24,23 @@ pub(crate) struct ReducedProblem {
     limits: PriorityLevel,
     above: Vec<PriorityLevel>,
     contact: ContactForces,
+}
+
+/// Holds the angles of fixed three-axis joints in the laws of muscles: the reduced model does not know these joints.
+fn hold_slices(model: &Model, values: &[f64], reduced: &mut Model) {
+    for joint in model.three_axis_joints() {
+        if reduced.three_axis_joint_of(joint.coordinates[0]).is_some() {
+            continue;
+        }
+        for (i, angle) in joint.coordinates.into_iter().zip(joint.orientation(values).angles.values) {
+            let (low, high) = model.coordinates()[i].range;
+            for coordinate in &mut reduced.coordinates {
+                if let Some(PassiveLaw::Slice(slice)) = &mut coordinate.passive {
+                    slice.hold(i, angle.max(low).min(high));
+                }
+            }
+        }
+    }
 }
 
 impl ReducedProblem {
@@ -46,7 +64,8 @@ impl ReducedProblem {
         free().copied().chain(coordinates.iter().filter_map(rate)).for_each(|rate| moves[rate] = true);
         let mut kinematics = Kinematics::new(model);
         kinematics.update(model, posture)?;
-        let (reduced, places) = reduced(model, &kinematics.rotations, &kinematics.origins, &moves);
+        let (mut reduced, places) = reduced(model, &kinematics.rotations, &kinematics.origins, &moves);
+        hold_slices(model, kinematics.values(), &mut reduced);
         // The regions of free supports: nothing here moves a support.
         let moves = |task: &&Task| !matches!(task, Task::Bounds(_));
         let limits = problem.limits.tasks.iter().filter(moves).cloned().collect();

@@ -20,19 +20,22 @@
 mod about_axes;
 mod group_load;
 mod hazard;
+mod muscle_laws;
+mod muscle_tables;
 mod muscles;
 
 pub use about_axes::AboutAxes;
 pub use group_load::{GroupLoad, relative_load};
 pub use hazard::{Hazard, carried};
 pub(crate) use hazard::{judged_parts, posture_in_words};
-pub use muscles::{JointMuscles, LEAST_MUSCLE_STRENGTH, RESTING_ACTIVATION};
+pub use muscle_laws::{MOST_LEVELLED, TorqueRise};
+pub use muscles::{JointMuscles, JointMusclesError, LEAST_MUSCLE_STRENGTH, RESTING_ACTIVATION};
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};
 use crate::model::Model;
 use crate::posture::{Posture, PostureError};
-use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, PassiveTorqueError};
+use crate::statics::{ExternalTorque, Gradient, Load, LoadError, PassiveTorque, PassiveTorqueError, PathTensionError};
 
 /// Active torque (Eq. 1), N m: what muscles give for external and passive torque to be in equilibrium.
 #[inline]
@@ -97,6 +100,9 @@ pub enum JointTorquesError {
     /// A passive law gives no torque in the posture.
     #[error(transparent)]
     Passive(#[from] PassiveTorqueError),
+    /// Muscles have no torque, or no gradient of it.
+    #[error(transparent)]
+    Muscles(#[from] PathTensionError),
 }
 
 /// Kinematics and torques of a posture. Depends on posture, loads and contact forces; filled by [`JointTorques::update`] or

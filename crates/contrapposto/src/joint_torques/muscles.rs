@@ -12,18 +12,24 @@
 //! hold the others, so that two-joint muscles pull as they can. It is isometric: fibres stand still, whatever the motion. All arms
 //! are taken twice: about coordinates, and about the axes of three-axis joints, by the body that has a ball for each.
 
+use super::JointTorquesError;
+use super::muscle_laws::{MuscleLaws, TorqueRise};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
 use crate::muscle::{
     FiberState, Musculature, PathGeometry, PathRule, bushing_torque, passive_fiber_torque, passive_torque, strength,
 };
+use crate::passive::PassiveLaw;
 use crate::posture::{Posture, PostureError};
+use crate::statics::{PassiveTorque, PathTensionError};
 use crate::strength::Strength;
 
 /// Activation of a muscle at rest: the least of OpenSim's muscles.
 pub const RESTING_ACTIVATION: f64 = 0.01;
 /// Least strength that muscles give, N m (N for slides): where none pulls, relative load stays finite (assumed).
 pub const LEAST_MUSCLE_STRENGTH: f64 = 1e-3;
+/// Least strength that changes of passive torque are a share of, N m.
+const LEAST_CHANGE_OF: f64 = 1.0;
 
 /// Passive torque and strength of a body from its muscles. Depend on the posture; filled by [`JointMuscles::update`].
 #[derive(Clone, Debug)]
@@ -44,6 +50,29 @@ pub struct JointMuscles {
     fibers: Vec<f64>,
     sums: Vec<[f64; 2]>,
     scratch: Vec<f64>,
+    /// Passive laws of the coordinates at which passive torque counts, for a body that has them.
+    laws: Option<Box<MuscleLaws>>,
+}
+
+/// The reason for which muscles do not fit a posture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JointMusclesError {
+    /// The posture does not fit the model.
+    #[error(transparent)]
+    Posture(#[from] PostureError),
+    /// The tensions have no gradient.
+    #[error(transparent)]
+    Tension(#[from] PathTensionError),
+}
+
+impl From<JointMusclesError> for JointTorquesError {
+    fn from(error: JointMusclesError) -> Self {
+        match error {
+            JointMusclesError::Posture(error) => Self::Posture(error),
+            JointMusclesError::Tension(error) => Self::Muscles(error),
+        }
+    }
 }
 
 impl JointMuscles {
@@ -63,7 +92,38 @@ impl JointMuscles {
             sums: vec![[0.0; 2]; n],
             scratch: vec![0.0; n],
             muscles,
+            laws: None,
         }
+    }
+
+    /// The same, whose passive torque becomes laws of the body near each posture that it is given ([`JointMuscles::pose`]): of the coordinates
+    /// at which it counts, each with the range over which its table is made, rad.
+    ///
+    /// # Errors
+    /// [`PathTensionError::Tendon`] for a tendon of MuJoCo, whose torque has no known gradient.
+    pub fn with_laws(self, model: &Model, coordinates: &[(usize, (f64, f64))]) -> Result<Self, PathTensionError> {
+        let laws = MuscleLaws::new(model, &self.muscles, coordinates)?;
+        Ok(Self { laws: Some(Box::new(laws)), ..self })
+    }
+
+    /// The rises of the passive torque in the posture of the last [`JointMuscles::pose`], by coordinate with a law.
+    pub fn rises(&mut self, model: &Model, posture: &Posture) -> Vec<TorqueRise> {
+        let mut angles = posture.values().to_vec();
+        for joint in model.three_axis_joints() {
+            let about = joint.orientation(posture.values()).angles.values;
+            joint.coordinates.into_iter().zip(about).for_each(|(i, angle)| angles[i] = angle);
+        }
+        self.laws.as_mut().map_or_else(Vec::new, |laws| laws.rises(model, &angles))
+    }
+
+    /// Leaves the passive torque of coordinates to these laws.
+    pub fn leave_passive(&mut self, model: &mut Model, laws: Vec<(usize, Option<PassiveLaw>)>) {
+        let coordinates: Vec<usize> = laws.iter().map(|(coordinate, _)| *coordinate).collect();
+        for rate in coordinates.iter().filter_map(|&coordinate| model.coordinates[coordinate].rate) {
+            self.passive[rate] = false;
+        }
+        self.laws.iter_mut().for_each(|of_muscles| of_muscles.leave(&coordinates));
+        laws.into_iter().for_each(|(coordinate, law)| model.coordinates[coordinate].passive = law);
     }
 
     /// Whether the muscles give the passive torque of a rate.
@@ -108,15 +168,32 @@ impl JointMuscles {
         self.torques.each_ref().map(Vec::as_slice)
     }
 
-    /// Gives the muscle groups of `model` the strength that they have in `posture`, and returns the greatest change of one, as a share
-    /// of the new strength.
+    /// The body with axes and the paths in it; `kinematics` where it is the body itself.
+    pub(super) fn about_axes<'a>(&'a self, kinematics: &'a Kinematics) -> (&'a Kinematics, &'a PathGeometry) {
+        self.axes.as_ref().map_or((kinematics, &self.geometry), |(balls, geometry)| (balls, geometry))
+    }
+
+    /// The muscles, and the state of each at rest.
+    pub(super) fn at_rest(&self) -> (&Musculature, &[FiberState]) {
+        (&self.muscles, &self.rest)
+    }
+
+    /// Gives the muscle groups of `model` the strength that they have in `posture`, and its coordinates their passive laws near it
+    /// ([`JointMuscles::with_laws`]). Returns the greatest change of a strength, or of a passive torque there, as a share of the strength (of
+    /// 1 N m without one).
     ///
     /// # Errors
-    /// [`PostureError`] when the posture does not fit the model.
-    pub fn pose(&mut self, model: &mut Model, posture: &Posture) -> Result<f64, PostureError> {
+    /// [`JointMusclesError`] when the posture does not fit the model, or a tension is no number to calculate with.
+    pub fn pose(&mut self, model: &mut Model, posture: &Posture) -> Result<f64, JointMusclesError> {
         let mut kinematics = Kinematics::new(model);
         kinematics.update(model, posture)?;
         self.update(model, posture, &kinematics)?;
+        let known = self.known_passive(model, &kinematics);
+        if let Some(mut laws) = self.laws.take() {
+            let written = laws.write(model, posture, self, &kinematics);
+            self.laws = Some(laws);
+            written?;
+        }
         let strengths = |model: &Model| -> Vec<f64> {
             let coordinates = self.strong.iter().filter_map(|&rate| model.rates[rate].coordinate);
             let groups = coordinates.filter_map(|coordinate| model.coordinates[coordinate].groups.as_ref());
@@ -125,7 +202,28 @@ impl JointMuscles {
         let before = strengths(model);
         self.write_strength(model);
         let changes = before.iter().zip(strengths(model)).map(|(before, after)| (before / after - 1.0).abs());
-        Ok(changes.fold(0.0, f64::max))
+        let change = changes.fold(0.0, f64::max);
+        let of_passive = known.into_iter().map(|(rate, known)| {
+            let strength = |coordinate: usize| model.coordinates[coordinate].groups.as_ref();
+            let groups = model.rates[rate].coordinate.and_then(strength);
+            let weaker = groups.map_or(1.0, |groups| groups[0].strength.peak.min(groups[1].strength.peak));
+            (known - self.torques[1][rate]).abs() / weaker.max(LEAST_CHANGE_OF)
+        });
+        Ok(of_passive.fold(change, f64::max))
+    }
+
+    /// Passive torque by the laws that the body has, about axes, N m, by rate with a law.
+    fn known_passive(&self, model: &Model, kinematics: &Kinematics) -> Vec<(usize, f64)> {
+        let coordinates = self.laws.iter().flat_map(|laws| laws.coordinates());
+        let rates: Vec<(usize, usize)> = coordinates.filter_map(|i| Some((i, model.coordinates[i].rate?))).collect();
+        if rates.is_empty() {
+            return vec![];
+        }
+        let mut passive = PassiveTorque::new(model);
+        if passive.update(model, kinematics).is_err() {
+            return vec![];
+        }
+        rates.into_iter().map(|(i, rate)| (rate, passive.law_about_axis(model, i))).collect()
     }
 
     /// Gives the muscle groups of the coordinates at which strength counts the strength of the last update.

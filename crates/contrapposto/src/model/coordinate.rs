@@ -82,7 +82,7 @@ pub struct Coordinate {
 impl Coordinate {
     /// Whether its passive torque is a curve, which relief needs.
     pub fn can_be_relieved(&self) -> bool {
-        matches!(self.passive, Some(PassiveLaw::Curve(_) | PassiveLaw::Coupled(_)))
+        matches!(self.passive, Some(PassiveLaw::Curve(_) | PassiveLaw::Coupled(_) | PassiveLaw::Slice(_)))
     }
 
     /// The falling passive curve that relief can be found on, where the law is one.

@@ -49,3 +49,21 @@ pub struct Musculature {
     /// Springs between frames.
     pub bushings: Vec<Bushing>,
 }
+
+impl Musculature {
+    /// The same without paths that no muscle or ligament has.
+    #[must_use]
+    pub(crate) fn with_used_paths(mut self) -> Self {
+        let mut used = vec![];
+        let mut place = |path: usize| {
+            used.iter().position(|other| *other == path).unwrap_or_else(|| {
+                used.push(path);
+                used.len() - 1
+            })
+        };
+        self.muscles = self.muscles.into_iter().map(|muscle| muscle.on_path(&mut place)).collect();
+        self.ligaments.iter_mut().for_each(|ligament| ligament.path = place(ligament.path));
+        self.paths.paths = used.iter().map(|path| self.paths.paths[*path].clone()).collect();
+        self
+    }
+}

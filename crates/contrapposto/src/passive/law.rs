@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use super::{
     CoordinateLimitForce, DoubleExponential, Exponentials, Form, PassiveCurve, PassiveError, PassiveParameter,
-    RienerEdrich1999,
+    RienerEdrich1999, Slice,
 };
 use crate::math::expression::Expression;
 
@@ -20,6 +20,8 @@ pub enum PassiveLaw {
     Coupled(Coupled),
     /// Several terms that add up.
     Sum(Vec<Term>),
+    /// That of muscles, near one posture.
+    Slice(Slice),
 }
 
 /// A law of hip, knee and ankle angle together.
@@ -73,6 +75,7 @@ impl PassiveLaw {
                 let held = coupled.law.held(angles, mirrored).ok()?;
                 PassiveCurve::new(Form::Exponentials(held), range, None).ok().map(Cow::Owned)
             }
+            Self::Slice(slice) => slice.curve(own, posture, range).ok().map(Cow::Owned),
             Self::Sum(_) => None,
         }
     }
@@ -83,6 +86,7 @@ impl PassiveLaw {
             Self::Curve(curve) => curve.torque(posture[own]),
             Self::Coupled(coupled) => coupled.torque_and_gradient(posture).0,
             Self::Sum(terms) => terms.iter().map(|term| term.torque_and_slope(posture[own]).0).sum(),
+            Self::Slice(slice) => slice.torque_and_slopes(own, posture, |_, _| {}),
         }
     }
 }
@@ -111,15 +115,17 @@ impl PassiveLaw {
                 visit(own, slope);
                 sum + torque
             }),
+            Self::Slice(slice) => slice.torque_and_slopes(own, posture, visit),
         }
     }
 
-    /// Derivative by the own coordinate at `angle`, N m/rad; 0 for coupled laws.
-    pub(crate) fn own_slope(&self, angle: f64) -> f64 {
+    /// Derivative by the own coordinate `own` at `angle`, N m/rad; 0 for Riener & Edrich's laws.
+    pub(crate) fn own_slope(&self, own: usize, angle: f64) -> f64 {
         match self {
             Self::Curve(curve) => curve.torque_and_slope(angle).1,
             Self::Coupled(_) => 0.0,
             Self::Sum(terms) => terms.iter().map(|term| term.torque_and_slope(angle).1).sum(),
+            Self::Slice(slice) => slice.own_slope(own, angle),
         }
     }
 }

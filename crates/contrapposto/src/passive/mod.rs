@@ -13,6 +13,7 @@ mod law;
 mod reshape;
 mod riener_edrich1999;
 mod scaled;
+mod slice;
 mod tabulated;
 
 pub use coordinate_limit_force::CoordinateLimitForce;
@@ -21,6 +22,7 @@ pub use exponentials::{DoubleExponential, End, Exponentials};
 pub use law::{Coupled, PassiveLaw, Term};
 pub use reshape::Reshape;
 pub use riener_edrich1999::{CoupledTerm, RienerEdrich1999};
+pub use slice::Slice;
 pub use tabulated::Tabulated;
 
 /// The published form of a curve.

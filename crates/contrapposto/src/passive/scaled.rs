@@ -16,12 +16,13 @@ impl PassiveLaw {
                 Self::Coupled(Coupled { law: coupled.law.scaled(times), neighbours: coupled.neighbours })
             }
             Self::Sum(terms) => Self::Sum(terms.iter().map(|term| term.scaled(times)).collect()),
+            Self::Slice(slice) => Self::Slice(slice.scaled(times)?),
         })
     }
 }
 
 impl PassiveCurve {
-    fn scaled(&self, times: f64) -> Result<Self, PassiveError> {
+    pub(super) fn scaled(&self, times: f64) -> Result<Self, PassiveError> {
         let form = match &self.form {
             Form::Exponentials(form) => Form::Exponentials(form.scaled(times)),
             Form::CoordinateLimitForce(form) => Form::CoordinateLimitForce(form.scaled(times)),

@@ -135,7 +135,7 @@ impl<'a> Engine<'a> {
         &mut self.settings.levels
     }
 
-    /// Replaces the model by the same body with other strength.
+    /// Replaces the model by the same body with other strength and passive torque.
     pub(crate) fn set_model(&mut self, model: impl Into<SharedModel<'a>>) {
         self.iterate.invalidate();
         self.settings.model = model.into();

@@ -272,7 +272,7 @@ impl<'a> BodyMotion<'a> {
         Ok(self.engine.set_loads(loads)?)
     }
 
-    /// Replaces the body by the same one with other strength.
+    /// Replaces the body by the same one with other strength and passive torque.
     pub(super) fn set_model(&mut self, model: &SharedModel<'a>) {
         self.model = model.clone();
         self.engine.set_model(model.clone());

@@ -9,10 +9,10 @@ use super::prediction::Prediction;
 use super::sample::{Attempt, Relief};
 use super::state::{Following, State};
 use super::step::{SMALLEST_STEP, Simulation};
-use super::{Scenario, ScenarioError, Tables};
+use super::{ScenarioError, Tables};
 use crate::constraint::relief_step;
 use crate::hybrid::{Decision, Problem, Strategy, minimise, minimise_literal};
-use crate::model::Side;
+use crate::model::{Model, Side};
 
 /// An attempt ends after so many motions that were taken back,
 const MOST_REJECTIONS: u32 = 3;
@@ -195,7 +195,8 @@ impl Simulation<'_> {
         strategy: Strategy,
         then: impl FnOnce(&mut State, &Problem<'_>, Decision) -> T,
     ) -> Result<Option<T>, ScenarioError> {
-        let Scenario { model, relief, .. } = self.scenario;
+        let (relief, model) = (&self.scenario.relief, self.model.clone());
+        let model: &Model = &model;
         let coordinate = &model.coordinates()[i];
         let Some(rate) = coordinate.rate else { return Ok(None) };
         let Some(external_slope) = self.motion.external_slope(&self.state.posture, i, rate)? else { return Ok(None) };

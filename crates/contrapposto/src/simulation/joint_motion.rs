@@ -4,6 +4,7 @@
 use super::Scenario;
 use super::state::State;
 use crate::joint_torques::{JointTorques, JointTorquesError, Quantities};
+use crate::model::SharedModel;
 use crate::posture::Posture;
 use crate::statics::Load;
 
@@ -12,12 +13,18 @@ use crate::statics::Load;
 pub(super) struct JointMotion<'a> {
     scenario: &'a Scenario,
     loads: Vec<Load>,
+    model: SharedModel<'a>,
     torques: JointTorques,
 }
 
 impl<'a> JointMotion<'a> {
-    pub(super) fn new(scenario: &'a Scenario) -> Self {
-        Self { scenario, loads: scenario.loads.clone(), torques: JointTorques::new(&scenario.model) }
+    pub(super) fn new(scenario: &'a Scenario, model: SharedModel<'a>) -> Self {
+        Self { scenario, loads: scenario.loads.clone(), torques: JointTorques::new(&model), model }
+    }
+
+    /// Replaces the body by the same one with other strength and passive torque.
+    pub(super) fn set_model(&mut self, model: &SharedModel<'a>) {
+        self.model = model.clone();
     }
 
     pub(super) fn set_loads(&mut self, loads: &[Load]) {
@@ -39,7 +46,7 @@ impl<'a> JointMotion<'a> {
 
     /// Computes all torques in a posture.
     pub(super) fn update(&mut self, posture: &Posture) -> Result<(), JointTorquesError> {
-        self.torques.update(&self.scenario.model, posture, &self.loads, Quantities::TORQUES)
+        self.torques.update(&self.model, posture, &self.loads, Quantities::TORQUES)
     }
 
     pub(super) fn torques(&self) -> &JointTorques {
@@ -48,6 +55,6 @@ impl<'a> JointMotion<'a> {
 
     /// Slope of a rate's external torque when that joint alone moves, N m/rad.
     pub(super) fn external_slope(&self, rate: usize) -> f64 {
-        self.torques.own_slope_about_axis(&self.scenario.model, rate)
+        self.torques.own_slope_about_axis(&self.model, rate)
     }
 }

@@ -26,11 +26,19 @@ impl<'a> Motion<'a> {
         if scenario.has_supports_or_tasks() {
             return Ok(Self::Body(Box::new(BodyMotion::new(scenario, model, placed_at)?)));
         }
-        Ok(Self::Joints(Box::new(JointMotion::new(scenario))))
+        Ok(Self::Joints(Box::new(JointMotion::new(scenario, model))))
     }
 
     pub(super) fn body(&self) -> Option<&BodyMotion<'a>> {
         if let Self::Body(body) = self { Some(body) } else { None }
+    }
+
+    /// Replaces the body by the same one with other strength and passive torque.
+    pub(super) fn set_model(&mut self, model: &SharedModel<'a>) {
+        match self {
+            Self::Joints(joints) => joints.set_model(model),
+            Self::Body(body) => body.set_model(model),
+        }
     }
 
     pub(super) fn body_mut(&mut self) -> Option<&mut BodyMotion<'a>> {

@@ -104,7 +104,7 @@ pub struct Scenario {
     pub title: String,
     /// The body.
     pub model: Model,
-    /// Muscles that give groups of the body their strength, that of each sample's posture.
+    /// Muscles that give groups of the body strength and its coordinates passive torque, those of each sample's posture.
     pub muscles: Option<JointMuscles>,
     /// The posture at the start, inside all ranges.
     pub start: Posture,

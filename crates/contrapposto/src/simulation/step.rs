@@ -25,7 +25,7 @@ pub struct Simulation<'a> {
     pub(super) state: State,
     pub(super) motion: Motion<'a>,
     /// The body, with the strength of its present posture.
-    model: SharedModel<'a>,
+    pub(super) model: SharedModel<'a>,
     /// For a body with muscles.
     strength: Option<PosedStrength>,
     pub(super) record: Record,
@@ -288,9 +288,7 @@ impl<'a> Simulation<'a> {
         let posed = self.strength.as_mut().map(|strength| strength.pose(&self.scenario.model, &self.state.posture));
         if let Some(model) = posed.transpose()?.flatten() {
             self.model = model.into();
-            if let Some(body) = self.motion.body_mut() {
-                body.set_model(&self.model);
-            }
+            self.motion.set_model(&self.model);
         }
         self.motion.update(&self.state.posture)?;
         let torques = self.motion.torques();

@@ -1,4 +1,4 @@
-//! Gives a body whose muscles are known the strength of its present posture.
+//! Gives a body whose muscles are known the strength and the passive torque of its present posture.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::joint_torques::{JointMuscles, JointTorquesError};
 use crate::model::Model;
 use crate::posture::Posture;
 
-/// The muscles of a body, and the posture whose strength it has.
+/// The muscles of a body, and the posture whose strength and passive torque it has.
 #[derive(Debug)]
 pub(super) struct PosedStrength {
     muscles: JointMuscles,
@@ -19,7 +19,7 @@ impl PosedStrength {
         Self { muscles, posture: None }
     }
 
-    /// The body of `model` with the strength of `posture`; `None` where it has that already.
+    /// The body of `model` with the strength and the passive torque of `posture`; `None` where it has that already.
     pub(super) fn pose(&mut self, model: &Model, posture: &Posture) -> Result<Option<Arc<Model>>, ScenarioError> {
         if self.posture.as_ref() == Some(posture) {
             return Ok(None);

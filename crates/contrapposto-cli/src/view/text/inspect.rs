@@ -221,6 +221,7 @@ fn law_word(law: &PassiveLaw) -> String {
     match law {
         PassiveLaw::Curve(_) => "curve".to_owned(),
         PassiveLaw::Coupled(_) => "coupled law of hip, knee and ankle".to_owned(),
+        PassiveLaw::Slice(_) => "muscles".to_owned(),
         PassiveLaw::Sum(terms) => terms.iter().map(term).collect::<Vec<_>>().join(" + "),
     }
 }

@@ -144,6 +144,12 @@ impl Muscle {
         &self.spec
     }
 
+    /// The muscle on the path with the index that `place` gives for its own.
+    pub(crate) fn on_path(mut self, place: &mut impl FnMut(usize) -> usize) -> Self {
+        self.spec.path = place(self.spec.path);
+        self
+    }
+
     /// The equilibrium at rest at a path length (m) and an activation; activations below the least one count as that. Does not allocate.
     pub fn at_rest(&self, path_length: f64, activation: f64) -> FiberState {
         self.solve(&self.fibers, path_length, activation)
