@@ -370,7 +370,7 @@ fn the_posture_of_a_scenario_has_the_passive_torque_of_the_muscles_in_it() {
     let motion = format!("time,elbow_flex_r_deg,elbow_flex_l_deg\n0,{angle:?},0\n");
     let motion = write(folder.path(), "there.csv", &motion);
     let file = folder.path().join("elbows.osim");
-    let frames = json(&["torques", file.to_str().unwrap(), &motion, "--json", "--muscles", "both", "--load", "b:6kg"]);
+    let frames = json(&["torques", file.to_str().unwrap(), &motion, "--json", "--muscles", "both", "--load", "b 6kg"]);
     let at = &frames[0]["coordinates"]["elbow_flex_r"];
     assert!((number(&at["active_nm"]) - active).abs() < 1e-6, "{active} for {at}");
     assert!((found("off.toml", "\nmuscles = \"off\"").1 - active).abs() > 0.01, "the built-in one differs");

@@ -54,7 +54,7 @@ impl PoseScenario {
     /// Takes the muscles of the scenario's model, in the posture of the start.
     pub fn take_muscles(&mut self, muscles: Option<ScenarioMuscles>) {
         let Some(muscles) = muscles else { return };
-        let (muscles, notes) = muscles.settle(&mut self.model, &self.start);
+        let (muscles, notes) = muscles.settle(&mut self.model, &self.start, false);
         self.notes.extend(notes);
         self.muscles = Some(muscles);
     }

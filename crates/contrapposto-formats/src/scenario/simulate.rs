@@ -33,7 +33,7 @@ impl RunScenario {
     /// Takes the muscles of the scenario's model, in the posture of the start.
     pub fn take_muscles(&mut self, muscles: Option<ScenarioMuscles>) {
         let Some(muscles) = muscles else { return };
-        let (muscles, notes) = muscles.settle(&mut self.scenario.model, &self.scenario.start);
+        let (muscles, notes) = muscles.settle(&mut self.scenario.model, &self.scenario.start, true);
         self.notes.extend(notes);
         self.scenario.muscles = Some(muscles);
     }

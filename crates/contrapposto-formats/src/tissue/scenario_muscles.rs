@@ -13,7 +13,7 @@ use super::SourcedModel;
 use super::origin::Origin;
 
 /// Half the range of the table of a coordinate whose range has no end, rad.
-const WIDEST: f64 = std::f64::consts::PI;
+const HALF_TURN: f64 = std::f64::consts::PI;
 
 /// The muscles of a scenario's model, and the laws that stand for them where they give no curve.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ impl SourcedModel {
         let ranges: Vec<(usize, (f64, f64))> = of_muscles
             .map(|(i, coordinate)| {
                 let (low, high) = coordinate.range;
-                let own = (low.max(coordinate.default - WIDEST), high.min(coordinate.default + WIDEST));
+                let own = (low.max(coordinate.default - HALF_TURN), high.min(coordinate.default + HALF_TURN));
                 let meant = library.origins[i].meant.unwrap_or(own);
                 let cut = (own.0.max(meant.0), own.1.min(meant.1));
                 (i, if cut.0 < cut.1 { cut } else { own })
@@ -59,9 +59,9 @@ impl SourcedModel {
 }
 
 impl ScenarioMuscles {
-    /// The muscles, with the body in the posture `start`. Joints keep a law that the scenario gives them, and have the library's where the
-    /// torque of their muscles rises too much; the notes say which.
-    pub fn settle(self, model: &mut Model, start: &Posture) -> (JointMuscles, Vec<String>) {
+    /// The muscles, with the body in the posture `start`. Joints keep a law that the scenario gives them; where `relief` is sought they have
+    /// the library's if the torque of their muscles rises too much. The notes say which.
+    pub fn settle(self, model: &mut Model, start: &Posture, relief: bool) -> (JointMuscles, Vec<String>) {
         let Self { mut muscles, library } = self;
         let of_muscles = |model: &Model, i: usize| matches!(model.coordinates()[i].passive, Some(PassiveLaw::Slice(_)));
         let mut notes = vec![];
@@ -81,7 +81,7 @@ impl ScenarioMuscles {
         let (rising, levelled): (Vec<TorqueRise>, Vec<TorqueRise>) = rises
             .into_iter()
             .filter(|rise| rise.rise > 0.0)
-            .partition(|rise| !rise.is_small() && known(rise.coordinate));
+            .partition(|rise| !rise.is_small() && (relief || rise.rise.is_infinite()) && known(rise.coordinate));
         let rising_at: Vec<usize> = rising.iter().map(|rise| rise.coordinate).collect();
         let left = joints(model, &rising_at);
         if !rising.is_empty() {

@@ -29,7 +29,8 @@ pub use group_load::{GroupLoad, relative_load};
 pub use hazard::{Hazard, carried};
 pub(crate) use hazard::{judged_parts, posture_in_words};
 pub use muscle_laws::{MOST_LEVELLED, TorqueRise};
-pub use muscles::{JointMuscles, JointMusclesError, LEAST_MUSCLE_STRENGTH, RESTING_ACTIVATION};
+pub use muscle_tables::RESTING_ACTIVATION;
+pub use muscles::{JointMuscles, JointMusclesError, LEAST_MUSCLE_STRENGTH};
 
 use crate::contact::ContactForces;
 use crate::kinematics::{CenterOfMass, Kinematics};

@@ -12,11 +12,10 @@
 
 use nalgebra::Vector3;
 
-use super::JointMuscles;
 use super::muscle_tables::{Table, TableMaker, by_angles};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Orientation};
-use crate::muscle::{Bushing, Musculature, PathGeometry, Tension, bushing_torque, passive_tensions};
+use crate::muscle::{Bushing, FiberState, Musculature, PathGeometry, Tension, bushing_torque, passive_tensions};
 use crate::passive::{PassiveLaw, Slice};
 use crate::posture::Posture;
 use crate::statics::{PathTension, PathTensionError};
@@ -25,6 +24,8 @@ use crate::statics::{PathTension, PathTensionError};
 const BUSHING_STEP: f64 = 1e-5;
 /// Rises of the torque that are levelled: share of its span, and N m. Assumed (see docs/formats.md).
 pub const MOST_LEVELLED: (f64, f64) = (0.05, 2.0);
+/// Rises that are levelled, whatever their share, N m: the default tolerance of relief.
+const LEAST_RISE: f64 = 0.05;
 
 /// A rise of the passive torque of muscles with the angle, where passive torque falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,8 +41,21 @@ pub struct TorqueRise {
 impl TorqueRise {
     /// Whether it is small enough to be levelled.
     pub fn is_small(&self) -> bool {
-        self.rise < MOST_LEVELLED.0 * self.span && self.rise < MOST_LEVELLED.1
+        self.rise < LEAST_RISE || (self.rise < MOST_LEVELLED.0 * self.span && self.rise < MOST_LEVELLED.1)
     }
+}
+
+/// Muscles at rest in a posture, about axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MusclesAtRest<'a> {
+    pub(super) muscles: &'a Musculature,
+    /// One a muscle.
+    pub(super) states: &'a [FiberState],
+    /// The body that has a ball for each three-axis joint, and the paths in it.
+    pub(super) balls: &'a Kinematics,
+    pub(super) geometry: &'a PathGeometry,
+    /// Passive torque by rate, N m.
+    pub(super) torques: &'a [f64],
 }
 
 /// Makes the laws.
@@ -79,19 +93,18 @@ impl MuscleLaws {
         })
     }
 
-    /// Gives the coordinates of `model` their laws near `posture`, in which `muscles` are.
+    /// Gives the coordinates of `model` their laws near `posture`, in which `kinematics` and the muscles are.
     pub(super) fn write(
         &mut self,
         model: &mut Model,
         posture: &Posture,
-        muscles: &JointMuscles,
         kinematics: &Kinematics,
+        at_rest: MusclesAtRest<'_>,
     ) -> Result<(), PathTensionError> {
-        let (balls, geometry) = muscles.about_axes(kinematics);
-        self.fill_gradient(model, posture, muscles, (balls, geometry))?;
+        self.fill_gradient(model, posture, at_rest)?;
         let orientations: Vec<Orientation> =
             model.three_axis_joints().iter().map(|joint| joint.orientation(kinematics.values())).collect();
-        let mut torques = muscles.passive_torques()[1].to_vec();
+        let mut torques = at_rest.torques.to_vec();
         let mut angles = kinematics.values().to_vec();
         for (joint, orientation) in model.three_axis_joints().iter().zip(&orientations) {
             let about = orientation.angles.values;
@@ -148,11 +161,10 @@ impl MuscleLaws {
         &mut self,
         model: &Model,
         posture: &Posture,
-        muscles: &JointMuscles,
-        (balls, geometry): (&Kinematics, &PathGeometry),
+        at_rest: MusclesAtRest<'_>,
     ) -> Result<(), PathTensionError> {
-        let (all, rest) = muscles.at_rest();
-        passive_tensions(all, geometry, rest, &mut self.tensions);
+        let MusclesAtRest { muscles: all, states, balls, geometry, .. } = at_rest;
+        passive_tensions(all, geometry, states, &mut self.tensions);
         self.tension.update(model.by_axes(), balls, &all.paths, geometry, &self.tensions)?;
         let n = model.rates().len();
         for (row, entries) in self.gradient.chunks_exact_mut(n.max(1)).enumerate() {

@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::muscles::RESTING_ACTIVATION;
 use crate::contact::root_rates;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -16,6 +15,8 @@ use crate::muscle::{FiberState, Musculature, PathGeometry, PathRule, bushing_tor
 use crate::passive::{PassiveCurve, Tabulated};
 use crate::posture::Posture;
 
+/// Activation of a muscle at rest: the least of OpenSim's muscles.
+pub const RESTING_ACTIVATION: f64 = 0.01;
 /// Rows of a table.
 const ROWS: usize = 25;
 /// Steps at which neighbours are held: rad, and m for slides.

@@ -13,7 +13,8 @@
 //! are taken twice: about coordinates, and about the axes of three-axis joints, by the body that has a ball for each.
 
 use super::JointTorquesError;
-use super::muscle_laws::{MuscleLaws, TorqueRise};
+use super::muscle_laws::{MuscleLaws, MusclesAtRest, TorqueRise};
+use super::muscle_tables::RESTING_ACTIVATION;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Side};
 use crate::muscle::{
@@ -24,8 +25,6 @@ use crate::posture::{Posture, PostureError};
 use crate::statics::{PassiveTorque, PathTensionError};
 use crate::strength::Strength;
 
-/// Activation of a muscle at rest: the least of OpenSim's muscles.
-pub const RESTING_ACTIVATION: f64 = 0.01;
 /// Least strength that muscles give, N m (N for slides): where none pulls, relative load stays finite (assumed).
 pub const LEAST_MUSCLE_STRENGTH: f64 = 1e-3;
 /// Least strength that changes of passive torque are a share of, N m.
@@ -168,14 +167,11 @@ impl JointMuscles {
         self.torques.each_ref().map(Vec::as_slice)
     }
 
-    /// The body with axes and the paths in it; `kinematics` where it is the body itself.
-    pub(super) fn about_axes<'a>(&'a self, kinematics: &'a Kinematics) -> (&'a Kinematics, &'a PathGeometry) {
-        self.axes.as_ref().map_or((kinematics, &self.geometry), |(balls, geometry)| (balls, geometry))
-    }
-
-    /// The muscles, and the state of each at rest.
-    pub(super) fn at_rest(&self) -> (&Musculature, &[FiberState]) {
-        (&self.muscles, &self.rest)
+    /// The muscles at rest in the posture of `kinematics`, about axes.
+    fn at_rest<'a>(&'a self, kinematics: &'a Kinematics) -> MusclesAtRest<'a> {
+        let about_axes = self.axes.as_ref().map(|(balls, geometry)| (balls, geometry));
+        let (balls, geometry) = about_axes.unwrap_or((kinematics, &self.geometry));
+        MusclesAtRest { muscles: &self.muscles, states: &self.rest, balls, geometry, torques: &self.torques[1] }
     }
 
     /// Gives the muscle groups of `model` the strength that they have in `posture`, and its coordinates their passive laws near it
@@ -190,7 +186,7 @@ impl JointMuscles {
         self.update(model, posture, &kinematics)?;
         let known = self.known_passive(model, &kinematics);
         if let Some(mut laws) = self.laws.take() {
-            let written = laws.write(model, posture, self, &kinematics);
+            let written = laws.write(model, posture, &kinematics, self.at_rest(&kinematics));
             self.laws = Some(laws);
             written?;
         }
