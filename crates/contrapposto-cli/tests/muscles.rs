@@ -355,28 +355,6 @@ fn the_posture_of_a_scenario_has_the_strength_of_the_muscles_in_it() {
 }
 
 #[test]
-fn the_posture_of_a_scenario_has_the_passive_torque_of_the_muscles_in_it() {
-    let folder = tempfile::tempdir().unwrap();
-    elbows(folder.path());
-    let found = |name: &str, key: &str| {
-        let model = format!("file = \"elbows.osim\"{key}");
-        let found = json(&["relax", &weight_in_hand(folder.path(), name, &model), "--json"]);
-        let groups = found["postures"][0]["groups"].as_array().unwrap();
-        let group = groups.iter().find(|group| group["coordinate"] == "elbow_flex_r").unwrap().clone();
-        (number(&found["postures"][0]["coordinates"]["elbow_flex_r"]).to_degrees(), number(&group["active_nm"]))
-    };
-    let (angle, active) = found("both.toml", "\nmuscles = \"both\"");
-    assert_eq!((angle, active), found("default.toml", ""), "both is the default");
-    let motion = format!("time,elbow_flex_r_deg,elbow_flex_l_deg\n0,{angle:?},0\n");
-    let motion = write(folder.path(), "there.csv", &motion);
-    let file = folder.path().join("elbows.osim");
-    let frames = json(&["torques", file.to_str().unwrap(), &motion, "--json", "--muscles", "both", "--load", "b 6kg"]);
-    let at = &frames[0]["coordinates"]["elbow_flex_r"];
-    assert!((number(&at["active_nm"]) - active).abs() < 1e-6, "{active} for {at}");
-    assert!((found("off.toml", "\nmuscles = \"off\"").1 - active).abs() > 0.01, "the built-in one differs");
-}
-
-#[test]
 fn a_scenario_refuses_muscles_that_it_cannot_use_by_name() {
     let folder = tempfile::tempdir().unwrap();
     elbows(folder.path());
