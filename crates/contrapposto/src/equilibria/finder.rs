@@ -20,12 +20,18 @@ use crate::tasks::{Effort, Task};
 
 /// Times that goal angles are taken, each time from a better posture.
 const ROUNDS: usize = 2;
-/// Best postures from which lower local minima are searched for.
-const SEARCHED_FOR_LOWER: usize = 3;
+/// Best postures whose mirror images are converged from.
+const MIRRORED: usize = 3;
 /// Most postures with a limb held up from which limbs are let hang.
 const HUNG: usize = 5;
 /// Steps of an exploratory solve.
-const EXPLORATORY_STEPS: usize = 40;
+const EXPLORATORY_STEPS: usize = 20;
+/// Steps of an approach to the tasks.
+const APPROACH_STEPS: usize = 40;
+/// A posture is worth converging from, and an answer, up to this multiple of the least effort,
+const WORTH_MULTIPLE: f64 = 10.0;
+/// and this effort besides: assumed, one muscle group at 3 percent of its strength.
+const WORTH_BESIDES: f64 = 1e-3;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
 /// exploratory and to converged postures.
 const ALLOWED_ERROR: [f64; 3] = [0.02, 1e-5, 1e-5];
@@ -58,7 +64,7 @@ pub fn equilibria_watched(
 pub(super) struct Finder<'a> {
     pub(super) search: &'a Search<'a>,
     /// For exploratory and for converging solves.
-    pub(super) engines: [Engine<'a>; 3],
+    pub(super) engines: [Engine<'a>; 2],
     /// Without effort.
     approach: Engine<'a>,
     /// Index of the level of goal angles among the engines' levels.
@@ -90,7 +96,7 @@ impl<'a> Finder<'a> {
             levels.push(Task::Effort(Effort::whole(search.model)).into());
         }
         levels.insert(slot, PriorityLevel::default());
-        // Steps of priorities pass over shallow minima, in which a descent ends.
+        // Exploratory steps of priorities pass over shallow minima, in which a descent ends.
         let engine = |max_steps: usize, local_minima: usize, levels: &[PriorityLevel]| {
             let (supports, levels) = (search.supports.to_vec(), levels.to_vec());
             let options = Options { max_steps, local_minima, ..options };
@@ -102,9 +108,9 @@ impl<'a> Finder<'a> {
         };
         let exploratory = EXPLORATORY_STEPS.min(options.max_steps);
         let (most, minima) = (options.max_steps, options.local_minima);
-        let mut engines = [engine(exploratory, 0, &levels)?, engine(most, 0, &levels)?, engine(most, minima, &levels)?];
+        let mut engines = [engine(exploratory, 0, &levels)?, engine(most, minima, &levels)?];
         engines[0].set_hessian_model(HessianModel::Partial);
-        let approach = engine(EXPLORATORY_STEPS, 0, &levels[..=slot])?;
+        let approach = engine(APPROACH_STEPS, 0, &levels[..=slot])?;
         Ok(Self {
             search,
             engines,
@@ -131,7 +137,7 @@ impl<'a> Finder<'a> {
     pub(super) fn is_spent(&mut self, stage: Stage) -> bool {
         let most = match stage {
             Stage::Exploratory => self.search.most_work / 4 * 3,
-            Stage::Converged | Stage::Lowest => self.search.most_work,
+            Stage::Converged => self.search.most_work,
         };
         let spent = self.starts > 0 && self.work() >= most;
         self.cut |= spent;
@@ -173,9 +179,11 @@ impl<'a> Finder<'a> {
         Ok(())
     }
 
-    /// Converges from every different posture that was explored.
+    /// Converges from every different posture that was explored and is worth it, from that of least effort first.
     fn converge(&mut self) {
-        let candidates = self.selected(Stage::Exploratory);
+        let mut candidates = self.selected(Stage::Exploratory);
+        candidates.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
+        self.keep_worth(&mut candidates);
         let mut explored = std::mem::take(&mut self.found);
         let starts = std::mem::take(&mut self.starts);
         for i in candidates {
@@ -183,28 +191,29 @@ impl<'a> Finder<'a> {
             self.solve(Stage::Converged, &relaxed.posture, starts);
         }
         self.hang();
-        self.lower();
+        self.mirror_best();
         if self.found.is_empty() {
             self.found.append(&mut explored);
         }
         self.starts = starts;
     }
 
-    /// Searches for lower local minima from the best postures, and converges from the mirror images of what is found.
-    fn lower(&mut self) {
+    /// Converges from the mirror images of the best postures.
+    fn mirror_best(&mut self) {
+        let Some(mirror) = Mirror::of(self.search.model) else { return };
         let mut best = self.selected(Stage::Converged);
         best.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        best.truncate(SEARCHED_FOR_LOWER);
-        let count = self.found.len();
-        for i in best {
-            let from = self.found[i].relaxed.posture.clone();
-            self.solve(Stage::Lowest, &from, vec![format!("lower minima near: {}", self.found[i].starts[0])]);
-        }
-        let Some(mirror) = Mirror::of(self.search.model) else { return };
-        for i in count..self.found.len() {
+        for i in best.into_iter().take(MIRRORED) {
             let image = mirror.posture(&self.found[i].relaxed.posture);
             self.solve(Stage::Converged, &image, vec![format!("mirror image of: {}", self.found[i].starts[0])]);
         }
+    }
+
+    /// Leaves out postures that need far more effort than the easiest of them.
+    fn keep_worth(&self, candidates: &mut Vec<usize>) {
+        let effort = |i: &usize| self.found[*i].relaxed.effort;
+        let least = candidates.iter().map(effort).fold(f64::INFINITY, f64::min);
+        candidates.retain(|i| effort(i) <= WORTH_MULTIPLE * least + WORTH_BESIDES);
     }
 
     /// Solves from a posture with the engine of a stage, and keeps the result if it is new or better.
@@ -327,7 +336,7 @@ impl<'a> Finder<'a> {
     fn approached(&mut self, from: &Posture) -> (f64, Posture) {
         let mut posture = from.clone();
         self.approach.restart();
-        for _ in 0..EXPLORATORY_STEPS {
+        for _ in 0..APPROACH_STEPS {
             self.steps += 1;
             match self.approach.step(&mut posture) {
                 Ok(step) if step.largest > APPROACH_TOLERANCE => self.changes += step.work() - 1,
@@ -383,6 +392,7 @@ impl<'a> Finder<'a> {
         let yielded = self.found.len() - selected.len();
         let (least, all) = (self.found[selected[0]].raised_limbs, selected.len());
         selected.retain(|&i| self.found[i].raised_limbs == least);
+        self.keep_worth(&mut selected);
         let raised = all - selected.len();
         let (mut answers, engine) =
             (DifferentWays::new(idle_segments(self.search)), &mut self.engines[Stage::Converged as usize]);

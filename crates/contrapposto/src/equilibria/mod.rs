@@ -14,11 +14,13 @@
 //! 4. postures scattered over the ranges of the joints (`scattered.rs`), moved to the tasks likewise;
 //! 5. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise.
 //!
-//! From every different posture the engine then converges. Two postures count as one if at no joint the torque of loads or of
+//! From every different posture that does not need far more effort than the easiest one, basin hopping then converges, in descents
+//! that cost a third of a step of priorities each. Two postures count as one if at no joint the torque of loads or of
 //! passive tissue differs by more than a twentieth of the strength there and no segment is elsewhere: minima can be flat, a forearm
 //! may rotate without load on a muscle. Of those the one of least effort is kept. A limb without a task that hangs in the start is not held up: postures
 //! with fewer such limbs come first, whatever their efforts (`raised_limbs.rs`). Postures whose tasks are farther away than in the best one, that slipped or
-//! fell, are counted and left out, and so are those that are the same way to stand as a better one (`ways_to_stand.rs`).
+//! fell, are counted and left out, and so are those that are the same way to stand as a better one (`ways_to_stand.rs`), or need more than
+//! ten times the least effort.
 
 mod candidate;
 mod description;

@@ -36,9 +36,8 @@ pub struct Search<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     Exploratory = 0,
+    /// The lowest of the local minima nearby, by basin hopping.
     Converged = 1,
-    /// Basin hopping from the best postures.
-    Lowest = 2,
 }
 
 /// The reason for which no posture was found.

@@ -20,7 +20,7 @@ use super::report::{LevelError, SolvedPosture};
 use super::settings::{Rates, Settings};
 use super::slope::SlopeAlongMotion;
 use super::step_rule::StepRule;
-use super::tolerances::OTHER_STARTS;
+use super::tolerances::{OTHER_STARTS, STEPS_BEFORE_DESCENT};
 use crate::contact::{Balance, ContactForces, Slip, Support};
 use crate::effort::basin_hopping::BasinHopping;
 use crate::effort::hessian::HessianModel;
@@ -258,7 +258,7 @@ impl<'a> Engine<'a> {
     }
 
     /// Steps until they are short or change the merit little. With effort, [`Options::local_minima`] are compared
-    /// first. Without supports the largest step shrinks after a fifth of the largest number of steps, so that the body
+    /// first; where that leaves steps to be made, a descent to the nearest one is tried again and again between them. Without supports the largest step shrinks after a fifth of the largest number of steps, so that the body
     /// comes to rest whatever it is asked; and where a level other than a rest posture is not reached, two other starts
     /// are tried, and the posture whose first differing level is nearer is kept.
     ///
@@ -302,13 +302,20 @@ impl<'a> Engine<'a> {
         self.restart();
         self.rule.begin_solve(&self.settings.options);
         let mut posture = start.clone();
-        let (mut converged, mut steps) = self.compare_local_minima(&mut posture)?;
+        let minima = self.settings.options.local_minima;
+        let (mut converged, mut steps) = self.compare_local_minima(&mut posture, minima)?;
         let most = steps + self.settings.options.max_steps;
+        let mut descent_at = steps + STEPS_BEFORE_DESCENT;
         while steps < most && !converged {
             let step = self.step(&mut posture)?;
             watch(&step, &posture);
             steps += 1;
             converged = step.largest <= self.settings.options.step_tolerance || self.rule.is_idle();
+            if steps >= descent_at && !converged {
+                let (at_rest, descended) = self.compare_local_minima(&mut posture, minima.min(1))?;
+                (converged, steps) = (at_rest, steps + descended);
+                descent_at = steps + STEPS_BEFORE_DESCENT;
+            }
         }
         self.linearise_or_go_back(&mut posture)?;
         self.describe(posture, converged, steps)
@@ -327,10 +334,9 @@ impl<'a> Engine<'a> {
         Ok(SolvedPosture { posture, levels, effort, slip, balance, reason, steps })
     }
 
-    /// Moves `posture` to the lowest of the local minima that are compared; returns whether nothing is left for steps
-    /// to do, and the number of steps that it took.
-    fn compare_local_minima(&mut self, posture: &mut Posture) -> Result<(bool, usize), EngineError> {
-        let count = self.settings.options.local_minima;
+    /// Moves `posture` to the lowest of `count` local minima; returns whether nothing is left for steps to do, and the number
+    /// of steps that it took.
+    fn compare_local_minima(&mut self, posture: &mut Posture, count: usize) -> Result<(bool, usize), EngineError> {
         if count == 0 || !self.settings.can_descend() {
             return Ok((false, 0));
         }

@@ -112,3 +112,5 @@ pub(super) const MERIT_PENALTY_MARGIN: f64 = 1.5;
 pub(super) const IDLE_STEPS: usize = 3;
 /// Share of the trust radius; a longer step was cut short, and its little gain ends nothing.
 pub(super) const CUT_SHORT: f64 = 0.9;
+/// Steps of a body on supports from one attempt of a descent to the next, while it does not come to rest.
+pub(super) const STEPS_BEFORE_DESCENT: usize = 50;

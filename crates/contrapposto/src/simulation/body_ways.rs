@@ -4,9 +4,10 @@ use std::cell::Cell;
 
 use super::ScenarioError;
 use super::body_motion::{BodyMotion, engine, is_effort};
-use super::easiest::{Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference};
+use super::easiest::{Budget, Now, SEARCH_BUDGET_OF_STEP, Searched, UNREACHED, easiest, first_difference};
 use super::path::{Path, Planner};
 use crate::contact::{Balance, Support};
+use crate::equilibria::SCATTERED_STARTS;
 use crate::joint_torques::JointTorquesError;
 use crate::kinematics::Kinematics;
 use crate::posture::Posture;
@@ -41,7 +42,8 @@ impl BodyMotion<'_> {
         if let Some(missing) = self.recover_balance(&mut posture)? {
             return Err(ScenarioError::CannotStand(missing));
         }
-        let Searched { found, work, cut } = self.easiest(&posture, SEARCH_BUDGET_OF_STEP)?;
+        let budget = Budget { scattered: SCATTERED_STARTS, work: SEARCH_BUDGET_OF_STEP };
+        let Searched { found, work, cut } = self.easiest(&posture, budget)?;
         self.forget();
         Ok(Searched { found: found.unwrap_or(posture), work, cut })
     }
@@ -75,11 +77,11 @@ impl BodyMotion<'_> {
         Ok(engine.solve(&scenario.start)?.posture)
     }
 
-    /// A posture of less effort that the body can take without moving a support, if `budget` of work shows one worth a motion.
+    /// A posture of less effort that the body can take without moving a support, if `budget` shows one worth a motion.
     pub(super) fn easiest(
         &mut self,
         posture: &Posture,
-        budget: usize,
+        budget: Budget,
     ) -> Result<Searched<Option<Posture>>, ScenarioError> {
         if !self.engine.levels().iter().any(is_effort) {
             return Ok(Searched::default());

@@ -3,6 +3,8 @@
 //! The search is that of [`crate::equilibria`], with every joint locked that moves a support. Its steps count against a budget of
 //! the run, so that every machine finds the same.
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::{Support, rates_that_move};
 use crate::equilibria::{RelaxedPosture, Search, SearchError, equilibria};
 use crate::model::Model;
@@ -32,6 +34,26 @@ const WORTH_NEARING: f64 = 5e-3;
 /// A posture whose supports are farther off their places is none, m and rad together.
 const MOST_SLIP: f64 = 1e-5;
 
+/// Change of every rate up to which a posture counts as searched when the one before was, rad or m. Assumed.
+const SEARCHED_NEARBY: f64 = 0.02;
+
+/// A posture from which a search has found none that is easier.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Eased {
+    pub(super) posture: Posture,
+    /// By coordinate: whether a relief was in force.
+    pub(super) asked: Vec<bool>,
+}
+
+impl Eased {
+    /// Whether a search from another posture would be the same one again.
+    pub(super) fn is_like(&self, other: &Self, model: &Model) -> bool {
+        let mut change = vec![0.0; model.rates().len()];
+        self.posture.difference(model, &other.posture, &mut change);
+        self.asked == other.asked && change.iter().all(|by| by.abs() <= SEARCHED_NEARBY)
+    }
+}
+
 /// State of the body at which a search during a run begins.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now<'a> {
@@ -44,6 +66,15 @@ pub(super) struct Now<'a> {
     pub(super) effort: f64,
 }
 
+/// Amount of work that a search may do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Budget {
+    /// Number of starts that are scattered over the ranges of the joints.
+    pub(super) scattered: usize,
+    /// Work of the solver ([`Search::most_work`]).
+    pub(super) work: usize,
+}
+
 /// Result of a search, with its work.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Searched<T> {
@@ -53,14 +84,13 @@ pub(super) struct Searched<T> {
     pub(super) cut: bool,
 }
 
-/// A posture that is nearer to the tasks above effort, whose `errors` are those now, or of less effort and as near, if `budget` of work shows
-/// one.
+/// A posture that is nearer to the tasks above effort, whose `errors` are those now, or of less effort and as near, if `budget` shows one.
 pub(super) fn easiest(
     scenario: &Scenario,
     now: Now<'_>,
     errors: &[f64],
     supports: &[Support],
-    budget: usize,
+    budget: Budget,
 ) -> Result<Searched<Option<Posture>>, SearchError> {
     let mut locked = rates_that_move(&scenario.model, supports);
     scenario.locked_rates().for_each(|rate| locked[rate] = true);
@@ -81,13 +111,13 @@ pub(super) fn first_difference(levels: &[LevelError], errors: &[f64]) -> f64 {
     differences.find(|difference| difference.abs() > UNREACHED).unwrap_or(0.0)
 }
 
-/// The postures that a search finds, that of least effort first.
+/// The postures that a search finds while some rates are `locked`, that of least effort first.
 pub(super) fn search(
     scenario: &Scenario,
     now: Now<'_>,
     supports: &[Support],
     locked: &[usize],
-    budget: usize,
+    budget: Budget,
 ) -> Result<Searched<Vec<RelaxedPosture>>, SearchError> {
     let asks = |level: &&PriorityLevel| !level.tasks.is_empty() || !level.half_spaces.is_empty();
     let goals: Vec<PriorityLevel> = now.levels.iter().filter(asks).cloned().collect();
@@ -99,8 +129,8 @@ pub(super) fn search(
         goals: &goals,
         loads: now.loads,
         locked,
-        most_work: budget,
-        scattered: 0,
+        most_work: budget.work,
+        scattered: budget.scattered,
     };
     let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };
     let found = equilibria(&search, options)?;

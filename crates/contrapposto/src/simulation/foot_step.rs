@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::ScenarioError;
 use super::body_motion::BodyMotion;
-use super::easiest::{Now, Searched, search};
+use super::easiest::{Budget, Now, Searched, search};
 use super::path::Path;
 use super::sample::FootStep;
 use crate::contact::{Place, Support};
@@ -51,36 +51,37 @@ pub(super) fn plan_step(
 ) -> Result<Searched<Option<PlannedStep>>, ScenarioError> {
     let scenario = body.scenario();
     let (mut left, mut cut) = (budget, false);
-    for (i, support) in scenario.supports.iter().enumerate() {
-        if support.place == Place::Fixed {
-            continue;
-        }
+    let (effort, mut found) = (body.effort(), vec![]);
+    let free: Vec<usize> =
+        (0..scenario.supports.len()).filter(|&i| scenario.supports[i].place != Place::Fixed).collect();
+    for (k, &i) in free.iter().enumerate() {
         let mut supports = body.supports().to_vec();
-        supports[i].place = support.place.clone();
-        let effort = body.effort();
+        supports[i].place = scenario.supports[i].place.clone();
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
         let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort };
         let locked: Vec<usize> = scenario.locked_rates().collect();
-        let Ok(searched) = search(scenario, now, &supports, &locked, left) else { continue };
+        let share = Budget { scattered: 0, work: left / (free.len() - k) };
+        let Ok(searched) = search(scenario, now, &supports, &locked, share) else { continue };
         left = left.saturating_sub(searched.work);
         cut |= searched.cut;
-        let before = middle(body, posture, support)?;
-        for candidate in searched.found {
-            let to = &candidate.relaxed.posture;
-            let after = middle(body, to, support)?;
-            let worth = candidate.relaxed.effort < WORTH_A_STEP * effort && relieves(&candidate, posture, tired);
-            if !worth || (after - before).norm() < LEAST_SHIFT {
-                continue;
-            }
-            if let Some(path) = body.way(posture, to, Some(i), &mut left) {
-                let (coordinate, side) = (tired.coordinate, tired.side);
-                let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
-                let step = FootStep { support: i, coordinate, side, time: (0.0, 0.0), place, effort };
-                return Ok(Searched { found: Some(PlannedStep { path, step }), work: budget - left, cut });
-            }
-        }
-        cut |= left == 0;
+        found.extend(searched.found.into_iter().map(|candidate| (i, candidate)));
     }
+    found.sort_by(|(_, a), (_, b)| a.relaxed.effort.total_cmp(&b.relaxed.effort));
+    for (i, candidate) in found {
+        let (support, to) = (&scenario.supports[i], &candidate.relaxed.posture);
+        let (before, after) = (middle(body, posture, support)?, middle(body, to, support)?);
+        let worth = candidate.relaxed.effort < WORTH_A_STEP * effort && relieves(&candidate, posture, tired);
+        if !worth || (after - before).norm() < LEAST_SHIFT {
+            continue;
+        }
+        if let Some(path) = body.way(posture, to, Some(i), &mut left) {
+            let (coordinate, side) = (tired.coordinate, tired.side);
+            let (place, effort) = ((before.into(), after.into()), (effort, candidate.relaxed.effort));
+            let step = FootStep { support: i, coordinate, side, time: (0.0, 0.0), place, effort };
+            return Ok(Searched { found: Some(PlannedStep { path, step }), work: budget - left, cut });
+        }
+    }
+    cut |= left == 0;
     Ok(Searched { found: None, work: budget - left, cut })
 }
 

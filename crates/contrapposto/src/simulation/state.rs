@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Event;
+use super::easiest::Eased;
 use super::goal::Goal;
 use super::group_state::GroupState;
 use super::path::Path;
@@ -49,6 +50,8 @@ pub(super) struct State {
     pub(super) search_cut: bool,
     /// The body has not moved since the last search.
     pub(super) searched_here: bool,
+    /// The posture in which the last search at rest found nothing easier, since tasks, loads and supports are as they are.
+    pub(super) eased: Option<Eased>,
 }
 
 /// The constraint that the relief of one coordinate puts on the posture, and what its decision predicts.
@@ -122,6 +125,7 @@ impl State {
             searched: 0,
             search_cut: false,
             searched_here: true,
+            eased: None,
         }
     }
 
@@ -144,6 +148,7 @@ impl State {
             && self.active.iter().chain(self.fatigue.iter().flatten()).all(|v| v.is_finite())
             && self.requests.iter().all(Request::is_finite)
             && self.path.as_ref().is_none_or(|path| path.fits(n, supports))
+            && self.eased.as_ref().is_none_or(|eased| eased.asked.len() == n)
     }
 
     /// Applies what an event changes of the strategies, and ends the recoveries that it makes obsolete.

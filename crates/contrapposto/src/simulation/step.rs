@@ -1,6 +1,6 @@
 //! Advances a scenario by one time step (Rodriguez & Boulic 2007, section 3).
 
-use super::easiest::Searched;
+use super::easiest::{Eased, Searched};
 use super::motion::Motion;
 use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
@@ -50,6 +50,8 @@ impl<'a> Simulation<'a> {
         let mut simulation = Self::with(scenario, State::new(scenario.start.clone(), strategies))?;
         if let Some(body) = simulation.motion.body_mut() {
             let Searched { found, work, cut } = body.start()?;
+            let asked = vec![false; simulation.state.requests.len()];
+            simulation.state.eased = Some(Eased { posture: found.clone(), asked });
             (simulation.state.posture, simulation.state.searched, simulation.state.search_cut) = (found, work, cut);
         }
         simulation.carry_out_reliefs()?;
@@ -72,7 +74,8 @@ impl<'a> Simulation<'a> {
     pub(super) fn resume(scenario: &'a Scenario, state: State) -> Result<Self, ScenarioError> {
         scenario.check()?;
         let n = scenario.model.coordinates().len();
-        let postures = [Some(&state.posture), state.placed_at.as_ref()];
+        let eased = state.eased.as_ref().map(|eased| &eased.posture);
+        let postures = [Some(&state.posture), state.placed_at.as_ref(), eased];
         let fit = postures.iter().flatten().all(|posture| posture.check(&scenario.model).is_ok());
         if !fit || !state.fits(n, scenario.supports.len(), scenario.events.len()) {
             return Err(ScenarioError::Snapshot);

@@ -1,6 +1,6 @@
 //! Follows a planned way sample by sample, and looks for one: a step that relieves a tired group, or an easier posture at rest.
 
-use super::easiest::{SEARCH_BUDGET, SEARCH_BUDGET_OF_STEP, Searched};
+use super::easiest::{Budget, Eased, SEARCH_BUDGET, SEARCH_BUDGET_OF_STEP, Searched};
 use super::foot_step::{PlannedStep, Tired, plan_step};
 use super::{FootStep, ScenarioError, Simulation};
 use crate::hybrid::Decision;
@@ -28,6 +28,7 @@ impl Simulation<'_> {
         if lands {
             body.place_again(&self.state.posture)?;
             self.state.placed_at = Some(self.state.posture.clone());
+            self.state.eased = None;
         }
         if is_over {
             body.restart_convergence();
@@ -47,6 +48,7 @@ impl Simulation<'_> {
     /// stops where it is.
     pub(super) fn end_path_at_once(&mut self) -> Result<(), ScenarioError> {
         self.state.searched_here = false;
+        self.state.eased = None;
         self.state.step_tried.fill(false);
         let Some(path) = &mut self.state.path else { return Ok(()) };
         if path.has_step() {
@@ -98,12 +100,19 @@ impl Simulation<'_> {
         if self.state.searched_here || self.motion.body_mut().is_none() {
             return Ok(());
         }
+        let asked: Vec<bool> = self.state.requests.iter().map(|request| request.in_force).collect();
+        let here = Eased { posture: self.state.posture.clone(), asked };
+        if self.state.eased.as_ref().is_some_and(|eased| eased.is_like(&here, &self.scenario.model)) {
+            self.state.searched_here = true;
+            return Ok(());
+        }
         let Some(mut budget) = self.search_budget() else { return Ok(()) };
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         self.state.searched_here = true;
-        let Searched { found, work, cut } = body.easiest(&self.state.posture, budget)?;
+        let Searched { found, work, cut } = body.easiest(&self.state.posture, Budget { scattered: 0, work: budget })?;
         let all = budget;
         budget = budget.saturating_sub(work);
+        self.state.eased = found.is_none().then_some(here);
         if let Some(better) = found {
             self.state.path = body.way(&self.state.posture, &better, None, &mut budget);
         }
