@@ -13,6 +13,10 @@ use crate::posture_solver::SolvedPosture;
 const SAME_TORQUE: f64 = 0.05;
 /// Postures count as two where a segment is farther away in one than in the other, m.
 const SAME_PLACE: f64 = 0.3;
+/// A posture is worth converging from, and an answer, up to this multiple of the least effort,
+const WORTH_MULTIPLE: f64 = 10.0;
+/// and this effort besides: assumed, one muscle group at 3 percent of its strength.
+const WORTH_BESIDES: f64 = 1e-3;
 
 /// A posture that a solve has reached.
 #[derive(Clone, Debug)]
@@ -65,6 +69,13 @@ impl Candidate {
             + self.relaxed.slip.length()
             + self.relaxed.levels[..slot].iter().map(|level| level.length).sum::<f64>()
     }
+}
+
+/// Leaves out of `selected`, indices into `found`, postures that need far more effort than the easiest of them.
+pub(super) fn keep_worth(found: &[Candidate], selected: &mut Vec<usize>) {
+    let effort = |i: &usize| found[*i].relaxed.effort;
+    let least = selected.iter().map(effort).fold(f64::INFINITY, f64::min);
+    selected.retain(|i| effort(i) <= WORTH_MULTIPLE * least + WORTH_BESIDES);
 }
 
 /// Centre of mass of every segment, ground, m.

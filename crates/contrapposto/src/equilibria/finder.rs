@@ -1,6 +1,6 @@
 //! Makes the starts of a search, solves from each of them, and selects the different postures of least effort.
 
-use super::candidate::{Candidate, places};
+use super::candidate::{Candidate, keep_worth, places};
 use super::description::{describe, relative_torques};
 use super::hanging_limbs::{hanging_limbs, idle_segments, in_mid_range};
 use super::mirror::Mirror;
@@ -28,10 +28,6 @@ const HUNG: usize = 5;
 const EXPLORATORY_STEPS: usize = 20;
 /// Steps of an approach to the tasks.
 const APPROACH_STEPS: usize = 40;
-/// A posture is worth converging from, and an answer, up to this multiple of the least effort,
-const WORTH_MULTIPLE: f64 = 10.0;
-/// and this effort besides: assumed, one muscle group at 3 percent of its strength.
-const WORTH_BESIDES: f64 = 1e-3;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
 /// exploratory and to converged postures.
 const ALLOWED_ERROR: [f64; 3] = [0.02, 1e-5, 1e-5];
@@ -183,7 +179,7 @@ impl<'a> Finder<'a> {
     fn converge(&mut self) {
         let mut candidates = self.selected(Stage::Exploratory);
         candidates.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        self.keep_worth(&mut candidates);
+        keep_worth(&self.found, &mut candidates);
         let mut explored = std::mem::take(&mut self.found);
         let starts = std::mem::take(&mut self.starts);
         for i in candidates {
@@ -207,13 +203,6 @@ impl<'a> Finder<'a> {
             let image = mirror.posture(&self.found[i].relaxed.posture);
             self.solve(Stage::Converged, &image, vec![format!("mirror image of: {}", self.found[i].starts[0])]);
         }
-    }
-
-    /// Leaves out postures that need far more effort than the easiest of them.
-    fn keep_worth(&self, candidates: &mut Vec<usize>) {
-        let effort = |i: &usize| self.found[*i].relaxed.effort;
-        let least = candidates.iter().map(effort).fold(f64::INFINITY, f64::min);
-        candidates.retain(|i| effort(i) <= WORTH_MULTIPLE * least + WORTH_BESIDES);
     }
 
     /// Solves from a posture with the engine of a stage, and keeps the result if it is new or better.
@@ -392,7 +381,7 @@ impl<'a> Finder<'a> {
         let yielded = self.found.len() - selected.len();
         let (least, all) = (self.found[selected[0]].raised_limbs, selected.len());
         selected.retain(|&i| self.found[i].raised_limbs == least);
-        self.keep_worth(&mut selected);
+        keep_worth(&self.found, &mut selected);
         let raised = all - selected.len();
         let (mut answers, engine) =
             (DifferentWays::new(idle_segments(self.search)), &mut self.engines[Stage::Converged as usize]);

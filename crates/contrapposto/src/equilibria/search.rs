@@ -28,7 +28,7 @@ pub struct Search<'a> {
     /// are explored, so that a search ends at the same start on every machine.
     pub most_work: usize,
     /// Number of starts that are scattered over the ranges of the joints ([`SCATTERED_STARTS`](super::SCATTERED_STARTS) finds what random starts
-    /// of another method find); 0 where the posture is known to be near, as in a run.
+    /// of another method find); 0 where the posture is known to be near, as after a rest.
     pub scattered: usize,
 }
 
