@@ -146,19 +146,18 @@ fn a_budget_that_is_used_up_leaves_the_changes_of_least_promise_which_are_named_
     let (summary, before) = ran(&scenario);
     let whole = advised(&scenario, &summary, &before, usize::MAX, 1);
     let job = Job::from(&scenario);
-    let first_two = by_promise(&scenario, &summary, changes(&job, &before.hazards)).into_iter().take(2);
-    let mut first_two: Vec<String> = first_two.map(|change| change.in_words(&job)).collect();
-    let mut best_two: Vec<String> = whole.helping.iter().take(2).map(|one| one.change.clone()).collect();
-    first_two.sort();
-    best_two.sort();
-    assert_eq!(first_two, best_two);
+    let promised = by_promise(&scenario, &summary, changes(&job, &before.hazards));
+    let promised: Vec<String> = promised.iter().map(|change| change.in_words(&job)).collect();
+    let helping: Vec<&String> = whole.helping.iter().map(|one| &one.change).collect();
+    // A posture near the end of the job tells little apart: the other strategy has the same posture there, and is tried in vain.
+    assert_eq!((helping.len(), helping[0]), (2, &promised[0]));
+    assert!(promised[..3].contains(helping[1]), "{promised:?}");
     for threads in [1, 2, 3, 8] {
         assert_eq!(advised(&scenario, &summary, &before, usize::MAX, threads), whole, "{threads} threads");
         let one = advised(&scenario, &summary, &before, 1, threads);
         assert_eq!(one, advised(&scenario, &summary, &before, 1, 1), "{threads} threads");
         assert_eq!(one.not_tried.len(), 4, "{:?}", one.not_tried);
-        // A posture near the end of the job tells little apart, but the two that help most come first.
-        assert!(whole.helping[..2].contains(&one.helping[0]), "{:?}", one.helping);
+        assert_eq!(whole.helping[0], one.helping[0]);
         let end = format!("Not tried: {}.", one.not_tried.join("; "));
         assert_eq!((one.gains.rows.len(), one.notes.as_slice()), (2, [end].as_slice()));
         let none = advised(&scenario, &summary, &before, 0, threads);
