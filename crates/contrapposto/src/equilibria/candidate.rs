@@ -15,8 +15,9 @@ const SAME_TORQUE: f64 = 0.05;
 const SAME_PLACE: f64 = 0.3;
 /// A posture is worth converging from, and an answer, up to this multiple of the least effort,
 const WORTH_MULTIPLE: f64 = 10.0;
-/// and this effort besides: assumed, one muscle group at 3 percent of its strength.
-const WORTH_BESIDES: f64 = 1e-3;
+/// and this effort besides: assumed, one muscle group at a third of its strength. Where a body can hang folded on its ligaments at no
+/// effort, standing upright stays an answer.
+const WORTH_BESIDES: f64 = 0.1;
 
 /// A posture that a solve has reached.
 #[derive(Clone, Debug)]
