@@ -58,7 +58,7 @@ impl Strength {
     ///
     /// ```
     /// use contrapposto::strength::Strength;
-    /// let knee = Strength { peak: 203.0, best: 1.133, narrowness: 1.258, floor: 0.5, tested: (0.1745, 1.798) };
+    /// let knee = Strength { peak: 203.0, best: 1.133, narrowness: 1.258, floor: 0.5, tested: (0.1745, 1.798), table: None };
     /// assert_eq!(knee.torque(1.133), 203.0);
     /// assert_eq!(knee.torque(0.0), 101.5);
     /// assert_eq!(knee.torque(2.3), knee.torque(1.798));
