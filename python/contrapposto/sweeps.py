@@ -64,8 +64,8 @@ def _by_workers(native: _native.Sweep, folder: _native.SweepFolder, client: Any,
     rows, done = native.rows, 0
     try:
         for future in as_completed(list(futures)):
-            text = future.result()
-            folder.write(futures.pop(future), text)
+            part = future.result()
+            folder.write(futures.pop(future), part)
             # The scheduler need not keep what is on the disk.
             future.release()
             done += 1
@@ -80,8 +80,8 @@ def _by_workers(native: _native.Sweep, folder: _native.SweepFolder, client: Any,
 _opened: list[tuple[bytes, _native.Sweep]] = []
 
 
-def _part(state: bytes, part: int) -> str:
-    """The text of a part, in a worker."""
+def _part(state: bytes, part: int) -> bytes:
+    """The bytes of a part, in a worker."""
     if not _opened or _opened[0][0] != state:
         _opened[:] = [(state, _native.Sweep.from_state(state))]
     return _opened[0][1].part(part)
@@ -108,7 +108,7 @@ class Results:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The parts, in the order of their rows: for polars, DuckDB and Dask's data frames."""
+        """The parts, Parquet files in the order of their rows: for `polars.scan_parquet`, DuckDB and Dask's data frames."""
         return tuple(self.folder / name for name in self.plan.parts)
 
     def __len__(self) -> int:
@@ -116,7 +116,10 @@ class Results:
 
     def parts(self) -> Iterator[pandas.DataFrame]:
         """Tables, one a part."""
-        yield from map(_read, self.files)
+        import pandas
+
+        for file in self.files:
+            yield pandas.read_parquet(file, engine="pyarrow")
 
     def to_pandas(self) -> pandas.DataFrame:
         """One table of all rows (index `row`); `attrs` has the meaning of each column, the program and the plan."""
@@ -180,7 +183,13 @@ class Population:
         """A row a body (index `row`)."""
         import io
 
-        return _read(io.StringIO(self._table)).set_index("row")
+        import pandas
+
+        # An empty cell is no value; a text such as "nan" stays a text.
+        options: dict[str, Any] = {"keep_default_na": False, "na_values": [""], "index_col": "row"}
+        if int(pandas.__version__.split(".")[0]) < 3:  # later ones read to the last bit, and warn of the option
+            options["float_precision"] = "round_trip"
+        return pandas.read_csv(io.StringIO(self._table), **options)
 
     def html(self) -> str:
         """The page of the program."""
@@ -197,17 +206,6 @@ class Population:
 
     def __repr__(self) -> str:
         return f"<contrapposto.Population: {self.sentence}>"
-
-
-def _read(file: Any) -> pandas.DataFrame:
-    """The table of a part, every number to its last bit."""
-    import pandas
-
-    # An empty cell is no value; a text such as "nan" stays a text.
-    options: dict[str, Any] = {"keep_default_na": False, "na_values": [""]}
-    if int(pandas.__version__.split(".")[0]) < 3:  # later ones read to the last bit, and warn of the option
-        options["float_precision"] = "round_trip"
-    return pandas.read_csv(file, **options)
 
 
 def _threads(threads: int | None) -> int | None:

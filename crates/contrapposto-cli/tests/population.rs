@@ -160,9 +160,7 @@ fn a_part_that_was_cut_off_is_named() {
     let more = ["--rows", "8", "--out", out.to_str().unwrap()];
     assert_eq!(population(&path, &more).0, 0);
     let (name, bytes) = files(&out.join("rows")).pop_last().unwrap();
-    let text = String::from_utf8(bytes).unwrap();
-    let cut: String = text.split_inclusive('\n').take(3).collect();
-    std::fs::write(out.join("rows").join(&name), cut).unwrap();
+    std::fs::write(out.join("rows").join(&name), &bytes[..bytes.len() - 1]).unwrap();
     let (code, _, notes) = population(&path, &[&more[..], &["--resume"]].concat());
     assert!(
         code == 1 && notes.contains(name.to_str().unwrap()) && notes.contains("rows 4 to 7 are expected"),
@@ -170,7 +168,7 @@ fn a_part_that_was_cut_off_is_named() {
     );
     std::fs::remove_file(out.join("rows").join(&name)).unwrap();
     assert_eq!(population(&path, &[&more[..], &["--resume"]].concat()).0, 0);
-    assert_eq!(files(&out.join("rows"))[&name], text.as_bytes());
+    assert_eq!(files(&out.join("rows"))[&name], bytes);
 }
 
 #[test]

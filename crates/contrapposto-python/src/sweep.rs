@@ -75,11 +75,12 @@ impl Sweep {
         self.inner.rows()
     }
 
-    /// The text of a part.
-    fn part(&self, py: Python<'_>, part: usize) -> PyResult<String> {
+    /// The bytes of a part.
+    fn part<'py>(&self, py: Python<'py>, part: usize) -> PyResult<Bound<'py, PyBytes>> {
         let sweep = Arc::clone(&self.inner);
-        let text = in_background(py, move |stop| sweep.part(part, || !stop.load(Ordering::Relaxed)))?;
-        text.ok_or_else(|| failure(py, &Failure::refused(format!("the sweep has no part {part}"))))
+        let bytes = in_background(py, move |stop| sweep.part(part, || !stop.load(Ordering::Relaxed)))?;
+        let bytes = bytes.ok_or_else(|| failure(py, &Failure::refused(format!("the sweep has no part {part}"))))?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     /// Locks a folder for the parts.
@@ -108,9 +109,9 @@ impl SweepFolder {
     }
 
     /// Writes a part, whole or not at all.
-    fn write(&self, py: Python<'_>, part: usize, text: &str) -> PyResult<()> {
+    fn write(&self, py: Python<'_>, part: usize, bytes: &[u8]) -> PyResult<()> {
         let folder = self.opened(py)?;
-        let written = py.detach(|| folder.lock().unwrap_or_else(PoisonError::into_inner).write(part, text));
+        let written = py.detach(|| folder.lock().unwrap_or_else(PoisonError::into_inner).write(part, bytes));
         written.map_err(|why| failure(py, &why))
     }
 

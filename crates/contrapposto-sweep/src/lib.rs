@@ -1,5 +1,5 @@
-//! Computes the rows of a plan of many runs: which values every parameter has in every row, the answer of its run, and the text of a
-//! part, some rows together. Counts the answers of a population of women and men.
+//! Computes the rows of a plan of many runs: which values every parameter has in every row, the answer of its run, and the bytes of
+//! a part, some rows together. Counts the answers of a population of women and men.
 //!
 //! A row depends on the plan, the scenario and its own number alone, so any thread or machine can compute any part, with the same bytes.
 
@@ -7,6 +7,7 @@ mod interval;
 mod normal;
 mod outcome;
 mod part;
+mod part_file;
 mod population;
 mod random;
 mod rank_regression;
@@ -15,14 +16,15 @@ mod sensitivity;
 mod sobol;
 mod sobol_table;
 mod table;
+mod thrift;
 
 pub use interval::{CONFIDENCE, wilson};
 pub use normal::{cumulative, quantile};
 pub use outcome::Outcome;
-pub use part::{COLUMNS, Study};
+pub use part::Study;
 pub use population::{MOST_BODIES, People, Population, QUANTILES, SEXES, population, size_at};
 pub use rank_regression::{RankCoefficient, RankRegression, ranks};
 pub use sampler::Sampler;
 pub use sensitivity::{LEAST_FOR_SENSITIVITY, NoSensitivity, PARAMETERS, Sensitivity};
 pub use sobol::{MOST_DIMENSIONS, sobol};
-pub use table::{Answer, read_part};
+pub use table::{Answer, COLUMNS};

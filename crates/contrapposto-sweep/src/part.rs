@@ -1,4 +1,4 @@
-//! Writes a part of a plan, some rows together, as the text of a table, and the key that tells whether a part on a disk is this one.
+//! Computes a part of a plan, some rows together, as a table, and the key that tells whether a part on a disk is this one.
 
 use std::ops::Range;
 
@@ -7,23 +7,9 @@ use contrapposto_formats::{InputError, Plan, Template, Value};
 use sha2::{Digest, Sha256};
 
 use super::outcome::Outcome;
+use super::part_file::{self, Column, PROGRAM};
 use super::sampler::Sampler;
-
-/// Columns of a part after `row` and the parameters, with their meaning.
-pub const COLUMNS: [(&str, &str); 9] = [
-    (
-        "kind",
-        "verdict: cannot_be_done, cannot_stand, not_reached, held_until or holds; refused: no scenario with these values, or an error in the run",
-    ),
-    ("minutes", "min; how long the job can be done; empty: muscles set no limit, or it cannot be done"),
-    ("who", "muscle group that is too weak or fails first; where none does, the one with the greatest load"),
-    ("hardest", "muscle group with the greatest load"),
-    ("load", "1; active torque of `hardest` over its strength"),
-    ("effort", "1; sum of (active torque / strength)^2 at the end"),
-    ("seconds", "s; simulated time"),
-    ("search_cut", "true where a search for an easier posture was cut short: there may be one"),
-    ("note", "why the row is refused"),
-];
+use super::table::{self, Answer, COLUMNS};
 
 /// Characters of a key: 64 bits of a hash, two of which meet by chance once in four thousand million parts.
 const KEY_CHARACTERS: usize = 16;
@@ -129,7 +115,8 @@ impl Study {
 
     fn key_of(&self, rows: Range<usize>) -> String {
         let mut hash = Sha256::new();
-        hash.update(concat!("contrapposto ", env!("CARGO_PKG_VERSION"), "\n"));
+        hash.update(PROGRAM);
+        hash.update("\n");
         hash.update(self.header());
         for row in rows {
             let text = self.scenario(row);
@@ -142,41 +129,65 @@ impl Study {
         bytes.map(|byte| format!("{byte:02x}")).collect()
     }
 
-    /// The text of a part, while `go_on` says yes; `None` where it says no. `done` is called after every row.
-    pub fn part(&self, part: usize, go_on: impl Fn() -> bool, done: impl Fn()) -> Option<String> {
-        let mut text = self.header();
+    /// The bytes of a part, a Parquet file, while `go_on` says yes; `None` where it says no. `done` is called after every row.
+    pub fn part(&self, part: usize, go_on: impl Fn() -> bool, done: impl Fn()) -> Option<Vec<u8>> {
+        let mut answers = vec![];
         for row in self.rows_of(part) {
-            let values = self.values(row);
-            let outcome = Outcome::of(&self.name, &self.template.text(&values), &go_on)?;
-            text += &line(row, &values, &outcome);
+            answers.push(Answer { row, outcome: Outcome::of(&self.name, &self.scenario(row), &go_on)? });
             done();
         }
-        Some(text)
+        Some(self.bytes(part, &answers))
     }
 
-    /// The first line of every part: names of the columns.
+    /// The answers of a part that was kept; `None` of bytes that are not those of this part with any answers: cut off, changed, or of
+    /// other rows.
+    pub fn read(&self, part: usize, bytes: &[u8]) -> Option<Vec<Answer>> {
+        let rows = self.rows_of(part);
+        let columns = part_file::read(bytes, &self.columns(&[]), rows.len())?;
+        let columns = columns.get(columns.len() - COLUMNS.len()..)?;
+        let answer = |(i, row)| Some(Answer { row, outcome: table::outcome(columns, i)? });
+        let answers: Vec<Answer> = rows.enumerate().map(answer).collect::<Option<_>>()?;
+        (self.bytes(part, &answers) == bytes).then_some(answers)
+    }
+
+    fn bytes(&self, part: usize, answers: &[Answer]) -> Vec<u8> {
+        part_file::write(&self.columns(answers), &self.facts(part))
+    }
+
+    fn columns(&self, answers: &[Answer]) -> Vec<(String, Column)> {
+        let rows = answers.iter().map(|answer| answer.row as i64).collect();
+        let values: Vec<Vec<Value>> = answers.iter().map(|answer| self.values(answer.row)).collect();
+        let parameter = |(i, key): (usize, &str)| {
+            let distributions = self.plans().map(|plan| &plan.parameters[i].distribution);
+            (key.to_owned(), table::parameter(distributions, values.iter().map(|values| values[i].clone())))
+        };
+        let answers = COLUMNS.iter().map(|(name, _)| (*name).to_owned()).zip(table::columns(answers));
+        let row = ("row".to_owned(), Column::Whole(rows));
+        std::iter::once(row).chain(self.keys().enumerate().map(parameter)).chain(answers).collect()
+    }
+
+    /// The metadata of a part: program, key, and the meaning of every column.
+    fn facts(&self, part: usize) -> Vec<(String, String)> {
+        let meanings = self.meanings().map(|(name, meaning)| (format!("column {name}"), meaning.to_owned()));
+        let facts = [("program", PROGRAM.to_owned()), ("key", self.key(part))];
+        facts.into_iter().map(|(name, text)| (name.to_owned(), text)).chain(meanings).collect()
+    }
+
+    /// Names of all columns, with their meaning, the unit first.
+    pub fn meanings(&self) -> impl Iterator<Item = (&str, &str)> {
+        let parameter = "key of the scenario, in the unit that its name ends in";
+        let row = [("row", "number of the row in the plan, from 0")];
+        row.into_iter().chain(self.keys().map(move |key| (key, parameter))).chain(COLUMNS)
+    }
+
+    /// Answers as the text of a CSV file: a line with the names of the columns, then one for each row.
+    pub fn csv(&self, answers: &[Answer]) -> String {
+        let lines = answers.iter().map(|answer| table::line(answer.row, &self.values(answer.row), &answer.outcome));
+        std::iter::once(self.header()).chain(lines).collect()
+    }
+
+    /// Names of the columns, as the first line of a CSV file.
     fn header(&self) -> String {
-        let names = ["row"].into_iter().chain(self.keys()).chain(COLUMNS.iter().map(|(name, _)| *name));
-        names.map(csv_cell).collect::<Vec<_>>().join(",") + "\n"
+        self.meanings().map(|(name, _)| csv_cell(name)).collect::<Vec<_>>().join(",") + "\n"
     }
-}
-
-/// A row as text; every number has all the digits that are needed to read the same value again.
-fn line(row: usize, values: &[Value], outcome: &Outcome) -> String {
-    let number = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
-    let text = |text: &Option<String>| text.as_deref().map_or(String::new(), csv_cell);
-    let value = |value: &Value| if let Value::Text(text) = value { csv_cell(text) } else { value.to_string() };
-    let answer = [
-        outcome.kind.to_owned(),
-        number(outcome.minutes),
-        text(&outcome.who),
-        text(&outcome.hardest),
-        number(outcome.load),
-        number(outcome.effort),
-        number(outcome.seconds),
-        outcome.search_cut.map_or_else(String::new, |cut| cut.to_string()),
-        text(&outcome.note),
-    ];
-    let cells = std::iter::once(row.to_string()).chain(values.iter().map(value)).chain(answer);
-    cells.collect::<Vec<_>>().join(",") + "\n"
 }

@@ -1,86 +1,112 @@
-//! Reads the text of a part back: the answer of every row.
-
-use std::collections::BTreeMap;
-use std::ops::Range;
+//! Turns the answers of rows into columns and back, and into lines of text.
 
 use contrapposto::verdict::VerdictKind;
+use contrapposto_formats::motion::csv_cell;
+use contrapposto_formats::{Distribution, Value};
 
 use super::outcome::{Outcome, REFUSED};
+use super::part_file::Column;
+
+/// Columns of a part after `row` and the parameters, with their meaning.
+pub const COLUMNS: [(&str, &str); 9] = [
+    (
+        "kind",
+        "verdict: cannot_be_done, cannot_stand, not_reached, held_until or holds; refused: no scenario with these values, or an error in the run",
+    ),
+    ("minutes", "min; how long the job can be done; empty: muscles set no limit, or it cannot be done"),
+    ("who", "muscle group that is too weak or fails first; where none does, the one with the greatest load"),
+    ("hardest", "muscle group with the greatest load"),
+    ("load", "1; active torque of `hardest` over its strength"),
+    ("effort", "1; sum of (active torque / strength)^2 at the end"),
+    ("seconds", "s; simulated time"),
+    ("search_cut", "true where a search for an easier posture was cut short: there may be one"),
+    ("note", "why the row is refused"),
+];
 
 /// A row of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// Number of the row.
     pub row: usize,
-    /// The cells before the answer: the number of the row and the parameters, as they are written.
-    pub cells: Vec<String>,
     /// The answer.
     pub outcome: Outcome,
 }
 
-/// The rows of a part; `None` where the text is no part, is cut off, or has other rows.
-pub fn read_part(text: &str, rows: Range<usize>) -> Option<Vec<Answer>> {
-    let mut lines = text.strip_suffix('\n')?.split('\n');
-    let header = cells(lines.next()?);
-    let columns: BTreeMap<&str, usize> = header.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
-    let first = *columns.get("kind")?;
-    let whole = |line: &str| Some(cells(line)).filter(|cells| cells.len() == header.len());
-    let answers: Vec<Answer> = lines.map(|line| answer(&columns, first, whole(line)?)).collect::<Option<_>>()?;
-    answers.iter().map(|answer| answer.row).eq(rows).then_some(answers)
-}
-
-fn answer(columns: &BTreeMap<&str, usize>, first: usize, mut cells: Vec<String>) -> Option<Answer> {
-    let text = |name: &str| {
-        let cell = cells.get(*columns.get(name)?)?;
-        (!cell.is_empty()).then(|| cell.clone())
+/// The columns of answers, in the order of [`COLUMNS`].
+pub(crate) fn columns(answers: &[Answer]) -> [Column; COLUMNS.len()] {
+    let number = |of: fn(&Outcome) -> Option<f64>| Column::Number(answers.iter().map(|a| of(&a.outcome)).collect());
+    let text = |of: fn(&Outcome) -> Option<&str>| {
+        Column::Text(answers.iter().map(|answer| of(&answer.outcome).map(str::to_owned)).collect())
     };
-    // An empty cell is no number; another text than a number makes the row unreadable.
-    let number =
-        |name: &str| text(name).map(|text| text.parse::<f64>().ok()).map_or(Some(None), |number| number.map(Some));
-    let word = text("kind")?;
-    let kind = VerdictKind::ALL.into_iter().map(VerdictKind::word).chain([REFUSED]).find(|kind| *kind == word)?;
-    let outcome = Outcome {
-        kind,
-        minutes: number("minutes")?,
-        who: text("who"),
-        hardest: text("hardest"),
-        load: number("load")?,
-        effort: number("effort")?,
-        seconds: number("seconds")?,
-        search_cut: text("search_cut").map(|cut| cut == "true"),
-        note: text("note"),
-    };
-    let row = cells.first()?.parse().ok()?;
-    cells.truncate(first);
-    Some(Answer { row, cells, outcome })
+    [
+        text(|outcome| Some(outcome.kind)),
+        number(|outcome| outcome.minutes),
+        text(|outcome| outcome.who.as_deref()),
+        text(|outcome| outcome.hardest.as_deref()),
+        number(|outcome| outcome.load),
+        number(|outcome| outcome.effort),
+        number(|outcome| outcome.seconds),
+        Column::Truth(answers.iter().map(|answer| answer.outcome.search_cut).collect()),
+        text(|outcome| outcome.note.as_deref()),
+    ]
 }
 
-/// The cells of a line: separated by commas; one in quotes may hold commas, and two quotes for one.
-fn cells(line: &str) -> Vec<String> {
-    let (mut cells, mut quoted) = (vec![String::new()], false);
-    let mut letters = line.chars().peekable();
-    while let Some(letter) = letters.next() {
-        let twice = quoted && letter == '"' && letters.next_if_eq(&'"').is_some();
-        match (letter, cells.last_mut()) {
-            ('"', _) if !twice => quoted = !quoted,
-            (',', _) if !quoted => cells.push(String::new()),
-            (letter, Some(cell)) => cell.push(letter),
-            (_, None) => {}
-        }
-    }
-    cells
+/// The answer of the row `i` of these columns; `None` where one is of another kind, or the verdict has no known word.
+pub(crate) fn outcome(columns: &[Column], i: usize) -> Option<Outcome> {
+    let number = |column: &Column| if let Column::Number(values) = column { values.get(i).copied() } else { None };
+    let text = |column: &Column| if let Column::Text(values) = column { values.get(i).cloned() } else { None };
+    let [kind, minutes, who, hardest, load, effort, seconds, Column::Truth(cut), note] = columns else { return None };
+    let word = text(kind)??;
+    Some(Outcome {
+        kind: VerdictKind::ALL.into_iter().map(VerdictKind::word).chain([REFUSED]).find(|kind| *kind == word)?,
+        minutes: number(minutes)?,
+        who: text(who)?,
+        hardest: text(hardest)?,
+        load: number(load)?,
+        effort: number(effort)?,
+        seconds: number(seconds)?,
+        search_cut: cut.get(i).copied()?,
+        note: text(note)?,
+    })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::cells;
-    use contrapposto_formats::motion::csv_cell;
-
-    #[test]
-    fn cells_come_back_as_they_were_written() {
-        for written in [vec!["a", "b"], vec!["", "", ""], vec!["a, \"b\", c", "1"], vec!["\"", ",", "\"\"", ",\","]] {
-            let line = written.iter().map(|cell| csv_cell(cell)).collect::<Vec<_>>().join(",");
-            assert_eq!(cells(&line), written, "{line}");
-        }
+/// The column of a parameter: numbers or truths where its distributions have nothing else, otherwise texts.
+pub(crate) fn parameter<'a>(
+    distributions: impl Iterator<Item = &'a Distribution>,
+    values: impl Iterator<Item = Value>,
+) -> Column {
+    let kinds: Vec<Value> = distributions.flat_map(kinds).collect();
+    if kinds.iter().all(|value| matches!(value, Value::Number(_))) {
+        Column::Number(values.map(|value| if let Value::Number(x) = value { Some(x) } else { None }).collect())
+    } else if kinds.iter().all(|value| matches!(value, Value::Bool(_))) {
+        Column::Truth(values.map(|value| if let Value::Bool(truth) = value { Some(truth) } else { None }).collect())
+    } else {
+        let text = |value| if let Value::Text(text) = value { text } else { value.to_string() };
+        Column::Text(values.map(|value| Some(text(value))).collect())
     }
+}
+
+/// Values of each kind that a distribution has.
+fn kinds(distribution: &Distribution) -> Vec<Value> {
+    if let Distribution::List(list) = distribution { list.clone() } else { vec![Value::Number(0.0)] }
+}
+
+/// A row as text; every number has all the digits that are needed to read the same value again.
+pub(crate) fn line(row: usize, values: &[Value], outcome: &Outcome) -> String {
+    let number = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
+    let text = |text: &Option<String>| text.as_deref().map_or(String::new(), csv_cell);
+    let value = |value: &Value| if let Value::Text(text) = value { csv_cell(text) } else { value.to_string() };
+    let answer = [
+        outcome.kind.to_owned(),
+        number(outcome.minutes),
+        text(&outcome.who),
+        text(&outcome.hardest),
+        number(outcome.load),
+        number(outcome.effort),
+        number(outcome.seconds),
+        outcome.search_cut.map_or_else(String::new, |cut| cut.to_string()),
+        text(&outcome.note),
+    ];
+    let cells = std::iter::once(row.to_string()).chain(values.iter().map(value)).chain(answer);
+    cells.collect::<Vec<_>>().join(",") + "\n"
 }

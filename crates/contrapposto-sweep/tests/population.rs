@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use contrapposto_sweep::{
     Answer, MOST_DIMENSIONS, NoSensitivity, Outcome, PARAMETERS, Population, RankRegression, SEXES, Study, cumulative,
-    population, quantile, ranks, read_part, sobol, wilson,
+    population, quantile, ranks, sobol, wilson,
 };
 
 const BASE: &str = "format = 1\n[coordinates]\nfree = [\"elbow_flex_r\"]\n\
@@ -213,7 +213,7 @@ fn more_bodies_begin_with_the_same_ones_and_another_seed_gives_others() {
 
 fn answer(row: usize, kind: &'static str, minutes: Option<f64>, who: Option<&str>, load: f64) -> Answer {
     let who = who.map(str::to_owned);
-    Answer { row, cells: vec![], outcome: Outcome { kind, minutes, who, load: Some(load), ..Outcome::default() } }
+    Answer { row, outcome: Outcome { kind, minutes, who, load: Some(load), ..Outcome::default() } }
 }
 
 #[test]
@@ -312,11 +312,9 @@ fn without_shares_the_reason_is_the_true_one_and_a_parameter_that_does_not_diffe
     // All women are refused: sex is one.
     let time = |row: usize| 100.0 * study.point(row)[2];
     let men = |row: usize| match row % 2 {
-        0 => Answer {
-            row,
-            cells: vec![],
-            outcome: Outcome { kind: "refused", note: Some(format!("no {row}")), ..Outcome::default() },
-        },
+        0 => {
+            Answer { row, outcome: Outcome { kind: "refused", note: Some(format!("no {row}")), ..Outcome::default() } }
+        }
         _ => answer(row, "holds", Some(time(row)), None, 0.1),
     };
     let found = of((0..200).map(men).collect());
@@ -333,20 +331,29 @@ fn without_shares_the_reason_is_the_true_one_and_a_parameter_that_does_not_diffe
 #[test]
 fn a_part_is_read_whole_or_not_at_all() {
     let study = study(8, 0);
-    let text = study.part(1, || true, || {}).unwrap();
-    assert_eq!(read_part(&text, 4..8).unwrap().iter().map(|answer| answer.row).collect::<Vec<_>>(), [4, 5, 6, 7]);
-    // A text that is cut off anywhere, at the end of a line, too.
-    for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
-        assert!(read_part(&text[..end], 4..8).is_none(), "{end}");
+    let bytes = study.part(1, || true, || {}).unwrap();
+    let answers = study.read(1, &bytes).unwrap();
+    assert_eq!(answers.iter().map(|answer| answer.row).collect::<Vec<_>>(), [4, 5, 6, 7]);
+    let outcome = |row| Outcome::of("base.toml", &study.scenario(row), || true).unwrap();
+    assert!(answers.iter().all(|answer| answer.outcome == outcome(answer.row)), "{answers:?}");
+    for end in 0..bytes.len() {
+        assert!(study.read(1, &bytes[..end]).is_none(), "{end}");
     }
-    assert!(read_part(&text, 0..4).is_none() && read_part(&text, 4..7).is_none() && read_part(&text, 4..9).is_none());
-    let lines: Vec<&str> = text.lines().collect();
-    let swapped = [lines[0], lines[1], lines[3], lines[2], lines[4], ""].join("\n");
-    assert!(read_part(&swapped, 4..8).is_none());
-    let cells: Vec<&str> = lines[1].split(',').collect();
-    let minutes = lines[0].split(',').position(|name| name == "minutes").unwrap();
-    let broken: Vec<&str> = cells.iter().enumerate().map(|(i, cell)| if i == minutes { "4x" } else { *cell }).collect();
-    assert!(read_part(&text.replace(lines[1], &broken.join(",")), 4..8).is_none());
+    assert!(study.read(1, &[&bytes[..], b" "].concat()).is_none());
+    // The rows of another part, the same rows of other bodies, and fewer rows.
+    assert!(study.read(0, &bytes).is_none());
+    assert!(self::study(8, 1).read(1, &bytes).is_none() && self::study(6, 0).read(1, &bytes).is_none());
+    // Any bit that changes no answer but is another one than the program would write: names, key, meanings, parameters.
+    let mut read = 0;
+    for place in 0..bytes.len() {
+        let mut changed = bytes.clone();
+        changed[place] ^= 1;
+        if let Some(other) = study.read(1, &changed) {
+            assert_ne!(other, answers, "{place}");
+            read += 1;
+        }
+    }
+    assert!((1..bytes.len() / 4).contains(&read), "{read} of {} changes gave other answers", bytes.len());
 }
 
 #[test]

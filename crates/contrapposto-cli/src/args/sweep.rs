@@ -7,7 +7,7 @@ use clap::Parser;
 
 #[derive(Debug, Parser)]
 #[command(after_help = "Example:\n  contrapposto sweep scenarios/sweeps/elbow.toml --out out\n\n\
-    Writes part-NNNNN-KEY.csv, some rows each, and at the end sweep.json with the names of all parts and the meaning of the columns. \
+    Writes part-NNNNN-KEY.parquet, some rows each, and at the end sweep.json with the names of all parts and the meaning of the columns. \
     A part appears whole. Ctrl-C, or a kill at any time, loses at most the parts under way; the same command with --resume computes \
     what is missing. The bytes do not depend on threads, kills or resumption.")]
 pub(crate) struct SweepArgs {

@@ -5,7 +5,7 @@ use std::num::NonZero;
 use std::path::Path;
 
 use contrapposto_formats::{MOST_BYTES, read_run, scenario_model};
-use contrapposto_sweep::{Answer, Population, Study, population as plans, read_part};
+use contrapposto_sweep::{Answer, Population, Study, population as plans};
 
 use super::sweep::parts::{Filling, Others, Watch, compute, watched};
 use crate::args::PopulationArgs;
@@ -65,7 +65,7 @@ impl Counted {
 struct Part {
     /// The path of the file, or a name for messages.
     place: String,
-    text: String,
+    bytes: Vec<u8>,
 }
 
 impl Job {
@@ -102,7 +102,7 @@ impl Job {
         let files = folder.as_ref().map_or(vec![], |_| POPULATION_FILES.map(str::to_owned).to_vec());
         let text = PopulationText::new(&self.asked, &self.study, &found, self.seed, files);
         let json = json_text(POPULATION_FILES[0], &text)?;
-        let counted = Counted { text, found, json, table: table(&parts), folder };
+        let counted = Counted { text, found, json, table: self.study.csv(&answers), folder };
         if let Some(folder) = &counted.folder {
             let page = counted.page();
             let contents = [counted.json.as_bytes(), counted.table.as_bytes(), page.as_bytes()];
@@ -119,7 +119,7 @@ impl Job {
                 let (first, last) = (rows.start, rows.end - 1);
                 format!("rows {first} to {last} are expected, each whole; remove this file and use --resume")
             };
-            answers.extend(read_part(&part.text, rows.clone()).ok_or_else(|| Fail::job(&part.place, why()))?);
+            answers.extend(self.study.read(i, &part.bytes).ok_or_else(|| Fail::job(&part.place, why()))?);
         }
         Ok(answers)
     }
@@ -130,8 +130,8 @@ impl Job {
         filling.fill(&self.study, place.threads, watch)?;
         let part = |name: &String| {
             let path = filling.folder.path(name);
-            let text = std::fs::read_to_string(&path).map_err(|error| Fail::job(path.display(), error))?;
-            Ok(Part { place: path.display().to_string(), text })
+            let bytes = std::fs::read(&path).map_err(|error| Fail::job(path.display(), error))?;
+            Ok(Part { place: path.display().to_string(), bytes })
         };
         filling.names.iter().map(part).collect()
     }
@@ -140,8 +140,8 @@ impl Job {
     fn computed(&self, place: Place<'_>, watch: &Watch<'_>) -> Result<Vec<Part>, Fail> {
         let all: Vec<usize> = (0..self.study.parts()).collect();
         let mut parts = BTreeMap::new();
-        let done = compute(&self.study, &all, place.threads, watch, |part, text| {
-            parts.insert(part, Part { place: format!("part {part}"), text });
+        let done = compute(&self.study, &all, place.threads, watch, |part, bytes| {
+            parts.insert(part, Part { place: format!("part {part}"), bytes });
             Ok(())
         })?;
         if done < all.len() {
@@ -150,13 +150,4 @@ impl Job {
         }
         Ok(parts.into_values().collect())
     }
-}
-
-/// One table of all parts: the first line of each but the first is left out.
-fn table(parts: &[Part]) -> String {
-    let rows = |(i, part): (usize, &Part)| match part.text.split_once('\n') {
-        Some((_, rows)) if i > 0 => rows.to_owned(),
-        _ => part.text.clone(),
-    };
-    parts.iter().enumerate().map(rows).collect()
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use contrapposto_formats::{
     Design, Distribution, MOST_BYTES, Parameter, Plan, Value, read_plan, read_run, scenario_model,
 };
-use contrapposto_sweep::{COLUMNS, Study};
+use contrapposto_sweep::Study;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -27,7 +27,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Fail> {
     let (study, plan) = source.open()?;
     let filling = Filling::open(&study, (&args.out, Others::Removed), args.resume)?;
     watched(|watch| filling.fill(&study, args.threads, watch))?;
-    filling.finish(LIST, &source.list(&plan, &filling.names)?)?;
+    filling.finish(LIST, &source.list((&study, &plan), &filling.names)?)?;
     let kept = if filling.kept() > 0 { format!(", {} of them kept", filling.kept()) } else { String::new() };
     print(&format!("{} rows in {} parts{kept}: {}\n", plan.rows, filling.names.len(), args.out.display()))
 }
@@ -82,13 +82,7 @@ impl PlanSource {
     }
 
     /// The text of `sweep.json`.
-    pub(crate) fn list(&self, plan: &Plan, parts: &[String]) -> Result<String, Fail> {
-        let row = ColumnText { name: "row", meaning: "number of the row in the plan, from 0".to_owned() };
-        let parameters = plan.parameters.iter().map(|parameter| ColumnText {
-            name: &parameter.key,
-            meaning: "key of the scenario, in the unit that its name ends in".to_owned(),
-        });
-        let answer = COLUMNS.iter().map(|(name, meaning)| ColumnText { name, meaning: (*meaning).to_owned() });
+    pub(crate) fn list(&self, (study, plan): (&Study, &Plan), parts: &[String]) -> Result<String, Fail> {
         json_text(
             LIST,
             &ListText {
@@ -99,7 +93,7 @@ impl PlanSource {
                 rows: plan.rows,
                 rows_per_part: plan.rows_per_part,
                 parameters: plan.parameters.iter().map(|parameter| distribution(plan.design, parameter)).collect(),
-                columns: std::iter::once(row).chain(parameters).chain(answer).collect(),
+                columns: study.meanings().map(|(name, meaning)| ColumnText { name, meaning }).collect(),
                 plan: &String::from_utf8_lossy(&self.plan.1),
                 scenario: &String::from_utf8_lossy(&self.base.1),
                 parts,
@@ -129,7 +123,7 @@ struct ListText<'a> {
 #[derive(Serialize)]
 struct ColumnText<'a> {
     name: &'a str,
-    meaning: String,
+    meaning: &'a str,
 }
 
 /// A parameter with its distribution in the words of a plan. The correlation of parameters is in the text of the plan.

@@ -59,8 +59,8 @@ impl Sweep {
         self.study.rows()
     }
 
-    /// The text of a part, while `go_on` says yes; `None` where it says no, and of a number that is no part.
-    pub fn part(&self, part: usize, go_on: impl Fn() -> bool) -> Option<String> {
+    /// The bytes of a part, while `go_on` says yes; `None` where it says no, and of a number that is no part.
+    pub fn part(&self, part: usize, go_on: impl Fn() -> bool) -> Option<Vec<u8>> {
         (part < self.study.parts()).then(|| self.study.part(part, go_on, || ()))?
     }
 
@@ -86,8 +86,8 @@ impl SweepFolder {
     ///
     /// # Errors
     /// [`Failure`] of a file that cannot be written.
-    pub fn write(&self, part: usize, text: &str) -> Result<(), Failure> {
-        Ok(self.0.write(part, text)?)
+    pub fn write(&self, part: usize, bytes: &[u8]) -> Result<(), Failure> {
+        Ok(self.0.write(part, bytes)?)
     }
 
     /// Computes the missing parts in threads, all cores without their number, while `go_on` says yes. `begin` gets the number of rows, `done`
@@ -110,7 +110,7 @@ impl SweepFolder {
     /// # Errors
     /// [`Failure`] of files that cannot be written or removed.
     pub fn finish(&self, sweep: &Sweep) -> Result<(), Failure> {
-        let list = sweep.source.list(&sweep.plan, &self.0.names)?;
+        let list = sweep.source.list((&sweep.study, &sweep.plan), &self.0.names)?;
         Ok(self.0.finish(LIST, &list)?)
     }
 }

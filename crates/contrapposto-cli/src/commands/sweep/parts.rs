@@ -74,8 +74,8 @@ impl Filling {
     }
 
     /// Writes a part, whole or not at all.
-    pub(crate) fn write(&self, part: usize, text: &str) -> Result<(), Fail> {
-        self.folder.write(&[(self.names[part].as_str(), text)])
+    pub(crate) fn write(&self, part: usize, bytes: &[u8]) -> Result<(), Fail> {
+        self.folder.write(&[(self.names[part].as_str(), bytes)])
     }
 
     /// Computes the missing parts.
@@ -83,7 +83,7 @@ impl Filling {
     /// # Errors
     /// The user's interruption, and parts that cannot be written.
     pub(crate) fn fill(&self, study: &Study, threads: Option<NonZero<usize>>, watch: &Watch<'_>) -> Result<(), Fail> {
-        let written = compute(study, &self.missing, threads, watch, |part, text| self.write(part, &text))?;
+        let written = compute(study, &self.missing, threads, watch, |part, bytes| self.write(part, &bytes))?;
         if written < self.missing.len() {
             let (whole, parts, out) = (self.kept() + written, self.names.len(), self.folder.path(""));
             let more = "the same command with --resume continues";
@@ -172,7 +172,7 @@ pub(crate) fn compute(
     parts: &[usize],
     threads: Option<NonZero<usize>>,
     watch: &Watch<'_>,
-    mut write: impl FnMut(usize, String) -> Result<(), Fail>,
+    mut write: impl FnMut(usize, Vec<u8>) -> Result<(), Fail>,
 ) -> Result<usize, Fail> {
     let threads = threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
     let threads = threads.min(parts.len()).clamp(1, MOST_THREADS);
@@ -188,8 +188,8 @@ pub(crate) fn compute(
         }
         drop(sender);
         // The receiver ends with this block: a thread that waits to send goes on and ends.
-        for (part, text) in finished {
-            write(part, text).inspect_err(|_| work.stop.store(true, Ordering::Relaxed))?;
+        for (part, bytes) in finished {
+            write(part, bytes).inspect_err(|_| work.stop.store(true, Ordering::Relaxed))?;
             written += 1;
         }
         Ok(written)
@@ -209,20 +209,20 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Computes one part after another until none is left, or the computation is told to end.
-    fn carry_out(&self, finished: &SyncSender<(usize, String)>) {
+    fn carry_out(&self, finished: &SyncSender<(usize, Vec<u8>)>) {
         let go_on = || (self.watch.go_on)() && !self.stop.load(Ordering::Relaxed);
         while let Some(&part) = self.parts.get(self.next.fetch_add(1, Ordering::Relaxed)) {
-            let Some(text) = self.study.part(part, go_on, self.watch.done) else { break };
-            if finished.send((part, text)).is_err() {
+            let Some(bytes) = self.study.part(part, go_on, self.watch.done) else { break };
+            if finished.send((part, bytes)).is_err() {
                 break;
             }
         }
     }
 }
 
-/// `part-00012-1f0c9a7be2d34455.csv`.
+/// `part-00012-1f0c9a7be2d34455.parquet`.
 fn part_name(part: usize, key: &str) -> String {
-    format!("part-{part:05}-{key}.csv")
+    format!("part-{part:05}-{key}.parquet")
 }
 
 /// Number of the part of that name; `None` of one beyond all numbers.
@@ -242,7 +242,7 @@ fn parts_in(folder: &Path) -> Result<BTreeSet<String>, Fail> {
 }
 
 fn is_part(name: &str) -> bool {
-    let Some(middle) = name.strip_prefix("part-").and_then(|name| name.strip_suffix(".csv")) else { return false };
+    let Some(middle) = name.strip_prefix("part-").and_then(|name| name.strip_suffix(".parquet")) else { return false };
     let Some((part, key)) = middle.split_once('-') else { return false };
     let hexadecimal = |c: char| c.is_ascii_digit() || ('a'..='f').contains(&c);
     part.len() >= 5 && part.chars().all(|c| c.is_ascii_digit()) && key.len() == 16 && key.chars().all(hexadecimal)

@@ -184,7 +184,7 @@ mod tests {
         let answer = |row: usize| {
             let strength = study.point(row)[2];
             let kind = if strength < 0.1 { "cannot_be_done" } else { "holds" };
-            Answer { row, cells: vec![], outcome: Outcome { kind, load: load(strength), ..Outcome::default() } }
+            Answer { row, outcome: Outcome { kind, load: load(strength), ..Outcome::default() } }
         };
         Population::new(&study, &(0..200).map(answer).collect::<Vec<_>>(), 1.0, 0)
     }
