@@ -41,10 +41,11 @@ def sweep(
     progress: called with the number of finished runs and of all runs. Ctrl-C ends within 0.2 s; finished parts stay.
     """
     native = _native.Sweep(*source_of(plan))
+    threads = _threads(threads)
     folder = native.folder(out, resume)
     try:
         if client is None:
-            folder.fill(_threads(threads), progress)
+            folder.fill(threads, progress)
         else:
             _by_workers(native, folder, client, progress)
         folder.finish()
@@ -59,7 +60,8 @@ def _by_workers(native: _native.Sweep, folder: _native.SweepFolder, client: Any,
 
     as_completed: Any = distributed.as_completed
     state, missing = native.state(), folder.missing
-    shared = client.scatter(state, broadcast=True, hash=False)
+    # A task, not scattered data: where all workers that have it die, it is computed again.
+    shared = client.submit(bytes, state, pure=False)
     futures = {client.submit(_part, shared, part, pure=False): part for part in missing}
     rows, done = native.rows, 0
     try:
@@ -147,13 +149,15 @@ def population(
     *,
     seed: int = 0,
     out: str | os.PathLike[str] | None = None,
+    client: Any = None,
     resume: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Population:
     """The percent of women and of men who can hold a job, as `contrapposto population`: `rows` bodies, half of them women.
 
-    out: folder for the files of the program; nothing is written without it. The other arguments are those of `sweep`.
+    out: folder for the files of the program; nothing is written without it, and workers (`client`) need it. The other arguments are those
+        of `sweep`.
     """
     for name, value, most in (("rows", rows, 100_000), ("seed", seed, 0x7FFF_FFFF)):
         if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= most:
@@ -162,8 +166,19 @@ def population(
         raise InputError(f"rows is {rows}; it must be an even number from 2 on: half are women, half are men")
     if resume and out is None:
         raise InputError("resume keeps the bodies of a folder; give it as out")
-    texts = _native.population(*source_of(scenario), rows, seed, out, resume, _threads(threads), progress)
-    return Population(*texts)
+    threads = _threads(threads)
+    if client is not None:
+        if out is None:
+            raise InputError("the bodies of the workers are kept in a folder; give it as out")
+        native = _native.Sweep.population(*source_of(scenario), rows, seed)
+        folder = native.folder(out, resume)
+        try:
+            _by_workers(native, folder, client, progress)
+        finally:
+            folder.close()
+        # All bodies are there now, to be counted.
+        resume, progress = True, None
+    return Population(*_native.population(*source_of(scenario), rows, seed, out, resume, threads, progress))
 
 
 class Population:

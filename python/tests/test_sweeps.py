@@ -48,7 +48,7 @@ rows_per_part = 7
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.iterdir()}
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
 @pytest.fixture(scope="session")
@@ -241,10 +241,11 @@ def cluster() -> Any:
         yield client
 
 
-def test_workers_of_dask_of_which_one_is_killed_give_the_same_files(
-    plan: Path, theirs: Path, tmp_path: Path, cluster: Any
+@pytest.mark.parametrize("number", [1, 2])
+def test_workers_of_dask_of_which_one_or_all_are_killed_give_the_same_files(
+    number: int, plan: Path, theirs: Path, tmp_path: Path, cluster: Any
 ) -> None:
-    """Two processes; one is killed when a part of it is there, and its parts are computed again."""
+    """Two processes; one or both are killed when a part is there; their parts are computed again, by others that take their place."""
     pids = list(cluster.run(os.getpid).values())
     assert len(set(pids)) == 2
     killed: list[int] = []
@@ -252,7 +253,8 @@ def test_workers_of_dask_of_which_one_is_killed_give_the_same_files(
     def kill_once(done: int, rows: int) -> None:
         if not killed:
             killed.append(done)
-            os.kill(pids[0], signal.SIGKILL)
+            for pid in pids[:number]:
+                os.kill(pid, signal.SIGKILL)
 
     found = contrapposto.sweep(plan, tmp_path / "out", client=cluster, progress=kill_once)
     assert killed and killed[0] < 60
@@ -268,6 +270,32 @@ def test_workers_compute_no_part_that_is_there(plan: Path, theirs: Path, tmp_pat
     told: list[int] = []
     contrapposto.sweep(plan, out, client=cluster, resume=True, progress=lambda done, rows: told.append(done))
     assert len(told) == 2 and files(out) == files(theirs)
+
+
+def test_a_population_of_workers_of_which_one_is_killed_is_that_of_threads(plan: Path, tmp_path: Path, cluster: Any) -> None:
+    base, pids = plan.with_name("base.toml"), list(cluster.run(os.getpid).values())
+    killed: list[int] = []
+
+    def kill_once(done: int, rows: int) -> None:
+        if not killed:
+            killed.append(done)
+            os.kill(pids[0], signal.SIGKILL)
+
+    theirs = contrapposto.population(base, 40, seed=3, out=tmp_path / "theirs")
+    found = contrapposto.population(base, 40, seed=3, out=tmp_path / "ours", client=cluster, progress=kill_once)
+    assert killed and killed[0] < 40 and found.summary == theirs.summary and found.html() == theirs.html()
+    for folder in ("", "rows"):
+        ours, expected = files(tmp_path / "ours" / folder), files(tmp_path / "theirs" / folder)
+        assert ours == expected and len(ours) > 3
+    with pytest.raises(InputError, match="--resume keeps them"):
+        contrapposto.population(base, 40, seed=3, out=tmp_path / "ours", client=cluster)
+    told: list[int] = []
+    contrapposto.population(
+        base, 44, seed=3, out=tmp_path / "ours", client=cluster, resume=True, progress=lambda done, rows: told.append(done)
+    )
+    assert len(told) == 1, "ten of eleven parts were there"
+    with pytest.raises(InputError, match="give it as out"):
+        contrapposto.population(base, 40, client=cluster)
 
 
 def test_a_population_is_that_of_the_program(plan: Path, program: str, tmp_path: Path) -> None:

@@ -46,8 +46,9 @@ pub use numbers::NumberError;
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};
 pub use scenario::{
-    ContentsTask, MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, ScenarioContents, read_contents,
-    read_pose, read_relax, read_run, read_scenario, scenario_adult, scenario_model, scenario_runs, scenario_schema,
+    ContentsTask, MOST_BYTES, ModelFile, PoseScenario, RelaxScenario, RunScenario, STRENGTH_DEVIATIONS,
+    ScenarioContents, read_contents, read_pose, read_relax, read_run, read_scenario, scenario_adult, scenario_model,
+    scenario_runs, scenario_schema,
 };
 pub use summary::{CoordinateText, GroupText, SlipText, SummaryText, iterations};
 pub use sweep::{Design, Distribution, Parameter, Plan, Template, Value, read_plan};

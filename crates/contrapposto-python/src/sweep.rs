@@ -58,6 +58,17 @@ impl Sweep {
         })
     }
 
+    /// The bodies of `population`, for a folder whose parts it takes with `resume`.
+    #[staticmethod]
+    fn population(py: Python<'_>, scenario: String, is_text: bool, bodies: usize, seed: u32) -> PyResult<Self> {
+        guarded(py, || {
+            let source = source_of(scenario, is_text);
+            let opened = py.detach(|| library::Sweep::of_population(&source, bodies, seed));
+            let (inner, _) = opened.map_err(|why| failure(py, &why))?;
+            Ok(Self { inner: Arc::new(inner) })
+        })
+    }
+
     /// The sweep of the bytes that `state` gives.
     #[staticmethod]
     fn from_state(py: Python<'_>, state: &[u8]) -> PyResult<Self> {

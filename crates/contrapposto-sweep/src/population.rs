@@ -4,7 +4,7 @@
 use contrapposto::model::Sex;
 use contrapposto::model::data::{PeopleOfSex, library};
 use contrapposto::verdict::VerdictKind;
-use contrapposto_formats::{Design, Distribution, Parameter, Plan, Value};
+use contrapposto_formats::{Design, Distribution, Parameter, Plan, STRENGTH_DEVIATIONS, Value};
 
 use super::interval::wilson;
 use super::normal::quantile;
@@ -59,7 +59,11 @@ fn parameters(sex: Sex, people: &PeopleOfSex) -> Vec<Parameter> {
         ("passive.spread", lognormal(spread.median, spread.deviation_of_logarithm)),
         ("model.adult.sex", Distribution::List(vec![Value::Text(name.to_owned())])),
     ];
-    all.map(|(key, distribution)| Parameter { key: key.to_owned(), distribution, levels: 0 }).to_vec()
+    // Nobody is weaker or stronger than a scenario takes; of a normal distribution 5 in 10,000 people are.
+    let accepted = [*STRENGTH_DEVIATIONS.start(), *STRENGTH_DEVIATIONS.end()];
+    let within = |key| (key == "strength.deviations").then_some(accepted);
+    all.map(|(key, distribution)| Parameter { key: key.to_owned(), distribution, within: within(key), levels: 0 })
+        .to_vec()
 }
 
 /// Cholesky factor of the correlation of stature and mass; all others are independent.

@@ -79,7 +79,7 @@ impl Sampler {
             }
             None => vec![],
         };
-        parameters.map(|(i, parameter)| value(&parameter.distribution, point[i], scores.get(i).copied())).collect()
+        parameters.map(|(i, parameter)| value(parameter, point[i], scores.get(i).copied())).collect()
     }
 
     /// The level of a parameter in a row of a grid, and the number of its levels; the last parameter changes first.
@@ -96,18 +96,35 @@ fn clipped(probability: f64) -> f64 {
 }
 
 /// The value at a point of the unit interval, or at a normal score where the parameter has one.
-fn value(distribution: &Distribution, point: f64, score: Option<f64>) -> Value {
+fn value(parameter: &Parameter, point: f64, score: Option<f64>) -> Value {
     let normal = || score.unwrap_or_else(|| quantile(clipped(point)));
     let point = || score.map_or(point, cumulative);
-    match distribution {
-        Distribution::Normal { mean, deviation } => Value::Number(mean + deviation * normal()),
-        Distribution::Lognormal { median, deviation } => Value::Number(median * (deviation * normal()).exp()),
+    // The score where the distribution is cut off, and the value at a score.
+    let cut_off = |score_of: &dyn Fn(f64) -> f64, value_of: &dyn Fn(f64) -> f64| match parameter.within {
+        Some([low, high]) => value_of(truncated(point(), [low, high].map(score_of))).clamp(low, high),
+        None => value_of(normal()),
+    };
+    match &parameter.distribution {
+        Distribution::Normal { mean, deviation } => {
+            Value::Number(cut_off(&|value| (value - mean) / deviation, &|score| mean + deviation * score))
+        }
+        Distribution::Lognormal { median, deviation } => {
+            Value::Number(cut_off(&|value| (value / median).max(0.0).ln() / deviation, &|score| {
+                median * (deviation * score).exp()
+            }))
+        }
         Distribution::Range { low, high } => Value::Number((low * (1.0 - point()) + high * point()).clamp(*low, *high)),
         Distribution::List(list) => {
             let place = (point() * list.len() as f64) as usize;
             list.get(place.min(list.len().saturating_sub(1))).cloned().unwrap_or(Value::Number(f64::NAN))
         }
     }
+}
+
+/// The normal score at a point of the unit interval, of the part of a normal distribution between two scores.
+fn truncated(point: f64, ends: [f64; 2]) -> f64 {
+    let [low, high] = ends.map(cumulative);
+    quantile(clipped(low * (1.0 - point) + high * point))
 }
 
 /// The value of a level: of a range both ends are values, of a distribution the levels are equally likely.
@@ -117,6 +134,6 @@ fn grid_value(parameter: &Parameter, (level, levels): (usize, usize)) -> Value {
             let share = level as f64 / (levels - 1) as f64;
             Value::Number(low * (1.0 - share) + high * share)
         }
-        distribution => value(distribution, (level as f64 + 0.5) / levels as f64, None),
+        _ => value(parameter, (level as f64 + 0.5) / levels as f64, None),
     }
 }

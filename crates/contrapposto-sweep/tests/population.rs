@@ -5,9 +5,10 @@
 
 use std::f64::consts::PI;
 
+use contrapposto_formats::{Parameter, Value};
 use contrapposto_sweep::{
-    Answer, MOST_DIMENSIONS, NoSensitivity, Outcome, PARAMETERS, Population, RankRegression, SEXES, Study, cumulative,
-    population, quantile, ranks, sobol, wilson,
+    Answer, MOST_DIMENSIONS, NoSensitivity, Outcome, PARAMETERS, Population, RankRegression, SEXES, Sampler, Study,
+    cumulative, population, quantile, ranks, sobol, wilson,
 };
 
 const BASE: &str = "format = 1\n[coordinates]\nfree = [\"elbow_flex_r\"]\n\
@@ -354,6 +355,29 @@ fn a_part_is_read_whole_or_not_at_all() {
         }
     }
     assert!((1..bytes.len() / 4).contains(&read), "{read} of {} changes gave other answers", bytes.len());
+}
+
+#[test]
+fn nobody_is_weaker_or_stronger_than_a_scenario_takes() {
+    // Of a normal distribution 4.65 of 10,000 numbers lie beyond 3.5 standard deviations; the other values keep their order and nearly their size.
+    let plan = &population("base.toml", 100_000, 0)[0];
+    let uncut = contrapposto_formats::Plan {
+        parameters: plan.parameters.iter().cloned().map(|p| Parameter { within: None, ..p }).collect(),
+        ..plan.clone()
+    };
+    let [cut, uncut] = [plan, &uncut].map(Sampler::new);
+    let deviations = |sampler: &Sampler, row| match sampler.values(row)[2] {
+        Value::Number(number) => number,
+        ref other => panic!("{other}"),
+    };
+    let pairs: Vec<(f64, f64)> = (0..50_000).map(|row| (deviations(&cut, row), deviations(&uncut, row))).collect();
+    let beyond = pairs.iter().filter(|(_, uncut)| uncut.abs() > 3.5).count();
+    assert!((18..=29).contains(&beyond), "{beyond} of 50,000");
+    assert!(pairs.iter().all(|(cut, _)| cut.abs() < 3.5));
+    assert!(pairs.iter().filter(|(_, uncut)| uncut.abs() < 2.0).all(|(cut, uncut)| (cut - uncut).abs() < 0.005));
+    let variance = pairs.iter().map(|(cut, _)| cut * cut).sum::<f64>() / 50_000.0;
+    // scipy.stats.truncnorm(-3.5, 3.5).var().
+    assert!((variance - 0.993_89).abs() < 1e-4, "{variance}");
 }
 
 #[test]

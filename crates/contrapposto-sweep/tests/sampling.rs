@@ -99,3 +99,52 @@ fn correlated_parameters_have_the_correlation_and_the_moments_of_the_plan() {
         assert!(mean(&|r| a(r) * c(r)).abs() < near, "{design}");
     }
 }
+
+#[test]
+fn a_distribution_that_is_cut_off_has_the_values_of_the_whole_one_between_its_ends_and_none_beyond() {
+    let text = "a = { normal = [5, 2], within = [3, 6], correlate = { b = 0.6 } }\nb = { lognormal = [70, 0.2], within = [-1, 80] }";
+    let (normal, logarithm) = (|a: f64| (a - 5.0) / 2.0, |b: f64| (b / 70.0).ln() / 0.2);
+    for (design, count) in [("random", 20_000), ("shifted_sobol", 4096), ("latin_hypercube", 4000)] {
+        let sampler = Sampler::new(&plan(design, count, text));
+        let rows: Vec<Vec<f64>> = (0..count).map(|row| numbers(&sampler, row)).collect();
+        for (parameter, low, high) in [(0, 3.0, 6.0), (1, 0.0, 80.0)] {
+            let score = |x: f64| if parameter == 0 { normal(x) } else { logarithm(x) };
+            let [from, to] = [cumulative(score(low)), cumulative(score(high))];
+            let mut shares: Vec<f64> =
+                rows.iter().map(|row| (cumulative(score(row[parameter])) - from) / (to - from)).collect();
+            shares.sort_by(f64::total_cmp);
+            assert!(rows.iter().all(|row| (low..=high).contains(&row[parameter])), "{design} {parameter}");
+            // Kolmogorov's distance from the distribution of the whole one between the ends; 1.95 / sqrt(n) once in a thousand samples.
+            let distance = |(i, share): (usize, &f64)| (share - (i as f64 + 0.5) / count as f64).abs();
+            let farthest = shares.iter().enumerate().map(distance).fold(0.0, f64::max);
+            assert!(farthest < 1.95 / (count as f64).sqrt(), "{design} {parameter}: {farthest}");
+        }
+        let heaped = rows.iter().filter(|row| row[0] == 3.0 || row[0] == 6.0 || row[1] == 80.0).count();
+        assert_eq!(heaped, 0, "{design}");
+        // The scores from which both follow are correlated as the plan says.
+        let scores = rows.iter().map(|row| {
+            let share = |x: f64, low: f64, high: f64| (x - low) / (high - low);
+            let [a, b] = [cumulative(normal(row[0])), cumulative(logarithm(row[1]))];
+            quantile(share(a, cumulative(-1.0), cumulative(0.5))) * quantile(share(b, 0.0, cumulative(logarithm(80.0))))
+        });
+        let correlation = scores.sum::<f64>() / count as f64;
+        assert!((correlation - 0.6).abs() < 6.0 / (count as f64).sqrt(), "{design}: {correlation}");
+    }
+}
+
+#[test]
+fn ends_that_nothing_lies_beyond_change_no_value_and_levels_of_a_grid_are_between_them() {
+    let whole = Sampler::new(&plan("sobol", 1000, "a = { normal = [5, 2] }"));
+    let wide = Sampler::new(&plan("sobol", 1000, "a = { normal = [5, 2], within = [-15, 25] }"));
+    for row in 0..1000 {
+        assert!((numbers(&whole, row)[0] - numbers(&wide, row)[0]).abs() < 1e-12, "{row}");
+    }
+    let text =
+        "base = \"a.toml\"\ndesign = \"grid\"\n[parameters]\na = { normal = [0, 1], within = [-1, 1], levels = 3 }\n";
+    let grid = Sampler::new(&read_plan("plan.toml", text.as_bytes()).unwrap());
+    // scipy.stats.truncnorm(-1, 1).ppf of 1/6, 1/2 and 5/6.
+    let expected = [-0.605_459_58, 0.0, 0.605_459_58];
+    for (row, expected) in expected.into_iter().enumerate() {
+        assert!((numbers(&grid, row)[0] - expected).abs() < 1e-8, "{row}");
+    }
+}

@@ -18,7 +18,7 @@ use crate::view::text::population::report;
 
 const POPULATION_FILES: [&str; 3] = ["population.json", "population.csv", "population.html"];
 /// The folder of the parts, inside that of the results.
-const ROWS: &str = "rows";
+pub(crate) const ROWS: &str = "rows";
 
 pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
     let (name, bytes) = (args.scenario.display().to_string(), read(&args.scenario, MOST_BYTES)?);
@@ -30,7 +30,7 @@ pub(crate) fn population(args: &PopulationArgs) -> Result<(), Fail> {
 
 /// A population that is asked to do a job.
 pub(crate) struct Job {
-    study: Study,
+    pub(crate) study: Study,
     asked: Asked,
     seed: u32,
 }

@@ -4,9 +4,7 @@ pub(crate) mod parts;
 
 use std::path::Path;
 
-use contrapposto_formats::{
-    Design, Distribution, MOST_BYTES, Parameter, Plan, Value, read_plan, read_run, scenario_model,
-};
+use contrapposto_formats::{Design, Distribution, MOST_BYTES, Parameter, Value, read_plan, read_run, scenario_model};
 use contrapposto_sweep::Study;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -24,12 +22,12 @@ const FIRST_ROWS: usize = 64;
 
 pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Fail> {
     let source = PlanSource::read(&args.plan)?;
-    let (study, plan) = source.open()?;
+    let study = source.open()?;
     let filling = Filling::open(&study, (&args.out, Others::Removed), args.resume)?;
     watched(|watch| filling.fill(&study, args.threads, watch))?;
-    filling.finish(LIST, &source.list((&study, &plan), &filling.names)?)?;
+    filling.finish(LIST, &source.list(&study, &filling.names)?)?;
     let kept = if filling.kept() > 0 { format!(", {} of them kept", filling.kept()) } else { String::new() };
-    print(&format!("{} rows in {} parts{kept}: {}\n", plan.rows, filling.names.len(), args.out.display()))
+    print(&format!("{} rows in {} parts{kept}: {}\n", study.rows(), filling.names.len(), args.out.display()))
 }
 
 /// The bytes of a plan and of its base scenario, with their names for messages.
@@ -60,9 +58,9 @@ impl PlanSource {
         Ok(Self { plan: (name, bytes), base })
     }
 
-    /// The plan with its base scenario. Scenarios of rows are read until one is a scenario, so that a wrong key ends the command before
+    /// The rows of the plan over its base scenario. Scenarios of rows are read until one is a scenario, so that a wrong key ends the command before
     /// anything is written.
-    pub(crate) fn open(&self) -> Result<(Study, Plan), Fail> {
+    pub(crate) fn open(&self) -> Result<Study, Fail> {
         let (name, bytes) = &self.base;
         let plan = read_plan(&self.plan.0, &self.plan.1)?;
         if scenario_model(name, bytes)?.is_some() {
@@ -78,11 +76,12 @@ impl PlanSource {
         if first.is_err() && !(1..study.rows().min(FIRST_ROWS)).any(|row| read(row).is_ok()) {
             first?;
         }
-        Ok((study, plan))
+        Ok(study)
     }
 
     /// The text of `sweep.json`.
-    pub(crate) fn list(&self, (study, plan): (&Study, &Plan), parts: &[String]) -> Result<String, Fail> {
+    pub(crate) fn list(&self, study: &Study, parts: &[String]) -> Result<String, Fail> {
+        let plan = read_plan(&self.plan.0, &self.plan.1)?;
         json_text(
             LIST,
             &ListText {
@@ -140,6 +139,9 @@ fn distribution(design: Design, parameter: &Parameter) -> serde_json::Value {
         Distribution::List(list) => json!({ "list": list.iter().map(value).collect::<Vec<_>>() }),
     };
     json["key"] = json!(parameter.key);
+    if let Some(within) = parameter.within {
+        json["within"] = json!(within);
+    }
     if design == Design::Grid && !matches!(parameter.distribution, Distribution::List(_)) {
         json["levels"] = json!(parameter.levels);
     }

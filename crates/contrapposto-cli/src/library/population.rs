@@ -4,6 +4,7 @@ use std::num::NonZero;
 use std::path::Path;
 
 use contrapposto_formats::MOST_BYTES;
+use serde::{Deserialize, Serialize};
 
 use super::failure::{Failure, Note, with_notes};
 use super::jobs::ScenarioSource;
@@ -11,6 +12,28 @@ use crate::commands::population::{Counted, Job, Place};
 use crate::commands::sweep::parts::Watch;
 use crate::fail::Fail;
 use crate::input::read;
+
+/// The bytes of the scenario of a population, its name for messages, and its bodies.
+#[derive(Serialize, Deserialize)]
+pub(super) struct PopulationSource {
+    scenario: (String, Vec<u8>),
+    rows: usize,
+    seed: u32,
+}
+
+impl PopulationSource {
+    pub(super) fn read(scenario: &ScenarioSource, rows: usize, seed: u32) -> Result<Self, Fail> {
+        let scenario = match scenario {
+            ScenarioSource::File(path) => (path.display().to_string(), read(path, MOST_BYTES)?),
+            ScenarioSource::Text(text) => ("scenario".to_owned(), text.clone().into_bytes()),
+        };
+        Ok(Self { scenario, rows, seed })
+    }
+
+    pub(super) fn open(&self) -> Result<Job, Fail> {
+        Job::open(self.scenario.0.clone(), &self.scenario.1, self.rows, self.seed)
+    }
+}
 
 /// The counted answers of a population.
 pub struct Populated(Counted);
@@ -29,11 +52,7 @@ impl Populated {
         (begin, done): (&(dyn Fn(usize) + Sync), &(dyn Fn() + Sync)),
     ) -> Result<(Self, Vec<Note>), Failure> {
         with_notes(|| {
-            let (name, bytes) = match scenario {
-                ScenarioSource::File(path) => (path.display().to_string(), read(path, MOST_BYTES)?),
-                ScenarioSource::Text(text) => ("scenario".to_owned(), text.clone().into_bytes()),
-            };
-            let job = Job::open(name, &bytes, rows, seed)?;
+            let job = PopulationSource::read(scenario, rows, seed)?.open()?;
             let counted = job.carry_out(Place { out, resume, threads }, &Watch { begin, go_on, done })?;
             Ok::<_, Fail>(Self(counted))
         })

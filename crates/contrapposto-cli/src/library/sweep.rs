@@ -3,19 +3,37 @@
 use std::num::NonZero;
 use std::path::Path;
 
-use contrapposto_formats::Plan;
 use contrapposto_sweep::Study;
+use serde::{Deserialize, Serialize};
 
 use super::failure::{Failure, Note, with_notes};
 use super::jobs::ScenarioSource;
+use super::population::PopulationSource;
+use crate::commands::population::ROWS;
 use crate::commands::sweep::parts::{Filling, Others, Watch};
 use crate::commands::sweep::{LIST, PlanSource};
+use crate::fail::Fail;
 
-/// A plan with its base scenario.
+/// A plan with its base scenario, or the bodies of a population with theirs.
 pub struct Sweep {
-    source: PlanSource,
+    source: Source,
     study: Study,
-    plan: Plan,
+}
+
+#[derive(Serialize, Deserialize)]
+enum Source {
+    Plan(PlanSource),
+    Population(PopulationSource),
+}
+
+impl Source {
+    fn open(self) -> Result<Sweep, Fail> {
+        let study = match &self {
+            Self::Plan(source) => source.open()?,
+            Self::Population(source) => source.open()?.study,
+        };
+        Ok(Sweep { source: self, study })
+    }
 }
 
 impl Sweep {
@@ -31,9 +49,16 @@ impl Sweep {
                     PlanSource::of(("plan".to_owned(), text.clone().into_bytes()), Path::new("."))?
                 }
             };
-            let (study, plan) = source.open()?;
-            Ok(Self { source, study, plan })
+            Source::Plan(source).open()
         })
+    }
+
+    /// The bodies of [`Populated::new`](super::Populated::new) with these arguments.
+    ///
+    /// # Errors
+    /// [`Failure`] as the program prints it.
+    pub fn of_population(scenario: &ScenarioSource, rows: usize, seed: u32) -> Result<(Self, Vec<Note>), Failure> {
+        with_notes(|| Source::Population(PopulationSource::read(scenario, rows, seed)?).open())
     }
 
     /// All that the sweep is made of, for [`Sweep::from_bytes`] elsewhere.
@@ -49,12 +74,11 @@ impl Sweep {
     /// # Errors
     /// [`Failure`] of bytes that are no sweep.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Failure> {
-        let source: PlanSource = serde_json::from_slice(bytes).map_err(|error| Failure::refused(error.to_string()))?;
-        let ((study, plan), _) = with_notes(|| source.open())?;
-        Ok(Self { source, study, plan })
+        let source: Source = serde_json::from_slice(bytes).map_err(|error| Failure::refused(error.to_string()))?;
+        with_notes(|| source.open()).map(|(sweep, _)| sweep)
     }
 
-    /// Number of rows of the plan.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.study.rows()
     }
@@ -64,12 +88,17 @@ impl Sweep {
         (part < self.study.parts()).then(|| self.study.part(part, go_on, || ()))?
     }
 
-    /// Locks the folder `out` for the parts.
+    /// Locks the folder for the parts: `out`, or of a population the folder in it from which [`Populated::new`](super::Populated::new) takes those that
+    /// are there, with `resume`.
     ///
     /// # Errors
     /// [`Failure`] of a folder that has parts, without `resume`, and of one in which another sweep writes.
     pub fn folder(&self, out: &Path, resume: bool) -> Result<SweepFolder, Failure> {
-        Ok(SweepFolder(Filling::open(&self.study, (out, Others::Removed), resume)?))
+        let place = match self.source {
+            Source::Plan(_) => (out.to_owned(), Others::Removed),
+            Source::Population(_) => (out.join(ROWS), Others::Kept),
+        };
+        Ok(SweepFolder(Filling::open(&self.study, (&place.0, place.1), resume)?))
     }
 }
 
@@ -105,12 +134,14 @@ impl SweepFolder {
         Ok(self.0.fill(&sweep.study, threads, &Watch { begin, go_on, done })?)
     }
 
-    /// Writes `sweep.json`, and removes parts of other plans.
+    /// Writes `sweep.json`, and removes parts of other plans; nothing of a population.
     ///
     /// # Errors
     /// [`Failure`] of files that cannot be written or removed.
     pub fn finish(&self, sweep: &Sweep) -> Result<(), Failure> {
-        let list = sweep.source.list((&sweep.study, &sweep.plan), &self.0.names)?;
-        Ok(self.0.finish(LIST, &list)?)
+        if let Source::Plan(source) = &sweep.source {
+            self.0.finish(LIST, &source.list(&sweep.study, &self.0.names)?)?;
+        }
+        Ok(())
     }
 }

@@ -3,7 +3,7 @@
 mod sentences;
 
 use contrapposto::model::data::library;
-use contrapposto_formats::Distribution;
+use contrapposto_formats::{Distribution, Parameter};
 use contrapposto_sweep::{People, Population, QUANTILES, RankCoefficient, Sensitivity, Study};
 use serde::Serialize;
 
@@ -181,9 +181,7 @@ impl SensitivityText {
 
 fn parameters(study: &Study) -> Vec<ParameterText> {
     let people = library().people();
-    let of = |plan: usize, i: usize| {
-        study.plans().nth(plan).map_or(String::new(), |plan| words(&plan.parameters[i].distribution))
-    };
+    let of = |plan: usize, i: usize| study.plans().nth(plan).map_or(String::new(), |plan| words(&plan.parameters[i]));
     let size = &people.reference;
     let passive = &people.passive_spread.reference;
     let assumed = (
@@ -206,12 +204,14 @@ fn parameters(study: &Study) -> Vec<ParameterText> {
         .collect()
 }
 
-/// A distribution as a plan writes it.
-fn words(distribution: &Distribution) -> String {
-    match distribution {
+/// The distribution of a parameter as a plan writes it.
+fn words(parameter: &Parameter) -> String {
+    let within = parameter.within.map_or_else(String::new, |[low, high]| format!(", within = [{low}, {high}]"));
+    let distribution = match &parameter.distribution {
         Distribution::Normal { mean, deviation } => format!("normal = [{mean}, {deviation}]"),
         Distribution::Lognormal { median, deviation } => format!("lognormal = [{median}, {deviation}]"),
         Distribution::Range { low, high } => format!("range = [{low}, {high}]"),
         Distribution::List(list) => list.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
-    }
+    };
+    distribution + &within
 }

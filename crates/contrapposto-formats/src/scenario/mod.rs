@@ -38,6 +38,7 @@ pub use model::{ModelFile, scenario_adult, scenario_model};
 pub use pose::{PoseScenario, read_pose};
 pub use relax::{RelaxScenario, read_relax};
 pub use simulate::{RunScenario, read_run, read_scenario, scenario_runs};
+pub use spread::STRENGTH_DEVIATIONS;
 pub(crate) use text::StrategyKindText;
 pub use text::scenario_schema;
 

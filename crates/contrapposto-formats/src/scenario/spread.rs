@@ -17,7 +17,7 @@ use crate::toml_file::{Located, shown};
 const FACTORS: std::ops::RangeInclusive<f64> = 0.05..=5.0;
 /// Standard deviations from the mean strength that are accepted: with the greatest coefficient of variation of the data, 0.277, the
 /// weakest person keeps 3 % of the mean strength.
-const DEVIATIONS: std::ops::RangeInclusive<f64> = -3.5..=3.5;
+pub const STRENGTH_DEVIATIONS: std::ops::RangeInclusive<f64> = -3.5..=3.5;
 
 /// Strength of the person beside the mean of people of that sex and size.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
@@ -88,7 +88,7 @@ pub(super) fn with_spread(
         if accepted.contains(&value) { Ok(value) } else { Err(at.error(&path, message(), None)) }
     };
     let spread = in_range(["strength", "spread"], strength.spread, FACTORS)?;
-    let deviations = in_range(["strength", "deviations"], strength.deviations, DEVIATIONS)?;
+    let deviations = in_range(["strength", "deviations"], strength.deviations, STRENGTH_DEVIATIONS)?;
     let stiffness = in_range(["passive", "spread"], passive.spread.unwrap_or(1.0), FACTORS)?;
     let factor = |group: &MuscleGroup| {
         let variation = library().strength_variation(&group.name).map_or(0.0, |(coefficient, _)| coefficient);

@@ -84,6 +84,8 @@ pub struct Parameter {
     pub key: String,
     /// Values of the parameter.
     pub distribution: Distribution,
+    /// Least and greatest value of a normal or lognormal distribution, which has none beyond: its probability between them is scaled to 1.
+    pub within: Option<[f64; 2]>,
     /// Number of values in the design `grid`.
     pub levels: usize,
 }
@@ -204,6 +206,7 @@ fn parameter(at: &Located, key: &str, text: &ParameterText, design: Design) -> R
         return Err(at.key_error(&path, format!("`{key}` is no path of a key"), help));
     }
     let distribution = distribution(at, key, text)?;
+    let within = within(at, key, text, &distribution)?;
     let count = if let Distribution::List(list) = &distribution { Some(list.len()) } else { None };
     let levels = match (design, text.levels, count) {
         (_, Some(_), Some(_)) => {
@@ -231,7 +234,7 @@ fn parameter(at: &Located, key: &str, text: &ParameterText, design: Design) -> R
         }
         (_, None, count) => count.unwrap_or(0),
     };
-    Ok(Parameter { key: key.to_owned(), distribution, levels })
+    Ok(Parameter { key: key.to_owned(), distribution, within, levels })
 }
 
 fn distribution(at: &Located, key: &str, text: &ParameterText) -> Result<Distribution, InputError> {
@@ -266,6 +269,27 @@ fn distribution(at: &Located, key: &str, text: &ParameterText) -> Result<Distrib
             Err(at.error(&["parameters", key], format!("`{key}` has more than one distribution"), help))
         }
     }
+}
+
+/// The ends of a normal or lognormal distribution, its middle between them.
+fn within(
+    at: &Located,
+    key: &str,
+    text: &ParameterText,
+    values: &Distribution,
+) -> Result<Option<[f64; 2]>, InputError> {
+    let Some([low, high]) = text.within else { return Ok(None) };
+    let refuse = |message: String| Err(at.error(&["parameters", key, "within"], message, None));
+    let (name, middle) = match values {
+        Distribution::Normal { mean, .. } => ("mean", *mean),
+        Distribution::Lognormal { median, .. } => ("median", *median),
+        _ => return refuse("`within` goes with normal and lognormal".to_owned()),
+    };
+    if !(low < middle && middle < high) {
+        let [low, high, middle] = [low, high, middle].map(shown);
+        return refuse(format!("`within` goes from {low} to {high}; the {name} {middle} must lie between them"));
+    }
+    Ok(Some([low, high]))
 }
 
 impl From<&ValueText> for Value {

@@ -40,6 +40,8 @@ pub(super) struct ParameterText {
     #[serde(default, deserialize_with = "numbers")]
     pub(super) range: Option<[f64; 2]>,
     pub(super) list: Option<Vec<ValueText>>,
+    #[serde(default, deserialize_with = "numbers")]
+    pub(super) within: Option<[f64; 2]>,
     pub(super) levels: Option<u32>,
     #[serde(default)]
     pub(super) correlate: BTreeMap<String, f64>,
