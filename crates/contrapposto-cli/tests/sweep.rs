@@ -24,7 +24,7 @@ const BASE: &str = "format = 1\ntitle = \"Held out\"\n\
 const PLAN: &str = "base = \"base.toml\"\ndesign = \"sobol\"\nrows = 60\nrows_per_part = 7\n[parameters]\n\
     \"model.adult.stature_m\" = { normal = [1.7, 0.07], correlate = { \"model.adult.mass_kg\" = 0.5 } }\n\
     \"model.adult.mass_kg\" = { lognormal = [75, 0.16] }\n\"load.0.mass_kg\" = { range = [0, 12] }\n\
-    \"strength.deviations\" = { normal = [0, 1] }\n\"model.adult.sex\" = { list = [\"female\", \"male\"] }\n";
+    \"strength.deviations\" = { normal = [0, 1], within = [-1.5, 3.5] }\n\"model.adult.sex\" = { list = [\"female\", \"male\"] }\n";
 
 /// A plan and its base scenario in a new folder.
 fn plan(plan: &str) -> (tempfile::TempDir, PathBuf) {
@@ -115,7 +115,14 @@ fn five_rows_carried_out_singly_by_simulate_give_the_same_answers() {
     for kind in ["held_until", "holds", "cannot_be_done"] {
         assert!(kinds.contains(&kind), "the plan should have rows that are {kind}: {kinds:?}");
     }
-    let (study, _) = study(&out);
+    let (study, list) = study(&out);
+    let deviations = &list["parameters"][3];
+    assert_eq!(
+        *deviations,
+        serde_json::json!({ "normal": [0.0, 1.0], "within": [-1.5, 3.5], "key": "strength.deviations" })
+    );
+    let least = rows.iter().map(|row| row["strength.deviations"].parse::<f64>().unwrap()).fold(f64::MAX, f64::min);
+    assert!((-1.5..-1.3).contains(&least), "{least}");
     for number in [0, 7, 19, 33, 59] {
         let single = folder.path().join("single.toml");
         std::fs::write(&single, study.scenario(number)).unwrap();
