@@ -63,16 +63,16 @@ def _by_workers(native: _native.Sweep, folder: _native.SweepFolder, client: Any,
     # A task, not scattered data: where all workers that have it die, it is computed again.
     shared = client.submit(bytes, state, pure=False)
     futures = {client.submit(_part, shared, part, pure=False): part for part in missing}
-    rows, done = native.rows, 0
+    rows, done = sum(map(native.rows_of, missing)), 0
     try:
         for future in as_completed(list(futures)):
-            part = future.result()
-            folder.write(futures.pop(future), part)
+            part = futures.pop(future)
+            folder.write(part, future.result())
             # The scheduler need not keep what is on the disk.
             future.release()
-            done += 1
+            done += native.rows_of(part)
             if progress is not None:
-                progress(rows * done // max(len(missing), 1), rows)
+                progress(done, rows)
     except BaseException:
         client.cancel(list(futures))
         raise

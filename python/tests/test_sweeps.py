@@ -267,9 +267,9 @@ def test_workers_compute_no_part_that_is_there(plan: Path, theirs: Path, tmp_pat
     parts = sorted(name for name in files(theirs) if name.startswith("part-"))
     for name in parts[2:]:
         (out / name).write_bytes((theirs / name).read_bytes())
-    told: list[int] = []
-    contrapposto.sweep(plan, out, client=cluster, resume=True, progress=lambda done, rows: told.append(done))
-    assert len(told) == 2 and files(out) == files(theirs)
+    told: list[tuple[int, int]] = []
+    contrapposto.sweep(plan, out, client=cluster, resume=True, progress=lambda *counts: told.append(counts))
+    assert told == [(7, 14), (14, 14)] and files(out) == files(theirs)
 
 
 def test_a_population_of_workers_of_which_one_is_killed_is_that_of_threads(plan: Path, tmp_path: Path, cluster: Any) -> None:

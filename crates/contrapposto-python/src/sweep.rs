@@ -81,9 +81,9 @@ impl Sweep {
         Ok(PyBytes::new(py, &self.inner.to_bytes().map_err(|why| internal(py, &why))?))
     }
 
-    #[getter]
-    fn rows(&self) -> usize {
-        self.inner.rows()
+    /// Number of rows of a part.
+    fn rows_of(&self, part: usize) -> usize {
+        self.inner.rows_of(part)
     }
 
     /// The bytes of a part.

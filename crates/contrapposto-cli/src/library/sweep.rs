@@ -78,9 +78,9 @@ impl Sweep {
         with_notes(|| source.open()).map(|(sweep, _)| sweep)
     }
 
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.study.rows()
+    /// Number of rows of a part; 0 of a number that is no part.
+    pub fn rows_of(&self, part: usize) -> usize {
+        if part < self.study.parts() { self.study.rows_of(part).len() } else { 0 }
     }
 
     /// The bytes of a part, while `go_on` says yes; `None` where it says no, and of a number that is no part.
