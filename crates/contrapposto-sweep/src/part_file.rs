@@ -4,14 +4,14 @@
 //! Thrift in its compact protocol. The bytes depend on the columns and the facts alone. Source: Apache Parquet, `parquet.thrift` and
 //! `Encodings.md`; Apache Thrift, `thrift-compact-protocol.md`.
 
-use super::thrift::{Structure, varint};
+use super::thrift::{Structure, varint, varint_bytes};
 
 /// The program that writes a part, with its version.
 pub(crate) const PROGRAM: &str = concat!("contrapposto ", env!("CARGO_PKG_VERSION"));
 
 /// First and last bytes of a file.
 const MAGIC: &[u8] = b"PAR1";
-/// Rows of a page; the length of a page has 31 bits.
+/// Rows of a page: the length of a page has 31 bits, and a text of the file of a plan at most 1 MiB.
 const ROWS_PER_PAGE: usize = 1000;
 /// `Encoding` of values, and of the bits that say which rows have one.
 const PLAIN: i64 = 0;
@@ -185,7 +185,7 @@ fn read_optional<T>(
 
 /// Truths as one bit-packed run of the hybrid encoding.
 fn run(truths: &[bool]) -> Vec<u8> {
-    let mut bytes = super::thrift::varint_bytes((truths.len().div_ceil(8) as u64) << 1 | 1);
+    let mut bytes = varint_bytes((truths.len().div_ceil(8) as u64) << 1 | 1);
     bytes.extend(bits(truths));
     bytes
 }
