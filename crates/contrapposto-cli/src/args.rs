@@ -5,11 +5,13 @@ mod dynamics;
 mod joint;
 mod model;
 mod muscles;
+mod musculature;
 mod population;
 mod repeat;
 mod scale;
 mod scenario;
 mod studio;
+mod support;
 mod sweep;
 mod time;
 mod track;
@@ -22,10 +24,10 @@ pub(crate) use capacity::CapacityArgs;
 pub(crate) use dynamics::{CutOff, DynamicsArgs};
 pub(crate) use joint::{ElbowCurve, FiguresArgs, MinimizeArgs, PassiveArgs};
 pub(crate) use model::{
-    AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, MusclesArgs, PassiveFrom, RootChoice,
-    RuleChoice, TorquesArgs,
+    AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, PassiveFrom, RootChoice, TorquesArgs,
 };
 pub(crate) use muscles::use_muscles;
+pub(crate) use musculature::{MusclesArgs, RuleChoice};
 pub(crate) use population::PopulationArgs;
 pub(crate) use repeat::RepeatArgs;
 pub(crate) use scale::ScaleArgs;

@@ -10,6 +10,7 @@ use contrapposto_formats::tissue::{FatigueChoice, FatigueSex, Person};
 
 use super::dynamics::DynamicsArgs;
 use super::muscles::MuscleArgs;
+use super::support::SupportArgs;
 use crate::fail::Fail;
 
 /// MODEL, and the options that complete it.
@@ -95,6 +96,11 @@ pub(crate) enum FatigueSexChoice {
 }
 
 impl FatigueArgs {
+    /// Whether no other parameters are asked for.
+    pub(super) fn is_default(&self) -> bool {
+        self.fatigue == ParametersChoice::Joint && self.fatigue_sex.is_none()
+    }
+
     pub(crate) fn choice(&self) -> Result<FatigueChoice, Fail> {
         let set = match self.fatigue {
             ParametersChoice::Joint => FatigueSet::Joint,
@@ -185,19 +191,12 @@ pub(crate) struct AssessArgs {
     pub(crate) dynamics: DynamicsArgs,
     #[command(flatten)]
     pub(crate) repeat: super::RepeatArgs,
-    /// Segments that carry the body in every frame; their forces are computed for the least effort of the muscles.
-    #[arg(long, value_delimiter = ',', value_name = "SEG,SEG", conflicts_with = "grf")]
-    pub(crate) support: Vec<String>,
-    /// Nothing carries the body, and its root is held as if by hand: only the muscles are judged.
-    #[arg(long, conflicts_with_all = ["grf", "support"])]
-    pub(crate) fixed_root: bool,
+    #[command(flatten)]
+    pub(crate) carried: SupportArgs,
     /// Error of the given angles: muscles that work against the ligaments of their own joint are judged at the angle within it where they work
     /// least. 5 for measured angles; 0 for a file of this program that holds the built-in adult, whose motions are exact.
     #[arg(long, value_name = "DEG", value_parser = angle_error, allow_hyphen_values = true)]
     pub(crate) angle_error: Option<f64>,
-    /// Corners of the patch on which a supporting segment rests, in its frame (m): "calcn_r 0.1,-0.02,0.04 0.1,-0.02,-0.04 -0.04,-0.02,0".
-    #[arg(long, value_name = "PATCH", requires = "support")]
-    pub(crate) patch: Vec<String>,
     /// Folder for the results; made if it is not there.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -276,46 +275,4 @@ pub(crate) struct ConvertArgs {
     pub(crate) model: ModelArgs,
     /// File to write: .osim, .urdf, or .xml for MJCF.
     pub(crate) out: PathBuf,
-}
-
-#[derive(Debug, Parser)]
-#[command(after_help = "Examples:\n  contrapposto muscles gait2392.osim\n  \
-    contrapposto muscles subject.osim gait.mot --json > muscles.jsonl\n  \
-    contrapposto muscles myo_sim/leg/myolegs.xml --json\n\n\
-    Fibres and tendons are in equilibrium at rest. A moment arm is the torque about a coordinate for each newton of tension; those of \
-    coordinates that follow others are part of theirs. Muscles of an MJCF file have MuJoCo's curves and a rigid tendon. Strength \
-    is a plain sum, muscles that pull one way at full activation and all others at --activation; and a coupled one, the greatest torque while the muscles give no torque about any other joint.")]
-pub(crate) struct MusclesArgs {
-    #[command(flatten)]
-    pub(crate) model: ModelArgs,
-    /// Postures: .mot, .sto or .csv, one row a frame; or `default`.
-    #[arg(default_value = "default")]
-    pub(crate) postures: PathBuf,
-    #[command(flatten)]
-    pub(crate) frames: FrameArgs,
-    /// The rule by which paths lie on the surfaces that they wrap over; tendons of MJCF files have MuJoCo's always.
-    #[arg(long, value_enum, default_value = "geodesic")]
-    pub(crate) rule: RuleChoice,
-    /// Activation of all muscles, 0 to 1; a muscle with a least activation of its own has at least that.
-    #[arg(long, value_name = "A", default_value_t = 0.01, value_parser = activation)]
-    pub(crate) activation: f64,
-    /// Print one line of JSON a posture, in rad, m, N, N m, instead of tables.
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-/// The rule by which a path lies on its surfaces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RuleChoice {
-    /// Shortest lines: moment arms are minus the derivatives of the length.
-    Geodesic,
-    /// OpenSim's lines and moment arms, for comparisons with it.
-    Opensim,
-}
-
-fn activation(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|a| (0.0..=1.0).contains(a))
-        .ok_or_else(|| "an activation is a number from 0 to 1".to_owned())
 }

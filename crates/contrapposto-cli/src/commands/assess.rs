@@ -12,6 +12,7 @@ use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto_formats::motion::write_sto;
 
 use self::job::{Found, Job};
+pub(crate) use self::warnings::{RESIDUAL, WHAT_CARRIES};
 use crate::args::AssessArgs;
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;

@@ -1,5 +1,7 @@
 //! `contrapposto muscles`: path, forces and moment arms of every muscle of a body at rest, and the strength of its joints.
 
+mod hold;
+
 use std::path::Path;
 
 use contrapposto::kinematics::Kinematics;
@@ -20,6 +22,10 @@ pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
     if args.model.model == Path::new("-") && args.postures == Path::new("-") {
         return Err(Fail::Refused("standard input is one file: MODEL or POSTURES, not both".to_owned()));
     }
+    if let Some(seconds) = args.hold.hold {
+        return hold::hold(args, seconds);
+    }
+    args.hold.refuse_without_hold()?;
     let mut opened = open_without_mesh_mass(&args.model, false)?;
     if opened.muscles.muscles.is_empty() {
         let file = args.model.model.display();
@@ -33,7 +39,7 @@ pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
         true => vec![(0.0, model.default_posture())],
         false => {
             let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
-            read_motion(&args.postures, accepted, &args.frames, model, &mut notes)?
+            read_motion(&args.postures, accepted, &args.hold.under.frames, model, &mut notes)?
         }
     };
     let warnings = note_values_out_of_range(&opened, &frames, &mut notes);

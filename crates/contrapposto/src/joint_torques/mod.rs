@@ -21,6 +21,7 @@ mod about_axes;
 mod group_load;
 mod hazard;
 mod muscle_laws;
+mod muscle_share;
 mod muscle_tables;
 mod muscles;
 
@@ -29,6 +30,7 @@ pub use group_load::{GroupLoad, relative_load};
 pub use hazard::{Hazard, carried};
 pub(crate) use hazard::{judged_parts, posture_in_words};
 pub use muscle_laws::{MOST_LEVELLED, TorqueRise};
+pub use muscle_share::{MuscleShare, MuscleShareError};
 pub use muscle_tables::RESTING_ACTIVATION;
 pub use muscles::{JointMuscles, JointMusclesError, LEAST_MUSCLE_STRENGTH};
 

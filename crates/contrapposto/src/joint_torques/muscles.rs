@@ -130,6 +130,26 @@ impl JointMuscles {
         self.passive[rate]
     }
 
+    /// The muscles.
+    pub fn musculature(&self) -> &Musculature {
+        &self.muscles
+    }
+
+    /// Paths of the last update, with moment arms about axes.
+    pub fn about_axes(&self) -> &PathGeometry {
+        self.axes.as_ref().map_or(&self.geometry, |(_, geometry)| geometry)
+    }
+
+    /// The rates at which strength counts.
+    pub fn strong(&self) -> &[usize] {
+        &self.strong
+    }
+
+    /// Tension of every muscle in the last update at full activation beyond that of its passive fibres, N; 0 where it would be less.
+    pub fn forces(&self) -> impl Iterator<Item = f64> {
+        self.rest.iter().zip(&self.full).map(|(rest, full)| (full.tendon_force - rest.passive_force).max(0.0))
+    }
+
     /// Computes passive torque and strength in `posture`, which `kinematics` hold. Does not allocate.
     ///
     /// # Errors

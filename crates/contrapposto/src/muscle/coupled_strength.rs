@@ -52,12 +52,24 @@ pub fn coupled_strength(
         .collect();
     let base: Vec<f64> =
         rates.iter().map(|&rate| arms(rate).zip(rest).map(|(arm, rest)| arm * rest.tendon_force).sum()).collect();
-    let upper = vec![1.0; count];
+    let held: Vec<f64> = rates.iter().map(|&rate| held[rate]).collect();
+    coupled_within(&rows, &base, &held, &vec![1.0; count], rates)
+}
+
+/// The same of muscles with the torques `rows` at full activation beyond those `base` at none, of activations up to `upper`, while the
+/// others carry the torques `held`; one row, base and torque a rate.
+pub(super) fn coupled_within(
+    rows: &[Vec<f64>],
+    base: &[f64],
+    held: &[f64],
+    upper: &[f64],
+    rates: &[usize],
+) -> Vec<CoupledStrength> {
     let one = |k: usize| {
         let others = (0..rates.len()).filter(|&other| other != k);
         let matrix = others.clone().flat_map(|other| rows[other].iter().copied()).collect();
-        let right = others.map(|other| held[rates[other]] - base[other]).collect();
-        let mut program = LinearProgram::new(matrix, right, &upper);
+        let right = others.map(|other| held[other] - base[other]).collect();
+        let mut program = LinearProgram::new(matrix, right, upper);
         let [greatest, least] = [1.0, -1.0].map(|sign| {
             let cost: Vec<f64> = rows[k].iter().map(|entry| sign * entry).collect();
             program.maximise(&cost)

@@ -7,12 +7,15 @@
 
 mod bushing;
 mod coupled_strength;
+mod fatigue;
 mod fiber;
 mod geometry;
+mod hold;
 mod ligament;
 mod path;
 mod routing;
 mod rule;
+mod shared_torques;
 mod static_optimisation;
 mod tendon;
 mod tolerances;
@@ -21,16 +24,19 @@ mod wrap;
 
 pub use bushing::{Bushing, bushing_torque};
 pub use coupled_strength::{CoupledStrength, coupled_strength};
+pub use fatigue::{MuscleFatigue, SharingError};
 pub use fiber::{
     ActiveCurve, DeGrooteFregly2016, FiberLaw, FiberState, Millard2012, MujocoMuscle, Muscle, MuscleError, MuscleSpec,
     PassiveFiberCurve, PassiveShape, Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
 pub(crate) use geometry::Line;
 pub use geometry::PathGeometry;
+pub use hold::{MuscleHold, hold};
 pub use ligament::{Ligament, LigamentLaw};
 pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
 pub(crate) use routing::{Node, NodeKind};
 pub use rule::{PathRule, WrapMethod};
+pub use shared_torques::{SharedTorques, TorqueLimit};
 pub use static_optimisation::{Recruitment, StaticOptimisation};
 pub use tendon::{Around, RoundShape, SidePoint, Tendon, TendonGeom, TendonPart};
 pub use torque::{Tension, passive_fiber_torque, passive_tensions, passive_torque, strength};

@@ -119,3 +119,20 @@ pub(super) const FIRST_STRETCH: f64 = 0.01;
 
 /// Singular value of the equations over their largest entry below which their multipliers are not determined.
 pub(super) const LEAST_SINGULAR: f64 = 1e-12;
+
+// Fatigue (`fatigue.rs`, `hold.rs`, `shared_torques.rs`).
+
+/// Greatest multiple of torques that is looked for, where they are almost none.
+pub(super) const MOST_TIMES: f64 = 1e6;
+/// Spare capacity of a muscle, as a share of its capacity, up to which it is exhausted.
+pub(super) const AT_CAPACITY: f64 = 1e-9;
+/// First step of a hold, s.
+pub(super) const FIRST_HOLD_STEP: f64 = 1.0;
+/// Longest step of a hold, s.
+pub(super) const LONGEST_HOLD_STEP: f64 = 60.0;
+/// Greatest change of an activation within a step of a hold that is longer than [`EXHAUSTION_STEP`].
+pub(super) const MOST_LOAD_CHANGE: f64 = 0.005;
+/// Longest step of a hold in which a muscle may become exhausted, s.
+pub(super) const EXHAUSTION_STEP: f64 = 0.1;
+/// Time to which the instant of failure is known, s.
+pub(super) const INSTANT: f64 = 1e-7;

@@ -2,7 +2,6 @@
 
 use contrapposto::assessment::assess as assessed;
 use contrapposto::assessment::{ANGLE_ERROR, AssessSettings, Assessment, FAST_SHARE, Instant};
-use contrapposto::contact::Support;
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
@@ -12,9 +11,8 @@ use contrapposto::suggestions::{
     Advice, Change, Job as Asked, Trial, Worked, changes, with_breaks, with_breaks_in_repeats,
 };
 use contrapposto::verdict::Verdict;
-use contrapposto_formats::loads::{GroundReaction, no_segment, patch};
+use contrapposto_formats::loads::GroundReaction;
 use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
-use nalgebra::Vector3;
 
 use super::repeats::ends_apart;
 use super::support_doubts::support_doubts;
@@ -26,9 +24,6 @@ use crate::moving::{Recorded, keep_overlap};
 use crate::output::print_note;
 use crate::view::answer::Answer;
 use crate::view::text::assess::AssessText;
-
-/// Friction of a support: shoe on floor, as in scenarios.
-const FRICTION: f64 = 0.6;
 
 /// A motion of a model and its loads, checked.
 pub(crate) struct Job {
@@ -90,9 +85,9 @@ impl Job {
         let seconds = motion.first().zip(motion.last()).map_or(0.0, |(first, last)| last.0 - first.0);
         let settings = AssessSettings {
             repetition: args.repeat.repetition(seconds).map_err(Fail::Refused)?,
-            supports: supports(args, model)?,
+            supports: args.carried.supports(model)?,
             rates,
-            root_held: args.fixed_root,
+            root_held: args.carried.fixed_root,
             passive_ranges: opened.passive_ranges(),
             muscles,
             angle_error,
@@ -178,43 +173,4 @@ impl Job {
         };
         Advice::new(verdict, &job, all, || verdict.kind.is_done().then(breaks).flatten(), budget, trial)
     }
-}
-
-/// The supports, on horizontal ground.
-fn supports(args: &AssessArgs, model: &Model) -> Result<Vec<Support>, Fail> {
-    let mut patches = vec![];
-    for text in &args.patch {
-        patches.push(patch(model, text).map_err(|error| Fail::Refused(format!("--patch \"{text}\": {error}")))?);
-    }
-    let mut supports: Vec<Support> = vec![];
-    for name in &args.support {
-        let refuse = |why: String| Fail::Refused(format!("--support {name}: {why}"));
-        let segment = model.segment(name).ok_or_else(|| refuse(no_segment(model, name)))?;
-        if supports.iter().any(|support| support.segment == segment) {
-            return Err(refuse("it is named twice".to_owned()));
-        }
-        let given = patches.iter().find(|(of, _)| *of == segment).map(|(_, corners)| corners);
-        let corners: Vec<Vector3<f64>> = given.unwrap_or(&model.segments()[segment].patch).clone();
-        if corners.is_empty() {
-            return Err(refuse(format!(
-                "where it touches the ground is not known; give corners in its frame (m): --patch \"{name} X,Y,Z X,Y,Z ...\""
-            )));
-        }
-        let Some(normal) = (-model.gravity()).try_normalize(1e-9) else {
-            return Err(refuse("without gravity there is no ground".to_owned()));
-        };
-        supports.push(Support {
-            segment,
-            corners,
-            normal,
-            friction: FRICTION,
-            share_max: 1.0,
-            place: contrapposto::contact::Place::Fixed,
-        });
-    }
-    if let Some((segment, _)) = patches.iter().find(|(of, _)| !supports.iter().any(|support| support.segment == *of)) {
-        let name = &model.segments()[*segment].name;
-        return Err(Fail::Refused(format!("--patch \"{name} ...\": `{name}` is no support; name it with --support")));
-    }
-    Ok(supports)
 }

@@ -9,9 +9,9 @@ use crate::moving::fast_motion;
 use crate::view::text::sources::StrengthAtText;
 
 /// The arguments that say what carries a body.
-pub(super) const WHAT_CARRIES: &str = "give --support SEG,SEG or --grf FILE.mot; --fixed-root judges the muscles alone";
+pub(crate) const WHAT_CARRIES: &str = "give --support SEG,SEG or --grf FILE.mot; --fixed-root judges the muscles alone";
 /// Least residual, as a share of the body's weight, that gives a warning.
-const RESIDUAL: f64 = 1e-6;
+pub(crate) const RESIDUAL: f64 = 1e-6;
 /// Least load of a group that works against ligaments, as a share of its strength, that gives a warning (assumed).
 const LIGAMENT_LOAD: f64 = 0.1;
 /// Most groups that the warning names.
@@ -27,12 +27,12 @@ pub(super) fn warnings(
     let mut warnings = vec![];
     let (force, moment) = (found.residual_force, found.residual_moment);
     let least = RESIDUAL * (opened.model.mass() * opened.model.gravity().norm()).max(1.0);
-    if !args.fixed_root && (force.value > least || moment.value > least) {
+    if !args.carried.fixed_root && (force.value > least || moment.value > least) {
         let missing = format!(
             "{:.2} N at {} s and {:.2} N m at {} s at most",
             force.value, force.time, moment.value, moment.time
         );
-        warnings.push(if !args.support.is_empty() {
+        warnings.push(if !args.carried.support.is_empty() {
             format!(
                 "in {} of {frames} frames the supports cannot hold the body; the missing force and moment: {missing}",
                 found.unheld
