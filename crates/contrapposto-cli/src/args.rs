@@ -27,7 +27,7 @@ pub(crate) use model::{
     AssessArgs, ConvertArgs, FrameArgs, InspectArgs, LoadArgs, ModelArgs, PassiveFrom, RootChoice, TorquesArgs,
 };
 pub(crate) use muscles::use_muscles;
-pub(crate) use musculature::{MusclesArgs, RuleChoice};
+pub(crate) use musculature::{MusclesArgs, OneMuscleArgs, RuleChoice};
 pub(crate) use population::PopulationArgs;
 pub(crate) use repeat::RepeatArgs;
 pub(crate) use scale::ScaleArgs;
@@ -87,6 +87,8 @@ pub(crate) enum Verb {
     Torques(TorquesArgs),
     /// Path, forces and moment arms of every muscle of an OpenSim or MJCF model, and the strength of its joints, for one posture or a motion.
     Muscles(MusclesArgs),
+    /// Path, moment arms, fibres and forces of one muscle in a posture, and its force-length curves with the present state.
+    Muscle(OneMuscleArgs),
     /// Scale an OpenSim model to a person by the markers of a static trial (.trc, .c3d) and the setup file of OpenSim's ScaleTool.
     Scale(ScaleArgs),
     /// Find the motion of an OpenSim model whose markers lie nearest to measured ones (.trc, .c3d): inverse kinematics. Or that of the built-in

@@ -61,6 +61,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Inspect(args) => inspect::inspect(&args),
         Verb::Torques(args) => torques::torques(&args),
         Verb::Muscles(args) => muscles::muscles(&args),
+        Verb::Muscle(args) => muscles::one::muscle(&args),
         Verb::Scale(args) => scale::scale(&args),
         Verb::Track(args) if animation::is_animation(&args.markers) => animation::animation(&args),
         Verb::Track(args) => track::track(&args),

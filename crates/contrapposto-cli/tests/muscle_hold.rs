@@ -122,7 +122,7 @@ fn arguments_that_do_not_fit_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = write(folder.path(), "m.osim", &model(&[("flexor", 500.0)]));
     let two = write(folder.path(), "two.csv", "time,q_deg\n0,0\n1,5\n");
-    assert!(refused(&["muscles", &file, &two, "--hold", "1min"]).contains("has 2 postures, and one posture is held"));
+    assert!(refused(&["muscles", &file, &two, "--hold", "1min"]).contains("has 2 postures, and one posture is wanted"));
     assert_eq!(run(&["muscles", &file, &two, "--hold", "1min", "--from", "0.5"]).code, 0);
     assert!(refused(&["muscles", &file, "--load", "b 1kg"]).contains("--load: counts for a posture that is held"));
     assert!(refused(&["muscles", &file, "--fatigue", "muscle_group"]).contains("add --hold TIME"));

@@ -354,6 +354,29 @@ fn the_posture_of_a_scenario_has_the_strength_of_the_muscles_in_it() {
     assert!((number(&work(&without)["strength_nm"]) / strength - 1.0).abs() > 0.01, "the built-in one differs");
 }
 
+/// Without `muscles` a scenario takes strength and passive torque from an OpenSim model's muscles: each of the four uses gives other numbers.
+#[test]
+fn a_scenario_that_does_not_say_which_muscles_count_uses_both_strength_and_passive_torque() {
+    let folder = tempfile::tempdir().unwrap();
+    elbows(folder.path());
+    let numbers = |uses: Option<&str>| {
+        let key = uses.map(|uses| format!("\nmuscles = \"{uses}\"")).unwrap_or_default();
+        let file = weight_in_hand(folder.path(), "hand.toml", &format!("file = \"elbows.osim\"{key}"));
+        let found = json(&["relax", &file, "--json"]);
+        let groups = found["postures"][0]["groups"].as_array().unwrap();
+        let group = groups.iter().find(|group| group["coordinate"] == "elbow_flex_r").unwrap();
+        ["strength_nm", "active_nm"].map(|key| number(&group[key]))
+    };
+    let [silent, both, strength, passive, off] =
+        [None, Some("both"), Some("strength"), Some("passive"), Some("off")].map(numbers);
+    assert_eq!(silent, both);
+    let apart = |a: f64, b: f64| (a / b - 1.0).abs() > 0.01;
+    // Strength is the muscles' in two of the four; so is passive torque in another two, by which the active torque under the weight is less.
+    assert!(apart(both[0], off[0]) && apart(both[1], off[1]), "{both:?} {off:?}");
+    assert!(!apart(both[0], strength[0]) && apart(both[1], strength[1]), "{both:?} {strength:?}");
+    assert!(apart(both[0], passive[0]) && !apart(both[1], passive[1]), "{both:?} {passive:?}");
+}
+
 #[test]
 fn a_scenario_refuses_muscles_that_it_cannot_use_by_name() {
     let folder = tempfile::tempdir().unwrap();

@@ -7,6 +7,7 @@
 //! | Bodies | [`body_figure()`] | one posture from three sides, or several side by side: load colours, contact forces, loads, centre of mass, targets, surfaces and things, the start as a ghost |
 //! | Body with names | [`body_map()`] | joints with their coordinates, frames of segments, patches |
 //! | Greatest forces | [`force_figure()`] | the greatest forces at a point of a body in three sections, coloured by their limits |
+//! | Fibres | [`force_length()`] | active and passive force of a muscle's fibres against their length, and the states that the muscle is in |
 //! | People | [`holding_curve()`], [`bar_chart()`] | the share of people who still hold a posture against time; shares as bars |
 //! | Time line | [`time_line()`] | angle, torques and fatigue of one coordinate against time |
 //!
@@ -34,6 +35,7 @@ mod depth;
 mod figure;
 mod font;
 mod force_figure;
+mod force_length;
 mod geometry;
 mod holding_curve;
 mod outline;
@@ -54,6 +56,7 @@ pub use body_figure::body_figure;
 pub use body_map::{BodyMap, MapFrame, MapJoint, body_map};
 pub use figure::{Figure, PlotError};
 pub use force_figure::{ForceFigure, Spoke, force_figure};
+pub use force_length::{ForceLength, force_length};
 pub use holding_curve::{HoldingCurve, holding_curve};
 pub use passive_chart::{PassiveChart, passive_curve};
 pub use tags::{PostureSketch, SketchRole};

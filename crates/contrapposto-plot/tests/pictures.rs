@@ -1,8 +1,8 @@
 //! Checks the charts: hostile numbers and texts, the same bytes twice, the marks that must be there.
 
 use contrapposto_plot::{
-    BarChart, Figure, HoldingCurve, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance, bar_chart,
-    holding_curve, passive_curve, time_line, torque_balance,
+    BarChart, Figure, ForceLength, HoldingCurve, PassiveChart, PostureSketch, SketchRole, TimeLine, TorqueBalance,
+    bar_chart, force_length, holding_curve, passive_curve, time_line, torque_balance,
 };
 
 const HOSTILE_TEXT: &str = "<script>alert(\"&'\")</script> $\\frac{a}{b}$ \u{0} \u{ffff} 関節 \u{202e}";
@@ -114,13 +114,25 @@ fn bars(xs: &[f64], ys: &[f64], text: &str) -> BarChart {
     }
 }
 
-fn all_pictures(xs: &[f64], ys: &[f64], text: &str) -> [Figure; 5] {
+fn fibers(xs: &[f64], ys: &[f64], text: &str) -> ForceLength {
+    ForceLength {
+        title: text.to_owned(),
+        subtitle: text.to_owned(),
+        lengths: xs.to_vec(),
+        active: ys.to_vec(),
+        passive: xs.to_vec(),
+        states: xs.iter().zip(ys).map(|(x, y)| (text.to_owned(), *x, *y)).collect(),
+    }
+}
+
+fn all_pictures(xs: &[f64], ys: &[f64], text: &str) -> [Figure; 6] {
     [
         torque_balance(&[balance(xs, ys, text)]),
         passive_curve(&passive(xs, ys, text)),
         time_line(&line(xs, ys, text)),
         holding_curve(&holding(xs, ys, text)),
         bar_chart(&bars(xs, ys, text)),
+        force_length(&fibers(xs, ys, text)),
     ]
 }
 
@@ -137,6 +149,34 @@ fn bars_are_as_long_as_their_shares_and_a_share_is_written_beside_each() {
     for words in [">50 %<", ">100 %<", ">0 %<", ">unknown<", ">women<", ">men<", ">knee<", ">hip<"] {
         assert_eq!(count(&svg, words), 1, "{words}");
     }
+}
+
+#[test]
+fn states_of_fibres_lie_on_their_curves() {
+    let lengths: Vec<f64> = (0..=100).map(|i| 0.5 + 0.01 * f64::from(i)).collect();
+    let active = |length: f64| 1.0 - (length - 1.0).powi(2);
+    let chart = ForceLength {
+        active: lengths.iter().map(|length| active(*length)).collect(),
+        passive: vec![0.0; lengths.len()],
+        states: vec![
+            ("rest".to_owned(), 0.8, 0.0),
+            ("full".to_owned(), 0.8, active(0.8)),
+            ("third".to_owned(), 1.0, 1.0),
+        ],
+        lengths,
+        ..ForceLength::default()
+    };
+    let svg = force_length(&chart).svg();
+    // Two states, each in the picture and in the legend.
+    assert_eq!(count(&svg, "<circle"), 4);
+    let part = |line: &str, key: &str| -> f64 {
+        let text = line.split(&format!("{key}=\"")).nth(1).unwrap().split('"').next().unwrap();
+        text.parse().unwrap()
+    };
+    let dots: Vec<(f64, f64)> =
+        svg.lines().filter(|line| line.contains("<circle")).map(|line| (part(line, "cx"), part(line, "cy"))).collect();
+    // Both have one length, and the active one is higher on the sheet.
+    assert!((dots[0].0 - dots[1].0).abs() < 1e-9 && dots[1].1 < dots[0].1 - 50.0, "{dots:?}");
 }
 
 fn ramp() -> (Vec<f64>, Vec<f64>) {

@@ -196,7 +196,8 @@ fn two_muscles_on_one_joint_agree_with_small_steps() {
         })
         .unwrap();
         assert!(end.failed && (end.seconds - time).abs() < 2e-3 * time, "{} s, small steps {time} s", end.seconds);
-        assert!(worst < 1e-3, "{worst}");
+        println!("{moments:?}: within {worst:.1e} of small steps");
+        assert!(worst < 2.5e-4, "{worst}");
         let first = usize::from(exhausted[1] < exhausted[0]);
         let (theirs, ours) = (exhausted[first], found_exhausted[first]);
         assert!(theirs < 0.9 * time, "the second muscle takes over: {exhausted:?} of {time} s");
@@ -320,6 +321,9 @@ fn activations_are_optimal_until_multipliers_prove_that_none_suffice() {
             })
             .sum();
         assert!((sum - 1.0).abs() < 1e-8 && (bound - end.limit.times).abs() < 1e-6, "{sum}, {bound}, {end:?}");
+        let of_muscles: f64 = end.limit.of_muscles.iter().sum();
+        assert!(end.limit.of_muscles.iter().all(|share| *share >= 0.0), "{end:?}");
+        assert!((of_muscles - end.limit.times).abs() < 1e-9, "{of_muscles}, {end:?}");
         // A group whose torque has a part in the limit gives no more than is asked.
         let capacities: Vec<f64> = states.iter().map(|state| 1.0 - state.fatigued).collect();
         let strengths = asked.strengths(&capacities);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 
-use super::model::{FatigueArgs, LoadArgs, ModelArgs};
+use super::model::{FatigueArgs, FrameArgs, LoadArgs, ModelArgs};
 use super::support::SupportArgs;
 use super::time::time;
 use crate::fail::Fail;
@@ -32,6 +32,34 @@ pub(crate) struct MusclesArgs {
     #[arg(long, value_name = "A", default_value_t = 0.01, value_parser = activation, conflicts_with = "hold")]
     pub(crate) activation: f64,
     /// Print one line of JSON a posture, in rad, m, N, N m, instead of tables.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  contrapposto muscle gait2392.osim soleus_r\n  \
+    contrapposto muscle gait2392.osim rect_fem_r crouch.csv --out out\n\n\
+    --out draws the forces of the fibres against their length, with the present state at --activation and at full activation.")]
+pub(crate) struct OneMuscleArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Name of the muscle in the file.
+    pub(crate) name: String,
+    /// Posture: .mot, .sto or .csv of one row, or one that --from and --to select; or `default`.
+    #[arg(default_value = "default")]
+    pub(crate) posture: PathBuf,
+    #[command(flatten)]
+    pub(crate) frames: FrameArgs,
+    /// The rule by which its path lies on the surfaces that it wraps over; a tendon of an MJCF file has MuJoCo's always.
+    #[arg(long, value_enum, default_value = "geodesic")]
+    pub(crate) rule: RuleChoice,
+    /// Activation, 0 to 1; a muscle with a least activation of its own has at least that.
+    #[arg(long, value_name = "A", default_value_t = 0.01, value_parser = activation)]
+    pub(crate) activation: f64,
+    /// Draw the force-length curves into DIR: muscle-NAME.svg and .png.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print JSON, in m, N and rad, instead of tables.
     #[arg(long)]
     pub(crate) json: bool,
 }

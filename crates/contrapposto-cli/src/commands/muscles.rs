@@ -1,19 +1,19 @@
 //! `contrapposto muscles`: path, forces and moment arms of every muscle of a body at rest, and the strength of its joints.
 
 mod hold;
+pub(crate) mod one;
+mod opened;
 
 use std::path::Path;
 
 use contrapposto::kinematics::Kinematics;
-use contrapposto::muscle::{
-    FiberState, PathGeometry, PathRule, bushing_torque, coupled_strength, passive_torque, strength,
-};
+use contrapposto::muscle::{FiberState, PathGeometry, bushing_torque, coupled_strength, passive_torque, strength};
 use contrapposto::posture::Posture;
 use contrapposto_formats::tissue::SourcedModel;
 
+use self::opened::{opened_muscles, path_rule};
 use crate::args::{MusclesArgs, RuleChoice};
 use crate::fail::Fail;
-use crate::model_file::open_without_mesh_mass;
 use crate::motion_file::{note_values_out_of_range, read_motion};
 use crate::output::{print, print_note};
 use crate::view::text::muscles::{MuscleFrame, json, readable};
@@ -26,14 +26,7 @@ pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
         return hold::hold(args, seconds);
     }
     args.hold.refuse_without_hold()?;
-    let mut opened = open_without_mesh_mass(&args.model, false)?;
-    if opened.muscles.muscles.is_empty() {
-        let file = args.model.model.display();
-        let why = "no muscle could be read from it; MODEL is an OpenSim or MJCF file with muscles, and `contrapposto inspect` counts them";
-        return Err(Fail::Refused(format!("{file}: {why}")));
-    }
-    let mut notes = std::mem::take(&mut opened.notes);
-    notes.retain(|note| !note.starts_with("in the file and not used"));
+    let (opened, mut notes) = opened_muscles(&args.model)?;
     let model = &opened.model;
     let frames = match args.postures == Path::new("default") {
         true => vec![(0.0, model.default_posture())],
@@ -44,13 +37,6 @@ pub(crate) fn muscles(args: &MusclesArgs) -> Result<(), Fail> {
     };
     let warnings = note_values_out_of_range(&opened, &frames, &mut notes);
     warnings.iter().for_each(|warning| print_note("warning", warning));
-    for (kind, tally) in opened.muscle_tally.0.iter().filter(|(_, tally)| tally.left_out + tally.refused > 0) {
-        let missing = tally.left_out + tally.refused;
-        notes.push(format!(
-            "{missing} of {} {kind} are left out; `contrapposto inspect` says why",
-            missing + tally.read
-        ));
-    }
     notes.iter().for_each(|note| print_note("note", note));
     each_frame(&opened, &frames, (args.rule, args.activation), |frame| {
         print(&if args.json { json(&opened, frame)? } else { readable(&opened, frame) })
@@ -65,10 +51,7 @@ pub(crate) fn each_frame<'a>(
     mut visit: impl FnMut(&MuscleFrame<'_>) -> Result<(), Fail>,
 ) -> Result<(), Fail> {
     let (model, muscles) = (&opened.model, &opened.muscles);
-    let rule = match choice {
-        RuleChoice::Geodesic => PathRule::Geodesic,
-        RuleChoice::Opensim => PathRule::OpenSim,
-    };
+    let rule = path_rule(choice);
     let mut kinematics = Kinematics::new(model);
     let mut geometry = PathGeometry::new(model, &muscles.paths);
     let (mut strengths, mut passive) = (vec![[0.0; 2]; model.rates().len()], vec![0.0; model.rates().len()]);

@@ -6,6 +6,7 @@ pub(crate) mod compare;
 mod group;
 pub(crate) mod inspect;
 mod joint;
+pub(crate) mod muscle;
 pub(crate) mod muscle_hold;
 pub(crate) mod muscles;
 pub(crate) mod population;

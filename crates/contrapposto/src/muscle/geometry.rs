@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::path::{Location, MovingPoint, Path, PathPoint, Paths};
-use super::routing::{FrameInGround, Node, NodeKind, Routing, Scene};
+use super::routing::{CornerOrigin, FrameInGround, Node, Routing, Scene};
 use super::rule::PathRule;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Motion};
@@ -38,6 +38,17 @@ pub struct PathGeometry {
     lines: Vec<Line>,
     /// The rule of the last update.
     rule: PathRule,
+}
+
+/// A corner of the line of a path in a posture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathCorner {
+    /// Place of the corner in ground, m.
+    pub place: Vector3<f64>,
+    /// Index of the segment that carries it; `None` for ground.
+    pub segment: Option<usize>,
+    /// A point of the path, or where the line meets a surface.
+    pub origin: CornerOrigin,
 }
 
 /// The line of a path in a posture.
@@ -120,6 +131,12 @@ impl PathGeometry {
     /// Whether a coordinate changes the length of some path by itself: it moves a point in its segment, or is part of a tendon.
     pub fn drives(&self, coordinate: usize) -> bool {
         self.driving.iter().flatten().any(|driving| *driving == coordinate)
+    }
+
+    /// The corners of the line of a path, from its first point to its last one.
+    pub fn corners(&self, path: usize) -> impl ExactSizeIterator<Item = PathCorner> {
+        let corner = |node: &Node| PathCorner { place: node.place, segment: node.segment, origin: node.kind };
+        self.lines[path].nodes.iter().map(corner)
     }
 
     /// The line of a path.
@@ -246,7 +263,7 @@ impl Tension<'_> {
     fn pull(&mut self, nodes: &[Node], moving: &[usize], wrenches: &mut [(Vector3<f64>, Vector3<f64>)]) {
         for pair in nodes.windows(2) {
             let [from, to] = [&pair[0], &pair[1]];
-            if matches!(from.kind, NodeKind::On(_)) || from.weight == 0.0 {
+            if matches!(from.kind, CornerOrigin::On(_)) || from.weight == 0.0 {
                 continue;
             }
             let same = from.segment == to.segment;
@@ -273,7 +290,7 @@ impl Tension<'_> {
 
     /// The work of a force on a point that moves in its segment.
     fn slide(&mut self, node: &Node, force: &Vector3<f64>) {
-        let NodeKind::Point(index) = node.kind else { return };
+        let CornerOrigin::Point(index) = node.kind else { return };
         let Location::Moving(point) = &self.points[index].location else { return };
         let MovingPoint { coordinate: Some(coordinate), .. } = **point else { return };
         let Some(rate) = self.model.coordinates[coordinate].rate else { return };

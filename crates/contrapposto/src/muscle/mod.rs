@@ -30,11 +30,12 @@ pub use fiber::{
     PassiveFiberCurve, PassiveShape, Schutte1993, TendonCurve, TendonShape, Thelen2003,
 };
 pub(crate) use geometry::Line;
-pub use geometry::PathGeometry;
+pub use geometry::{PathCorner, PathGeometry};
 pub use hold::{MuscleHold, hold};
 pub use ligament::{Ligament, LigamentLaw};
 pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
-pub(crate) use routing::{Node, NodeKind};
+pub use routing::CornerOrigin;
+pub(crate) use routing::Node;
 pub use rule::{PathRule, WrapMethod};
 pub use shared_torques::{SharedTorques, TorqueLimit};
 pub use static_optimisation::{Recruitment, StaticOptimisation};

@@ -21,14 +21,14 @@ pub(crate) struct Node {
     /// The segment that carries it.
     pub(crate) segment: Option<usize>,
     /// Origin of the corner.
-    pub(crate) kind: NodeKind,
+    pub(crate) kind: CornerOrigin,
     /// Factor of tension and length of the line behind it: below 1 behind a pulley, 0 between its branches.
     pub(crate) weight: f64,
 }
 
 /// Origin of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NodeKind {
+pub enum CornerOrigin {
     /// The path's point of this number.
     Point(usize),
     /// The line touches the surface of the path's wrap, or of the tendon's part, of this number.
@@ -107,7 +107,7 @@ impl Routing {
                 place,
                 reference: place,
                 segment: point.segment,
-                kind: NodeKind::Point(index),
+                kind: CornerOrigin::Point(index),
                 weight: 1.0,
             });
         }
@@ -125,7 +125,7 @@ impl Routing {
     fn length(&mut self, rule: PathRule) -> f64 {
         (0..self.nodes.len()).for_each(|at| self.set_reference(at, rule));
         let part = |pair: &[Node]| match pair[0].kind {
-            NodeKind::On(wrap) => self.lengths[wrap],
+            CornerOrigin::On(wrap) => self.lengths[wrap],
             _ => (pair[1].reference - pair[0].reference).norm(),
         };
         self.nodes.windows(2).map(part).sum()
@@ -135,8 +135,8 @@ impl Routing {
     fn set_reference(&mut self, at: usize, rule: PathRule) {
         let node = &mut self.nodes[at];
         let first = match (rule, node.kind) {
-            (PathRule::OpenSim, NodeKind::On(wrap)) => Some(&mut self.first_references[wrap][0]),
-            (PathRule::OpenSim, NodeKind::Off(wrap)) => Some(&mut self.first_references[wrap][1]),
+            (PathRule::OpenSim, CornerOrigin::On(wrap)) => Some(&mut self.first_references[wrap][0]),
+            (PathRule::OpenSim, CornerOrigin::Off(wrap)) => Some(&mut self.first_references[wrap][1]),
             _ => None,
         };
         node.reference = first.map_or(node.place, |first| *first.get_or_insert(node.place));
@@ -192,7 +192,7 @@ impl Routing {
 
     /// Removes the corners of a wrap.
     fn remove(&mut self, wrap: usize) {
-        self.nodes.retain(|node| node.kind != NodeKind::On(wrap) && node.kind != NodeKind::Off(wrap));
+        self.nodes.retain(|node| node.kind != CornerOrigin::On(wrap) && node.kind != CornerOrigin::Off(wrap));
     }
 
     /// Wraps the part of the line that suits best over the surface of one wrap; `None` where no point of the wrap's range is there.
@@ -205,7 +205,7 @@ impl Routing {
         }
         let first = range.0.unwrap_or(0);
         let last = range.1.unwrap_or(path.points.len() - 1);
-        let within = |node: &Node| matches!(node.kind, NodeKind::Point(p) if p >= first && p <= last);
+        let within = |node: &Node| matches!(node.kind, CornerOrigin::Point(p) if p >= first && p <= last);
         let start = self.nodes.iter().position(within)?;
         let end = self.nodes.iter().rposition(within)?;
         let (axes, origin) = &scene.objects[*index];
@@ -214,7 +214,7 @@ impl Routing {
         let mut best: Option<(usize, Contact, f64)> = None;
         for at in start..end {
             let (from, to) = (&self.nodes[at], &self.nodes[at + 1]);
-            if matches!(from.kind, NodeKind::On(_)) {
+            if matches!(from.kind, CornerOrigin::On(_)) {
                 continue;
             }
             let local = |place: &Vector3<f64>| axes.tr_mul(&(place - origin));
@@ -245,8 +245,8 @@ impl Routing {
                 Node { place, reference: place, segment: object.segment, kind, weight: 1.0 }
             };
             self.lengths[wrap] = contact.length;
-            self.nodes.insert(at + 1, node(contact.first, NodeKind::On(wrap)));
-            self.nodes.insert(at + 2, node(contact.second, NodeKind::Off(wrap)));
+            self.nodes.insert(at + 1, node(contact.first, CornerOrigin::On(wrap)));
+            self.nodes.insert(at + 2, node(contact.second, CornerOrigin::Off(wrap)));
         }
         Some(found)
     }

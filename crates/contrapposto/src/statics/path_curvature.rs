@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Motion};
-use crate::muscle::{Line, Location, Node, NodeKind, Path, PathGeometry, Paths, Spread};
+use crate::muscle::{CornerOrigin, Line, Location, Node, Path, PathGeometry, Paths, Spread};
 
 type V = Vector3<f64>;
 
@@ -128,8 +128,8 @@ impl PathCurvature {
         self.place.fill(usize::MAX);
         moving.iter().enumerate().for_each(|(place, &rate)| self.place[rate] = place);
         self.count = moving.len();
-        let on = |node: &Node| matches!(node.kind, NodeKind::On(_));
-        let off = |node: &Node| matches!(node.kind, NodeKind::Off(_));
+        let on = |node: &Node| matches!(node.kind, CornerOrigin::On(_));
+        let off = |node: &Node| matches!(node.kind, CornerOrigin::Off(_));
         let free = line.nodes.windows(2).filter(|pair| off(&pair[0]) && on(&pair[1])).count();
         self.width = self.count + 2 * free;
         self.block.clear();
@@ -139,12 +139,14 @@ impl PathCurvature {
         let mut start = End::Corner(0);
         for k in 0..line.nodes.len().saturating_sub(1) {
             match (line.nodes[k].kind, line.nodes[k + 1].kind) {
-                (NodeKind::Point(_), NodeKind::Point(_)) => self.straight(at, [&line.nodes[k], &line.nodes[k + 1]]),
-                (NodeKind::Point(_), NodeKind::On(_)) => start = End::Corner(k),
-                (NodeKind::Off(wrap), NodeKind::Point(_)) => {
+                (CornerOrigin::Point(_), CornerOrigin::Point(_)) => {
+                    self.straight(at, [&line.nodes[k], &line.nodes[k + 1]])
+                }
+                (CornerOrigin::Point(_), CornerOrigin::On(_)) => start = End::Corner(k),
+                (CornerOrigin::Off(wrap), CornerOrigin::Point(_)) => {
                     self.surface(at, line, wrap, k, [start, End::Corner(k + 1)]);
                 }
-                (NodeKind::Off(wrap), _) => {
+                (CornerOrigin::Off(wrap), _) => {
                     let end = End::between(&line.nodes[k], &line.nodes[k + 1], next_free);
                     next_free += 2;
                     self.surface(at, line, wrap, k, [start, end]);
@@ -276,7 +278,7 @@ impl PathCurvature {
 
     /// Motion of a corner in its segment; `None` for a fixed one.
     fn slide(&self, at: &Posed<'_>, node: &Node) -> Option<Slide> {
-        let NodeKind::Point(index) = node.kind else { return None };
+        let CornerOrigin::Point(index) = node.kind else { return None };
         let Location::Moving(point) = &at.path.points[index].location else { return None };
         let rate = at.model.coordinates[point.coordinate?].rate?;
         let (independent, first, second) = at.rates.0[rate];

@@ -1,7 +1,5 @@
 //! Holds one posture by the muscles of a body until they fail, or for the asked time.
 
-use std::path::Path;
-
 use contrapposto::contact::{Balance, ContactForces, root_rates};
 use contrapposto::joint_torques::{JointTorques, Quantities, relative_load};
 use contrapposto::model::{Model, Side};
@@ -9,11 +7,12 @@ use contrapposto::muscle::{MuscleFatigue, hold as held};
 use contrapposto::posture::Posture;
 use contrapposto_formats::tissue::{MuscleUse, SourcedModel, fatigue_notes};
 
+use super::opened::held_posture;
 use crate::args::MusclesArgs;
 use crate::commands::assess::{RESIDUAL, WHAT_CARRIES};
 use crate::fail::Fail;
 use crate::model_file::open_with_muscles;
-use crate::motion_file::{loads_of, note_values_out_of_range, read_motion};
+use crate::motion_file::{loads_of, note_values_out_of_range};
 use crate::output::{print, print_note};
 use crate::view::text::muscle_hold::{HeldMuscle, HeldPosture, JointLimit, json, readable};
 
@@ -22,30 +21,13 @@ pub(super) fn hold(args: &MusclesArgs, seconds: f64) -> Result<(), Fail> {
     let mut opened = opened.with_fatigue(&args.hold.fatigue.choice()?);
     let mut notes = std::mem::take(&mut opened.notes);
     notes.extend(fatigue_notes(&opened.model));
-    let frame = posture(args, &opened.model, &mut notes)?;
+    let frame = held_posture(&args.postures, &args.hold.under.frames, &opened.model, &mut notes)?;
     let mut body = JointTorques::with_passive_ranges(&opened.model, &opened.passive_ranges()).with_muscles(muscles);
     torques(args, &mut opened, &mut body, &frame, &mut notes)?;
     notes.iter().for_each(|note| print_note("note", note));
     let found = by_muscles(&opened.model, &body, seconds)?;
     print(&if args.json { json(&opened.model, &found)? } else { readable(&opened.model, &found) })?;
     if found.is_held() { Ok(()) } else { Err(Fail::Answered) }
-}
-
-/// The posture that is held, with its time.
-fn posture(args: &MusclesArgs, model: &Model, notes: &mut Vec<String>) -> Result<(f64, Posture), Fail> {
-    if args.postures == Path::new("default") {
-        return Ok((0.0, model.default_posture()));
-    }
-    let accepted = "POSTURES is a .mot, .sto or .csv file, or `default`";
-    let mut frames = read_motion(&args.postures, accepted, &args.hold.under.frames, model, notes)?;
-    match (frames.len(), frames.pop()) {
-        (1, Some(frame)) => Ok(frame),
-        (count, _) => {
-            let name = args.postures.display();
-            let why = "one posture is held; --from S and --to S select one";
-            Err(Fail::Refused(format!("{name}: has {count} postures, and {why}")))
-        }
-    }
 }
 
 /// Computes the torques of the posture under its loads, and the strength of the joints in it.

@@ -78,7 +78,7 @@ pub(crate) fn json(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> Result<Str
     let text = FrameText {
         frame: frame.index,
         time_s: frame.time,
-        rule: word(frame.rule),
+        rule: rule_word(frame.rule),
         activation: frame.activation,
         lengths_m: by_muscle(&|_, muscle| frame.geometry.lengths()[muscle.spec().path]),
         moment_arms_m: Named(muscles.iter().map(|muscle| (muscle.spec().name.as_str(), arms(muscle))).collect()),
@@ -105,7 +105,7 @@ pub(crate) fn json(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> Result<Str
     serde_json::to_string(&text).map(|line| line + "\n").map_err(|error| Fail::job("JSON", error))
 }
 
-fn word(rule: RuleChoice) -> &'static str {
+pub(super) fn rule_word(rule: RuleChoice) -> &'static str {
     match rule {
         RuleChoice::Geodesic => "geodesic",
         RuleChoice::Opensim => "opensim",
@@ -117,7 +117,7 @@ pub(crate) fn readable(opened: &SourcedModel, frame: &MuscleFrame<'_>) -> String
         "frame {} at {} s, rule {}, activation {}\n",
         frame.index,
         frame.time,
-        word(frame.rule),
+        rule_word(frame.rule),
         frame.activation
     );
     let mut table = plain_table();

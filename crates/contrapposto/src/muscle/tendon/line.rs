@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::around::around;
 use super::parts::{Around, Tendon, TendonPart};
 use crate::muscle::path::{Location, Path};
-use crate::muscle::routing::{FrameInGround, Node, NodeKind, Routing, Scene};
+use crate::muscle::routing::{CornerOrigin, FrameInGround, Node, Routing, Scene};
 
 impl Routing {
     /// Lays a tendon; returns its length, m. Does not allocate.
@@ -30,7 +30,7 @@ impl Routing {
                 length += self.pass(scene, geoms, (index - 1, part), &from, &place);
             }
             let weight = tendon.parts.get(index).map_or(0.0, |part| part.weight);
-            let kind = NodeKind::Point(index);
+            let kind = CornerOrigin::Point(index);
             self.nodes.push(Node { place, reference: place, segment: point.segment, kind, weight });
         }
         length
@@ -54,7 +54,7 @@ impl Routing {
         let Some(contact) = around(geom, &own(from), &own(to), side.as_ref()) else { return straight };
         let [first, second] = [contact.first, contact.second].map(|place| axes * place + origin);
         self.lengths[index] = contact.length;
-        for (place, kind) in [(first, NodeKind::On(index)), (second, NodeKind::Off(index))] {
+        for (place, kind) in [(first, CornerOrigin::On(index)), (second, CornerOrigin::Off(index))] {
             self.nodes.push(Node { place, reference: place, segment: geom.segment, kind, weight: part.weight });
         }
         part.weight * ((first - from).norm() + contact.length + (to - second).norm())
