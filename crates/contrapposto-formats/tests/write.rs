@@ -1,6 +1,7 @@
 //! Tests the writers: our readers read the written files as the same model, and other programs give the same torques.
 //!
-//! `write/laws.rs`: passive laws. `write/imported.rs`: model files survive their own format. `write/peers.rs`: what other programs say.
+//! `write/laws.rs`: passive laws. `write/imported.rs`: model files survive their own format. `write/muscles.rs`: muscles, too.
+//! `write/peers.rs`: what other programs say.
 //! `write/motion.rs`: a body in motion, read back by the readers of `write/players.rs`. `write/skin.rs`: the adult's skin;
 //! `write/skinned.rs`: its glTF.
 
@@ -13,6 +14,8 @@ mod imported;
 mod laws;
 #[path = "write/motion.rs"]
 mod motion;
+#[path = "write/muscles.rs"]
+mod muscles;
 #[path = "write/peers.rs"]
 mod peers;
 #[path = "write/players.rs"]

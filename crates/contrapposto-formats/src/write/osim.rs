@@ -5,16 +5,19 @@
 //! Passive laws that OpenSim 4.6 has no force for are written as `ExpressionBasedCoordinateForce`, with the very formula that we evaluate.
 
 use contrapposto::model::{Adult, Coordinate, CoordinateKind, Model, Placement, Segment};
+use contrapposto::muscle::Musculature;
 use contrapposto::passive::CoordinateLimitForce;
 use nalgebra::Vector3;
 
 use super::law::{self, Part};
 use super::names::Names;
 use super::osim_joint::{Axis, Driver, Piece, filler, pieces};
+use super::osim_muscles::{Carried, Frames, wrap_objects};
 use super::steps::resting;
 use super::xml::{Xml, moments, number, numbers};
 use super::{WriteError, Written, common, exact, listed, osim_functions};
 use crate::adult_text::credits;
+use crate::markers::ModelMarker;
 
 /// Characters that OpenSim refuses in a name.
 fn accepts(c: char) -> bool {
@@ -37,8 +40,18 @@ fn accepts(c: char) -> bool {
 /// # Errors
 /// [`WriteError`] for names that XML cannot hold, and for joints whose chain must be split at a coordinate that moves both parts.
 pub fn osim(model: &Model) -> Result<Written, WriteError> {
+    document(model, &Musculature::default(), &[]).map(|(written, _)| written)
+}
+
+/// The model with muscles and markers, and the numbers of these that the document has.
+pub(super) fn document(
+    model: &Model,
+    muscles: &Musculature,
+    markers: &[ModelMarker],
+) -> Result<(Written, Carried), WriteError> {
     let mut lost = common(model, |_| false)?;
     let mut writer = Writer::new(model, &mut lost)?;
+    let mut carried = Carried { wrap_objects: muscles.paths.wrap_objects.len(), ..Carried::default() };
     writer.xml.open("OpenSimDocument", &[("Version", "40000")]);
     let name = Names::new(&[], accepts).keep("model", model.name(), &mut lost);
     writer.xml.open("Model", &[("name", &name)]);
@@ -46,16 +59,30 @@ pub fn osim(model: &Model) -> Result<Written, WriteError> {
         writer.xml.value("credits", &credits(&size));
     }
     writer.xml.value("gravity", &numbers(&model.gravity()));
-    writer.xml.leaf("Ground", &[("name", "ground")]);
-    writer.set("BodySet", Writer::bodies);
+    writer.xml.open("Ground", &[("name", "ground")]);
+    wrap_objects(&mut writer.xml, muscles, None);
+    writer.xml.close();
+    writer.set("BodySet", |writer| writer.bodies(muscles));
     writer.set("JointSet", |writer| {
         for index in 0..model.segments().len() {
             writer.joints(index, &mut lost);
         }
     });
-    writer.set("ForceSet", |writer| writer.forces(&mut lost));
+    writer.set("ForceSet", |writer| {
+        let mut names = Names::new(&[], accepts);
+        let frames = Frames { model: writer.model, bodies: &writer.bodies, coordinates: &writer.coordinate_paths };
+        (carried.muscles, carried.springs) = frames.forces(&mut writer.xml, muscles, &mut names, &mut lost);
+        writer.forces(names, &mut lost);
+    });
     writer.set("ConstraintSet", |writer| writer.couplings(&mut lost));
-    Ok(Written { text: writer.xml.finish(&lost), lost })
+    if !markers.is_empty() {
+        carried.markers = markers.len();
+        writer.set("MarkerSet", |writer| {
+            let frames = Frames { model: writer.model, bodies: &writer.bodies, coordinates: &writer.coordinate_paths };
+            frames.markers(&mut writer.xml, markers);
+        });
+    }
+    Ok((Written { text: writer.xml.finish(&lost), lost }, carried))
 }
 
 pub(super) struct Writer<'m> {
@@ -66,6 +93,8 @@ pub(super) struct Writer<'m> {
     /// Of each segment: its joints, and the names of the bodies without mass between them.
     pub(super) pieces: Vec<(Vec<Piece<'m>>, Vec<String>)>,
     joints: Names,
+    /// Of each coordinate: its path in the file, once joints are written.
+    coordinate_paths: Vec<String>,
     /// Of each coordinate: its name, and whether OpenSim counts it in degrees, in forces and tables.
     pub(super) coordinates: Vec<(String, bool)>,
 }
@@ -123,7 +152,8 @@ impl<'m> Writer<'m> {
             all.push((parts, between));
         }
         let joints = Names::new(&[], accepts);
-        Ok(Self { model, xml: Xml::new(), bodies, pieces: all, joints, coordinates })
+        let coordinate_paths = vec![String::new(); coordinates.len()];
+        Ok(Self { model, xml: Xml::new(), bodies, pieces: all, joints, coordinate_paths, coordinates })
     }
 
     fn set(&mut self, tag: &'static str, inside: impl FnOnce(&mut Self)) {
@@ -134,12 +164,12 @@ impl<'m> Writer<'m> {
         self.xml.close();
     }
 
-    fn bodies(&mut self) {
+    fn bodies(&mut self, muscles: &Musculature) {
         for (index, segment) in self.model.segments().iter().enumerate() {
             for name in &self.pieces[index].1 {
-                body(&mut self.xml, name, None);
+                body(&mut self.xml, name, None, |_| {});
             }
-            body(&mut self.xml, &self.bodies[index], Some(segment));
+            body(&mut self.xml, &self.bodies[index], Some(segment), |xml| wrap_objects(xml, muscles, Some(index)));
         }
     }
 
@@ -172,6 +202,7 @@ impl<'m> Writer<'m> {
             xml.open("coordinates", &[]);
             let all = self.model.coordinates();
             for c in piece.coordinates() {
+                self.coordinate_paths[c] = format!("/jointset/{name}/{}", self.coordinates[c].0);
                 let angle = piece.ball.filter(|&b| c >= b).map(|b| exact::xyz(&resting(&all[b..b + 4]))[c - b]);
                 coordinate(xml, &self.coordinates[c].0, angle, &all[c]);
             }
@@ -192,8 +223,8 @@ impl<'m> Writer<'m> {
         }
     }
 
-    fn forces(&mut self, lost: &mut Vec<String>) {
-        let (mut names, mut coupled) = (Names::new(&[], accepts), vec![]);
+    fn forces(&mut self, mut names: Names, lost: &mut Vec<String>) {
+        let mut coupled = vec![];
         for (c, coordinate) in self.model.coordinates().iter().enumerate() {
             let Some(law) = &coordinate.passive else { continue };
             let (name, degrees) = &self.coordinates[c];
@@ -231,11 +262,12 @@ impl<'m> Writer<'m> {
     }
 }
 
-fn body(xml: &mut Xml, name: &str, segment: Option<&Segment>) {
+fn body(xml: &mut Xml, name: &str, segment: Option<&Segment>, inside: impl FnOnce(&mut Xml)) {
     xml.open("Body", &[("name", name)]);
     xml.value("mass", &number(segment.map_or(0.0, |s| s.mass)));
     xml.value("mass_center", &numbers(&segment.map_or(Vector3::zeros(), |s| s.center_of_mass)));
     xml.value("inertia", &numbers(&segment.map_or([0.0; 6], |s| moments(&s.inertia))));
+    inside(xml);
     xml.close();
 }
 
