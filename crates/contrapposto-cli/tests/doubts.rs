@@ -164,15 +164,35 @@ fn notes_are_folded_shown_or_left_out_and_warnings_never() {
 #[test]
 fn convert_counts_what_is_not_carried_over() {
     let folder = tempfile::tempdir().unwrap();
-    let said = |name: &str| {
-        let out = folder.path().join(name);
-        run(&["convert", &formats("models/joints_4x.osim"), out.to_str().unwrap()])
+    let said = |model: &str, name: &str| run(&["convert", model, folder.path().join(name).to_str().unwrap()]);
+    let point = |name: &str, frame: &str| {
+        format!(
+            "<PathPoint name=\"{name}\"><socket_parent_frame>{frame}</socket_parent_frame><location>0 0.1 0</location></PathPoint>"
+        )
     };
-    let urdf = said("out.xml").stdout;
-    assert!(urdf.contains("1 markers, ") && urdf.contains("1 muscles") && urdf.contains("1 wrap objects"), "{urdf}");
-    assert!(urdf.ends_with("not carried over\n"), "{urdf}");
+    let hinge = format!(
+        "<OpenSimDocument Version=\"40500\"><Model name=\"m\"><BodySet><objects><Body name=\"b\"><mass>1</mass>
+         <inertia>0.01 0.01 0.01 0 0 0</inertia><WrapObjectSet><objects><WrapSphere name=\"w\"><radius>0.01</radius></WrapSphere></objects></WrapObjectSet>
+         </Body></objects></BodySet><JointSet><objects><PinJoint name=\"j\"><socket_parent_frame>/ground</socket_parent_frame>
+         <socket_child_frame>/bodyset/b</socket_child_frame><coordinates><Coordinate name=\"q\"/></coordinates></PinJoint></objects></JointSet>
+         <ForceSet><objects><Thelen2003Muscle name=\"t\"><GeometryPath><PathPointSet><objects>{}{}</objects></PathPointSet></GeometryPath>
+         </Thelen2003Muscle></objects></ForceSet><MarkerSet><objects><Marker name=\"k\"><socket_parent_frame>/bodyset/b</socket_parent_frame>
+         </Marker></objects></MarkerSet></Model></OpenSimDocument>",
+        point("from", "/ground"),
+        point("to", "/bodyset/b")
+    );
+    let hinge = write(folder.path(), "hinge.osim", &hinge);
+    for name in ["out.urdf", "out.xml"] {
+        let text = said(&hinge, name).stdout;
+        assert!(
+            text.contains("1 markers, 1 muscles, 1 wrap objects") && text.ends_with("not carried over\n"),
+            "{text}"
+        );
+    }
+    let text = said(&hinge, "again.osim").stdout;
+    assert!(text.ends_with("kg; 1 property that is named as lost not carried over\n"), "{text}");
     // OpenSim's own format keeps them, but for the marker on ground and the muscle's speeds.
-    let osim = said("out.osim");
+    let osim = said(&formats("models/joints_4x.osim"), "out.osim");
     assert!(osim.stdout.contains("1 markers fixed to ground, 1 property that is named as lost not"), "{}", osim.stdout);
     assert!(!osim.stdout.contains("1 muscles") && !osim.stdout.contains("wrap objects"), "{}", osim.stdout);
     assert!(osim.stderr.contains("lost: Speeds, times of activation and damping of muscles"), "{}", osim.stderr);
