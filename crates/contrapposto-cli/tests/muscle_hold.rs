@@ -171,6 +171,20 @@ fn gait2392_holds_crouches_as_the_documentation_says() {
         let near = |value: &Value, expected: f64| (number(value) - expected).abs() < 0.6;
         assert!(near(&found["held_s"], held) && near(&found["joint_law"]["held_s"], joint), "{row}: {found}");
         let muscles = found["muscles"].as_object().unwrap();
+        // By the greater moment arm of the default posture: rectus femoris 42 mm at the hip and 50 at the knee, gastrocnemius 21 at the
+        // knee and 46 at the ankle, semimembranosus 49 at the hip and 32 at the knee.
+        for (name, coordinate, parameters) in [
+            ("rect_fem_r", "knee_angle_r", "knee"),
+            ("med_gas_r", "ankle_angle_r", "ankle"),
+            ("semimem_r", "hip_flexion_r", "general"),
+        ] {
+            let group = &muscles[name]["works_for"];
+            assert_eq!(
+                (&group["coordinate"], &group["fatigue"]["parameters"]),
+                (&coordinate.into(), &parameters.into()),
+                "{name}"
+            );
+        }
         let exhausted = muscles.iter().filter(|(_, muscle)| !muscle["exhausted_s"].is_null());
         let time = |muscle: &Value| number(&muscle["exhausted_s"]);
         let earliest = exhausted.min_by(|a, b| time(a.1).total_cmp(&time(b.1))).unwrap();
