@@ -57,7 +57,7 @@ fn a_fall_names_the_loads() {
         heavy.starts_with("Cannot stand: the supports do not hold the body under its load of 3000 kg; "),
         "{heavy}"
     );
-    assert!(heavy.ends_with(" N are missing. The body weighs 75 kg: are kilograms meant?"), "{heavy}");
+    assert!(heavy.ends_with(" are missing. The body weighs 75 kg: are kilograms meant?"), "{heavy}");
     let pulled = job("force_n = [1000, 0, 0]\nfixed_in = \"world\"");
     assert!(
         pulled.starts_with("Cannot stand: the supports do not hold the body under its load of 1000 N; "),

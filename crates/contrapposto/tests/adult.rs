@@ -228,6 +228,39 @@ fn size_scales_masses_lengths_and_inertias() {
     assert!((adult(&MALE).unwrap().mass() / 73.0 - (0.4346 + 0.0694 + 0.0494)).abs() < 1e-6);
 }
 
+/// Heights and reach of people who stand, as shares of stature: means of 1,986 women and 4,082 men (ANSUR II; anthropometry.toml).
+#[test]
+fn a_standing_body_has_the_heights_of_standing_people() {
+    // And of de Leva: the head's centre of mass from the crown, as a share of its length; the length of the hand.
+    for (sex, [c7, shoulder, stylion, half_span], head, hand) in [
+        (Sex::Female, [0.8570, 0.7999, 0.4877, 0.5098], 0.4841, 0.09804),
+        (Sex::Male, [0.8640, 0.8004, 0.4826, 0.5165], 0.5002, 0.107926),
+    ] {
+        let size = Adult { part: Part::Whole, ..Adult::reference(sex) };
+        let model = adult(&size).unwrap();
+        let mut kinematics = Kinematics::new(&model);
+        let mut posture = Posture::new(model.coordinates().iter().map(|coordinate| coordinate.default).collect());
+        kinematics.update(&model, &posture).unwrap();
+        let place = |kinematics: &Kinematics, segment: &str, point: V| {
+            kinematics.station(&model, model.segment(segment).unwrap(), point) / size.stature
+        };
+        let center = &model.segments()[model.segment("head").unwrap()].center_of_mass;
+        let crown = place(&kinematics, "head", center / (1.0 - head)).y;
+        let heights = [place(&kinematics, "head", V::zeros()).y, place(&kinematics, "humerus_r", V::zeros()).y];
+        let wrist = place(&kinematics, "hand_r", V::zeros()).y;
+        posture.values_mut()[model.coordinate("arm_add_r").unwrap()] = -std::f64::consts::FRAC_PI_2;
+        kinematics.update(&model, &posture).unwrap();
+        let fingertip = place(&kinematics, "hand_r", V::new(0.0, -hand * size.stature, 0.0)).z;
+        println!("{sex:?}: crown {crown:.4}, C7 and shoulder {heights:.4?}, wrist {wrist:.4}, fingertip {fingertip:.4}");
+        for (given, expected) in [(crown, 1.0), (heights[0], c7), (heights[1], shoulder)] {
+            assert!((given - expected).abs() < 2e-4, "{sex:?}: {given} instead of {expected}");
+        }
+        // Not used to build the body: the wrist of the hanging arm, and half the span.
+        assert!((wrist - stylion).abs() < 0.003, "{sex:?}: wrist at {wrist}, stylion at {stylion}");
+        assert!((fingertip - half_span).abs() < 0.016, "{sex:?}: fingertip at {fingertip}, half the span {half_span}");
+    }
+}
+
 #[test]
 fn silly_sizes_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.7, -0.0, 0.0, 1e308, 1.19, 2.31, 174.1] {

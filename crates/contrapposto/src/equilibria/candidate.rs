@@ -13,11 +13,20 @@ use crate::posture_solver::SolvedPosture;
 const SAME_TORQUE: f64 = 0.05;
 /// Postures count as two where a segment is farther away in one than in the other, m.
 const SAME_PLACE: f64 = 0.3;
-/// A posture is worth converging from, and an answer, up to this multiple of the least effort,
-const WORTH_MULTIPLE: f64 = 10.0;
-/// and this effort besides: assumed, one muscle group at a third of its strength. Where a body can hang folded on its ligaments at no
-/// effort, standing upright stays an answer.
-const WORTH_BESIDES: f64 = 0.1;
+/// Effort up to which a posture is worth something: a multiple of the least, and this much besides.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worth {
+    multiple: f64,
+    besides: f64,
+}
+
+impl Worth {
+    /// To be converged from, since its effort can still fall: assumed, one muscle group at a third of its strength besides.
+    pub(super) const START: Self = Self { multiple: 10.0, besides: 0.1 };
+    /// To be an answer: assumed, one muscle group at 22 percent of its strength besides. Where a body can hang folded on its ligaments
+    /// at no effort, standing upright stays an answer.
+    pub(super) const ANSWER: Self = Self { multiple: 2.0, besides: 0.05 };
+}
 
 /// A posture that a solve has reached.
 #[derive(Clone, Debug)]
@@ -72,11 +81,11 @@ impl Candidate {
     }
 }
 
-/// Leaves out of `selected`, indices into `found`, postures that need far more effort than the easiest of them.
-pub(super) fn keep_worth(found: &[Candidate], selected: &mut Vec<usize>) {
+/// Leaves out of `selected`, indices into `found`, postures that need more effort than the easiest of them makes worth it.
+pub(super) fn keep_worth(found: &[Candidate], selected: &mut Vec<usize>, worth: Worth) {
     let effort = |i: &usize| found[*i].relaxed.effort;
     let least = selected.iter().map(effort).fold(f64::INFINITY, f64::min);
-    selected.retain(|i| effort(i) <= WORTH_MULTIPLE * least + WORTH_BESIDES);
+    selected.retain(|i| effort(i) <= worth.multiple * least + worth.besides);
 }
 
 /// Centre of mass of every segment, ground, m.

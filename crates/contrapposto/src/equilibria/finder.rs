@@ -1,6 +1,6 @@
 //! Makes the starts of a search, solves from each of them, and selects the different postures of least effort.
 
-use super::candidate::{Candidate, keep_worth, places};
+use super::candidate::{Candidate, Worth, keep_worth, places};
 use super::description::{describe, relative_torques};
 use super::hanging_limbs::{hanging_limbs, idle_segments, in_mid_range};
 use super::mirror::Mirror;
@@ -179,7 +179,7 @@ impl<'a> Finder<'a> {
     fn converge(&mut self) {
         let mut candidates = self.selected(Stage::Exploratory);
         candidates.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        keep_worth(&self.found, &mut candidates);
+        keep_worth(&self.found, &mut candidates, Worth::START);
         let mut explored = std::mem::take(&mut self.found);
         let starts = std::mem::take(&mut self.starts);
         for i in candidates {
@@ -381,7 +381,7 @@ impl<'a> Finder<'a> {
         let yielded = self.found.len() - selected.len();
         let (least, all) = (self.found[selected[0]].raised_limbs, selected.len());
         selected.retain(|&i| self.found[i].raised_limbs == least);
-        keep_worth(&self.found, &mut selected);
+        keep_worth(&self.found, &mut selected, Worth::ANSWER);
         let raised = all - selected.len();
         let (mut answers, engine) =
             (DifferentWays::new(idle_segments(self.search)), &mut self.engines[Stage::Converged as usize]);

@@ -148,21 +148,25 @@ impl Recipe<'_> {
         Ok(())
     }
 
-    /// Length of a row of the anthropometry, m: measured, or a share of stature.
+    /// Length of the segment that a row of the anthropometry describes, m: measured, or a share of stature.
     fn length(&self, id: &str) -> Result<f64, AdultError> {
-        let measured = self.size.lengths.iter().find(|(name, _)| {
-            let mut rows = self.library.adult.segment.iter();
-            rows.any(|r| r.name.trim_end_matches("_r") == name && r.anthropometry.as_deref() == Some(id))
-        });
-        if let Some((_, length)) = measured {
-            return Ok(*length);
+        let segment = self.library.adult.segment.iter().find(|row| row.anthropometry.as_deref() == Some(id));
+        let stem = segment.map(|row| row.name.trim_end_matches("_r"));
+        if let Some((_, measured)) = self.size.lengths.iter().find(|(name, _)| Some(name.as_str()) == stem) {
+            return Ok(*measured);
         }
         let found = self.library.anthropometry.segment.iter().find(|row| row.id == id);
-        Ok(found.ok_or_else(|| AdultError::Data(id.to_owned()))?.of(self.size.sex).length * self.size.stature)
+        let lying = found.ok_or_else(|| AdultError::Data(id.to_owned()))?.of(self.size.sex).length * self.size.stature;
+        Ok(lying * segment.map_or(1.0, |row| self.length_share(row)))
     }
 
     pub(super) fn length_of(&self, row: &SegmentRow) -> Result<f64, AdultError> {
         row.length_of.as_ref().or(row.anthropometry.as_ref()).map_or(Ok(0.0), |id| self.length(id))
+    }
+
+    /// Length of a standing body's segment as a share of the one that was measured lying down.
+    fn length_share(&self, row: &SegmentRow) -> f64 {
+        row.length_share.map_or(1.0, |share| share.of(self.size.sex))
     }
 
     fn segment(&self, row: &SegmentRow, left: bool) -> Result<SegmentSpec, AdultError> {
@@ -172,11 +176,7 @@ impl Recipe<'_> {
         let mut at = stature * Vector3::from(row.at_stature);
         if let Some(name) = &row.parent {
             let parent = self.library.adult.segment.iter().find(|s| &s.name == name).ok_or_else(|| missing(name))?;
-            let mut along = row.at_parent * self.length_of(parent)?;
-            for (id, share) in &row.at_lengths {
-                along += share * self.length(id)?;
-            }
-            at += along * direction(parent);
+            at += row.at_parent.of(self.size.sex) * self.length_of(parent)? * direction(parent);
         }
         at.z *= side;
         let fixed = self.size.part == Part::RightArm && row.right_arm == Some(InRightArm::Fixed);
@@ -232,7 +232,8 @@ impl Recipe<'_> {
         let share = if row.along == Along::Up { 1.0 - shares.com } else { shares.com };
         spec.center_of_mass =
             self.size.stature * Vector3::from(row.proximal_at_stature) + share * length * direction(row);
-        let about = |radius: f64| spec.mass * (radius * length).powi(2);
+        let lying = length / self.length_share(row);
+        let about = |radius: f64| spec.mass * (radius * lying).powi(2);
         let (ap, ml, long) = (about(shares.r_ap), about(shares.r_ml), about(shares.r_long));
         // Of a foot the longitudinal axis lies along x, and the antero-posterior column is the one across it (de Leva: sagittal).
         let moments = if row.along == Along::Forward { [long, ap, ml] } else { [ap, long, ml] };
@@ -255,6 +256,9 @@ impl Recipe<'_> {
             for (id, share) in &default.lengths {
                 spec.default += share * self.length(id)?;
             }
+        }
+        if let (Some(angle), Part::Whole) = (row.default_deg, self.size.part) {
+            spec.default = angle.to_radians();
         }
         if let Some(passive) = &row.passive {
             let female = passive.female_curve.as_ref().filter(|_| self.size.sex == Sex::Female);

@@ -15,6 +15,8 @@ pub(crate) struct AnthropometryFile {
     pub(crate) segment: Vec<AnthropometryRow>,
     #[expect(dead_code, reason = "stands in the file for its readers; adult.toml quotes what it uses")]
     proportions: toml::Table,
+    #[expect(dead_code, reason = "stands in the file for its readers; adult.toml quotes what it uses")]
+    standing: toml::Table,
 }
 
 #[derive(Debug, Deserialize)]
@@ -61,9 +63,9 @@ pub(crate) struct SegmentRow {
     pub(crate) along: Along,
     pub(crate) joint: String,
     #[serde(default)]
-    pub(crate) at_parent: f64,
+    pub(crate) length_share: Option<BySex>,
     #[serde(default)]
-    pub(crate) at_lengths: BTreeMap<String, f64>,
+    pub(crate) at_parent: BySex,
     #[serde(default)]
     pub(crate) at_stature: [f64; 3],
     #[serde(default)]
@@ -76,6 +78,28 @@ pub(crate) struct SegmentRow {
     pub(crate) patch: Option<PatchRow>,
     #[expect(dead_code, reason = "stands in the file for its readers")]
     reference: Reference,
+}
+
+/// A number, or one of women and one of men.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum BySex {
+    Same(f64),
+    Each { female: f64, male: f64 },
+}
+
+impl BySex {
+    pub(crate) fn of(self, sex: Sex) -> f64 {
+        match (self, sex) {
+            (Self::Same(value), _) | (Self::Each { female: value, .. }, Sex::Female) | (Self::Each { male: value, .. }, Sex::Male) => value,
+        }
+    }
+}
+
+impl Default for BySex {
+    fn default() -> Self {
+        Self::Same(0.0)
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -122,6 +146,8 @@ pub(crate) struct CoordinateRow {
     pub(crate) range_m: Option<[f64; 2]>,
     pub(crate) range_reference: Reference,
     pub(crate) default: Option<DefaultRow>,
+    /// Of the whole body; a part of it has zero.
+    pub(crate) default_deg: Option<f64>,
     pub(crate) passive: Option<PassiveUse>,
     pub(crate) strength: Option<StrengthUse>,
     pub(crate) region: String,
