@@ -30,9 +30,9 @@ const EXPLORATORY_STEPS: usize = 20;
 const APPROACH_STEPS: usize = 40;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
 /// exploratory and to converged postures.
-const ALLOWED_ERROR: [f64; 3] = [0.02, 1e-5, 1e-5];
+const ALLOWED_ERROR: [f64; 2] = [0.02, 1e-5];
 /// Missing contact force and moment that are allowed to exploratory and to converged postures, body weights (times 1 m).
-const ALLOWED_MISSING: [f64; 3] = [1e-3, 1e-8, 1e-8];
+const ALLOWED_MISSING: [f64; 2] = [1e-3, 1e-8];
 /// Change of every rate below which the approach to the tasks ends, rad or m.
 const APPROACH_TOLERANCE: f64 = 1e-6;
 /// Distance of the ends of limbs from hanging up to which an approach is not tried in another way, m.

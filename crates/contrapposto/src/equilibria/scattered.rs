@@ -5,11 +5,14 @@
 
 use super::mirror::Mirror;
 use crate::math::next_number;
-use crate::model::Model;
+use crate::model::{Coordinate, CoordinateKind, Model};
 use crate::posture::Posture;
 
 /// Usual number of scattered starts: with so many, six of six scenarios reach the least effort that 50 runs of SLSQP reach (docs/benchmarks.md).
-pub const SCATTERED_STARTS: usize = 16;
+pub const SCATTERED_STARTS: usize = 32;
+
+/// Most that a coordinate without muscle groups, such as those of the root, is moved: rad, and m of a slide. Assumed.
+const ROOT_REACH: [f64; 2] = [0.5, 0.3];
 
 /// Start number `k`. Of each pair the first is drawn, and the second is its mirror image, where the body has one: so the other leg gives the
 /// mirror image of an answer.
@@ -32,18 +35,22 @@ pub(super) fn scattered(model: &Model, start: &Posture, locked: &[usize], k: usi
     posture
 }
 
-/// Every coordinate lies a third or two thirds of the way (by `k`) from its value in `start` to a random place of its range; from
-/// farther, SLSQP reaches low minima more seldom. Coordinates without a finite range or muscle groups, such as those of the root, stay.
+/// Every coordinate lies a third, two thirds or the whole way (by `k`) from its value in `start` to a random place: of its range, or, where it has
+/// no muscle groups, of the surroundings of that value. So do the starts of `scripts/effort_by_slsqp.py`. Coordinates without a finite range stay.
 fn drawn(model: &Model, start: &Posture, k: usize) -> Posture {
-    let way = (k / 2 % 2 + 1) as f64 / 3.0;
+    let way = (k / 2 % 3 + 1) as f64 / 3.0;
     let mut random = k as u64 + 1;
     let mut step = vec![0.0; model.rates().len()];
     for (rate, turn) in step.iter_mut().enumerate() {
         let place = 0.5 * (1.0 + next_number(&mut random));
         let Some(coordinate) = model.rates()[rate].coordinate else { continue };
-        let (lower, upper) = model.coordinates()[coordinate].range;
-        if (upper - lower).is_finite() && model.coordinates()[coordinate].groups.is_some() {
-            *turn = way * (lower + place * (upper - lower) - start.values()[coordinate]);
+        let Coordinate { range: (lower, upper), groups, kind, .. } = &model.coordinates()[coordinate];
+        if (upper - lower).is_finite() {
+            *turn = way
+                * match groups {
+                    Some(_) => lower + place * (upper - lower) - start.values()[coordinate],
+                    None => (2.0 * place - 1.0) * ROOT_REACH[usize::from(*kind == CoordinateKind::Translation)],
+                };
         }
     }
     let mut posture = start.clone();

@@ -30,7 +30,8 @@ impl BodyMotion<'_> {
             Ok(nearest.solve(from)?)
         };
         let mut solved = solve(&scenario.start)?;
-        if self.misses(&solved) {
+        let missed = self.misses(&solved);
+        if missed {
             let other = solve(&self.without_effort()?)?;
             let errors: Vec<f64> = solved.levels.iter().map(|level| level.length).collect();
             if other.balance == Balance::Held && first_difference(&other.levels, &errors) < 0.0 {
@@ -42,7 +43,8 @@ impl BodyMotion<'_> {
         if let Some(missing) = self.recover_balance(&mut posture)? {
             return Err(ScenarioError::CannotStand(missing));
         }
-        let budget = Budget { scattered: SCATTERED_STARTS, work: SEARCH_BUDGET_OF_STEP };
+        // A task that is missed may need legs that stand in another way.
+        let budget = Budget { scattered: SCATTERED_STARTS, work: SEARCH_BUDGET_OF_STEP, carriers_stay: !missed };
         let Searched { found, work, cut } = self.easiest(&posture, budget)?;
         self.forget();
         Ok(Searched { found: found.unwrap_or(posture), work, cut })

@@ -73,6 +73,8 @@ pub(super) struct Budget {
     pub(super) scattered: usize,
     /// Work of the solver ([`Search::most_work`]).
     pub(super) work: usize,
+    /// The joints that move a support are locked.
+    pub(super) carriers_stay: bool,
 }
 
 /// Result of a search, with its work.
@@ -92,7 +94,10 @@ pub(super) fn easiest(
     supports: &[Support],
     budget: Budget,
 ) -> Result<Searched<Option<Posture>>, SearchError> {
-    let mut locked = rates_that_move(&scenario.model, supports);
+    let mut locked = vec![false; scenario.model.rates().len()];
+    if budget.carriers_stay {
+        locked = rates_that_move(&scenario.model, supports);
+    }
     scenario.locked_rates().for_each(|rate| locked[rate] = true);
     let locked: Vec<usize> = (0..locked.len()).filter(|&rate| locked[rate]).collect();
     let Searched { found, work, cut } = search(scenario, now, supports, &locked, budget)?;

@@ -60,7 +60,7 @@ pub(super) fn plan_step(
         let levels: Vec<PriorityLevel> = body.levels().filter(|level| level.half_spaces.is_empty()).cloned().collect();
         let now = Now { model: &body.model, posture, levels: &levels, loads: body.loads(), effort };
         let locked: Vec<usize> = scenario.locked_rates().collect();
-        let share = Budget { scattered: 0, work: left / (free.len() - k) };
+        let share = Budget { scattered: 0, work: left / (free.len() - k), carriers_stay: true };
         let Ok(searched) = search(scenario, now, &supports, &locked, share) else { continue };
         left = left.saturating_sub(searched.work);
         cut |= searched.cut;

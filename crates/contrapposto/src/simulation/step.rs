@@ -313,6 +313,7 @@ impl<'a> Simulation<'a> {
 
     /// Fatigue of every group under its present load, and the recoveries that begin or end.
     fn update_fatigue(&mut self) {
+        let stepping = self.state.path.as_ref().is_some_and(Path::has_step);
         for i in 0..self.state.groups.len() {
             for side in Side::BOTH {
                 let load = self.group_load(i, side);
@@ -329,7 +330,10 @@ impl<'a> Simulation<'a> {
                     self.scenario.model.coordinates()[i].groups.as_ref().map(|groups| &groups[side.index()].fatigue);
                 self.record.seconds_left[i][side.index()] =
                     law.map_or(f64::INFINITY, |law| law.time_left(present, load));
-                group.set_recovering(self.scenario.hysteresis.recovering(group.recovering, level), load);
+                // Nor is a group judged by the load of a second on one leg: it would be tired until it could bear that again.
+                if !stepping {
+                    group.set_recovering(self.scenario.hysteresis.recovering(group.recovering, level), load);
+                }
             }
         }
     }

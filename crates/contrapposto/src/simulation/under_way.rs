@@ -109,7 +109,8 @@ impl Simulation<'_> {
         let Some(mut budget) = self.search_budget() else { return Ok(()) };
         let Some(body) = self.motion.body_mut() else { return Ok(()) };
         self.state.searched_here = true;
-        let Searched { found, work, cut } = body.easiest(&self.state.posture, Budget { scattered: 0, work: budget })?;
+        let Searched { found, work, cut } =
+            body.easiest(&self.state.posture, Budget { scattered: 0, work: budget, carriers_stay: true })?;
         let all = budget;
         budget = budget.saturating_sub(work);
         self.state.eased = found.is_none().then_some(here);

@@ -91,7 +91,9 @@ pub(crate) enum BySex {
 impl BySex {
     pub(crate) fn of(self, sex: Sex) -> f64 {
         match (self, sex) {
-            (Self::Same(value), _) | (Self::Each { female: value, .. }, Sex::Female) | (Self::Each { male: value, .. }, Sex::Male) => value,
+            (Self::Same(value), _)
+            | (Self::Each { female: value, .. }, Sex::Female)
+            | (Self::Each { male: value, .. }, Sex::Male) => value,
         }
     }
 }
