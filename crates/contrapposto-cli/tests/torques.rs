@@ -26,7 +26,7 @@ fn assert_balanced(frame: &Value) {
 #[test]
 fn a_held_weight_at_the_adults_elbow() {
     let folder = tempfile::tempdir().unwrap();
-    let level = write(folder.path(), "level.csv", "time,elbow_flex_r_deg\n0,90\n");
+    let level = write(folder.path(), "level.csv", "time,elbow_flex_r_deg,arm_add_r_deg\n0,90,0\n");
     let empty = &json(&["torques", "adult", &level, "--json"])[0];
     let held = &json(&["torques", "adult", &level, "--json", "--load", "hand_r 3kg at 0,0,0"])[0];
     assert_balanced(held);
@@ -162,7 +162,9 @@ fn one_orientation_by_two_triples_of_angles_has_one_load_and_one_effort() {
 
 #[test]
 fn moments_at_angles_zero_are_the_torques_of_the_coordinates() {
-    let frames = json(&["torques", "adult", "default", "--json"]);
+    let folder = tempfile::tempdir().unwrap();
+    let zero = write(folder.path(), "zero.csv", "time,arm_add_r_deg,arm_add_l_deg\n0,0,0\n");
+    let frames = json(&["torques", "adult", &zero, "--json"]);
     let joints = frames[0]["joints"].as_object().unwrap();
     assert!(joints.len() >= 5, "{:?}", joints.keys());
     for (joint, moment) in joints {
