@@ -98,6 +98,7 @@ fn slow_worlds_take_less_than_ten_seconds_of_processor_a_step() {
         let begin = processor_time();
         let mut run = Run::new(&scenario).unwrap();
         let mut slowest = processor_time() - begin;
+        println!("{name}: the start took {slowest:?} of processor");
         let mut digests = vec![];
         loop {
             let begin = processor_time();

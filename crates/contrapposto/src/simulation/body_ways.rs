@@ -14,8 +14,8 @@ use crate::posture::Posture;
 use crate::posture_solver::{Engine, Options, SolvedPosture};
 use crate::tasks::{PriorityLevel, Task, held_place};
 
-/// Scattered starts of the search for the start: half of the usual number, for time.
-const SCATTERED_AT_THE_START: usize = SCATTERED_STARTS / 2;
+/// Scattered starts of the search for the start: a quarter of the usual number, for time.
+const SCATTERED_AT_THE_START: usize = SCATTERED_STARTS / 4;
 /// Greatest change of a joint in the search for the start, rad or m.
 const START_MAX_STEP: f64 = 0.1;
 
@@ -45,8 +45,9 @@ impl BodyMotion<'_> {
         if let Some(missing) = self.recover_balance(&mut posture)? {
             return Err(ScenarioError::CannotStand(missing));
         }
-        // A task that is missed may need legs that stand in another way.
-        let budget = Budget { scattered: SCATTERED_AT_THE_START, work: SEARCH_BUDGET_OF_STEP, carriers_stay: !missed };
+        // A task that is missed may need legs that stand in another way. Their steps take twice the time.
+        let work = if missed { SEARCH_BUDGET_OF_STEP / 2 } else { SEARCH_BUDGET_OF_STEP };
+        let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: !missed };
         let Searched { found, work, cut } = self.easiest(&posture, budget)?;
         self.forget();
         Ok(Searched { found: found.unwrap_or(posture), work, cut })
