@@ -58,6 +58,9 @@ fn a_fall_names_the_loads() {
         "{heavy}"
     );
     assert!(heavy.ends_with(" are missing. The body weighs 75 kg: are kilograms meant?"), "{heavy}");
+    let missing = heavy.split("3000 kg; ").nth(1).and_then(|rest| rest.split(" N").next()).unwrap();
+    let missing: f64 = missing.parse().unwrap();
+    assert!(missing > 1e4 && missing < 3075.0 * 9.81, "{missing} N of a weight of 30,166 N: {heavy}");
     let pulled = job("force_n = [1000, 0, 0]\nfixed_in = \"world\"");
     assert!(
         pulled.starts_with("Cannot stand: the supports do not hold the body under its load of 1000 N; "),

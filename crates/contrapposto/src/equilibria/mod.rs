@@ -20,7 +20,7 @@
 //! may rotate without load on a muscle. Of those the one of least effort is kept. A limb without a task that hangs in the start is not held up: postures
 //! with fewer such limbs come first, whatever their efforts (`raised_limbs.rs`). Postures whose tasks are farther away than in the best one, that slipped or
 //! fell, are counted and left out, and so are those that are the same way to stand as a better one (`ways_to_stand.rs`), or need more than
-//! ten times the least effort and 0.1 besides.
+//! twice the least effort and 0.05 besides.
 
 mod candidate;
 mod description;

@@ -94,7 +94,7 @@ pub struct Equilibria {
     /// Different postures in which tasks were left farther away than need be, or supports slipped.
     pub yielded: usize,
     /// Postures left out because they are the same way to stand as one of less effort, because a group would need more than its
-    /// strength or the body more than ten times the least effort and 0.1 besides, because a limb without a task is held up that hangs in the start, or
+    /// strength or the body more than twice the least effort and 0.05 besides, because a limb without a task is held up that hangs in the start, or
     /// because five others are better.
     pub alike: usize,
     /// Steps of all starts together.

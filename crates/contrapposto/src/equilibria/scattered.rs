@@ -11,8 +11,10 @@ use crate::posture::Posture;
 /// Usual number of scattered starts: with so many, six of six scenarios reach the least effort that 50 runs of SLSQP reach (docs/benchmarks.md).
 pub const SCATTERED_STARTS: usize = 32;
 
-/// Most that a coordinate without muscle groups, such as those of the root, is moved: rad, and m of a slide. Assumed.
-const ROOT_REACH: [f64; 2] = [0.5, 0.3];
+/// Most that a rotation without muscle groups, such as those of the root, is turned, rad. Assumed.
+const ROOT_TURN: f64 = 0.5;
+/// Most that a translation without muscle groups is moved, m. Assumed.
+const ROOT_SLIDE: f64 = 0.3;
 
 /// Start number `k`. Of each pair the first is drawn, and the second is its mirror image, where the body has one: so the other leg gives the
 /// mirror image of an answer.
@@ -46,11 +48,12 @@ fn drawn(model: &Model, start: &Posture, k: usize) -> Posture {
         let Some(coordinate) = model.rates()[rate].coordinate else { continue };
         let Coordinate { range: (lower, upper), groups, kind, .. } = &model.coordinates()[coordinate];
         if (upper - lower).is_finite() {
-            *turn = way
-                * match groups {
-                    Some(_) => lower + place * (upper - lower) - start.values()[coordinate],
-                    None => (2.0 * place - 1.0) * ROOT_REACH[usize::from(*kind == CoordinateKind::Translation)],
-                };
+            let whole = match (groups, kind) {
+                (Some(_), _) => lower + place * (upper - lower) - start.values()[coordinate],
+                (None, CoordinateKind::Translation) => (2.0 * place - 1.0) * ROOT_SLIDE,
+                (None, _) => (2.0 * place - 1.0) * ROOT_TURN,
+            };
+            *turn = way * whole;
         }
     }
     let mut posture = start.clone();
