@@ -9,7 +9,7 @@ use crate::multipliers::MultiplierTable;
 use crate::problem::Problem;
 use crate::rows::Rows;
 use crate::tolerances::{
-    CHANGES, CHANGES_PER_ROW, CYCLING, INDEPENDENT, MANY_UNKNOWNS, MULTIPLIER, NO_MOTION, ROUNDING,
+    CHANGES, CHANGES_PER_ROW, CYCLING, INDEPENDENT, MANY_UNKNOWNS, MULTIPLIER, NO_MOTION, ROUNDING, TIE,
 };
 use crate::working_set::{Constraint, RowState, Side, WorkingSet};
 
@@ -243,13 +243,16 @@ impl ActiveSet {
     }
 
     /// The first limit of a bound, or of a row of the levels up to `k`, that the step meets before its end.
+    ///
+    /// Of limits that the step meets at once, as those of a symmetric problem, the first in the order of unknowns and rows
+    /// is taken: the last digits, which differ between machines, do not choose.
     pub(crate) fn first_blocking(&self, problem: &Problem, k: usize) -> Option<Blocking> {
         let length = norm(&self.step);
         let mut first: Option<Blocking> = None;
         let mut consider = |change: f64, value: f64, (lower, upper): (f64, f64), constraint: Constraint| {
             let (room, side) = if change > 0.0 { (upper - value, Side::Upper) } else { (lower - value, Side::Lower) };
             let share = (room / change).max(0.0);
-            if share < first.map_or(1.0, |first| first.share) {
+            if share < first.map_or(1.0, |first| first.share - TIE) {
                 first = Some(Blocking { share, constraint, side });
             }
         };

@@ -21,6 +21,9 @@ pub(crate) const MULTIPLIER: f64 = 1e-11;
 /// Change of an unknown or of a row of unit norm. Unit: share of the norm of the step.
 pub(crate) const NO_MOTION: f64 = 1e-14;
 
+/// Shares of a step at which two limits count as met at once. Unit: share of the step.
+pub(crate) const TIE: f64 = 1e-13;
+
 /// Norm of a row. Unit: that of the coefficients.
 pub(crate) const ZERO_ROW: f64 = 1e-60;
 

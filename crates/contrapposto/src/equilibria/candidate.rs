@@ -59,14 +59,19 @@ impl Candidate {
         by_limbs.then(self.relaxed.effort.total_cmp(&other.relaxed.effort))
     }
 
-    /// The mirror image, where its posture fits the model; its other numbers are those of this posture.
-    pub(super) fn image(&self, model: &Model, mirror: &Mirror) -> Option<Self> {
+    /// The mirror image in which the `kept` coordinates stay as they are, where its posture fits the model; its other numbers are those of
+    /// this posture.
+    pub(super) fn image(&self, model: &Model, mirror: &Mirror, kept: &[usize]) -> Option<Self> {
         let mut image = self.clone();
         for (c, shares) in self.relative_torques.iter().enumerate() {
             let (partner, sign) = mirror.coordinate(c);
             image.relative_torques[partner] = shares.map(|share| sign * share);
         }
         image.relaxed.posture = mirror.posture(&self.relaxed.posture);
+        for &c in kept {
+            image.relaxed.posture.values_mut()[c] = self.relaxed.posture.values()[c];
+            image.relative_torques[c] = self.relative_torques[c];
+        }
         let mut kinematics = Kinematics::new(model);
         kinematics.update(model, &image.relaxed.posture).ok()?;
         image.places = places(model, &kinematics);

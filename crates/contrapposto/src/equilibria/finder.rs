@@ -3,7 +3,6 @@
 use super::candidate::{Candidate, Worth, keep_worth, places};
 use super::description::{describe, relative_torques};
 use super::hanging_limbs::{hanging_limbs, idle_segments, in_mid_range};
-use super::mirror::Mirror;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
 use super::raised_limbs::LimbsWithoutTask;
@@ -20,8 +19,6 @@ use crate::tasks::{Effort, Task};
 
 /// Times that goal angles are taken, each time from a better posture.
 const ROUNDS: usize = 2;
-/// Best postures whose mirror images are converged from.
-const MIRRORED: usize = 3;
 /// Most postures with a limb held up from which limbs are let hang.
 const HUNG: usize = 5;
 /// Steps of an exploratory solve.
@@ -67,7 +64,7 @@ pub(super) struct Finder<'a> {
     pub(super) slot: usize,
     /// Limbs that are not to be held up.
     limbs: LimbsWithoutTask,
-    found: Vec<Candidate>,
+    pub(super) found: Vec<Candidate>,
     /// Missing contact forces where the body fell.
     fell: Vec<Missing>,
     /// Error of the first posture whose numbers are not finite.
@@ -164,14 +161,7 @@ impl<'a> Finder<'a> {
             explored.push(best);
         }
         self.explore_scattered();
-        let Some(mirror) = Mirror::of(self.search.model) else { return Ok(()) };
-        for i in 0..self.found.len() {
-            let Some(image) = self.found[i].image(self.search.model, &mirror) else { continue };
-            if !self.found.iter().any(|known| known.is_same(&image)) {
-                let label = format!("mirror image of: {}", image.starts[0]);
-                self.solve_from_tasks(&image.relaxed.posture, label);
-            }
-        }
+        self.explore_mirror_images();
         Ok(())
     }
 
@@ -192,17 +182,6 @@ impl<'a> Finder<'a> {
             self.found.append(&mut explored);
         }
         self.starts = starts;
-    }
-
-    /// Converges from the mirror images of the best postures.
-    fn mirror_best(&mut self) {
-        let Some(mirror) = Mirror::of(self.search.model) else { return };
-        let mut best = self.selected(Stage::Converged);
-        best.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        for i in best.into_iter().take(MIRRORED) {
-            let image = mirror.posture(&self.found[i].relaxed.posture);
-            self.solve(Stage::Converged, &image, vec![format!("mirror image of: {}", self.found[i].starts[0])]);
-        }
     }
 
     /// Solves from a posture with the engine of a stage, and keeps the result if it is new or better.
@@ -307,7 +286,7 @@ impl<'a> Finder<'a> {
     }
 
     /// Moves to the tasks without regard to effort first: from afar the two would obstruct each other.
-    fn solve_from_tasks(&mut self, from: &Posture, start: String) {
+    pub(super) fn solve_from_tasks(&mut self, from: &Posture, start: String) {
         if self.is_spent(Stage::Exploratory) {
             return;
         }
@@ -322,7 +301,7 @@ impl<'a> Finder<'a> {
     }
 
     /// The posture moved to the tasks, and below them to those of the approach's last level, which are removed, and its distance from them.
-    fn approached(&mut self, from: &Posture) -> (f64, Posture) {
+    pub(super) fn approached(&mut self, from: &Posture) -> (f64, Posture) {
         let mut posture = from.clone();
         self.approach.restart();
         for _ in 0..APPROACH_STEPS {
@@ -344,7 +323,7 @@ impl<'a> Finder<'a> {
     }
 
     /// Postures with supports in place and, level by level, tasks as near as in any other posture.
-    fn selected(&self, stage: Stage) -> Vec<usize> {
+    pub(super) fn selected(&self, stage: Stage) -> Vec<usize> {
         let allowed = ALLOWED_ERROR[stage as usize];
         let mut selected: Vec<usize> =
             (0..self.found.len()).filter(|&i| self.found[i].relaxed.slip.length() <= allowed).collect();

@@ -28,6 +28,7 @@ mod finder;
 mod goal_starts;
 mod hanging_limbs;
 mod mirror;
+mod mirror_starts;
 mod other_places;
 mod outcome;
 mod raised_limbs;

@@ -45,9 +45,9 @@ impl BodyMotion<'_> {
         if let Some(missing) = self.recover_balance(&mut posture)? {
             return Err(ScenarioError::CannotStand(missing));
         }
-        // A task that is missed may need legs that stand in another way.
-        let (scattered, work) = (SCATTERED_AT_THE_START, SEARCH_BUDGET_OF_STEP);
-        let budget = Budget { scattered, work, carriers_stay: !missed };
+        // A task that is missed may need legs that stand in another way: with all joints free a search takes longer.
+        let work = SEARCH_BUDGET_OF_STEP * if missed { 2 } else { 1 };
+        let budget = Budget { scattered: SCATTERED_AT_THE_START, work, carriers_stay: !missed };
         let Searched { found, work, cut } = self.easiest(&posture, budget)?;
         self.forget();
         Ok(Searched { found: found.unwrap_or(posture), work, cut })

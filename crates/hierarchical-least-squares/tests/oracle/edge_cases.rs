@@ -163,3 +163,18 @@ fn optimality_conditions_reject_wrong_answers() {
     let answer = Answer { x: vec![1.0], residuals: vec![vec![0.0], vec![1.0]], multipliers };
     assert!(!violations(&pulled, &[vec![1.0], vec![1.0]], &answer).are_rounding());
 }
+
+#[test]
+fn limits_met_at_once_are_taken_in_their_order_whatever_their_last_digits() {
+    // Two equal unknowns fall to their lower bounds together; the bound that enters first makes the other one dependent.
+    let ulp = f64::EPSILON / 4.0;
+    for lower in [[-0.3, -0.3], [-0.3 - ulp, -0.3], [-0.3, -0.3 - ulp]] {
+        let levels = vec![level(&[(&[1.0, -1.0], 0.0, 0.0)]), level(&[(&[1.0, 1.0], -2.0, -2.0)])];
+        let mut symmetric = problem(2, levels);
+        symmetric.lower.copy_from_slice(&lower);
+        let mut solver = Solver::new();
+        assert_eq!(solver.solve(&symmetric), Ok(Status::Solved));
+        let bounds = solver.multipliers(1).bounds;
+        assert!(bounds[0] < -2.0 && bounds[1] == 0.0, "lower bounds {lower:?}: multipliers {bounds:?}");
+    }
+}
