@@ -208,6 +208,7 @@ impl Setting {
                 locked: &[],
                 most_work: usize::MAX,
                 scattered: contrapposto::equilibria::SCATTERED_STARTS,
+                threads: 1,
             };
             format!(
                 "{:?}",

@@ -97,6 +97,7 @@ impl Standing {
             locked: &[],
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
+            threads: 1,
         }
     }
 
@@ -124,6 +125,21 @@ fn imbalance(standing: &Standing, engine: &Engine<'_>, posture: &Posture) -> f64
 fn resting_left() -> &'static Equilibria {
     static FOUND: OnceLock<Equilibria> = OnceLock::new();
     FOUND.get_or_init(|| equilibria(&Standing::new(Some("l"), None).search(), OPTIONS).unwrap())
+}
+
+/// Any number of threads gives the same numbers, counts and labels, where the budget ends the search, too.
+#[test]
+fn a_search_does_not_depend_on_the_number_of_threads() {
+    let standing = Standing::new(Some("l"), Some(V::new(0.45, 1.1, 0.2)));
+    for most_work in [600, 20_000, usize::MAX] {
+        let find = |threads| equilibria(&Search { most_work, threads, ..standing.search() }, OPTIONS).unwrap();
+        let one = find(1);
+        println!("most work {most_work}: {} starts, work {}", one.starts, one.work);
+        for threads in [0, 2, 5] {
+            let found = find(threads);
+            assert_eq!(format!("{found:?}"), format!("{one:?}"), "{threads} threads, most work {most_work}");
+        }
+    }
 }
 
 /// A search that may do little work ends after the start in which its budget is spent, says so, and finds the same each time.
@@ -434,6 +450,7 @@ fn a_limb_that_hangs_in_the_start_hangs_in_every_answer_and_one_that_is_upright_
             locked: &[],
             most_work: usize::MAX,
             scattered: SCATTERED_STARTS,
+            threads: 1,
         };
         let found = equilibria(&search, OPTIONS).unwrap();
         // 1 upright, -1 hanging.

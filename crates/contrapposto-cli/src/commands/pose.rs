@@ -205,6 +205,7 @@ fn least_effort_in_balance(scenario: &PoseScenario, goals: &[PriorityLevel]) -> 
         locked: &scenario.locked,
         most_work: MOST_BALANCE_WORK,
         scattered: contrapposto::equilibria::SCATTERED_STARTS,
+        threads: 1,
     };
     let found = equilibria(&search, Options { local_minima: 0, ..Options::least_effort() }).ok()?;
     found.postures.into_iter().next().map(|best| best.relaxed)

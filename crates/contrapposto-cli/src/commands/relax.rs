@@ -104,7 +104,8 @@ pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
 pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchError> {
     let mut round = 0;
     loop {
-        let found = equilibria(&scenario.search(), RelaxScenario::OPTIONS)?;
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let found = equilibria(&Search { threads, ..scenario.search() }, RelaxScenario::OPTIONS)?;
         let Some(best) = found.postures.first() else { return Ok(found) };
         let change = scenario.take_strength(&best.relaxed.posture);
         if change <= SAME_STRENGTH {

@@ -11,7 +11,7 @@ const LEAST_HANGING_TORQUE: f64 = 1.0;
 /// Least share of the external torque that ligaments carry where a joint hangs on them.
 const LEAST_HANGING_SHARE: f64 = 0.5;
 
-/// Describes a solved posture, evaluated by `engine`.
+/// Describes a solved posture, which `engine` evaluates.
 pub(super) fn describe(
     search: &Search<'_>,
     engine: &mut Engine<'_>,
@@ -19,6 +19,8 @@ pub(super) fn describe(
     starts: Vec<String>,
 ) -> Result<RelaxedPosture, SearchError> {
     let model = search.model;
+    // What was solved before leaves no trace in the contact forces.
+    engine.restart();
     engine.evaluate(&relaxed.posture)?;
     let (body, contact) = (engine.torques(), engine.contact());
     let supports = (0..contact.supports().len()).map(|i| Carried {

@@ -1,41 +1,30 @@
-//! Makes the starts of a search, solves from each of them, and selects the different postures of least effort.
+//! Makes the starts of a search, has them solved, and selects the different postures of least effort.
 
-use super::candidate::{Candidate, Worth, keep_worth, places};
-use super::description::{describe, relative_torques};
-use super::hanging_limbs::{hanging_limbs, idle_segments, in_mid_range};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::candidate::{Candidate, Worth, keep_worth};
+use super::description::describe;
+use super::hanging_limbs::idle_segments;
 use super::other_places::other_places;
 use super::outcome::Equilibria;
 use super::raised_limbs::LimbsWithoutTask;
 use super::scattered::scattered;
 use super::search::{Search, SearchError, Stage};
+use super::solvers::{Attempt, EVERYTHING, Outcome, Solvers, Start, Steps, Way};
 use super::ways_to_stand::DifferentWays;
-use crate::contact::{Condition, Missing};
-use crate::effort::hessian::HessianModel;
+use crate::batch;
+use crate::contact::Missing;
 use crate::kinematics::Kinematics;
 use crate::posture::Posture;
-use crate::posture_solver::{Engine, EngineError, Options};
-use crate::tasks::PriorityLevel;
-use crate::tasks::{Effort, Task};
+use crate::posture_solver::{EngineError, Options};
 
 /// Times that goal angles are taken, each time from a better posture.
 const ROUNDS: usize = 2;
 /// Most postures with a limb held up from which limbs are let hang.
 const HUNG: usize = 5;
-/// Steps of an exploratory solve.
-const EXPLORATORY_STEPS: usize = 20;
-/// Steps of an approach to the tasks.
-const APPROACH_STEPS: usize = 40;
 /// Distance of a task beyond that in the best posture, in its units, and slip of a support, m and rad, that are allowed to
 /// exploratory and to converged postures.
 const ALLOWED_ERROR: [f64; 2] = [0.02, 1e-5];
-/// Missing contact force and moment that are allowed to exploratory and to converged postures, body weights (times 1 m).
-const ALLOWED_MISSING: [f64; 2] = [1e-3, 1e-8];
-/// Change of every rate below which the approach to the tasks ends, rad or m.
-const APPROACH_TOLERANCE: f64 = 1e-6;
-/// Distance of the ends of limbs from hanging up to which an approach is not tried in another way, m.
-const HANGING: f64 = 0.01;
-/// Missing forces of a posture whose numbers are not finite.
-const EVERYTHING: Missing = Missing { force: f64::INFINITY, moment: f64::INFINITY, condition: Condition::Other };
 
 /// As [`equilibria`](super::equilibria); `watch` is told the number of postures that have been sought so far, each time that another one is.
 ///
@@ -56,12 +45,7 @@ pub fn equilibria_watched(
 /// Engines and what they have found.
 pub(super) struct Finder<'a> {
     pub(super) search: &'a Search<'a>,
-    /// For exploratory and for converging solves.
-    pub(super) engines: [Engine<'a>; 2],
-    /// Without effort.
-    approach: Engine<'a>,
-    /// Index of the level of goal angles among the engines' levels.
-    pub(super) slot: usize,
+    pub(super) solvers: Solvers<'a>,
     /// Limbs that are not to be held up.
     limbs: LimbsWithoutTask,
     pub(super) found: Vec<Candidate>,
@@ -73,42 +57,16 @@ pub(super) struct Finder<'a> {
     /// Postures sought in all stages, and who is told.
     sought: usize,
     watch: &'a mut dyn FnMut(usize),
-    pub(super) steps: usize,
-    /// Work beyond the steps.
-    pub(super) changes: usize,
+    steps: Steps,
     /// A start was left out, since the budget was spent.
     cut: bool,
 }
 
 impl<'a> Finder<'a> {
     fn new(search: &'a Search<'a>, options: Options, watch: &'a mut dyn FnMut(usize)) -> Result<Self, SearchError> {
-        let mut levels = search.goals.to_vec();
-        let asks = |level: &PriorityLevel| level.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
-        let slot = levels.iter().position(asks).unwrap_or(levels.len());
-        if slot == levels.len() {
-            levels.push(Task::Effort(Effort::whole(search.model)).into());
-        }
-        levels.insert(slot, PriorityLevel::default());
-        // Exploratory steps of priorities pass over shallow minima, in which a descent ends.
-        let engine = |max_steps: usize, local_minima: usize, levels: &[PriorityLevel]| {
-            let (supports, levels) = (search.supports.to_vec(), levels.to_vec());
-            let options = Options { max_steps, local_minima, ..options };
-            let mut engine =
-                Engine::with_supports(search.model, search.start, supports, levels, search.loads, options)?;
-            search.locked.iter().for_each(|&rate| engine.lock(rate));
-            search.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
-            Ok::<_, SearchError>(engine)
-        };
-        let exploratory = EXPLORATORY_STEPS.min(options.max_steps);
-        let (most, minima) = (options.max_steps, options.local_minima);
-        let mut engines = [engine(exploratory, 0, &levels)?, engine(most, minima, &levels)?];
-        engines[0].set_hessian_model(HessianModel::Partial);
-        let approach = engine(APPROACH_STEPS, 0, &levels[..=slot])?;
         Ok(Self {
             search,
-            engines,
-            approach,
-            slot,
+            solvers: Solvers::new(search, options)?,
             limbs: LimbsWithoutTask::default(),
             found: vec![],
             fell: vec![],
@@ -116,31 +74,30 @@ impl<'a> Finder<'a> {
             starts: 0,
             sought: 0,
             watch,
-            steps: 0,
-            changes: 0,
+            steps: Steps::default(),
             cut: false,
         })
     }
 
-    fn work(&self) -> usize {
-        self.steps + self.changes
+    /// Work from which on no further start of a stage is begun.
+    fn most_work(&self, stage: Stage) -> usize {
+        match stage {
+            Stage::Exploratory => self.search.most_work / 4 * 3,
+            Stage::Converged => self.search.most_work,
+        }
     }
 
     /// Whether no further start may be begun.
-    pub(super) fn is_spent(&mut self, stage: Stage) -> bool {
-        let most = match stage {
-            Stage::Exploratory => self.search.most_work / 4 * 3,
-            Stage::Converged => self.search.most_work,
-        };
-        let spent = self.starts > 0 && self.work() >= most;
+    fn is_spent(&mut self, stage: Stage) -> bool {
+        let spent = self.starts > 0 && self.steps.work() >= self.most_work(stage);
         self.cut |= spent;
         spent
     }
 
     /// Finds the limbs that are not to be held up, and the depth to which they can hang.
     fn find_limbs_to_hang(&mut self) {
-        let Some(posture) = self.with_hanging_limbs(self.search.start) else { return };
         let model = self.search.model;
+        let Some(posture) = self.solvers.with_hanging_limbs(self.search.start, &mut self.steps) else { return };
         let [mut start, mut hanging] = [Kinematics::new(model), Kinematics::new(model)];
         if start.update(model, self.search.start).is_ok() && hanging.update(model, &posture).is_ok() {
             self.limbs = LimbsWithoutTask::of(self.search, &start, &hanging);
@@ -149,8 +106,12 @@ impl<'a> Finder<'a> {
 
     /// Solves from all starts, a few steps each.
     fn explore(&mut self) -> Result<(), SearchError> {
-        self.solve_from_tasks(self.search.start, "the start".to_owned());
-        self.explore_places();
+        let places = other_places(self.search.model, self.search.supports).into_iter();
+        let at_start = (vec![], "the start".to_owned());
+        let places = std::iter::once(at_start).chain(places.map(|(task, label)| (vec![task], label)));
+        self.solve_all(
+            places.map(|(tasks, label)| self.exploratory(self.search.start, Way::ToTasks(tasks), label)).collect(),
+        );
         let mut explored: Vec<Candidate> = vec![];
         for _ in 0..ROUNDS {
             let Some(best) = self.best() else { break };
@@ -165,6 +126,10 @@ impl<'a> Finder<'a> {
         Ok(())
     }
 
+    pub(super) fn exploratory(&self, from: &Posture, way: Way, label: String) -> Start {
+        Start { stage: Stage::Exploratory, from: from.clone(), way, labels: vec![label], unless_found: None }
+    }
+
     /// Converges from every different posture that was explored and is worth it, from that of least effort first.
     fn converge(&mut self) {
         let mut candidates = self.selected(Stage::Exploratory);
@@ -172,10 +137,17 @@ impl<'a> Finder<'a> {
         keep_worth(&self.found, &mut candidates, Worth::START);
         let mut explored = std::mem::take(&mut self.found);
         let starts = std::mem::take(&mut self.starts);
-        for i in candidates {
+        let worth = candidates.into_iter().map(|i| {
             let Candidate { relaxed, starts, .. } = explored[i].clone();
-            self.solve(Stage::Converged, &relaxed.posture, starts);
-        }
+            Start {
+                stage: Stage::Converged,
+                from: relaxed.posture,
+                way: Way::Nothing,
+                labels: starts,
+                unless_found: None,
+            }
+        });
+        self.solve_all(worth.collect());
         self.hang();
         self.mirror_best();
         if self.found.is_empty() {
@@ -184,63 +156,71 @@ impl<'a> Finder<'a> {
         self.starts = starts;
     }
 
-    /// Solves from a posture with the engine of a stage, and keeps the result if it is new or better.
-    pub(super) fn solve(&mut self, stage: Stage, from: &Posture, starts: Vec<String>) {
-        if self.is_spent(stage) {
-            return;
+    /// Solves from starts of one stage, and takes what came of them in their order. With several threads they are solved beforehand: those that
+    /// turn out to be needless, since the budget is spent or their posture was found meanwhile, are passed over as if they had not been solved.
+    pub(super) fn solve_all(&mut self, starts: Vec<Start>) {
+        let attempts = self.solved_beforehand(&starts);
+        for (start, attempt) in starts.into_iter().zip(attempts) {
+            if self.is_spent(start.stage) {
+                return;
+            }
+            if !start.unless_found.as_ref().is_some_and(|image| self.found.iter().any(|known| known.is_same(image))) {
+                let attempt = attempt.unwrap_or_else(|| self.solvers.attempt(&start, &self.limbs));
+                self.take(start, attempt);
+            }
         }
-        let (model, engine) = (self.search.model, &mut self.engines[stage as usize]);
-        engine.levels_mut()[self.slot].half_spaces.clear();
+    }
+
+    /// What comes of each start, on the threads of the search; `None` with one thread, and where the budget is spent by the starts before.
+    fn solved_beforehand(&self, starts: &[Start]) -> Vec<Option<Attempt>> {
+        let (threads, Some(first)) = (self.search.threads, starts.first()) else { return vec![] };
+        if threads <= 1 || starts.len() == 1 {
+            return starts.iter().map(|_| None).collect();
+        }
+        let (solvers, limbs, nothing_yet) = (&self.solvers, &self.limbs, self.starts == 0);
+        let (work, most) = (AtomicUsize::new(self.steps.work()), self.most_work(first.stage));
+        let solve = |solvers: &mut Solvers<'_>, start: &Start| {
+            let is_spent = work.load(Ordering::Relaxed) >= most && !(nothing_yet && std::ptr::eq(start, first));
+            (!is_spent).then(|| {
+                let attempt = solvers.attempt(start, limbs);
+                work.fetch_add(attempt.work(), Ordering::Relaxed);
+                attempt
+            })
+        };
+        batch::over(starts, threads, || solvers.clone(), solve)
+    }
+
+    /// Takes what came of a start, if it is new or better.
+    fn take(&mut self, start: Start, attempt: Attempt) {
+        self.steps += attempt.before;
+        let Some(solved) = attempt.solved else { return };
         self.starts += 1;
         self.sought += 1;
         (self.watch)(self.sought);
-        let mut relaxed = match engine.solve_watched(from, |step, _| self.changes += step.work() - 1) {
-            Ok(relaxed) => relaxed,
-            Err(error) => {
+        self.steps += solved.steps;
+        let mut new = match solved.outcome {
+            Outcome::Stands(candidate) => *candidate,
+            Outcome::Fell(missing) => return self.fell.push(missing),
+            Outcome::Refused(error) => {
                 self.fell.push(EVERYTHING);
                 self.refused.get_or_insert(error);
                 return;
             }
         };
-        self.steps += relaxed.steps;
-        let missing = engine.contact().missing(model, engine.torques().kinematics());
-        let allowed = ALLOWED_MISSING[stage as usize] * model.mass() * model.gravity().norm();
-        if let Some(missing) = missing.filter(|missing| missing.force.max(missing.moment) > allowed) {
-            self.fell.push(missing);
-            return;
-        }
-        relaxed.levels.remove(self.slot);
-        let contact = engine.contact();
-        let supports = self.search.supports.iter().enumerate();
-        let excess = supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum();
-        let (relative_torques, places) =
-            (relative_torques(model, engine), places(model, engine.torques().kinematics()));
-        let raised_limbs = self.limbs.raised(self.search, engine.torques().kinematics());
-        let new = Candidate { relaxed, excess, starts, raised_limbs, relative_torques, places };
         let Some(known) = self.found.iter_mut().find(|known| known.is_same(&new)) else {
+            new.starts = start.labels;
             self.found.push(new);
             return;
         };
-        let allowed = known.distance(self.slot) + ALLOWED_ERROR[Stage::Converged as usize];
-        let better = new.compare(known).is_lt() && new.distance(self.slot) <= allowed;
+        let slot = self.solvers.slot;
+        let allowed = known.distance(slot) + ALLOWED_ERROR[Stage::Converged as usize];
+        let better = new.compare(known).is_lt() && new.distance(slot) <= allowed;
         let mut starts = std::mem::take(&mut known.starts);
-        starts.extend_from_slice(&new.starts);
+        starts.extend(start.labels);
         if better {
             *known = new;
         }
         known.starts = starts;
-    }
-
-    /// Solves from other places of each free support.
-    fn explore_places(&mut self) {
-        for (task, label) in other_places(self.search.model, self.search.supports) {
-            if self.is_spent(Stage::Exploratory) {
-                return;
-            }
-            self.approach.levels_mut()[self.slot].tasks = vec![task];
-            let (_, from) = self.approached(self.search.start);
-            self.solve(Stage::Exploratory, &from, vec![label]);
-        }
     }
 
     /// Solves from starts that are scattered over the ranges of the joints, where the body stands in some posture: of a body that falls, the
@@ -249,10 +229,10 @@ impl<'a> Finder<'a> {
         if self.found.is_empty() {
             return;
         }
-        for k in 0..self.search.scattered {
-            let from = scattered(self.search.model, self.search.start, self.search.locked, k);
-            self.solve_from_tasks(&from, format!("scattered start {}", k + 1));
-        }
+        let Search { model, start, locked, scattered: count, .. } = *self.search;
+        let from = |k| scattered(model, start, locked, k);
+        let start = |k| self.exploratory(&from(k), Way::ToTasks(vec![]), format!("scattered start {}", k + 1));
+        self.solve_all((0..count).map(start).collect());
     }
 
     /// Converges with hanging limbs from the first posture, and from the first of those in which a limb is held up: exploratory steps would leave
@@ -261,59 +241,14 @@ impl<'a> Finder<'a> {
         let mut known = self.selected(Stage::Converged);
         known.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         let raised = known.iter().skip(1).filter(|&&i| self.found[i].raised_limbs > 0).take(HUNG);
-        let from = known.first().into_iter().chain(raised).map(|&i| self.found[i].relaxed.posture.clone());
-        for posture in from.collect::<Vec<_>>() {
-            if let Some(from) = self.with_hanging_limbs(&posture) {
-                self.solve(Stage::Converged, &from, vec!["limbs that carry nothing hang".to_owned()]);
-            }
-        }
-    }
-
-    /// The posture with limbs that hang as far as tasks allow.
-    fn with_hanging_limbs(&mut self, posture: &Posture) -> Option<Posture> {
-        let (model, supports) = (self.search.model, self.search.supports);
-        let tasks = hanging_limbs(model, supports, posture).ok()?;
-        let (distance, near) = self.approached_with(&tasks, posture);
-        if distance > HANGING {
-            // Along the shortest turn a joint may meet the end of its range: the other way begins in the middle of the ranges.
-            let middle = in_mid_range(model, supports, &near);
-            let (other, posture) = self.approached_with(&tasks, &middle);
-            if other < distance - HANGING {
-                return Some(posture);
-            }
-        }
-        Some(near)
-    }
-
-    /// Moves to the tasks without regard to effort first: from afar the two would obstruct each other.
-    pub(super) fn solve_from_tasks(&mut self, from: &Posture, start: String) {
-        if self.is_spent(Stage::Exploratory) {
-            return;
-        }
-        let (_, posture) = self.approached(from);
-        self.solve(Stage::Exploratory, &posture, vec![start]);
-    }
-
-    /// [`Self::approached`], with these tasks in the last level.
-    fn approached_with(&mut self, tasks: &[Task], from: &Posture) -> (f64, Posture) {
-        self.approach.levels_mut()[self.slot].tasks = tasks.to_vec();
-        self.approached(from)
-    }
-
-    /// The posture moved to the tasks, and below them to those of the approach's last level, which are removed, and its distance from them.
-    pub(super) fn approached(&mut self, from: &Posture) -> (f64, Posture) {
-        let mut posture = from.clone();
-        self.approach.restart();
-        for _ in 0..APPROACH_STEPS {
-            self.steps += 1;
-            match self.approach.step(&mut posture) {
-                Ok(step) if step.largest > APPROACH_TOLERANCE => self.changes += step.work() - 1,
-                _ => break,
-            }
-        }
-        let distance = self.approach.evaluate(&posture).map_or(f64::INFINITY, |()| self.approach.error(self.slot));
-        self.approach.levels_mut()[self.slot].tasks.clear();
-        (distance, posture)
+        let start = |&i: &usize| Start {
+            stage: Stage::Converged,
+            from: self.found[i].relaxed.posture.clone(),
+            way: Way::Hanging,
+            labels: vec!["limbs that carry nothing hang".to_owned()],
+            unless_found: None,
+        };
+        self.solve_all(known.first().into_iter().chain(raised).map(start).collect());
     }
 
     /// The posture of least effort so far.
@@ -327,7 +262,7 @@ impl<'a> Finder<'a> {
         let allowed = ALLOWED_ERROR[stage as usize];
         let mut selected: Vec<usize> =
             (0..self.found.len()).filter(|&i| self.found[i].relaxed.slip.length() <= allowed).collect();
-        for level in 0..=self.slot {
+        for level in 0..=self.solvers.slot {
             let error = |i: usize| {
                 let found = &self.found[i];
                 if level == 0 { found.excess } else { found.relaxed.levels[level - 1].length }
@@ -363,14 +298,15 @@ impl<'a> Finder<'a> {
         keep_worth(&self.found, &mut selected, Worth::ANSWER);
         let raised = all - selected.len();
         let (mut answers, engine) =
-            (DifferentWays::new(idle_segments(self.search)), &mut self.engines[Stage::Converged as usize]);
+            (DifferentWays::new(idle_segments(self.search)), &mut self.solvers.engines[Stage::Converged as usize]);
         for i in selected {
             let Candidate { relaxed, starts, .. } = self.found[i].clone();
             let posture = describe(self.search, engine, relaxed, starts)?;
             answers.take(self.search.model, engine.torques().kinematics(), posture);
         }
         let DifferentWays { postures, alike, .. } = answers;
-        let (starts, fell, steps, work, cut) = (self.starts, self.fell.len(), self.steps, self.work(), self.cut);
+        let (starts, fell, steps, work, cut) =
+            (self.starts, self.fell.len(), self.steps.steps, self.steps.work(), self.cut);
         Ok(Equilibria { postures, starts, fell, yielded, alike: alike + raised, steps, work, cut })
     }
 }

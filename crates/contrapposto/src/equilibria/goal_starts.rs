@@ -4,6 +4,7 @@ use super::description::work_of;
 use super::finder::Finder;
 use super::search::SearchError;
 use super::search::Stage;
+use super::solvers::{Start, Way};
 use crate::constraint::HalfSpace;
 use crate::hybrid::{Problem, Strategy, minimise};
 use crate::model::CoordinateKind;
@@ -28,43 +29,34 @@ struct Goal {
 }
 
 impl Finder<'_> {
-    /// Solves with goal angles as half-spaces, and then without them: the goals choose the start, and do not constrain the answer.
-    fn explore_with(&mut self, from: &Posture, goals: &[&Goal], label: String) {
-        if self.is_spent(Stage::Exploratory) {
-            return;
-        }
+    /// The start that turns joints to goal angles first.
+    fn at_goals(&self, from: &Posture, goals: &[&Goal], label: String) -> Start {
         let n = self.search.model.coordinates().len();
-        let mut spaces = vec![];
-        for goal in goals {
+        let spaces = goals.iter().filter_map(|goal| {
             let mut space = HalfSpace::new(n);
-            if space.ask_for(from.values(), &goal.step) {
-                spaces.push(space);
-            }
-        }
-        let engine = &mut self.engines[Stage::Exploratory as usize];
-        engine.levels_mut()[self.slot].half_spaces = spaces;
-        if let Ok(under) = engine.solve_watched(from, |step, _| self.changes += step.work() - 1) {
-            self.steps += under.steps;
-            self.solve(Stage::Exploratory, &under.posture, vec![label]);
-        }
+            space.ask_for(from.values(), &goal.step).then_some(space)
+        });
+        self.exploratory(from, Way::ToGoals(spaces.collect()), label)
     }
 
     /// Searches from goal angles of both strategies in a posture: from all goals of a strategy together, then from each goal of the
     /// coordinates with the greatest relative loads alone.
     pub(super) fn explore_goals(&mut self, posture: &Posture) -> Result<(), SearchError> {
         let model = self.search.model;
+        self.solvers.engines[Stage::Exploratory as usize].restart();
         let mut asked: Vec<(f64, usize, [Option<Goal>; 2])> = vec![];
         for i in 0..model.coordinates().len() {
             let goals = self.goals_of(posture, i)?;
             if goals.iter().any(Option::is_some) {
-                let load = work_of(model, &self.engines[0], i).map_or(0.0, |work| work.relative_load());
+                let load = work_of(model, &self.solvers.engines[0], i).map_or(0.0, |work| work.relative_load());
                 asked.push((load, i, goals));
             }
         }
+        let mut starts = vec![];
         for (k, word) in ["active", "passive"].into_iter().enumerate() {
             let all: Vec<&Goal> = asked.iter().filter_map(|(_, _, goals)| goals[k].as_ref()).collect();
             if !all.is_empty() {
-                self.explore_with(posture, &all, format!("all {word} goals"));
+                starts.push(self.at_goals(posture, &all, format!("all {word} goals")));
             }
         }
         // A stable sort: of equals the first of the model.
@@ -78,9 +70,11 @@ impl Finder<'_> {
                     CoordinateKind::Rotation => format!("{:.1} deg", goal.angle.to_degrees()),
                     _ => format!("{:.3} m", goal.angle),
                 };
-                self.explore_with(posture, &[&goal], format!("{word} goal of {}, {value}", coordinate.name));
+                let label = format!("{word} goal of {}, {value}", coordinate.name);
+                starts.push(self.at_goals(posture, &[&goal], label));
             }
         }
+        self.solve_all(starts);
         Ok(())
     }
 
@@ -92,8 +86,8 @@ impl Finder<'_> {
         if self.search.locked.contains(&rate) || coordinate.locked || self.search.model.is_dependent(i) {
             return Ok(NONE);
         }
-        let engine = &mut self.engines[Stage::Exploratory as usize];
-        let Some(external_slope) = engine.slope_along(posture, rate, self.slot)? else { return Ok(NONE) };
+        let engine = &mut self.solvers.engines[Stage::Exploratory as usize];
+        let Some(external_slope) = engine.slope_along(posture, rate, self.solvers.slot)? else { return Ok(NONE) };
         let (model, body) = (self.search.model, engine.torques());
         let passive_torque = body.passive_torque();
         let Some(curve) = passive_torque.curve_about_axis(model, body.kinematics(), i, coordinate.range) else {

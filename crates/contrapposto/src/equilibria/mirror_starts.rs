@@ -2,10 +2,12 @@
 //!
 //! Where the two limbs of a pair have different roles, as a hand that works and a hand that rests, these limbs keep their angles.
 
+use super::candidate::Candidate;
 use super::finder::Finder;
 use super::hanging_limbs::{free_limbs, has_task};
 use super::mirror::Mirror;
 use super::search::{Search, Stage};
+use super::solvers::{Start, Way};
 
 /// Best postures whose mirror images are converged from.
 const MIRRORED: usize = 3;
@@ -15,13 +17,8 @@ impl Finder<'_> {
     pub(super) fn explore_mirror_images(&mut self) {
         let Some(mirror) = Mirror::of(self.search.model) else { return };
         let kept = coordinates_of_unlike_limbs(self.search, &mirror);
-        for i in 0..self.found.len() {
-            let Some(image) = self.found[i].image(self.search.model, &mirror, &kept) else { continue };
-            if !self.found.iter().any(|known| known.is_same(&image)) {
-                let label = format!("mirror image of: {}", image.starts[0]);
-                self.solve_from_tasks(&image.relaxed.posture, label);
-            }
-        }
+        let images = self.found.iter().filter_map(|found| found.image(self.search.model, &mirror, &kept));
+        self.solve_all(images.map(|image| from_image(Stage::Exploratory, image)).collect());
     }
 
     /// Converges from the mirror images of the best postures.
@@ -31,12 +28,18 @@ impl Finder<'_> {
         let mut best = self.selected(Stage::Converged);
         best.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
         best.truncate(MIRRORED);
-        for i in best {
-            let Some(image) = self.found[i].image(self.search.model, &mirror, &kept) else { continue };
-            let (_, from) = self.approached(&image.relaxed.posture);
-            self.solve(Stage::Converged, &from, vec![format!("mirror image of: {}", image.starts[0])]);
-        }
+        let images = best.iter().filter_map(|&i| self.found[i].image(self.search.model, &mirror, &kept));
+        self.solve_all(
+            images.map(|image| Start { unless_found: None, ..from_image(Stage::Converged, image) }).collect(),
+        );
     }
+}
+
+/// The start at a mirror image, which is left out where its posture was found already.
+fn from_image(stage: Stage, image: Candidate) -> Start {
+    let labels = vec![format!("mirror image of: {}", image.starts[0])];
+    let (from, way) = (image.relaxed.posture.clone(), Way::ToTasks(vec![]));
+    Start { stage, from, way, labels, unless_found: Some(image) }
 }
 
 /// The coordinates of limbs that have another role than their partners: of the two, one has a support, a task or a load more.

@@ -12,7 +12,11 @@
 //!    near the ends of ranges, where ligaments carry;
 //! 3. the same from the posture of least effort so far, if that is a new one;
 //! 4. postures scattered over the ranges of the joints (`scattered.rs`), moved to the tasks likewise;
-//! 5. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise.
+//! 5. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise; limbs that have other roles than
+//!    their partners, as a hand that works beside one that rests, keep their angles in it (`mirror_starts.rs`).
+//!
+//! What comes of a start depends on nothing that was solved before (`solvers.rs`), so that starts may be solved on several threads
+//! ([`Search::threads`]); they are taken in their order.
 //!
 //! From every different posture that does not need far more effort than the easiest one, basin hopping then converges, in descents
 //! that cost a third of a step of priorities each. Two postures count as one if at no joint the torque of loads or of
@@ -34,6 +38,7 @@ mod outcome;
 mod raised_limbs;
 mod scattered;
 mod search;
+mod solvers;
 mod stability;
 mod ways_to_stand;
 

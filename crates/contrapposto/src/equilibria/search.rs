@@ -30,6 +30,8 @@ pub struct Search<'a> {
     /// Number of starts that are scattered over the ranges of the joints ([`SCATTERED_STARTS`](super::SCATTERED_STARTS) finds what random starts
     /// of another method find); 0 where the posture is known to be near, as after a rest.
     pub scattered: usize,
+    /// Threads that solve from the starts; the answer does not depend on their number. One is right where the caller has its own.
+    pub threads: usize,
 }
 
 /// Stage of a search: its index in the engines and in the allowed errors.

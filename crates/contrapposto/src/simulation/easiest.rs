@@ -137,6 +137,7 @@ pub(super) fn search(
         locked,
         most_work: budget.work,
         scattered: budget.scattered,
+        threads: 1,
     };
     let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };
     let found = equilibria(&search, options)?;

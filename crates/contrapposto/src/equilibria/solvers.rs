@@ -1,0 +1,225 @@
+//! Solves from one start of a search. What comes out depends on the search and the start alone, so that starts may be solved in any order.
+
+use super::candidate::{Candidate, places};
+use super::description::relative_torques;
+use super::hanging_limbs::{hanging_limbs, in_mid_range};
+use super::raised_limbs::LimbsWithoutTask;
+use super::search::{Search, SearchError, Stage};
+use crate::constraint::HalfSpace;
+use crate::contact::{Condition, Missing};
+use crate::effort::hessian::HessianModel;
+use crate::posture::Posture;
+use crate::posture_solver::{Engine, EngineError, Options};
+use crate::tasks::{Effort, PriorityLevel, Task};
+
+/// Steps of an exploratory solve.
+const EXPLORATORY_STEPS: usize = 20;
+/// Steps of an approach to the tasks.
+const APPROACH_STEPS: usize = 40;
+/// Missing contact force and moment that are allowed to exploratory and to converged postures, body weights (times 1 m).
+const ALLOWED_MISSING: [f64; 2] = [1e-3, 1e-8];
+/// Change of every rate below which the approach to the tasks ends, rad or m.
+const APPROACH_TOLERANCE: f64 = 1e-6;
+/// Distance of the ends of limbs from hanging up to which an approach is not tried in another way, m.
+const HANGING: f64 = 0.01;
+
+/// A start of a search.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    pub(super) stage: Stage,
+    pub(super) from: Posture,
+    /// What is done before effort counts.
+    pub(super) way: Way,
+    /// In words: how it was found.
+    pub(super) labels: Vec<String>,
+    /// The start is left out where this posture was found already.
+    pub(super) unless_found: Option<Candidate>,
+}
+
+/// What is done before effort counts.
+#[derive(Clone, Debug)]
+pub(super) enum Way {
+    Nothing,
+    /// The body moves to the tasks, and below them to these: from afar tasks and effort would obstruct each other.
+    ToTasks(Vec<Task>),
+    /// Goal angles are solved for with effort, as half-spaces: they choose the start, and do not constrain the answer.
+    ToGoals(Vec<HalfSpace>),
+    /// The limbs that carry nothing hang as far as tasks allow.
+    Hanging,
+}
+
+/// Steps of solves, and their work beyond the steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Steps {
+    pub(super) steps: usize,
+    pub(super) changes: usize,
+}
+
+impl Steps {
+    pub(super) fn work(self) -> usize {
+        self.steps + self.changes
+    }
+}
+
+impl std::ops::AddAssign for Steps {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.changes += other.changes;
+    }
+}
+
+/// What came of a start.
+#[derive(Debug)]
+pub(super) struct Attempt {
+    /// Of the way to the posture where effort begins to count.
+    pub(super) before: Steps,
+    /// `None` where there is no such posture.
+    pub(super) solved: Option<Solved>,
+}
+
+#[derive(Debug)]
+pub(super) struct Solved {
+    pub(super) steps: Steps,
+    pub(super) outcome: Outcome,
+}
+
+#[derive(Debug)]
+pub(super) enum Outcome {
+    /// The supports hold the body.
+    Stands(Box<Candidate>),
+    Fell(Missing),
+    Refused(EngineError),
+}
+
+impl Attempt {
+    pub(super) fn work(&self) -> usize {
+        self.before.work() + self.solved.as_ref().map_or(0, |solved| solved.steps.work())
+    }
+}
+
+/// The engines of one thread.
+#[derive(Clone, Debug)]
+pub(super) struct Solvers<'a> {
+    search: &'a Search<'a>,
+    /// For exploratory and for converging solves.
+    pub(super) engines: [Engine<'a>; 2],
+    /// Without effort.
+    approach: Engine<'a>,
+    /// Index of the level of goal angles among the engines' levels.
+    pub(super) slot: usize,
+}
+
+impl<'a> Solvers<'a> {
+    pub(super) fn new(search: &'a Search<'a>, options: Options) -> Result<Self, SearchError> {
+        let mut levels = search.goals.to_vec();
+        let asks = |level: &PriorityLevel| level.tasks.iter().any(|task| matches!(task, Task::Effort(_)));
+        let slot = levels.iter().position(asks).unwrap_or(levels.len());
+        if slot == levels.len() {
+            levels.push(Task::Effort(Effort::whole(search.model)).into());
+        }
+        levels.insert(slot, PriorityLevel::default());
+        // Exploratory steps of priorities pass over shallow minima, in which a descent ends.
+        let engine = |max_steps: usize, local_minima: usize, levels: &[PriorityLevel]| {
+            let (supports, levels) = (search.supports.to_vec(), levels.to_vec());
+            let options = Options { max_steps, local_minima, ..options };
+            let mut engine =
+                Engine::with_supports(search.model, search.start, supports, levels, search.loads, options)?;
+            search.locked.iter().for_each(|&rate| engine.lock(rate));
+            search.limits.iter().try_for_each(|task| engine.limit(task.clone()))?;
+            Ok::<_, SearchError>(engine)
+        };
+        let exploratory = EXPLORATORY_STEPS.min(options.max_steps);
+        let (most, minima) = (options.max_steps, options.local_minima);
+        let mut engines = [engine(exploratory, 0, &levels)?, engine(most, minima, &levels)?];
+        engines[0].set_hessian_model(HessianModel::Partial);
+        let approach = engine(APPROACH_STEPS, 0, &levels[..=slot])?;
+        Ok(Self { search, engines, approach, slot })
+    }
+
+    /// Solves from a start.
+    pub(super) fn attempt(&mut self, start: &Start, limbs: &LimbsWithoutTask) -> Attempt {
+        let mut before = Steps::default();
+        let from = match &start.way {
+            Way::Nothing => Some(start.from.clone()),
+            Way::ToTasks(tasks) => Some(self.approached(tasks, &start.from, &mut before).1),
+            Way::ToGoals(spaces) => self.at_goals(spaces, start, &mut before),
+            Way::Hanging => self.with_hanging_limbs(&start.from, &mut before),
+        };
+        Attempt { before, solved: from.map(|from| self.solve(start.stage, &from, limbs)) }
+    }
+
+    fn at_goals(&mut self, spaces: &[HalfSpace], start: &Start, before: &mut Steps) -> Option<Posture> {
+        let engine = &mut self.engines[start.stage as usize];
+        engine.levels_mut()[self.slot].half_spaces = spaces.to_vec();
+        let under = engine.solve_watched(&start.from, |step, _| before.changes += step.work() - 1);
+        engine.levels_mut()[self.slot].half_spaces.clear();
+        let under = under.ok()?;
+        before.steps += under.steps;
+        Some(under.posture)
+    }
+
+    /// Solves from a posture with the engine of a stage.
+    fn solve(&mut self, stage: Stage, from: &Posture, limbs: &LimbsWithoutTask) -> Solved {
+        let (search, engine) = (self.search, &mut self.engines[stage as usize]);
+        let mut steps = Steps::default();
+        let mut relaxed = match engine.solve_watched(from, |step, _| steps.changes += step.work() - 1) {
+            Ok(relaxed) => relaxed,
+            Err(error) => return Solved { steps, outcome: Outcome::Refused(error) },
+        };
+        steps.steps = relaxed.steps;
+        let (model, kinematics, contact) = (search.model, engine.torques().kinematics(), engine.contact());
+        let allowed = ALLOWED_MISSING[stage as usize] * model.mass() * model.gravity().norm();
+        let missing = contact.missing(model, kinematics);
+        if let Some(missing) = missing.filter(|missing| missing.force.max(missing.moment) > allowed) {
+            return Solved { steps, outcome: Outcome::Fell(missing) };
+        }
+        relaxed.levels.remove(self.slot);
+        let supports = search.supports.iter().enumerate();
+        let candidate = Candidate {
+            excess: supports.map(|(i, support)| (contact.share(i) - support.share_max).max(0.0)).sum(),
+            raised_limbs: limbs.raised(search, kinematics),
+            relative_torques: relative_torques(model, engine),
+            places: places(model, kinematics),
+            starts: vec![],
+            relaxed,
+        };
+        Solved { steps, outcome: Outcome::Stands(Box::new(candidate)) }
+    }
+
+    /// The posture with limbs that hang as far as tasks allow.
+    pub(super) fn with_hanging_limbs(&mut self, posture: &Posture, steps: &mut Steps) -> Option<Posture> {
+        let (model, supports) = (self.search.model, self.search.supports);
+        let tasks = hanging_limbs(model, supports, posture).ok()?;
+        let (distance, near) = self.approached(&tasks, posture, steps);
+        if distance > HANGING {
+            // Along the shortest turn a joint may meet the end of its range: the other way begins in the middle of the ranges.
+            let middle = in_mid_range(model, supports, &near);
+            let (other, posture) = self.approached(&tasks, &middle, steps);
+            if other < distance - HANGING {
+                return Some(posture);
+            }
+        }
+        Some(near)
+    }
+
+    /// The posture moved to the tasks of the search, and below them to these, and its distance from these.
+    fn approached(&mut self, tasks: &[Task], from: &Posture, steps: &mut Steps) -> (f64, Posture) {
+        self.approach.levels_mut()[self.slot].tasks = tasks.to_vec();
+        let mut posture = from.clone();
+        self.approach.restart();
+        for _ in 0..APPROACH_STEPS {
+            steps.steps += 1;
+            match self.approach.step(&mut posture) {
+                Ok(step) if step.largest > APPROACH_TOLERANCE => steps.changes += step.work() - 1,
+                _ => break,
+            }
+        }
+        let distance = self.approach.evaluate(&posture).map_or(f64::INFINITY, |()| self.approach.error(self.slot));
+        self.approach.levels_mut()[self.slot].tasks.clear();
+        (distance, posture)
+    }
+}
+
+/// Missing forces of a posture whose numbers are not finite.
+pub(super) const EVERYTHING: Missing =
+    Missing { force: f64::INFINITY, moment: f64::INFINITY, condition: Condition::Other };
