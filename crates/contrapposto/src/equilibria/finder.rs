@@ -156,7 +156,7 @@ impl<'a> Finder<'a> {
         self.starts = starts;
     }
 
-    /// Solves from starts of one stage, and takes what came of them in their order. With several threads they are solved beforehand: those that
+    /// Solves from starts of one stage, and takes the attempts in their order. With several threads they are solved beforehand: those that
     /// turn out to be needless, since the budget is spent or their posture was found meanwhile, are passed over as if they had not been solved.
     pub(super) fn solve_all(&mut self, starts: Vec<Start>) {
         let attempts = self.solved_beforehand(&starts);
@@ -171,7 +171,7 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// What comes of each start, on the threads of the search; `None` with one thread, and where the budget is spent by the starts before.
+    /// The attempt from each start, on the threads of the search; `None` with one thread, and where the budget is spent by the starts before.
     fn solved_beforehand(&self, starts: &[Start]) -> Vec<Option<Attempt>> {
         let (threads, Some(first)) = (self.search.threads, starts.first()) else { return vec![] };
         if threads <= 1 || starts.len() == 1 {
@@ -190,7 +190,7 @@ impl<'a> Finder<'a> {
         batch::over(starts, threads, || solvers.clone(), solve)
     }
 
-    /// Takes what came of a start, if it is new or better.
+    /// Takes the posture of an attempt, if it is new or better.
     fn take(&mut self, start: Start, attempt: Attempt) {
         self.steps += attempt.before;
         let Some(solved) = attempt.solved else { return };

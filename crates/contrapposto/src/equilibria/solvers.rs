@@ -1,4 +1,4 @@
-//! Solves from one start of a search. What comes out depends on the search and the start alone, so that starts may be solved in any order.
+//! Solves from one start of a search. The result depends on the search and the start alone, so that starts may be solved in any order.
 
 use super::candidate::{Candidate, places};
 use super::description::relative_torques;
@@ -28,7 +28,7 @@ const HANGING: f64 = 0.01;
 pub(super) struct Start {
     pub(super) stage: Stage,
     pub(super) from: Posture,
-    /// What is done before effort counts.
+    /// Way to the posture where effort begins to count.
     pub(super) way: Way,
     /// In words: how it was found.
     pub(super) labels: Vec<String>,
@@ -36,7 +36,7 @@ pub(super) struct Start {
     pub(super) unless_found: Option<Candidate>,
 }
 
-/// What is done before effort counts.
+/// Way from the start to the posture where effort begins to count.
 #[derive(Clone, Debug)]
 pub(super) enum Way {
     Nothing,
@@ -68,7 +68,7 @@ impl std::ops::AddAssign for Steps {
     }
 }
 
-/// What came of a start.
+/// Result of a start.
 #[derive(Debug)]
 pub(super) struct Attempt {
     /// Of the way to the posture where effort begins to count.
