@@ -252,7 +252,7 @@ impl ActiveSet {
         let mut consider = |change: f64, value: f64, (lower, upper): (f64, f64), constraint: Constraint| {
             let (room, side) = if change > 0.0 { (upper - value, Side::Upper) } else { (lower - value, Side::Lower) };
             let share = (room / change).max(0.0);
-            if share < first.map_or(1.0, |first| first.share - TIE) {
+            if share < first.map_or(1.0, |first| first.share * (1.0 - TIE)) {
                 first = Some(Blocking { share, constraint, side });
             }
         };

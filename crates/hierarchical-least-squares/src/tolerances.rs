@@ -21,7 +21,7 @@ pub(crate) const MULTIPLIER: f64 = 1e-11;
 /// Change of an unknown or of a row of unit norm. Unit: share of the norm of the step.
 pub(crate) const NO_MOTION: f64 = 1e-14;
 
-/// Shares of a step at which two limits count as met at once. Unit: share of the step.
+/// Difference of the ways to two limits below which a step meets both at once. Unit: share of the way.
 pub(crate) const TIE: f64 = 1e-13;
 
 /// Norm of a row. Unit: that of the coefficients.
