@@ -321,23 +321,28 @@ step_s = 0.5
     assert!(time >= since && since > 0.0 && (summary.end_time - since - 1.0).abs() < 1e-9, "{since} s: {summary:?}");
     assert!(slip.exceeds(Slip::GREATEST) && slip.exceeds(Slip::NOTICED), "{slip:?}");
     let greatest = samples.iter().find(|(at, _)| (at - time).abs() < 1e-9).unwrap();
-    // Supports keep the places that they have in the start of the file.
-    let [start, end] = [&scenario.start, &greatest.1].map(|posture| {
-        let mut kinematics = Kinematics::new(model);
-        kinematics.update(model, posture).unwrap();
-        kinematics
-    });
-    let (mut distance, mut angle) = (0.0_f64, 0.0_f64);
-    for segment in ["hand_r", "hand_l"].map(|name| model.segment(name).unwrap()) {
-        let (from, to) = (start.placement(model, segment), end.placement(model, segment));
-        distance = distance.hypot((to.translation.vector - from.translation.vector).norm());
-        angle = angle.hypot(from.rotation.angle_to(&to.rotation));
-    }
+    // Supports keep the places that they have in the start of the file. Distance and angle of both hands at a sample.
+    let slid = |posture: &Posture| {
+        let [start, end] = [&scenario.start, posture].map(|posture| {
+            let mut kinematics = Kinematics::new(model);
+            kinematics.update(model, posture).unwrap();
+            kinematics
+        });
+        let hands = ["hand_r", "hand_l"].map(|name| model.segment(name).unwrap());
+        hands.iter().fold((0.0_f64, 0.0_f64), |(distance, angle), &segment| {
+            let (from, to) = (start.placement(model, segment), end.placement(model, segment));
+            let moved = (to.translation.vector - from.translation.vector).norm();
+            (distance.hypot(moved), angle.hypot(from.rotation.angle_to(&to.rotation)))
+        })
+    };
+    let (distance, angle) = slid(&greatest.1);
     assert!(
         (slip.distance - distance).abs() < 1e-9 && (slip.angle - angle).abs() < 1e-7,
         "{slip:?} {distance} {angle}"
     );
     assert_eq!(verdict.kind, VerdictKind::CannotStand);
+    // The sentence says the slip with which the run ends.
+    let (distance, angle) = slid(&samples.last().unwrap().1);
     let said = format!("Cannot stand: supports slide by {:.1} cm and {:.1}°", 100.0 * distance, angle.to_degrees());
     assert!(verdict.sentence.starts_with(&said), "{} and {said}", verdict.sentence);
     assert_eq!(verdict.slip, Some((slip, Some(time))));
