@@ -12,7 +12,7 @@ use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};
 
-use super::trials::advice_of_search;
+use super::trials::{advice_of_search, cores};
 use crate::args::{RelaxArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note, report_line};
@@ -104,8 +104,7 @@ pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
 pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchError> {
     let mut round = 0;
     loop {
-        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let found = equilibria(&Search { threads, ..scenario.search() }, RelaxScenario::OPTIONS)?;
+        let found = equilibria(&Search { threads: cores(), ..scenario.search() }, RelaxScenario::OPTIONS)?;
         let Some(best) = found.postures.first() else { return Ok(found) };
         let change = scenario.take_strength(&best.relaxed.posture);
         if change <= SAME_STRENGTH {

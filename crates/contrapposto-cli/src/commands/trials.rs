@@ -10,11 +10,15 @@ use contrapposto::verdict::Verdict;
 
 use crate::args::SuggestArgs;
 
+/// Number of cores of the machine, as far as it is known.
+pub(super) fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
 impl SuggestArgs {
     /// The budget of a job that took `steps` solver steps; `None` where nothing is to be tried.
     pub(super) fn budget(self, steps: usize) -> Option<Budget> {
-        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let budget = Budget::of_job(steps, threads);
+        let budget = Budget::of_job(steps, cores());
         (!self.no_suggest).then_some(Budget { steps: self.suggest_steps.unwrap_or(budget.steps), ..budget })
     }
 }

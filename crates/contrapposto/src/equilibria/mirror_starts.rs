@@ -13,33 +13,36 @@ use super::solvers::{Start, Way};
 const MIRRORED: usize = 3;
 
 impl Finder<'_> {
-    /// Solves from the mirror image of each explored posture.
+    /// Solves from the mirror image of each explored posture whose image was not found itself.
     pub(super) fn explore_mirror_images(&mut self) {
-        let Some(mirror) = Mirror::of(self.search.model) else { return };
-        let kept = coordinates_of_unlike_limbs(self.search, &mirror);
-        let images = self.found.iter().filter_map(|found| found.image(self.search.model, &mirror, &kept));
-        self.solve_all(images.map(|image| from_image(Stage::Exploratory, image)).collect());
+        let images = self.images(&self.found);
+        let start = |image: Candidate| {
+            let start = from_image(Stage::Exploratory, &image);
+            Start { unless_found: Some(image), ..start }
+        };
+        self.solve_all(images.into_iter().map(start).collect());
     }
 
     /// Converges from the mirror images of the best postures.
     pub(super) fn mirror_best(&mut self) {
-        let Some(mirror) = Mirror::of(self.search.model) else { return };
-        let kept = coordinates_of_unlike_limbs(self.search, &mirror);
         let mut best = self.selected(Stage::Converged);
         best.sort_by(|&a, &b| self.found[a].compare(&self.found[b]));
-        best.truncate(MIRRORED);
-        let images = best.iter().filter_map(|&i| self.found[i].image(self.search.model, &mirror, &kept));
-        self.solve_all(
-            images.map(|image| Start { unless_found: None, ..from_image(Stage::Converged, image) }).collect(),
-        );
+        let images = self.images(best.into_iter().take(MIRRORED).map(|i| &self.found[i]));
+        self.solve_all(images.iter().map(|image| from_image(Stage::Converged, image)).collect());
+    }
+
+    /// The mirror images of postures, where the body has them.
+    fn images<'c>(&self, postures: impl IntoIterator<Item = &'c Candidate>) -> Vec<Candidate> {
+        let Some(mirror) = Mirror::of(self.search.model) else { return vec![] };
+        let kept = coordinates_of_unlike_limbs(self.search, &mirror);
+        postures.into_iter().filter_map(|posture| posture.image(self.search.model, &mirror, &kept)).collect()
     }
 }
 
-/// The start at a mirror image, which is left out where its posture was found already.
-fn from_image(stage: Stage, image: Candidate) -> Start {
+/// The start at a mirror image.
+fn from_image(stage: Stage, image: &Candidate) -> Start {
     let labels = vec![format!("mirror image of: {}", image.starts[0])];
-    let (from, way) = (image.relaxed.posture.clone(), Way::ToTasks(vec![]));
-    Start { stage, from, way, labels, unless_found: Some(image) }
+    Start { stage, from: image.relaxed.posture.clone(), way: Way::ToTasks(vec![]), labels, unless_found: None }
 }
 
 /// The coordinates of limbs that have another role than their partners: of the two, one has a support, a task or a load more.

@@ -15,8 +15,8 @@
 //! 5. the mirror image of every posture found, where the body has one ([`Mirror`]), moved to the tasks likewise; limbs that have other roles than
 //!    their partners, as a hand that works beside one that rests, keep their angles in it (`mirror_starts.rs`).
 //!
-//! What comes of a start depends on nothing that was solved before (`solvers.rs`), so that starts may be solved on several threads
-//! ([`Search::threads`]); they are taken in their order.
+//! The posture to which a start leads depends on nothing that was solved before (`solvers.rs`). So several threads may solve starts
+//! ([`Search::threads`]); their postures are taken in the order of the starts.
 //!
 //! From every different posture that does not need far more effort than the easiest one, basin hopping then converges, in descents
 //! that cost a third of a step of priorities each. Two postures count as one if at no joint the torque of loads or of
