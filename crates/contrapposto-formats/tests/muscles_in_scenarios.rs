@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests: helpers outside #[test] functions too")]
 
+#[path = "common/muscled_arm.rs"]
+mod muscled_arm;
 #[path = "common/shared.rs"]
 mod shared;
 
@@ -12,34 +14,9 @@ use contrapposto::model::{Model, Side};
 use contrapposto::passive::PassiveLaw;
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{Run, Scenario};
-use contrapposto_formats::read_run;
-use contrapposto_formats::tissue::{MuscleUse, Person, SourcedModel};
+use contrapposto_formats::tissue::MuscleUse;
+use muscled_arm::{arm, opened, scenario};
 use shared::shared;
-
-/// A muscle `arm` metres in front of the elbow.
-fn muscle(name: &str, arm: f64) -> String {
-    format!(
-        "<Thelen2003Muscle name=\"{name}\"><GeometryPath><PathPointSet><objects>
-         <PathPoint name=\"p\"><socket_parent_frame>/ground</socket_parent_frame><location>{arm} 0.2 0</location></PathPoint>
-         <PathPoint name=\"o\"><socket_parent_frame>/bodyset/b</socket_parent_frame><location>{arm} -0.3 0</location></PathPoint>
-         </objects></PathPointSet></GeometryPath><max_isometric_force>900</max_isometric_force>
-         <optimal_fiber_length>0.2</optimal_fiber_length><tendon_slack_length>0.28</tendon_slack_length></Thelen2003Muscle>"
-    )
-}
-
-/// A forearm on the adult's elbow, with a muscle on each side of it.
-fn arm() -> String {
-    format!(
-        "<OpenSimDocument Version=\"40500\"><Model name=\"m\">
-         <BodySet><objects><Body name=\"b\"><mass>1.5</mass><mass_center>0 -0.2 0</mass_center></Body></objects></BodySet>
-         <JointSet><objects><PinJoint name=\"j\"><socket_parent_frame>/ground</socket_parent_frame>
-           <socket_child_frame>/bodyset/b</socket_child_frame>
-           <coordinates><Coordinate name=\"elbow_flex_r\"><range>0 2.4</range></Coordinate></coordinates></PinJoint></objects></JointSet>
-         <ForceSet><objects>{}{}</objects></ForceSet></Model></OpenSimDocument>",
-        muscle("front", 0.05),
-        muscle("back", -0.05),
-    )
-}
 
 /// The same with a bushing about the elbow, so that its passive torque falls with the angle.
 fn sprung_arm() -> String {
@@ -65,25 +42,6 @@ start = { elbow_flex_r = { positive = 0.7 } }
 [run]
 duration_s = 20
 "#;
-
-/// The body of a file whose muscles are used, and the same with the built-in data alone.
-fn opened(bytes: &[u8], uses: MuscleUse) -> [SourcedModel; 2] {
-    let no_includes = &mut |_: &str| Err("none".to_owned());
-    let mut opened = SourcedModel::read("arm.osim", bytes, None, no_includes).unwrap();
-    let library = opened.clone().fill(&Person::default()).unwrap();
-    assert!(opened.use_muscles(uses));
-    [opened.fill(&Person::default()).unwrap(), library]
-}
-
-/// The scenario, and the notes about it.
-fn scenario(bytes: &[u8], text: &str, uses: MuscleUse) -> (Scenario, Vec<String>) {
-    let [mut model, library] = opened(bytes, uses);
-    let (muscles, _) = model.scenario_muscles(&library).unwrap();
-    let mut run = read_run("tired.toml", text.as_bytes(), Some(model.model)).unwrap();
-    run.notes.clear();
-    run.take_muscles(muscles);
-    (run.scenario, run.notes)
-}
 
 /// The body as `torques --muscles` takes it: the muscles are no laws of it. Joints that the scenario leaves to a curve have that here, too.
 fn body_of_torques(scenario: &Scenario, bytes: &[u8], uses: MuscleUse) -> (Model, JointMuscles) {

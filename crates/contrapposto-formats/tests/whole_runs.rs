@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use contrapposto::model::{Adult, Model, adult};
-use contrapposto::simulation::{Run, Scenario, Snapshot, Summary, run};
+use contrapposto::simulation::{Run, RunSettings, Scenario, Snapshot, Summary, run};
 use contrapposto_formats::{osim, read_scenario, scenario_model};
 use samples::{Worst, digest};
 
@@ -119,8 +119,12 @@ impl Course {
     }
 }
 
+fn with_threads(scenario: &Scenario, threads: usize) -> Scenario {
+    Scenario { run: RunSettings { threads, ..scenario.run }, ..scenario.clone() }
+}
+
 /// Alone from start to end, then from every mark to the next one: every third mark by two threads, every third by three, by
-/// eight.
+/// eight; and each start by as many threads for its search.
 #[test]
 fn every_run_is_the_same_from_every_mark_and_for_any_number_of_threads() {
     let scenarios: Vec<Scenario> = scenarios().into_iter().map(|(_, scenario)| scenario).collect();
@@ -131,7 +135,12 @@ fn every_run_is_the_same_from_every_mark_and_for_any_number_of_threads() {
     }
     for (share, threads) in [2, 3, 8].into_iter().enumerate() {
         let mut pieces = vec![];
-        for (scenario, course) in scenarios.iter().zip(&courses) {
+        let threaded: Vec<Scenario> = scenarios.iter().map(|scenario| with_threads(scenario, threads)).collect();
+        for (of_all, (scenario, course)) in threaded.iter().zip(&courses).enumerate() {
+            if of_all % 3 == share {
+                let begun = Run::new(scenario).unwrap();
+                assert!(begun.snapshot() == &course.marks[0], "{}: {threads} threads begin elsewhere", scenario.title);
+            }
             let marks = (0..course.marks.len()).filter(|mark| course.marks.len() < 3 || mark % 3 == share);
             pieces.extend(marks.map(|mark| (course, mark, scenario)));
         }

@@ -410,7 +410,8 @@ fn held_arm(mass: f64) -> Scenario {
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
         muscles: None,
+        muscles_tire: false,
         start_fatigue: vec![[0.0; 2]; n],
-        run: RunSettings { duration: 600.0, step: 0.5, stop_when_settled: false },
+        run: RunSettings { duration: 600.0, step: 0.5, stop_when_settled: false, threads: 1 },
     }
 }

@@ -91,8 +91,9 @@ fn scenario(model: Model, on_its_feet: bool) -> Scenario {
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
         muscles: None,
+        muscles_tire: false,
         start_fatigue: vec![[0.7; 2]; n],
-        run: RunSettings { duration: 1.0, step: 1.0 / 30.0, stop_when_settled: false },
+        run: RunSettings { duration: 1.0, step: 1.0 / 30.0, stop_when_settled: false, threads: 1 },
         model,
     }
 }

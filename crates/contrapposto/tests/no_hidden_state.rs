@@ -91,8 +91,9 @@ impl Setting {
             },
             hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
             muscles: None,
+            muscles_tire: false,
             start_fatigue: vec![[0.5; 2]; n],
-            run: RunSettings { duration: 0.5, step: 1.0 / 30.0, stop_when_settled: false },
+            run: RunSettings { duration: 0.5, step: 1.0 / 30.0, stop_when_settled: false, threads: 1 },
         }
     }
 

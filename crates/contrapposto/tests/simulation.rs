@@ -48,8 +48,9 @@ fn loaded_elbow(load: f64, duration: f64) -> (Scenario, usize) {
         },
         hysteresis: Hysteresis { critical_level: 0.6, recovery_level: 0.3 },
         muscles: None,
+        muscles_tire: false,
         start_fatigue: vec![[0.0; 2]; n],
-        run: RunSettings { duration, step: 1.0 / 30.0, stop_when_settled: false },
+        run: RunSettings { duration, step: 1.0 / 30.0, stop_when_settled: false, threads: 1 },
     };
     (scenario, elbow)
 }

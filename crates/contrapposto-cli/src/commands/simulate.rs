@@ -12,7 +12,7 @@ use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_
 use indicatif::ProgressBar;
 
 use self::snapshot::{SNAPSHOT, go_on, save};
-use super::trials::{advice_of_run, advice_without_posture};
+use super::trials::{advice_of_run, advice_without_posture, cores};
 use crate::args::{DemoArgs, SimulateArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::interruption;
@@ -56,7 +56,8 @@ const RUN_FILES: [&str; 17] = [
 const BETWEEN_SAVES: Duration = Duration::from_secs(20);
 
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
-    let run = read(ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?)?;
+    let mut run = read(ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?)?;
+    run.scenario.run.threads = cores();
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
     let SimulateArgs { resume, figures, json, suggest, wooden, .. } = *args;
@@ -67,13 +68,14 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
 pub(crate) fn read(file: ScenarioFile) -> Result<RunScenario, Fail> {
     let ScenarioFile { name, bytes, model, muscles } = file;
     let mut run = read_run(&name, &bytes, model)?;
-    run.take_muscles(muscles);
+    run.take_muscles(muscles).map_err(|why| Fail::Refused(format!("{name}: {why}")))?;
     Ok(run)
 }
 
 pub(crate) fn demo(args: &DemoArgs) -> Result<(), Fail> {
     let (name, text) = if args.figure_8 { FIGURE_8 } else { DEMO };
-    let run = read_run(name, text.as_bytes(), None)?;
+    let mut run = read_run(name, text.as_bytes(), None)?;
+    run.scenario.run.threads = cores();
     carry_out(&run, Some(&args.out), How { json: args.json, ..How::default() })?;
     if args.json {
         return Ok(());

@@ -34,7 +34,11 @@ pub(crate) fn advice_of_run(
     let Some(budget) = suggest.budget(steps) else { return Advice::default() };
     let job = Job::from(scenario);
     let groups = Worked::in_run(scenario, summary);
-    let breaks = || with_breaks(&groups, scenario.run.end(), (0.0, summary.end_time), verdict);
+    let breaks = || match summary.muscles {
+        // Breaks are counted with the laws of groups; muscles that tire one by one have none.
+        Some(_) => None,
+        None => with_breaks(&groups, scenario.run.end(), (0.0, summary.end_time), verdict),
+    };
     Advice::new(
         verdict,
         &job,

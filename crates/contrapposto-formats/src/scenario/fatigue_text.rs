@@ -18,6 +18,9 @@ pub(crate) struct FatigueText {
     pub(crate) sex: Option<FatigueSexText>,
     /// Endurance curve of every group, by name; each joint's own of Frey-Law & Avin 2010 when left out.
     pub(crate) curve: Option<String>,
+    /// The things that tire: `muscle`, each muscle of the model on its own, or `joint`, the groups of each joint; `muscle` when left out where the model's muscles
+    /// give strength and the law is 3CC-r.
+    pub(crate) by: Option<TiresText>,
     /// Fatigue at which a group asks for relief, above 0, at most 1.
     pub(crate) critical_level: f64,
     /// Fatigue below which it no longer does.
@@ -30,7 +33,16 @@ impl Default for FatigueText {
     fn default() -> Self {
         let start = BTreeMap::new();
         let law = LawText::ThreeCompartment;
-        Self { law, parameters: None, sex: None, curve: None, critical_level: 0.6, recovery_level: 0.3, start }
+        Self {
+            law,
+            parameters: None,
+            sex: None,
+            curve: None,
+            by: None,
+            critical_level: 0.6,
+            recovery_level: 0.3,
+            start,
+        }
     }
 }
 
@@ -42,6 +54,16 @@ pub(crate) enum LawText {
     ThreeCompartment,
     /// Integral of time over endurance time.
     Endurance,
+}
+
+/// The things that tire.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum TiresText {
+    /// Each muscle on its own; the others take over.
+    Muscle,
+    /// The two muscle groups of each coordinate.
+    Joint,
 }
 
 /// Published parameters of the three-compartment controller.

@@ -1,6 +1,7 @@
 //! Reads a scenario for `contrapposto simulate`: a checked experiment over time.
 
 use contrapposto::fatigue::Hysteresis;
+use contrapposto::joint_torques::MuscleShareError;
 use contrapposto::model::Model;
 use contrapposto::simulation::{
     ReliefSettings, RunSettings, Scenario, ScenarioError, Setting, StrategySettings, Tables, TaskSettings,
@@ -8,7 +9,7 @@ use contrapposto::simulation::{
 
 use super::error_keys::scenario_path;
 use super::events::{change_strategies, check_events_happen, events};
-use super::fatigue_text::FatigueText;
+use super::fatigue_text::{FatigueText, TiresText};
 use super::names::coordinate;
 use super::posture::free;
 use super::setup::Setup;
@@ -27,15 +28,31 @@ pub struct RunScenario {
     pub things: Vec<Thing>,
     /// Changes and additions of the reader, a sentence each.
     pub notes: Vec<String>,
+    /// Whether the file lets muscles tire one by one, where it says.
+    by_muscle: Option<bool>,
 }
 
 impl RunScenario {
-    /// Takes the muscles of the scenario's model, in the posture of the start.
-    pub fn take_muscles(&mut self, muscles: Option<ScenarioMuscles>) {
-        let Some(muscles) = muscles else { return };
-        let (muscles, notes) = muscles.settle(&mut self.scenario.model, &self.scenario.start, true);
-        self.notes.extend(notes);
-        self.scenario.muscles = Some(muscles);
+    /// Takes the muscles of the scenario's model, in the posture of the start. They tire one by one unless the file says otherwise, or their groups
+    /// have another law than 3CC-r.
+    ///
+    /// # Errors
+    /// A sentence where the file lets muscles tire one by one, and they cannot.
+    pub fn take_muscles(&mut self, muscles: Option<ScenarioMuscles>) -> Result<(), String> {
+        if let Some(muscles) = muscles {
+            let (muscles, notes) = muscles.settle(&mut self.scenario.model, &self.scenario.start, true);
+            self.notes.extend(notes);
+            self.scenario.muscles = Some(muscles);
+        }
+        let tire = match &self.scenario.muscles {
+            Some(muscles) => muscles.can_tire(&self.scenario.model),
+            None => Err(MuscleShareError::NoMuscles),
+        };
+        self.scenario.muscles_tire = self.by_muscle.unwrap_or(tire.is_ok());
+        match tire {
+            Err(why) if self.scenario.muscles_tire => Err(format!("[fatigue] by = \"muscle\": {why}")),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -79,12 +96,13 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Ru
     let strategies = change_strategies(at, &model, &["strategy", "of"], strategies, &strategy.of)?;
     let goals = tasks.iter().map(|task| task.goal.clone()).collect();
     let events = events(at, &model, text, goals, &places, strategies.clone())?;
-    let FatigueText { critical_level, recovery_level, .. } = text.fatigue;
+    let FatigueText { critical_level, recovery_level, by, .. } = text.fatigue;
     let scenario = Scenario {
         title: text.title.clone(),
         start_fatigue: start_fatigue(at, &model, &text.fatigue)?,
         model,
         muscles: None,
+        muscles_tire: false,
         start,
         free,
         loads,
@@ -99,11 +117,16 @@ fn scenario(at: &Located, text: &ScenarioText, file: Option<Model>) -> Result<Ru
         },
         relief: relief(&text.relief, whole),
         hysteresis: Hysteresis { critical_level, recovery_level },
-        run: RunSettings { duration: run.duration_s, step: run.step_s, stop_when_settled: run.stop_when_settled },
+        run: RunSettings {
+            duration: run.duration_s,
+            step: run.step_s,
+            stop_when_settled: run.stop_when_settled,
+            threads: 1,
+        },
     };
     scenario.check().map_err(|error| at.error(scenario_path(&error), in_units_of_file(&error, text, run), None))?;
     check_events_happen(at, text, &scenario.run)?;
-    Ok(RunScenario { scenario, things, notes })
+    Ok(RunScenario { scenario, things, notes, by_muscle: by.map(|by| by == TiresText::Muscle) })
 }
 
 /// The tables that a run needs; a table that only a pose takes is refused.

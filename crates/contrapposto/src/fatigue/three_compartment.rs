@@ -51,7 +51,7 @@ impl Compartments {
     }
 
     /// The rest of one rests; rounding and the last step of the integration leave no share outside 0..=1.
-    pub(super) fn of(active: f64, fatigued: f64) -> Self {
+    pub(crate) fn of(active: f64, fatigued: f64) -> Self {
         let fatigued = fatigued.clamp(0.0, 1.0);
         let active = active.clamp(0.0, 1.0 - fatigued);
         Self { active, resting: (1.0 - active - fatigued).max(0.0), fatigued }

@@ -60,19 +60,21 @@ impl MuscleShare {
     }
 }
 
-impl JointTorques {
-    /// The torques of the last update that the muscles share.
+impl MuscleShare {
+    /// The share of `muscles` that were last computed in a posture in which the body gives the torque `active` at each rate, N m.
     ///
     /// # Errors
-    /// [`MuscleShareError`] of a body without muscles that give strength, and of groups that tire by another law.
-    ///
-    /// # Panics
-    /// When the last update did not compute active torque.
-    pub fn muscle_share(&self, model: &Model) -> Result<MuscleShare, MuscleShareError> {
-        let muscles = self.muscles().filter(|muscles| !muscles.strong().is_empty());
-        let muscles = muscles.ok_or(MuscleShareError::NoMuscles)?;
+    /// [`MuscleShareError`] of muscles that give no strength, and of groups that tire by another law.
+    pub(crate) fn new(
+        model: &Model,
+        muscles: &JointMuscles,
+        active: impl Fn(usize) -> f64,
+    ) -> Result<Self, MuscleShareError> {
+        if muscles.strong().is_empty() {
+            return Err(MuscleShareError::NoMuscles);
+        }
         let rates = muscles.strong().to_vec();
-        let torques = rates.iter().map(|&rate| self.active_torque()[rate]).collect();
+        let torques = rates.iter().map(|&rate| active(rate)).collect();
         let works_for = works_for(model, muscles);
         let first = rates.first().and_then(|&rate| Some((model.rates[rate].coordinate?, Side::Positive)));
         let law = |of: &Option<(usize, Side)>| {
@@ -82,22 +84,52 @@ impl JointTorques {
             law_of(&groups[side.index()], &model.coordinates[coordinate].name)
         };
         let laws = works_for.iter().map(law).collect::<Result<_, _>>()?;
-        Ok(MuscleShare { rates, torques, forces: muscles.forces().collect(), works_for, laws })
+        Ok(Self { rates, torques, forces: muscles.forces().collect(), works_for, laws })
     }
 }
 
-/// The group that each muscle works for.
+impl JointMuscles {
+    /// Whether muscles can tire one by one.
+    ///
+    /// # Errors
+    /// [`MuscleShareError`] of muscles that give no strength, and of groups that tire by another law.
+    pub fn can_tire(&self, model: &Model) -> Result<(), MuscleShareError> {
+        MuscleShare::new(model, self, |_| 0.0).map(|_| ())
+    }
+
+    /// The coordinate and the side of the group that each muscle works for in the posture of the last update: of all joints whose strength
+    /// muscles give, the one about which its moment arm is greatest, and the sense in which it turns there; `None` of one that turns none.
+    pub(crate) fn works_for_now(&self, model: &Model) -> Vec<Option<(usize, Side)>> {
+        let of_muscle = |path: usize| {
+            let arms = self.about_axes().moment_arms(path);
+            let turned = self.strong().iter().filter(|&&rate| arms[rate] != 0.0);
+            let rate = *turned.max_by(|&&a, &&b| arms[a].abs().total_cmp(&arms[b].abs()))?;
+            Some((model.rates[rate].coordinate?, Side::of(arms[rate])))
+        };
+        self.musculature().muscles.iter().map(|muscle| of_muscle(muscle.spec().path)).collect()
+    }
+}
+
+impl JointTorques {
+    /// The torques of the last update that the muscles share.
+    ///
+    /// # Errors
+    /// [`MuscleShareError`] of a body without muscles that give strength, and of groups that tire by another law.
+    ///
+    /// # Panics
+    /// When the last update did not compute active torque.
+    pub fn muscle_share(&self, model: &Model) -> Result<MuscleShare, MuscleShareError> {
+        let muscles = self.muscles().ok_or(MuscleShareError::NoMuscles)?;
+        MuscleShare::new(model, muscles, |rate| self.active_torque()[rate])
+    }
+}
+
+/// The group that each muscle works for: in the default posture.
 fn works_for(model: &Model, muscles: &JointMuscles) -> Vec<Option<(usize, Side)>> {
     let mut at_default = muscles.clone();
     // A new body is in its default posture, which fits it.
     let _ = at_default.update(model, &model.default_posture(), &Kinematics::new(model));
-    let of_muscle = |path: usize| {
-        let arms = at_default.about_axes().moment_arms(path);
-        let turned = muscles.strong().iter().filter(|&&rate| arms[rate] != 0.0);
-        let rate = *turned.max_by(|&&a, &&b| arms[a].abs().total_cmp(&arms[b].abs()))?;
-        Some((model.rates[rate].coordinate?, Side::of(arms[rate])))
-    };
-    muscles.musculature().muscles.iter().map(|muscle| of_muscle(muscle.spec().path)).collect()
+    at_default.works_for_now(model)
 }
 
 fn law_of(group: &MuscleGroup, coordinate: &str) -> Result<ThreeCompartment, MuscleShareError> {

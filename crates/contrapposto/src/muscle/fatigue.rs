@@ -127,12 +127,41 @@ impl MuscleFatigue {
     /// # Panics
     /// As [`MuscleFatigue::share`].
     pub fn begin(&mut self, asked: &SharedTorques<'_>) -> Result<bool, SharingError> {
+        self.begin_tired(asked, |_| 0.0)
+    }
+
+    /// The same with the fatigue `level` (0..=1) of every muscle, under the load that it would have if all were rested.
+    ///
+    /// # Errors
+    /// As [`MuscleFatigue::share`].
+    ///
+    /// # Panics
+    /// As [`MuscleFatigue::share`].
+    pub fn begin_tired(
+        &mut self,
+        asked: &SharedTorques<'_>,
+        level: impl Fn(usize) -> f64,
+    ) -> Result<bool, SharingError> {
         self.states.fill(Compartments::with_fatigue(0.0, 0.0));
-        let held = self.share(asked)?;
-        for (state, load) in self.states.iter_mut().zip(&self.loads) {
-            *state = Compartments::with_fatigue(0.0, *load);
+        let mut held = self.share(asked)?;
+        let mut is_tired = false;
+        for (muscle, (state, load)) in self.states.iter_mut().zip(&self.loads).enumerate() {
+            *state = Compartments::with_fatigue(level(muscle), *load);
+            is_tired |= state.fatigued > 0.0;
+        }
+        if is_tired {
+            held = self.share(asked)?;
         }
         Ok(held)
+    }
+
+    /// Goes on from the compartments of every muscle in another run, and forgets what only makes the next answer faster.
+    ///
+    /// # Panics
+    /// Unless there is a state for every muscle.
+    pub(crate) fn resume(&mut self, states: &[Compartments]) {
+        self.states.copy_from_slice(states);
+        self.optimisation = StaticOptimisation::default();
     }
 
     /// Holds the torques for so many seconds. Returns the greatest change of an activation between start, middle and end; `None` where
@@ -164,6 +193,23 @@ impl MuscleFatigue {
             return Ok(None);
         }
         Ok(Some(first.max(self.change())))
+    }
+
+    /// Gives the torques for so many seconds, or as much of them as the muscles can. Returns whether they gave them all the time.
+    ///
+    /// # Errors
+    /// As [`MuscleFatigue::share`].
+    ///
+    /// # Panics
+    /// As [`MuscleFatigue::share`].
+    pub fn work(&mut self, asked: &SharedTorques<'_>, seconds: f64) -> Result<bool, SharingError> {
+        if self.advance(asked, seconds)?.is_some() {
+            return Ok(true);
+        }
+        self.share(asked)?;
+        self.carry(seconds);
+        self.share(asked)?;
+        Ok(false)
     }
 
     /// Returns to the start of the last step.

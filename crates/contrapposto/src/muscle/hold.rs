@@ -30,9 +30,26 @@ pub fn hold(
     fatigue: &mut MuscleFatigue,
     asked: &SharedTorques<'_>,
     most: f64,
+    visit: impl FnMut(f64, &MuscleFatigue),
+) -> Result<MuscleHold, SharingError> {
+    fatigue.begin(asked)?;
+    hold_on(fatigue, asked, most, visit)
+}
+
+/// As [`hold`], from the present state of the muscles.
+///
+/// # Errors
+/// As [`hold`].
+///
+/// # Panics
+/// As [`hold`].
+pub fn hold_on(
+    fatigue: &mut MuscleFatigue,
+    asked: &SharedTorques<'_>,
+    most: f64,
     mut visit: impl FnMut(f64, &MuscleFatigue),
 ) -> Result<MuscleHold, SharingError> {
-    let mut held = fatigue.begin(asked)?;
+    let mut held = fatigue.share(asked)?;
     let (mut time, mut step) = (0.0, FIRST_HOLD_STEP);
     let mut failing = !held;
     visit(time, fatigue);

@@ -31,7 +31,7 @@ pub use fiber::{
 };
 pub(crate) use geometry::Line;
 pub use geometry::{PathCorner, PathGeometry};
-pub use hold::{MuscleHold, hold};
+pub use hold::{MuscleHold, hold, hold_on};
 pub use ligament::{Ligament, LigamentLaw};
 pub use path::{Location, MovingPoint, Path, PathPoint, PathWrap, Paths};
 pub use routing::CornerOrigin;

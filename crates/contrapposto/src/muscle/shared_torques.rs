@@ -89,9 +89,14 @@ impl SharedTorques<'_> {
     /// # Panics
     /// As [`SharedTorques::limit`].
     pub fn strengths(&self, capacities: &[f64]) -> Vec<CoupledStrength> {
+        self.strengths_beside(self.torques, capacities)
+    }
+
+    /// The same while the others give `held`, N m, by rate asked for.
+    pub(crate) fn strengths_beside(&self, held: &[f64], capacities: &[f64]) -> Vec<CoupledStrength> {
         self.check(capacities);
         let rows: Vec<Vec<f64>> = self.columns().collect();
-        coupled_within(&rows, &vec![0.0; rows.len()], self.torques, capacities, self.rates)
+        coupled_within(&rows, &vec![0.0; rows.len()], held, capacities, self.rates)
     }
 
     /// Fatigue of the groups of each asked rate, of the positive and the negative sense: `(S0 - S) / (S0 - T)` with the strength `S0` of

@@ -119,7 +119,7 @@ impl Simulation<'_> {
     /// After the last attempt: the relief that was reached is kept if the load of its group has fallen by a larger share than the
     /// effort of the body has risen, else the half-space is let go.
     fn keep_or_let_go(&mut self, i: usize, side: Side) {
-        let load = self.group_load(i, side);
+        let load = self.record.group_load[i][side.index()];
         let State { groups, requests, posture, effort, effort_at_start, .. } = &mut self.state;
         let request = &mut requests[i];
         let before = groups[i][side.index()].load_at_start;
@@ -132,7 +132,7 @@ impl Simulation<'_> {
     fn makes_progress(&self, i: usize, side: Side) -> bool {
         let (coordinate, relief) = (&self.scenario.model.coordinates()[i], &self.scenario.relief);
         let (request, group) = (&self.state.requests[i], &self.state.groups[i][side.index()]);
-        let load = self.group_load(i, side);
+        let load = self.record.group_load[i][side.index()];
         let rests = coordinate.groups.as_ref().is_some_and(|groups| {
             let judged = load.max(group.load_at_start);
             groups[side.index()].fatigue.rests(self.scenario.hysteresis.recovery_level, load, judged)

@@ -137,7 +137,7 @@ pub(super) fn search(
         locked,
         most_work: budget.work,
         scattered: budget.scattered,
-        threads: 1,
+        threads: scenario.run.threads,
     };
     let options = Options { max_step: SEARCH_STEP, max_steps: SEARCH_SOLVE_STEPS, ..Options::least_effort() };
     let found = equilibria(&search, options)?;

@@ -13,6 +13,9 @@ mod goal;
 mod group_state;
 mod joint_motion;
 mod motion;
+mod muscle_course;
+mod muscle_outcome;
+mod muscles_under_way;
 mod path;
 mod prediction;
 mod relief_log;
@@ -25,6 +28,7 @@ mod strength;
 mod summary;
 mod under_way;
 
+pub use muscle_outcome::{MuscleFailure, MuscleOutcome, MuscleSummary};
 pub use relief_log::{ReliefLog, ReliefRecord};
 pub use run::{Run, Snapshot, run};
 pub use sample::{Attempt, Contact, FootStep, Relief, Sample, Standing};

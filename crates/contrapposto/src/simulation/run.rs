@@ -202,6 +202,15 @@ impl<'a> Run<'a> {
     pub fn summary(&self) -> Summary {
         let mut errors = self.so_far.errors.clone();
         errors.count(self.scenario, false);
+        let end = self.so_far.end_time;
+        let muscles = self.simulation.muscle_outcome(end);
+        let mut coordinates = self.so_far.coordinates.clone();
+        for (outcome, i) in muscles.iter().flat_map(|outcome| outcome.coordinates.iter().map(move |&i| (outcome, i))) {
+            for side in Side::BOTH {
+                let left = &mut coordinates[i].final_groups[side.index()].seconds_left;
+                *left = outcome.seconds_left((i, side), end, *left);
+            }
+        }
         Summary {
             hardest: self.so_far.hardest,
             slip: self.so_far.slip,
@@ -211,12 +220,13 @@ impl<'a> Run<'a> {
             fall: self.fall,
             end_time: self.so_far.end_time,
             samples: self.so_far.samples,
-            coordinates: self.so_far.coordinates.clone(),
+            coordinates,
             reliefs: self.so_far.reliefs.clone(),
             effort_at_start: self.so_far.effort_at_start,
             search_cut: self.simulation.state.search_cut,
             foot_steps: self.simulation.foot_steps().to_vec(),
             standing: self.standing.clone(),
+            muscles,
         }
     }
 }

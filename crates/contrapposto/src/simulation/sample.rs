@@ -25,6 +25,9 @@ pub struct Sample<'a> {
     pub active: &'a [f64],
     /// |Active torque| over the strength of the group that works, of every coordinate; 0 where strength is not known.
     pub load: &'a [f64],
+    /// Relative load by which the positive and negative group of every coordinate tires: `load` of the group that works, or where muscles tire one by
+    /// one the torque over the greatest one that rested muscles give beside all others.
+    pub group_load: &'a [[f64; 2]],
     /// Fatigue of the positive and negative group of every coordinate, 0..=1. Depends on the load so far.
     pub fatigue: &'a [[f64; 2]],
     /// Whether the positive and negative group of every coordinate can no longer hold their load.
@@ -57,6 +60,7 @@ pub(super) struct Record {
     pub(super) external: Vec<f64>,
     pub(super) passive: Vec<f64>,
     pub(super) load: Vec<f64>,
+    pub(super) group_load: Vec<[f64; 2]>,
     pub(super) exhausted: Vec<[bool; 2]>,
     pub(super) seconds_left: Vec<[f64; 2]>,
     pub(super) stepping: bool,
@@ -77,6 +81,7 @@ impl Record {
             external: vec![0.0; n],
             passive: vec![0.0; n],
             load: vec![0.0; n],
+            group_load: vec![[0.0; 2]; n],
             exhausted: vec![[false; 2]; n],
             seconds_left: vec![[f64::INFINITY; 2]; n],
             stepping: false,

@@ -4,8 +4,9 @@ use super::Fall;
 use crate::contact::{Missing, Support, SupportError};
 use crate::fatigue::Hysteresis;
 use crate::hybrid::Strategy;
-use crate::joint_torques::{JointMuscles, JointTorquesError};
+use crate::joint_torques::{JointMuscles, JointTorquesError, MuscleShareError};
 use crate::model::Model;
+use crate::muscle::SharingError;
 use crate::posture::{Posture, PostureError};
 use crate::posture_solver::EngineError;
 use crate::statics::{Load, LoadError};
@@ -54,6 +55,8 @@ pub struct RunSettings {
     pub step: f64,
     /// End as soon as relief no longer moves anything and no event is to come.
     pub stop_when_settled: bool,
+    /// Threads for the searches of the run, at least one; their number changes no byte.
+    pub threads: usize,
 }
 
 impl RunSettings {
@@ -106,6 +109,8 @@ pub struct Scenario {
     pub model: Model,
     /// Muscles that give groups of the body strength and its coordinates passive torque, those of each sample's posture.
     pub muscles: Option<JointMuscles>,
+    /// Groups whose strength is the muscles' tire as these muscles do, each of which tires on its own; else by the law of their joint.
+    pub muscles_tire: bool,
     /// The posture at the start, inside all ranges.
     pub start: Posture,
     /// Whether each coordinate may move.
@@ -224,6 +229,12 @@ pub enum ScenarioError {
     /// A posture, a load or a passive law was refused while torques were computed.
     #[error(transparent)]
     Torques(#[from] JointTorquesError),
+    /// Muscles cannot tire one by one.
+    #[error(transparent)]
+    MuscleShare(#[from] MuscleShareError),
+    /// Torques could not be shared among the muscles.
+    #[error(transparent)]
+    Sharing(#[from] SharingError),
     /// The body cannot be moved toward its tasks.
     #[error(transparent)]
     Relax(#[from] EngineError),

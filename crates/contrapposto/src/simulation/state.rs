@@ -6,6 +6,7 @@ use super::Event;
 use super::easiest::Eased;
 use super::goal::Goal;
 use super::group_state::GroupState;
+use super::muscle_course::MuscleState;
 use super::path::Path;
 use super::sample::FootStep;
 use crate::constraint::HalfSpace;
@@ -52,6 +53,8 @@ pub(super) struct State {
     pub(super) searched_here: bool,
     /// The posture in which the last search at rest found nothing easier, since tasks, loads and supports are as they are.
     pub(super) eased: Option<Eased>,
+    /// State of the muscles of a run in which they tire one by one.
+    pub(super) muscles: Option<MuscleState>,
 }
 
 /// The constraint that the relief of one coordinate puts on the posture, and what its decision predicts.
@@ -126,6 +129,7 @@ impl State {
             search_cut: false,
             searched_here: true,
             eased: None,
+            muscles: None,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::easiest::{Eased, Searched};
 use super::motion::Motion;
+use super::muscle_course::MuscleCourse;
 use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
 use super::state::State;
@@ -27,7 +28,9 @@ pub struct Simulation<'a> {
     /// The body, with the strength of its present posture.
     pub(super) model: SharedModel<'a>,
     /// For a body with muscles.
-    strength: Option<PosedStrength>,
+    pub(super) strength: Option<PosedStrength>,
+    /// The muscles of a run in which they tire one by one.
+    pub(super) course: Option<MuscleCourse>,
     pub(super) record: Record,
     /// Values of the posture and active torque before the last motion.
     values_before: Vec<f64>,
@@ -64,6 +67,7 @@ impl<'a> Simulation<'a> {
                 simulation.state.groups[i][side.index()].fatigue = Some(start);
             }
         }
+        simulation.begin_muscles()?;
         Ok(simulation)
     }
 
@@ -86,6 +90,11 @@ impl<'a> Simulation<'a> {
             simulation.apply(event)?;
         }
         simulation.state = state;
+        match (&mut simulation.course, &simulation.state.muscles) {
+            (Some(course), Some(muscles)) if muscles.fits(course) => course.resume(muscles),
+            (None, None) => {}
+            _ => return Err(ScenarioError::Snapshot),
+        }
         Ok(simulation)
     }
 
@@ -97,6 +106,10 @@ impl<'a> Simulation<'a> {
             None => None,
         };
         let model = model.unwrap_or(SharedModel::Borrowed(&scenario.model));
+        let course = match scenario.muscles.as_ref().filter(|_| scenario.muscles_tire) {
+            Some(muscles) => Some(MuscleCourse::new(&scenario.model, muscles, scenario.run.step)?),
+            None => None,
+        };
         let placed_at = state.placed_at.as_ref().unwrap_or(&scenario.start);
         Ok(Self {
             motion: Motion::new(scenario, model.clone(), placed_at)?,
@@ -104,6 +117,7 @@ impl<'a> Simulation<'a> {
             state,
             model,
             strength,
+            course,
             record: Record::new(n),
             values_before: vec![0.0; n],
             active_before: vec![0.0; n],
@@ -120,6 +134,9 @@ impl<'a> Simulation<'a> {
     /// are forgotten.
     pub(super) fn state(&mut self) -> State {
         self.motion.forget();
+        if let (Some(course), Some(muscles)) = (&mut self.course, &self.state.muscles) {
+            course.resume(muscles);
+        }
         self.state.clone()
     }
 
@@ -148,6 +165,7 @@ impl<'a> Simulation<'a> {
             passive: &self.record.passive,
             active: &self.state.active,
             load: &self.record.load,
+            group_load: &self.record.group_load,
             fatigue: &self.state.fatigue,
             exhausted: &self.record.exhausted,
             seconds_left: &self.record.seconds_left,
@@ -168,7 +186,7 @@ impl<'a> Simulation<'a> {
         self.carry_out_reliefs()?;
         self.update_fatigue();
         self.decide()?;
-        self.load_groups();
+        self.load_groups()?;
         self.state.steps += 1;
         Ok(())
     }
@@ -315,10 +333,16 @@ impl<'a> Simulation<'a> {
     fn update_fatigue(&mut self) {
         let stepping = self.state.path.as_ref().is_some_and(Path::has_step);
         for i in 0..self.state.groups.len() {
+            let of_muscles = self.groups_of_muscles(i);
             for side in Side::BOTH {
-                let load = self.group_load(i, side);
+                let mut load = self.group_load(i, side);
                 let group = &mut self.state.groups[i][side.index()];
+                if let Some(groups) = of_muscles {
+                    let (fatigue, share) = groups[side.index()];
+                    (group.fatigue, load) = (Some(fatigue), share);
+                }
                 let Some(fatigue) = group.fatigue else { continue };
+                self.record.group_load[i][side.index()] = load;
                 // Three-compartment fatigue is relative to the load. A recovering group is judged at the load that tired it:
                 // taking the load off must not count as having rested (docs/deviations.md, D15).
                 let judged = if group.recovering { load.max(group.load_at_start) } else { load };
@@ -339,7 +363,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Loads every muscle group for one time step.
-    fn load_groups(&mut self) {
+    fn load_groups(&mut self) -> Result<(), ScenarioError> {
         let step = self.scenario.run.step;
         for (i, coordinate) in self.scenario.model.coordinates().iter().enumerate() {
             let Some(groups) = &coordinate.groups else { continue };
@@ -349,5 +373,6 @@ impl<'a> Simulation<'a> {
                 group.fatigue = group.fatigue.map(|state| groups[side.index()].fatigue.advance(state, load, step));
             }
         }
+        self.load_muscles()
     }
 }

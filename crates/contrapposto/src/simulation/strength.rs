@@ -19,6 +19,11 @@ impl PosedStrength {
         Self { muscles, posture: None }
     }
 
+    /// The muscles, in the posture of the last [`PosedStrength::pose`].
+    pub(super) fn muscles(&self) -> &JointMuscles {
+        &self.muscles
+    }
+
     /// The body of `model` with the strength and the passive torque of `posture`; `None` where it has that already.
     pub(super) fn pose(&mut self, model: &Model, posture: &Posture) -> Result<Option<Arc<Model>>, ScenarioError> {
         if self.posture.as_ref() == Some(posture) {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{FootStep, ReliefLog, Sample, Standing};
+use super::{FootStep, MuscleOutcome, ReliefLog, Sample, Standing};
 use crate::contact::{Missing, Slip};
 use crate::fatigue::LoadHistory;
 use crate::hybrid::{Case, Decision};
@@ -153,6 +153,8 @@ pub struct Summary {
     pub sliding_since: Option<f64>,
     /// Balance, tasks and effort of the body in the last sample.
     pub standing: Option<Standing>,
+    /// The muscles, where they tire one by one.
+    pub muscles: Option<MuscleOutcome>,
 }
 
 impl CoordinateSummary {
@@ -193,8 +195,7 @@ impl CoordinateSummary {
         self.peak_load = self.peak_load.max(sample.load[i]);
         for side in Side::BOTH.map(Side::index) {
             self.peak_fatigue[side] = self.peak_fatigue[side].max(sample.fatigue[i][side]);
-            let works = Side::of(sample.active[i]).index() == side;
-            let load = if works { sample.load[i] } else { 0.0 };
+            let load = sample.group_load[i][side];
             self.loads[side].push(sample.time, load);
             let left = sample.seconds_left[i][side];
             self.final_groups[side] =

@@ -32,10 +32,11 @@ pub struct Suggestion {
     pub load: Option<f64>,
 }
 
-/// Runs a scenario with a change until a group needs more than its strength or fails, or a target is missed, or to its end, and judges
+/// Runs a scenario with a change in one thread until a group needs more than its strength or fails, or a target is missed, or to its end, and judges
 /// it. No verdict: the changed scenario is not in order, or `go_on` said no.
 pub fn try_run(scenario: &Scenario, change: &Change, go_on: impl Fn() -> bool) -> Trial {
-    let changed = change.apply(scenario);
+    let mut changed = change.apply(scenario);
+    changed.run.threads = 1;
     let mut run = match Run::new(&changed) {
         Ok(run) => run,
         Err(ScenarioError::CannotStand(missing)) => {

@@ -35,9 +35,15 @@ pub(super) struct GroupAtEnd<'a> {
     pub(super) fatigue: f64,
     /// For how long it could go on to hold its load, s; `None` for ever.
     pub(super) seconds_left: Option<f64>,
+    /// Least and greatest time at which it fails between people, s, where it does not tire by a law of its own.
+    pub(super) of_people: Option<(f64, f64)>,
 }
 
 impl GroupAtEnd<'_> {
+    fn spread(&self) -> (f64, f64) {
+        self.of_people.unwrap_or_else(|| spread(self.muscles, self.history, self.start))
+    }
+
     /// Time at which the group fails under its load at the time `end`, s after `start`; `None` where the group did not work. Of a group that rests at the
     /// end only weaker people, or another law, fail: before.
     fn failure(&self, (start, end): (f64, f64)) -> Option<Failure> {
@@ -45,12 +51,12 @@ impl GroupAtEnd<'_> {
             return None;
         }
         if self.who.load <= 0.0 {
-            let (least, greatest) = spread(self.muscles, self.history, self.start);
+            let (least, greatest) = self.spread();
             let range = (least - start, greatest - start);
             return least.is_finite().then_some(Failure { who: self.who, time: f64::INFINITY, range });
         }
         let time = end + self.seconds_left.unwrap_or(f64::INFINITY);
-        let (least, greatest) = spread(self.muscles, self.history, self.start);
+        let (least, greatest) = self.spread();
         let range = (least.min(time) - start, greatest.max(time) - start);
         Some(Failure { who: self.who, time: time - start, range })
     }

@@ -69,6 +69,7 @@ fn at_end<'a>(model: &'a Model, group: &'a GroupAssessment) -> Option<GroupAtEnd
         start: 0.0,
         fatigue: group.fatigue,
         seconds_left: left.is_finite().then_some(left),
+        of_people: None,
     })
 }
 

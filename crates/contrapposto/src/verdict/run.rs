@@ -103,6 +103,7 @@ fn groups_at_end<'a>(scenario: &'a Scenario, summary: &'a Summary) -> Vec<GroupA
                 start: scenario.start_fatigue[coordinate][side.index()],
                 fatigue: end.fatigue,
                 seconds_left: end.seconds_left,
+                of_people: summary.muscles.as_ref().and_then(|muscles| muscles.spread_of((coordinate, side))),
             }
         }));
     }
@@ -114,11 +115,15 @@ fn fails(scenario: &Scenario, summary: &Summary) -> Option<Failure> {
     let failures = summary.coordinates.iter().enumerate().flat_map(|(coordinate, course)| {
         Side::BOTH.into_iter().filter_map(move |side| Some((coordinate, side, course.exhausted_at[side.index()]?)))
     });
-    let (coordinate, side, time) = failures.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    // Muscles that cannot give all torques fail at several groups at once; one of these limits them.
+    let beside = |i, side| summary.muscles.as_ref().is_some_and(|muscles| muscles.fails_beside((i, side)));
+    let (coordinate, side, time) =
+        failures.filter(|(i, side, _)| !beside(*i, *side)).min_by(|a, b| a.2.total_cmp(&b.2))?;
     let group = &scenario.model.coordinates()[coordinate].groups.as_ref()?[side.index()];
     let history = &summary.coordinates[coordinate].loads[side.index()];
     let start = scenario.start_fatigue[coordinate][side.index()];
-    let (least, greatest) = spread(group, history, start);
+    let of_people = summary.muscles.as_ref().and_then(|muscles| muscles.spread_of((coordinate, side)));
+    let (least, greatest) = of_people.unwrap_or_else(|| spread(group, history, start));
     let who = Who { coordinate, side, load: history.at(time) };
     Some(Failure { who, time, range: (least.min(time), greatest.max(time)) })
 }

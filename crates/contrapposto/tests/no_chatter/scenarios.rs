@@ -62,8 +62,9 @@ pub(crate) fn random(random: &mut Random) -> Scenario {
         },
         hysteresis: Hysteresis { critical_level, recovery_level },
         muscles: None,
+        muscles_tire: false,
         start_fatigue,
-        run: RunSettings { duration, step: STEP, stop_when_settled: false },
+        run: RunSettings { duration, step: STEP, stop_when_settled: false, threads: 1 },
         start,
         model,
     }
