@@ -8,7 +8,7 @@ use std::path::Path;
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::model::Adult;
 use contrapposto_formats::model_ir::RootAttachment;
-use contrapposto_formats::tissue::{MuscleUse, ScenarioMuscles, SourcedModel};
+use contrapposto_formats::tissue::{HipTissue, MuscleUse, ScenarioMuscles, SourcedModel};
 use contrapposto_formats::xml::Limits;
 use contrapposto_formats::{MOST_BYTES, ModelFileError, ModelFormat, adult_size, scenario_adult};
 
@@ -45,10 +45,14 @@ pub(crate) fn with_joint_muscles(
 /// As [`open_with_muscles`], for a scenario.
 pub(crate) fn open_for_scenario(
     args: &ModelArgs,
-    muscles: (Option<MuscleUse>, &str),
+    (muscles, hip_tract): ((Option<MuscleUse>, &str), HipTissue),
 ) -> Result<(SourcedModel, Option<ScenarioMuscles>), Fail> {
     let (mut opened, library) = open_with(args, true, Some(muscles), SourcedModel::read)?;
-    let Some(library) = library else { return Ok((opened, None)) };
+    let no_muscles = || Fail::Refused(format!("{}: there are none, which `hip_tract` would stand beside", muscles.1));
+    let Some(library) = library else {
+        return if hip_tract == HipTissue::Off { Ok((opened, None)) } else { Err(no_muscles()) };
+    };
+    opened.add_hip_tracts(&library, hip_tract).map_err(|why| Fail::Refused(format!("{}: {why}", muscles.1)))?;
     let refused = |error| Fail::Refused(format!("{}: {error}; write \"strength\" or \"off\"", muscles.1));
     let (muscles, doubts) = opened.scenario_muscles(&library).map_err(refused)?;
     doubts.iter().for_each(|doubt| print_note("warning", doubt));

@@ -7,8 +7,8 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::math::{Function, Spline};
 use contrapposto::model::{Adult, Model, Placement, adult};
 use contrapposto::muscle::{
-    Bushing, FiberLaw, FiberState, Ligament, LigamentLaw, Location, MovingPoint, Muscle, MuscleSpec, Musculature, Path,
-    PathGeometry, PathPoint, PathRule, PathWrap, Paths, Quadrant, Tension, Thelen2003, WrapMethod, WrapObject,
+    Band, Bushing, FiberLaw, FiberState, Ligament, LigamentLaw, Location, MovingPoint, Muscle, MuscleSpec, Musculature,
+    Path, PathGeometry, PathPoint, PathRule, PathWrap, Paths, Quadrant, Tension, Thelen2003, WrapMethod, WrapObject,
     WrapShape, passive_tensions,
 };
 use contrapposto::posture::Posture;
@@ -344,6 +344,10 @@ fn with_laws(bushing: f64) -> (Model, JointMuscles, Vec<usize>) {
         frames: [Placement::identity(); 2],
         rotational_stiffness: bushing * V::new(1.0, 2.0, 3.0),
         translational_stiffness: V::new(10.0, 20.0, 30.0),
+        bands: vec![
+            Band { axis: 0, torque: bushing, angle: 0.4, rate: 3.0 },
+            Band { axis: 2, torque: bushing, angle: 0.1, rate: 2.0 },
+        ],
     };
     let muscles = Musculature { paths: arm(&model), ligaments, bushings: vec![bushing], ..Musculature::default() };
     let names = ["arm_flex_r", "arm_add_r", "arm_rot_r", "elbow_flex_r", "pro_sup_r"];

@@ -102,5 +102,6 @@ fn bushing<'a>(around: &Surroundings<'_, 'a>, node: Node<'a>, name: String) -> R
         frames: [first.pose, second.pose],
         rotational_stiffness: stiffness("rotational_stiffness")?,
         translational_stiffness: stiffness("translational_stiffness")?,
+        bands: vec![],
     })
 }

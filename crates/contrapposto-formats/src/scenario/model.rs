@@ -11,7 +11,7 @@ use super::text::{AdultText, ModelText, MusclesText, PartText, PersonText, RootT
 use crate::input_error::InputError;
 use crate::model_ir::RootAttachment;
 use crate::passive_law::passive_curve;
-use crate::tissue::{FatigueChoice, MuscleUse, Person, SourcedModel};
+use crate::tissue::{FatigueChoice, HipTissue, MuscleUse, Person, SourcedModel};
 use crate::toml_file::{Located, read_toml, shown};
 
 /// A model file that a scenario names.
@@ -29,6 +29,8 @@ pub struct ModelFile {
     pub fatigue: FatigueChoice,
     /// Use of the file's muscles; the model's default ([`SourcedModel::default_muscle_use`]) where the scenario says none.
     pub muscles: Option<MuscleUse>,
+    /// Capsule and iliotibial tract of the hips beside these muscles, for [`SourcedModel::add_hip_tracts`].
+    pub hip_tract: HipTissue,
     /// Whether the scenario multiplies strength or passive torque of the data, so that by default muscles give nothing.
     pub multiplies_data: bool,
     /// The person whom it stands for.
@@ -54,6 +56,7 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
             ("root", text.root.is_some()),
             ("file_strength", text.file_strength.is_some()),
             ("muscles", text.muscles.is_some()),
+            ("hip_tract", text.hip_tract.is_some()),
             ("person", text.person.is_some()),
         ];
         for (key, given) in given {
@@ -81,8 +84,14 @@ fn model_file(at: &Located, scenario: &ScenarioText) -> Result<Option<ModelFile>
     let person = text.person.as_ref().map_or(Ok(Person::default()), |text| person(at, text))?;
     let strength = text.file_strength.unwrap_or(true);
     let (muscles, multiplies_data) = muscles(at, scenario)?;
+    let hip_tract = text.hip_tract.unwrap_or(HipTissue::Off);
+    if hip_tract != HipTissue::Off && muscles.is_some_and(|uses| !uses.gives_passive()) {
+        let message = "`hip_tract` stands beside the passive torque of muscles, which give none here";
+        let help = Some("leave it out, or write muscles = \"both\" or \"passive\"".to_owned());
+        return Err(at.key_error(&["model", "hip_tract"], message, help));
+    }
     let (file, overlay) = (file.clone(), text.overlay.clone());
-    Ok(Some(ModelFile { file, overlay, root, strength, fatigue, muscles, multiplies_data, person }))
+    Ok(Some(ModelFile { file, overlay, root, strength, fatigue, muscles, hip_tract, multiplies_data, person }))
 }
 
 /// The use of muscles that a scenario asks for, and whether it multiplies the strength or the passive torque of the data.

@@ -12,6 +12,7 @@ use super::spread::{PassiveTable, StrengthText};
 use super::task_text::{SolverText, SupportText, TaskText};
 use super::world::text::{BagText, BoxText, FloorText, HandleText, SeatText, StepText, TableText, ToolText, WallText};
 use crate::escaped::{escaped, turns_direction};
+use crate::tissue::HipTissue;
 use crate::toml_file::numbers;
 
 /// An experiment: a body, its posture, loads, supports and tasks; for `simulate` the relief wanted and how long.
@@ -146,6 +147,8 @@ pub(crate) struct ModelText {
     pub(crate) file_strength: Option<bool>,
     /// The use of the muscles of a model file; when left out `both` for an OpenSim file with muscles, else `off`.
     pub(crate) muscles: Option<MusclesText>,
+    /// Capsule and iliotibial tract of the hips beside these muscles; `off` when left out.
+    pub(crate) hip_tract: Option<HipTissue>,
     /// The person whom a model file stands for: size of the built-in strength and passive torque.
     pub(crate) person: Option<PersonText>,
 }

@@ -6,6 +6,7 @@
 mod built_in;
 mod fatigue;
 mod fill;
+mod hip_tracts;
 mod muscle_doubts;
 mod muscles;
 mod origin;
@@ -14,6 +15,7 @@ mod plausible;
 mod scenario_muscles;
 
 pub use fatigue::{FatigueChoice, FatigueParametersText, FatigueSex, fatigue_notes};
+pub use hip_tracts::HipTissue;
 pub use muscles::MuscleUse;
 pub use origin::{Origin, Origins};
 pub use person::Person;

@@ -20,6 +20,7 @@
 mod about_axes;
 mod group_load;
 mod hazard;
+mod hip_tract;
 mod muscle_laws;
 mod muscle_share;
 mod muscle_tables;
@@ -29,6 +30,7 @@ pub use about_axes::AboutAxes;
 pub use group_load::{GroupLoad, relative_load};
 pub use hazard::{Hazard, carried};
 pub(crate) use hazard::{judged_parts, posture_in_words};
+pub use hip_tract::{HipTract, hip_tract};
 pub use muscle_laws::{MOST_LEVELLED, TorqueRise};
 pub use muscle_share::{MuscleShare, MuscleShareError};
 pub use muscle_tables::RESTING_ACTIVATION;

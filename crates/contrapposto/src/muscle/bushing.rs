@@ -1,4 +1,4 @@
-//! Computes the torque of bushings: linear springs between two frames.
+//! Computes the torque of bushings: linear springs between two frames, and bands that stretch as one frame turns.
 //!
 //! With the second frame in the first at body-fixed rotations a, b, c about x, y, z and at d, the energy is half the sum of stiffness times
 //! square of these six numbers, and the torque by rate is minus its derivative (OpenSim's `BushingForce`, Simbody's `LinearBushing`).
@@ -8,6 +8,26 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Motion, Placement};
+
+/// Tissue that resists turning about one axis of a bushing in its positive sense, with the torque `-torque exp(rate (x - angle))` at the angle `x`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// The angle that stretches it: 0 about x, 1 about y, 2 about z.
+    pub axis: usize,
+    /// Size of the torque at `angle`, N m.
+    pub torque: f64,
+    /// Angle, rad.
+    pub angle: f64,
+    /// Rate of the exponential, 1/rad, positive.
+    pub rate: f64,
+}
+
+impl Band {
+    /// Size of the torque at an angle about its axis, rad: N m.
+    fn at(&self, angle: f64) -> f64 {
+        self.torque * (self.rate * (angle - self.angle)).exp()
+    }
+}
 
 /// A linear spring between two frames.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +42,8 @@ pub struct Bushing {
     pub rotational_stiffness: Vector3<f64>,
     /// Against moving along x, y and z of the first frame, N/m.
     pub translational_stiffness: Vector3<f64>,
+    /// Bands beside it.
+    pub bands: Vec<Band>,
 }
 
 /// Placement of the second frame in the first one.
@@ -55,15 +77,18 @@ impl Bushing {
     /// Energy of the bushing, J.
     pub fn energy(&self, model: &Model, kinematics: &Kinematics) -> f64 {
         let Deflection { angles, offset, .. } = self.deflection(model, kinematics);
-        0.5 * (self.rotational_stiffness.dot(&angles.component_mul(&angles))
-            + self.translational_stiffness.dot(&offset.component_mul(&offset)))
+        let of_bands: f64 = self.bands.iter().map(|band| band.at(angles[band.axis]) / band.rate).sum();
+        let of_springs = self.rotational_stiffness.dot(&angles.component_mul(&angles))
+            + self.translational_stiffness.dot(&offset.component_mul(&offset));
+        0.5 * of_springs + of_bands
     }
 
     /// Adds the torque of the bushing to `torque` by rate, as if no coordinates were coupled, N m (N for slides).
     fn add(&self, model: &Model, kinematics: &Kinematics, torque: &mut [f64]) {
         let Deflection { angles, offset, axes, at } = self.deflection(model, kinematics);
         let force = -(axes * self.translational_stiffness.component_mul(&offset));
-        let by_angle = -self.rotational_stiffness.component_mul(&angles);
+        let mut by_angle = -self.rotational_stiffness.component_mul(&angles);
+        self.bands.iter().for_each(|band| by_angle[band.axis] -= band.at(angles[band.axis]));
         let about_x = Rotation3::from_axis_angle(&Vector3::x_axis(), angles.x);
         let middle = about_x * Vector3::y();
         let last = about_x * (Rotation3::from_axis_angle(&Vector3::y_axis(), angles.y) * Vector3::z());

@@ -22,7 +22,7 @@ mod tolerances;
 mod torque;
 mod wrap;
 
-pub use bushing::{Bushing, bushing_torque};
+pub use bushing::{Band, Bushing, bushing_torque};
 pub use coupled_strength::{CoupledStrength, coupled_strength};
 pub use fatigue::{MuscleFatigue, SharingError};
 pub use fiber::{
@@ -53,7 +53,7 @@ pub struct Musculature {
     pub muscles: Vec<Muscle>,
     /// Ligaments and springs along paths.
     pub ligaments: Vec<Ligament>,
-    /// Springs between frames.
+    /// Springs and bands between frames.
     pub bushings: Vec<Bushing>,
 }
 
