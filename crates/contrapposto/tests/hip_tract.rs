@@ -41,7 +41,7 @@ fn a_relaxed_leg_hangs_in_the_test_at_the_published_angle() {
             torques.update(&body, &posture, &[], Quantities::TORQUES).unwrap();
             let rate = body.coordinates()[body.coordinate(name).unwrap()].rate.unwrap();
             let mut band = vec![0.0; body.rates().len()];
-            bushing_torque(&[tract.bushing.clone()], &body, torques.kinematics(), &mut band);
+            bushing_torque(std::slice::from_ref(&tract.bushing), &body, torques.kinematics(), &mut band);
             let weight = torques.external_torque().torques()[rate];
             println!("{name} at {degrees}: weight of the leg {weight:.2} N m, band {:.2} N m", band[rate]);
             assert!(weight > 20.0 && (weight + band[rate]).abs() < 1e-9 * weight, "{weight} {}", band[rate]);
@@ -62,7 +62,7 @@ fn the_band_resists_adduction_alone_and_is_the_gradient_of_an_energy() {
         let mut posture = body.default_posture();
         coordinates.iter().zip(angles).for_each(|(&i, angle)| posture.values_mut()[i] = angle);
         kinematics.update(&body, &posture).unwrap();
-        bushing_torque(&[tract.bushing.clone()], &body, &kinematics, &mut torque);
+        bushing_torque(std::slice::from_ref(&tract.bushing), &body, &kinematics, &mut torque);
         for (place, &i) in coordinates.iter().enumerate() {
             let rate = body.coordinates()[i].rate.unwrap();
             let energy = [1e-6, -1e-6].map(|by| {
