@@ -124,7 +124,7 @@ pub(crate) fn solve(name: &str, scenario: &mut PoseScenario) -> Result<Posed, Fa
 /// Prints the notes about a posture to standard error.
 fn with_notes(posed: Posed) -> Posed {
     if let Some(change) = posed.unsettled {
-        print_note("warning", &unsettled(change));
+        print_note("warning", &unsettled("the posture", change));
     }
     if posed.kept_balance {
         print_note("note", KEPT_BALANCE);

@@ -1,8 +1,10 @@
 //! `contrapposto relax`: the different postures of least effort under the tasks of a scenario.
 
+mod own_strength;
+
 use std::fmt::Write;
 
-use contrapposto::equilibria::{Equilibria, Search, SearchError, equilibria};
+use contrapposto::equilibria::{Equilibria, Search, SearchError};
 use contrapposto::joint_torques::active_torque;
 use contrapposto::model::CoordinateKind;
 use contrapposto::suggestions::Advice;
@@ -12,7 +14,9 @@ use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RelaxScenario, read_relax};
 use contrapposto_plot::{BodyFigure, body_figure};
 
-use super::trials::{advice_of_search, cores};
+pub(crate) use self::own_strength::find;
+pub(super) use self::own_strength::{MOST_STRENGTH_ROUNDS, SAME_STRENGTH, unsettled};
+use super::trials::advice_of_search;
 use crate::args::{RelaxArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::output::{ResultSet, json_text, print, print_note, report_line};
@@ -36,11 +40,6 @@ const RELAX_FILES: [&str; 8] = [
     "postures.glb",
     "postures.bvh",
 ];
-
-/// Most times that a posture is sought again with the strength that muscles have in the one before.
-pub(crate) const MOST_STRENGTH_ROUNDS: usize = 20;
-/// Change of a strength, as a share, from which on a posture is sought again.
-pub(crate) const SAME_STRENGTH: f64 = 1e-6;
 
 pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     let file = ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?;
@@ -98,33 +97,6 @@ pub(crate) fn read(file: ScenarioFile) -> Result<RelaxScenario, Fail> {
     scenario.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&scenario.model).iter().for_each(|note| print_note("note", note));
     Ok(scenario)
-}
-
-/// The postures of least effort. A body with muscles has the strength of the best of them: it is searched again until that stays.
-pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchError> {
-    let mut round = 0;
-    loop {
-        let found = equilibria(&Search { threads: cores(), ..scenario.search() }, RelaxScenario::OPTIONS)?;
-        let Some(best) = found.postures.first() else { return Ok(found) };
-        let change = scenario.take_strength(&best.relaxed.posture);
-        if change <= SAME_STRENGTH {
-            return Ok(found);
-        }
-        if round == MOST_STRENGTH_ROUNDS {
-            print_note("warning", &unsettled(change));
-            return Ok(found);
-        }
-        round += 1;
-    }
-}
-
-/// A warning that the strength of muscles changes by this share still.
-pub(crate) fn unsettled(change: f64) -> String {
-    format!(
-        "strength and passive torque of the muscles have not settled in {MOST_STRENGTH_ROUNDS} rounds: in the posture that was found, one of \
-         them differs by {} of a strength from that by which it was found",
-        percent(change)
-    )
 }
 
 /// The answer: that of the posture of least effort, and the changes that were tried.

@@ -27,7 +27,7 @@ use crate::strength::Strength;
 
 /// Least strength that muscles give, N m (N for slides): where none pulls, relative load stays finite (assumed).
 pub const LEAST_MUSCLE_STRENGTH: f64 = 1e-3;
-/// Least strength that changes of passive torque are a share of, N m.
+/// Least strength that changes of strength and of passive torque are a share of, N m.
 const LEAST_CHANGE_OF: f64 = 1.0;
 
 /// Passive torque and strength of a body from its muscles. Depend on the posture; filled by [`JointMuscles::update`].
@@ -196,7 +196,7 @@ impl JointMuscles {
 
     /// Gives the muscle groups of `model` the strength that they have in `posture`, and its coordinates their passive laws near it
     /// ([`JointMuscles::with_laws`]). Returns the greatest change of a strength, or of a passive torque there, as a share of the strength (of
-    /// 1 N m without one).
+    /// 1 N m without one, and at least).
     ///
     /// # Errors
     /// [`JointMusclesError`] when the posture does not fit the model, or a tension is no number to calculate with.
@@ -217,7 +217,10 @@ impl JointMuscles {
         };
         let before = strengths(model);
         self.write_strength(model);
-        let changes = before.iter().zip(strengths(model)).map(|(before, after)| (before / after - 1.0).abs());
+        let changes = before
+            .iter()
+            .zip(strengths(model))
+            .map(|(before, after)| (before - after).abs() / after.max(LEAST_CHANGE_OF));
         let change = changes.fold(0.0, f64::max);
         let of_passive = known.into_iter().map(|(rate, known)| {
             let strength = |coordinate: usize| model.coordinates[coordinate].groups.as_ref();
