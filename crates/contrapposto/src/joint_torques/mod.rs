@@ -23,6 +23,7 @@ mod hazard;
 mod muscle_laws;
 mod muscle_share;
 mod muscle_tables;
+mod muscle_work;
 mod muscles;
 
 pub use about_axes::AboutAxes;
@@ -32,6 +33,7 @@ pub(crate) use hazard::{judged_parts, posture_in_words};
 pub use muscle_laws::{MOST_LEVELLED, TorqueRise};
 pub use muscle_share::{MuscleShare, MuscleShareError};
 pub use muscle_tables::RESTING_ACTIVATION;
+pub use muscle_work::{MissingTorque, MuscleWork, MuscleWorkError};
 pub use muscles::{JointMuscles, JointMusclesError, LEAST_MUSCLE_STRENGTH};
 
 use crate::contact::ContactForces;

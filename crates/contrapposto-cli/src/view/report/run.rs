@@ -12,6 +12,7 @@ use crate::view::answer::{Answer, group_of_title};
 use crate::view::decision::{alike, merged};
 use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::frame::Frame;
+use crate::view::muscle_work::{MusclesAtWork, muscles_at_work};
 use crate::view::recording::Recording;
 use crate::view::scene::Scene;
 use crate::view::selection::{main_coordinate, shown};
@@ -19,10 +20,24 @@ use crate::view::stage::{Stage, load_in_words};
 use crate::view::targets::missed_targets;
 use crate::view::words::{how_long, list, plain};
 
-/// The page of a run.
+/// The muscles of a run in the moments that its page shows. Nothing is judged while a support is put elsewhere.
+pub(crate) fn muscles_of_run<'a>(
+    scenario: &'a Scenario,
+    recording: &Recording,
+    summary: &Summary,
+) -> Result<Option<MusclesAtWork<'a>>, Fail> {
+    if scenario.muscles.is_none() {
+        return Ok(None);
+    }
+    let excerpt = RunExcerpt::new(scenario, recording, summary);
+    let steps = |time: f64| summary.foot_steps.iter().any(|step| time > step.time.0 && time < step.time.1);
+    muscles_at_work(&scenario.model, scenario.muscles.as_ref(), &excerpt.frames, |time| !steps(time))
+}
+
+/// The page of a run, with the muscles of [`muscles_of_run`].
 pub(crate) fn report_of_run(
     (scenario, things): (&Scenario, &[Thing]),
-    recording: &Recording,
+    (recording, muscles): (&Recording, Option<&MusclesAtWork<'_>>),
     summary: &Summary,
     answer: &Answer,
 ) -> Result<String, Fail> {
@@ -31,6 +46,7 @@ pub(crate) fn report_of_run(
     let start = excerpt.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
     let scene = Scene {
         held: (!scenario.has_supports_or_tasks()).then_some(scenario.loads.as_slice()),
+        muscles,
         ..Scene::of(&scenario.title, &scenario.model, start, &excerpt.frames, Stage::of_run(scenario, things))
     };
     let times = excerpt.frames.iter().map(|frame| frame.time).collect();
