@@ -13,6 +13,7 @@ pub(crate) mod figures;
 pub(crate) mod frame;
 pub(crate) mod held;
 pub(crate) mod moment;
+pub(crate) mod muscle_work;
 pub(crate) mod muscles;
 pub(crate) mod population;
 pub(crate) mod pose_picture;

@@ -11,7 +11,7 @@ use contrapposto::verdict::Verdict;
 use serde::Serialize;
 
 use crate::tissue::FatigueParametersText;
-use crate::{AdviceText, VerdictText};
+use crate::{AdviceText, MuscleWorkText, VerdictText};
 
 /// The whole file.
 #[derive(Clone, Debug, Serialize)]
@@ -53,6 +53,9 @@ pub struct SummaryText {
     pub coordinate_order: Vec<String>,
     /// The course of each.
     pub coordinates: BTreeMap<String, CoordinateText>,
+    /// The muscles of a body whose strength they give.
+    #[serde(flatten)]
+    pub muscle_work: Option<MuscleWorkText>,
     /// Files beside this one.
     pub files: Vec<String>,
 }
@@ -241,6 +244,7 @@ impl SummaryText {
             reliefs: summary.reliefs.count,
             coordinate_order: names.collect(),
             coordinates: coordinates.collect(),
+            muscle_work: None,
             files,
         }
     }

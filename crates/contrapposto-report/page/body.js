@@ -1,6 +1,7 @@
 // The body in three dimensions: every segment is the hull of a few balls, coloured by a measure; with contact forces, loads, centre
 // of mass, targets, surfaces, things, and the start as a ghost.
 const NEAR_TARGET = 0.005, FAR_TARGET = 1.2, FAR_ARROW = 0.6; // m
+const BONE = 0.2, THICKEST_BONE = 0.011, GLASS = 0.17; // share of a segment's thickness; m; opacity of the body about muscles
 const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.16, ARROW_HEAD = 0.09, LEAST_DRAG = 4; // m; px
 
 // Largest sum of contact forces in any frame, N; of a body without supports, of loads.
@@ -15,9 +16,10 @@ function largestWeight() {
 }
 
 class Body {
-  // `onTurn` is called with the name of a view, or with null, when the camera has moved; `onPick` with a segment that was clicked.
-  constructor(canvas, gl, onTurn, onPick) {
-    [this.canvas, this.gl, this.onTurn, this.onPick] = [canvas, gl, onTurn, onPick];
+  // `onTurn` is called with the name of a view, or with null, when the camera has moved; `onPick` with a segment that was clicked; `onMuscle`
+  // with the index of a muscle under the pointer, or -1, and whether it was clicked.
+  constructor(canvas, gl, { onTurn, onPick, onMuscle }) {
+    [this.canvas, this.gl, this.onTurn, this.onPick, this.onMuscle] = [canvas, gl, onTurn, onPick, onMuscle];
     this.painter = new Painter(gl);
     this.camera = new Camera(sceneBounds());
     this.weight = largestWeight() || 1;
@@ -27,15 +29,20 @@ class Body {
   }
 
   // A body on a canvas, or null where the browser has no WebGL.
-  static on(canvas, onTurn, onPick) {
+  static on(canvas, answers) {
     const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: true });
-    return gl && new Body(canvas, gl, onTurn, onPick);
+    return gl && new Body(canvas, gl, answers);
   }
 
   makeMeshes() {
     const { gl, painter } = this;
     this.parts = report.segments.map((segment) => painter.hullMesh(segment.balls));
     this.skin = report.skin && new Skin(report.skin, painter);
+    if (report.muscles) {
+      this.tubes = new MuscleTubes(report.muscles, painter);
+      this.bones = report.segments.map(({ balls }) => painter.hullMesh(balls.map(([x, y, z, r]) => [x, y, z, Math.min(BONE * r, THICKEST_BONE)])));
+    }
+    [this.showsMuscles, this.chosen] = [Boolean(report.muscles), -1];
     this.ball = painter.hullMesh([[0, 0, 0, 1]]);
     this.shaft = painter.hullMesh([[0, 0, 0, 0.012], [0, 1, 0, 0.012]]);
     this.tip = painter.hullMesh([[0, -ARROW_HEAD, 0, 0.034], [0, -0.002, 0, 0.002]]);
@@ -62,7 +69,8 @@ class Body {
     painter.clear(width, height, styleColor("--scene"), this.camera);
     painter.flatness(1);
     if (this.grid) painter.list(this.grid, styleColor("--ground"), 1);
-    this.drawSegments(frame, measure);
+    if (this.showsMuscles) this.drawMuscles(frame, measure);
+    else this.drawSegments(frame, measure);
     painter.flatness(0.35);
     this.drawMarks(frame, 1);
     // Surfaces and things are transparent: the body behind them stays visible.
@@ -73,6 +81,7 @@ class Body {
     this.drawThings(frame);
     this.limits.forEach((mesh, limit) => painter.list(mesh, styleColor(`--limit-${limit}`), 0.5));
     gl.depthMask(true);
+    if (this.showsMuscles) this.drawGlass(frame, measure);
     this.drawGhost(frame);
     // Marks behind the body shine through it.
     gl.disable(gl.DEPTH_TEST);
@@ -96,13 +105,46 @@ class Body {
     return seen[2] === 255 ? report.segments[256 * seen[0] + seen[1] - 1] : undefined;
   }
 
-  drawSegments(frame, measure) {
+  // Colour of every segment in a frame.
+  colors(frame, measure) {
     const unknown = styleColor("--none"), hazard = styleColor("--hazard");
-    this.painter.flatness(0);
-    const color = (segment) => {
+    return (segment) => {
       const share = measure.of(segment, frame);
       return inHazard(segment, frame) ? hazard : share === null ? unknown : colorOf(measure, share);
     };
+  }
+
+  // Muscles on bones: a bone is its segment, much thinner.
+  drawMuscles(frame, measure) {
+    const bone = styleColor("--bone");
+    this.painter.flatness(0);
+    report.segments.forEach((segment, i) => this.painter.hull(this.bones[i], placement(segment.places, frame), bone));
+    this.tubes.fill(frame, measure === measures.load, this.chosen);
+    this.tubes.draw();
+  }
+
+  // The body about its muscles, transparent: first its depth, then its nearest surface only. A segment with muscles has no colour of its own
+  // where they are coloured: it would change theirs.
+  drawGlass(frame, measure) {
+    const { gl, painter } = this, colors = this.colors(frame, measure), clear = styleColor("--none");
+    const color = (segment) => measure === measures.load && this.tubes.segments.has(segment.name) ? clear : colors(segment);
+    painter.flatness(0.75);
+    for (const visible of [false, true]) {
+      gl.colorMask(visible, visible, visible, visible);
+      report.segments.forEach((segment, i) => painter.hull(this.parts[i], placement(segment.places, frame), color(segment), GLASS));
+    }
+    gl.colorMask(true, true, true, true);
+  }
+
+  // Index of the muscle at a place of the canvas, px; -1 for none.
+  muscleAt(x, y) {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return this.showsMuscles ? this.tubes.nearest(x, y, this.camera.projection(width / height), width, height) : -1;
+  }
+
+  drawSegments(frame, measure) {
+    this.painter.flatness(0);
+    const color = this.colors(frame, measure);
     if (this.skin && !this.wooden) return this.skin.draw(frame, measure, color);
     report.segments.forEach((segment, i) => this.painter.hull(this.parts[i], placement(segment.places, frame), color(segment)));
   }
@@ -128,7 +170,9 @@ class Body {
         painter.painted(this.skin.ghost, color, 0.24);
         continue;
       }
-      report.segments.forEach((segment, i) => painter.hull(this.parts[i], placement(segment.start, 0), color, 0.24));
+      report.segments.forEach((segment, i) => {
+        if (moved(segment)) painter.hull(this.parts[i], placement(segment.start, 0), color, 0.24);
+      });
     }
     gl.colorMask(true, true, true, true);
   }
@@ -174,6 +218,13 @@ class Body {
     this.painter.hull(this.tip, pointing(tip, arrow, 1, 1), color, alpha);
   }
 
+  // A muscle at the place is chosen, and the limb there only where no muscle is.
+  click(x, y) {
+    const muscle = this.muscleAt(x, y);
+    this.onMuscle(muscle, true);
+    if (muscle < 0) this.onPick(this.pick(x, y));
+  }
+
   lookFrom(view) {
     this.camera.lookFrom(view);
     this.onTurn(view);
@@ -195,7 +246,7 @@ class Body {
     });
     canvas.addEventListener("pointermove", (event) => {
       const before = fingers.get(event.pointerId);
-      if (!before) return;
+      if (!before) return this.onMuscle(this.muscleAt(event.offsetX, event.offsetY), false);
       const spreadBefore = fingers.size === 2 ? spread() : 0;
       fingers.set(event.pointerId, event);
       if (pressed && moved(event) < LEAST_DRAG) return;
@@ -207,10 +258,11 @@ class Body {
     for (const end of ["pointerup", "pointercancel"]) {
       canvas.addEventListener(end, (event) => {
         fingers.delete(event.pointerId);
-        if (end === "pointerup" && pressed) this.onPick(this.pick(event.offsetX, event.offsetY));
+        if (end === "pointerup" && pressed) this.click(event.offsetX, event.offsetY);
         pressed = null;
       });
     }
+    canvas.addEventListener("pointerleave", () => this.onMuscle(-1, false));
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       const { clientWidth: width, clientHeight: height } = canvas;

@@ -42,6 +42,15 @@ const report = (() => {
       group.left = list(group.left);
     }
   }
+  for (const carrier of read.muscles ? read.muscles.carriers : []) {
+    carrier.places = carrier.places ? carrier.places.map(list) : read.segments[carrier.part].places;
+  }
+  for (const muscle of read.muscles ? read.muscles.lines : []) {
+    for (const key of ["activation", "tension", "order"]) muscle[key] = list(muscle[key]);
+    for (const point of muscle.points) point.at = point.at.map(list);
+  }
+  const lacks = read.muscles && read.muscles.lacks;
+  if (lacks) [lacks.torque, lacks.joint] = [list(lacks.torque), list(lacks.joint)];
   return read;
 })();
 

@@ -58,6 +58,10 @@ function duration(s) {
   return s < 0 ? "no limit" : inUnit(s, 0);
 }
 
+function newtons(force) {
+  return `${force.toFixed(0)}\u00a0N`;
+}
+
 function metres(far) {
   return far < 0.9995 ? `${(100 * far).toFixed(1)}\u00a0cm` : `${far.toPrecision(Math.max(3, Math.ceil(Math.log10(far))))}\u00a0m`;
 }
@@ -121,6 +125,7 @@ function hideUnknown() {
   const known = {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
     "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-solid": report.solid, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
+    "by-muscle": report.muscles, "key-muscle": report.muscles, single: report.muscles, "single-muscles": report.muscles,
     figure: report.skin, postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
     answer: report.facts.length || report.changes.rows.length || report.reasons.length, scene: report.segments.length, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
@@ -131,10 +136,12 @@ function hideUnknown() {
   const loads = report.loads.map((load) => load.label);
   find("loads").textContent = loads.length && loads.length <= MOST_LOADS ? `: ${loads.join(", ")}` : "";
   document.documentElement.toggleAttribute("data-still", !MOVES);
+  document.documentElement.toggleAttribute("data-single", Boolean(report.muscles));
   document.documentElement.toggleAttribute("data-bodiless", !report.segments.length);
   if (!TIRES) document.querySelectorAll(".fatigue").forEach((part) => { part.hidden = true; });
   const postureKeys = SEVERAL ? "Arrow keys go from posture to posture. " : "";
-  if (TOUCHED) find("handling").textContent = "One finger turns, two magnify, a tap on a limb chooses its joint.";
+  if (TOUCHED) find("handling").textContent = `One finger turns, two magnify, a tap on a ${report.muscles ? "muscle or limb names it" : "limb chooses its joint"}.`;
+  else if (report.muscles) find("handling").textContent = "Drag turns, wheel or pinch magnifies, a click on a muscle or limb chooses its joint.";
   const keys = TOUCHED ? "" : MOVES ? "Space plays. Arrow keys step (with Shift by ten), Home and End jump. " : postureKeys;
   find("keys").textContent = keys;
 }
@@ -204,6 +211,7 @@ function balanceHint(joint) {
 
 class Page {
   constructor() {
+    this.muscle = -1;
     [this.frame, this.joint, this.measure, this.playing, this.wanted, this.body] = [0, report.main, measures.load, null, null, null];
     fillHeader();
     fillChooser();
@@ -247,10 +255,14 @@ class Page {
 
   // Makes and paints the body, which takes long where no graphics card helps.
   showBody() {
-    this.body = Body.on(find("body"), (view) => {
-      press("[data-view]", (button) => button.dataset.view === view);
-      this.paintBody();
-    }, (segment) => this.chooseLimb(segment));
+    this.body = Body.on(find("body"), {
+      onTurn: (view) => {
+        press("[data-view]", (button) => button.dataset.view === view);
+        this.paintBody();
+      },
+      onPick: (segment) => this.chooseLimb(segment),
+      onMuscle: (muscle, clicked) => this.nameMuscle(muscle, clicked),
+    });
     find("handling").hidden = !this.body;
     find("no-body").hidden = Boolean(this.body);
     this.paintBody();
@@ -272,6 +284,7 @@ class Page {
     this.describeJoint();
     this.describeTargets();
     this.listGroups(name);
+    if (report.muscles) this.listMuscles();
     const latest = Math.max(...report.list.entries.map((entry) => entry.frame).filter((of) => of <= this.frame));
     const current = report.list.entries.findIndex((entry) => entry.frame === latest);
     document.querySelectorAll("#list button").forEach((b, i) => b.classList.toggle("current", i === current));
@@ -329,6 +342,46 @@ class Page {
       if (entry.load >= 0.001 || entry.fatigue >= 0.005) found.push(entry);
     }));
     return found.sort((a, b) => b.load - a.load || b.fatigue - a.fatigue);
+  }
+
+  // The hardest worked single muscles of the frame, and what all of them together cannot give.
+  listMuscles() {
+    const rows = find("single").tBodies[0], i = this.frame, { lines, lacks } = report.muscles;
+    const order = lines.map((_, m) => m).filter((m) => lines[m].activation[i] >= RESTING);
+    order.sort((a, b) => lines[b].activation[i] - lines[a].activation[i] || lines[b].tension[i] - lines[a].tension[i]);
+    rows.replaceChildren(...order.slice(0, HARDEST_GROUPS).map((m) => {
+      const row = make("tr"), choose = () => this.nameMuscle(m, true);
+      row.append(...[lines[m].name, percent(lines[m].activation[i]), newtons(lines[m].tension[i]), lines[m].works_for].map((text) => make("td", text)));
+      row.tabIndex = 0;
+      row.addEventListener("click", choose);
+      row.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(); });
+      return row;
+    }));
+    find("single-when").textContent = find("when").textContent;
+    const missing = lacks ? lacks.torque[i] : 0, joint = lacks && report.joints[lacks.joint[i] - 1];
+    find("lacks").textContent = missing > 0.05 ? `At this moment the muscles together cannot give all torques: ${missing.toFixed(1)} N m are missing${joint ? ` at ${joint.label}` : ""}. The activations are those that come nearest.` : "";
+    this.describeMuscle(this.muscle);
+  }
+
+  // Names the muscle under the pointer; a click keeps it, and chooses its joint.
+  nameMuscle(muscle, clicked) {
+    if (!report.muscles) return;
+    if (clicked) {
+      this.muscle = muscle;
+      const { joint } = report.muscles.lines[muscle] || {};
+      if (joint !== null && joint !== undefined) this.chooseJoint(joint);
+    }
+    const shown = muscle < 0 ? this.muscle : muscle;
+    this.describeMuscle(shown);
+    if (!this.body || this.body.chosen === shown && !clicked) return;
+    this.body.chosen = shown;
+    this.paintBody();
+  }
+
+  describeMuscle(muscle) {
+    const of = report.muscles.lines[muscle], i = this.frame;
+    const works = of && of.works_for ? `, works for ${of.works_for}` : "";
+    find("muscle-now").textContent = of ? `${of.name}: activation ${percent(of.activation[i])}, ${newtons(of.tension[i])}${works}` : "";
   }
 
   addGroupRow(rows) {
@@ -411,6 +464,7 @@ class Page {
     for (const button of document.querySelectorAll("[data-figure]")) {
       button.addEventListener("click", () => this.chooseFigure(button.dataset.figure));
     }
+    find("show-muscles").addEventListener("click", () => this.toggleMuscles());
     document.addEventListener("keydown", (event) => this.pressKey(event));
   }
 
@@ -418,6 +472,16 @@ class Page {
   chooseFigure(figure) {
     press("[data-figure]", (button) => button.dataset.figure === figure);
     if (this.body) this.body.wooden = figure === "wooden";
+    this.paintBody();
+  }
+
+  // Shows the muscles in a body of glass, or the body alone.
+  toggleMuscles() {
+    if (!this.body) return;
+    this.body.showsMuscles = !this.body.showsMuscles;
+    find("show-muscles").setAttribute("aria-pressed", String(this.body.showsMuscles));
+    find("key-muscle").hidden = !this.body.showsMuscles;
+    this.nameMuscle(-1, true);
     this.paintBody();
   }
 

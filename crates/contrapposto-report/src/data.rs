@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::column::{column, columns};
+use crate::muscles::muscles;
 use crate::skin::mesh;
 use crate::{
     Balance, Bone, Entry, Followed, ForceSolid, Group, Joint, Moments, Push, Report, Segment, Skin, Support, Surface,
@@ -52,6 +53,7 @@ pub(crate) fn data(report: &Report) -> String {
         "surfaces": report.surfaces.iter().map(surface).collect::<Value>(),
         "things": report.things.iter().map(|t| thing(t, n)).collect::<Value>(),
         "loads": report.loads.iter().map(|l| push(l, n)).collect::<Value>(),
+        "muscles": report.muscles.as_ref().map(|of| muscles(of, report, n)),
         "targets": report.targets.iter().map(|t| target(t, n)).collect::<Value>(),
         "solid": report.solid.as_ref().map(solid),
         "center": known(&report.center_of_mass, || columns(&report.center_of_mass, n, [METRES; 3])),

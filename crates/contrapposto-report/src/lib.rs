@@ -2,7 +2,7 @@
 //! over time or in a few postures, charts of every joint, and decisions in plain words. The page needs no network, and its content
 //! security policy allows none. Parts of the page about which nothing is known are hidden.
 //!
-//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `skin` (its mesh), `data` (the input of the page's script), `page` (the file), `document` (a page of words, pictures and tables alone). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
+//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `skin` (its mesh), `muscles` (lines of muscles), `data` (the input of the page's script), `page` (the file), `document` (a page of words, pictures and tables alone). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
 //!
 //! Every function takes any input without panicking: numbers that are not finite count as 0, lists that are too short as if
 //! their last number went on. The same input gives the same bytes. Texts may come from strangers: they reach the page as text.
@@ -10,6 +10,7 @@
 mod column;
 mod data;
 mod document;
+mod muscles;
 mod page;
 mod skin;
 
@@ -59,6 +60,8 @@ pub struct Report {
     pub things: Vec<Thing>,
     /// Loads on the body besides its weight.
     pub loads: Vec<Push>,
+    /// Muscles of the body whose activations are known.
+    pub muscles: Option<Muscles>,
     /// Targets of tasks.
     pub targets: Vec<Target>,
     /// The greatest forces at a point in every direction.
@@ -287,6 +290,56 @@ pub struct Push {
     pub at: Vec<[f64; 3]>,
     /// Force on the body in every frame, N; zero where the load is not in force.
     pub force: Vec<[f64; 3]>,
+}
+
+/// Muscles over time.
+#[derive(Clone, Debug, Default)]
+pub struct Muscles {
+    /// Frames that carry points of muscles.
+    pub carriers: Vec<Carrier>,
+    /// The muscles.
+    pub lines: Vec<Muscle>,
+    /// Of every frame the greatest torque that the muscles cannot give, N m, with its index in [`Report::joints`].
+    pub lacks: Vec<Option<(Option<usize>, f64)>>,
+}
+
+/// A frame that carries points of muscles: a segment, or ground.
+#[derive(Clone, Debug, Default)]
+pub struct Carrier {
+    /// Placement in every frame of the report: origin, m, and unit quaternion `w x y z`.
+    pub places: Vec<[f64; 7]>,
+}
+
+/// One muscle over time.
+#[derive(Clone, Debug, Default)]
+pub struct Muscle {
+    /// Name of the muscle.
+    pub name: String,
+    /// The muscle group that it works for, in words; may be empty.
+    pub works_for: String,
+    /// Index in [`Report::joints`] of the joint of that group.
+    pub joint: Option<usize>,
+    /// Radius of its picture, m.
+    pub radius: f64,
+    /// Activation in every frame, 0..=1.
+    pub activation: Vec<f64>,
+    /// Tension in every frame, N.
+    pub tension: Vec<f64>,
+    /// All points that its line has in some frame; those on an unknown carrier are left out.
+    pub points: Vec<PathPoint>,
+    /// Lines: indices in `points` from one end to the other; `None` for a gap.
+    pub orders: Vec<Vec<Option<usize>>>,
+    /// Index in `orders` of the line of every frame.
+    pub order: Vec<usize>,
+}
+
+/// A point of a muscle.
+#[derive(Clone, Debug, Default)]
+pub struct PathPoint {
+    /// Index in [`Muscles::carriers`].
+    pub carrier: usize,
+    /// The place in that frame, m, in every frame of the report.
+    pub at: Vec<[f64; 3]>,
 }
 
 /// The solid of all forces that the body can exert at a point, drawn from the point at so many metres a newton.

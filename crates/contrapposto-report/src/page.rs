@@ -10,12 +10,13 @@ use crate::data::data;
 const PAGE: &str = include_str!("../page/page.html");
 pub(crate) const STYLE: &str = include_str!("../page/style.css");
 /// In this order they form one script.
-const SCRIPTS: [&str; 8] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("../page/data.js"),
     include_str!("../page/meshes.js"),
     include_str!("../page/camera.js"),
     include_str!("../page/painter.js"),
     include_str!("../page/skin.js"),
+    include_str!("../page/muscles.js"),
     include_str!("../page/body.js"),
     include_str!("../page/charts.js"),
     include_str!("../page/page.js"),

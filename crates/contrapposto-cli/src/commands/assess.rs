@@ -21,6 +21,7 @@ use crate::output::{ResultSet, json_text, print};
 use crate::view::animation;
 use crate::view::answer::answered;
 use crate::view::figures::figures_of_assessment;
+use crate::view::muscle_work::MusclesAtWork;
 use crate::view::report::assessment::{AssessedFrames, report_of_assessment};
 use crate::view::stage::Stage;
 use crate::view::text::assess::report;
@@ -43,7 +44,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let (model, said) = (&job.opened.model, job.said.as_deref());
 
     let mut tables = Tables::new(model, job.motion.len(), said);
-    let mut assessed_frames = folder.as_ref().map(|_| AssessedFrames::new(&job.opened, job.motion.len()));
+    let recorded = folder.is_some() || job.has_muscles();
+    let mut assessed_frames = recorded.then(|| AssessedFrames::new(&job.opened, job.motion.len()));
     let found = job.carry_out(args, &name, |instant| {
         tables.record(instant);
         if let Some(frames) = &mut assessed_frames {
@@ -51,6 +53,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         }
     })?;
 
+    let frames = assessed_frames.as_ref().map_or(&[][..], AssessedFrames::frames);
+    let muscles = job.muscles_at_work(frames)?;
     let title = args.motion.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let figures = assessed_frames.as_ref().filter(|_| args.figures).map(|assessed_frames| {
         let stage = Stage::still(&job.settings.supports, &[], &job.held);
@@ -58,10 +62,11 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         figures_of_assessment((&title, found.assessment.dynamics), model, &stage, assessed_frames.frames(), worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
-    let page = assessed_frames.map(|assessed_frames| page(&title, &job, &found, &assessed_frames)).transpose()?;
+    let shown = assessed_frames.as_ref().filter(|_| folder.is_some());
+    let page = shown.map(|shown| page(&title, &job, &found, (shown, muscles.as_ref()))).transpose()?;
     let names = ASSESS_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if folder.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = job.text(&name, &found, files);
+    let text = job.text(&name, (&found, muscles.as_ref()), files);
     let json = json_text(ASSESS_FILES[0], &text)?;
     if let (Some(folder), Some(page)) = (folder, page) {
         let fatigue = tables.fatigue()?;
@@ -71,12 +76,19 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
         folder.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;
     }
     let answer = &found.answer;
-    print(&if args.json { json } else { answer.in_words(model, "", &report(&text)) })?;
+    let tables =
+        || report(&text) + &muscles.as_ref().map_or_else(String::new, |muscles| format!("\n{}", muscles.table()));
+    print(&if args.json { json } else { answer.in_words(model, "", &tables()) })?;
     answered(&answer.verdict)
 }
 
 /// The page `report.html`.
-pub(crate) fn page(title: &str, job: &Job, found: &Found, frames: &AssessedFrames<'_>) -> Result<String, Fail> {
+pub(crate) fn page(
+    title: &str,
+    job: &Job,
+    found: &Found,
+    frames: (&AssessedFrames<'_>, Option<&MusclesAtWork<'_>>),
+) -> Result<String, Fail> {
     let Found { assessment, answer, warnings } = found;
     let (numbers, supports) = ((assessment, job.said.as_deref()), &job.settings.supports);
     report_of_assessment(title, frames, numbers, answer, supports, &job.held, warnings)

@@ -21,8 +21,9 @@ use crate::progress::{TRYING_CHANGES, progress_bar, spinner};
 use crate::scenario_file::ScenarioFile;
 use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::figures::{figures_of_run, pictures_of_run};
+use crate::view::muscle_work::MusclesAtWork;
 use crate::view::recording::Recording;
-use crate::view::report::run::report_of_run;
+use crate::view::report::run::{muscles_of_run, report_of_run};
 use crate::view::text::simulate::{files_of_run, report};
 use crate::view::words::how_long;
 use crate::view::{animation, tables};
@@ -129,26 +130,28 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
             Err(error) => return Err(failed(error)),
         },
     };
-    let mut files = folder.map(|folder| Files { folder, recording });
-    go_through(scenario, &mut run, files.as_mut(), &progress)?;
+    let mut files = Files { folder, recording };
+    go_through(scenario, &mut run, &mut files, &progress)?;
     progress.finish();
     let summary = run.summary();
+    let muscles = muscles_of_run(scenario, &files.recording, &summary)?;
     let mut answer = Answer::of_run(scenario, &summary);
     if summary.reason != StopReason::Interrupted {
         let trying = spinner(TRYING_CHANGES);
         answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
         trying.finish();
     }
-    let text = match &files {
-        Some(files) => files.write((scenario, things), (&run, &summary), &answer, how)?,
-        None => summary_json(scenario, &summary, &answer, vec![])?,
+    let found = (&summary, muscles.as_ref());
+    let text = match &files.folder {
+        Some(folder) => files.write(folder, (scenario, things), (&run, found), &answer, how)?,
+        None => summary_json(scenario, found, &answer, vec![])?,
     };
-    let folder = files.as_ref().map(|files| &files.folder);
     print(&if json {
         text
     } else {
-        let files = folder.map_or(String::new(), |folder| files_of_run(scenario, folder));
-        answer.in_words(&scenario.model, &scenario.title, &report(scenario, &summary)) + &files
+        let tables = report(scenario, &summary) + &muscles.map_or_else(String::new, |muscles| muscles.table());
+        let files = files.folder.as_ref().map_or(String::new(), |folder| files_of_run(scenario, folder));
+        answer.in_words(&scenario.model, &scenario.title, &tables) + &files
     })?;
     match summary.reason == StopReason::Interrupted {
         true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
@@ -156,26 +159,27 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     }
 }
 
-/// Computes and records all samples up to the end of a run, or until it is interrupted.
+/// Computes and records all samples up to the end of a run, or until it is interrupted. A run without files is recorded for its muscles only.
 fn go_through<'a>(
     scenario: &'a Scenario,
     run: &mut Run<'a>,
-    mut files: Option<&mut Files>,
+    files: &mut Files,
     progress: &ProgressBar,
 ) -> Result<(), Fail> {
+    let recorded = files.folder.is_some() || scenario.muscles.is_some();
     let mut number = run.snapshot().samples;
     let mut saved = (Instant::now(), number);
     // The start is always shown.
     while number == 0 || !interruption::is_requested() {
         let Some(sample) = run.next_sample().map_err(|error| Fail::job("simulation", error))? else { break };
-        if let Some(files) = files.as_deref_mut() {
+        if recorded {
             files.recording.record(number, &sample);
         }
         number += 1;
         if number.is_multiple_of(256) {
             progress.set_position(sample.time as u64);
             if saved.0.elapsed() > BETWEEN_SAVES && run.snapshot().samples > saved.1 {
-                files.iter().try_for_each(|files| save(scenario, run, &files.recording, &files.folder))?;
+                files.folder.iter().try_for_each(|folder| save(scenario, run, &files.recording, folder))?;
                 saved = (Instant::now(), run.snapshot().samples);
             }
         }
@@ -194,16 +198,17 @@ fn interrupted(summary: &Summary, duration: f64, out: Option<&Path>) -> String {
 /// The text of `summary.json`.
 pub(crate) fn summary_json(
     scenario: &Scenario,
-    summary: &Summary,
+    (summary, muscles): (&Summary, Option<&MusclesAtWork<'_>>),
     answer: &Answer,
     files: Vec<String>,
 ) -> Result<String, Fail> {
-    json_text("summary.json", &SummaryText::new(scenario, summary, &answer.verdict, &answer.advice, files))
+    let text = SummaryText::new(scenario, summary, &answer.verdict, &answer.advice, files);
+    json_text("summary.json", &SummaryText { muscle_work: muscles.map(MusclesAtWork::text), ..text })
 }
 
-/// The folder of a run, and all that its files show.
+/// The folder of a run, if it has one, and all that its files show.
 struct Files {
-    folder: ResultSet,
+    folder: Option<ResultSet>,
     recording: Recording,
 }
 
@@ -211,8 +216,9 @@ impl Files {
     /// Writes all files, on request with figures, and of an interrupted run the snapshot; gives the text of `summary.json`.
     fn write(
         &self,
+        folder: &ResultSet,
         (scenario, things): (&Scenario, &[Thing]),
-        (run, summary): (&Run, &Summary),
+        (run, (summary, muscles)): (&Run, (&Summary, Option<&MusclesAtWork<'_>>)),
         answer: &Answer,
         How { figures, wooden, .. }: How,
     ) -> Result<String, Fail> {
@@ -223,7 +229,7 @@ impl Files {
             ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
             ("torques.sto", tables::torques(scenario, recording)?.into_bytes()),
             ("fatigue.sto", tables::fatigue(scenario, recording)?.into_bytes()),
-            ("report.html", report_of_run((scenario, things), recording, summary, answer)?.into_bytes()),
+            ("report.html", report_of_run((scenario, things), (recording, muscles), summary, answer)?.into_bytes()),
             ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
         ];
         contents.extend(animation::bodies(scenario, recording, wooden)?);
@@ -242,15 +248,15 @@ impl Files {
         }
         contents.extend(figures.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())));
         let files = contents.iter().map(|(name, _)| (*name).to_owned()).chain(["summary.json".to_owned()]).collect();
-        let json = summary_json(scenario, summary, answer, files)?;
+        let json = summary_json(scenario, (summary, muscles), answer, files)?;
         contents.push(("summary.json", json.clone().into_bytes()));
         // Whenever the program is killed from here on, either the run can be resumed or its whole set is there.
         if summary.reason == StopReason::Interrupted {
-            save(scenario, run, recording, &self.folder)?;
-            self.folder.write(&contents)?;
+            save(scenario, run, recording, folder)?;
+            folder.write(&contents)?;
         } else {
-            self.folder.write(&contents)?;
-            self.folder.remove(SNAPSHOT)?;
+            folder.write(&contents)?;
+            folder.remove(SNAPSHOT)?;
         }
         Ok(json)
     }

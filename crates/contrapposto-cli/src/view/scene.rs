@@ -1,6 +1,7 @@
 //! The numbers that all pages share: the body, its joints and its supports in every moment.
 
 pub(crate) mod hazard;
+pub(crate) mod muscle_lines;
 mod skin;
 
 use contrapposto::kinematics::Kinematics;
@@ -12,10 +13,12 @@ use contrapposto_report::{Balance, Group, Joint, Moments, Push, Report, Segment,
 use nalgebra::Vector3;
 
 use self::hazard::hazard;
+use self::muscle_lines::muscle_lines;
 use self::skin::{Course, skin};
 use super::axes::{Turn, turn, visible};
 use super::charts::Sweep;
 use super::frame::Frame;
+use super::muscle_work::MusclesAtWork;
 use super::selection::shown;
 use super::stage::{Stage, load_in_words, place, push};
 use super::{surfaces, words};
@@ -37,6 +40,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) carried: Vec<usize>,
     /// Loads while one joint alone is moved; `None` for a body on supports, whose joints cannot move alone.
     pub(crate) held: Option<&'a [Load]>,
+    /// Muscles in the moments of the frames.
+    pub(crate) muscles: Option<&'a MusclesAtWork<'a>>,
 }
 
 impl<'a> Scene<'a> {
@@ -49,7 +54,7 @@ impl<'a> Scene<'a> {
         stage: Stage<'a>,
     ) -> Self {
         let carried = stage.supports.iter().map(|support| support.segment).collect();
-        Self { title, model, start, frames, stage, carried, held: None }
+        Self { title, model, start, frames, stage, carried, held: None, muscles: None }
     }
 
     /// The page without its words. `main`: the coordinate to show first.
@@ -76,6 +81,7 @@ impl<'a> Scene<'a> {
             surfaces: surroundings.surfaces,
             things: self.things(&turn)?,
             loads: self.loads(&turn)?,
+            muscles: self.muscles.map(|muscles| muscle_lines(self, muscles, &shown, &turn)).transpose()?,
             center_of_mass: if centers.len() == self.frames.len() { centers } else { vec![] },
             ..Report::default()
         })
@@ -107,7 +113,7 @@ impl<'a> Scene<'a> {
         Ok(parts.into_iter().map(|(_, part)| part).collect())
     }
 
-    fn kinematics(&self, frame: &Frame) -> Result<Kinematics, Fail> {
+    pub(super) fn kinematics(&self, frame: &Frame) -> Result<Kinematics, Fail> {
         let mut kinematics = Kinematics::new(self.model);
         let updated = kinematics.update(self.model, &Posture::new(frame.posture.clone()));
         updated.map_err(|error| Fail::job("report", error)).map(|()| kinematics)

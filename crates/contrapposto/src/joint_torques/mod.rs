@@ -24,6 +24,7 @@ mod hip_tract;
 mod muscle_laws;
 mod muscle_share;
 mod muscle_tables;
+mod muscle_work;
 mod muscles;
 
 pub use about_axes::AboutAxes;
@@ -34,6 +35,7 @@ pub use hip_tract::{HipTract, hip_tract};
 pub use muscle_laws::{MOST_LEVELLED, TorqueRise};
 pub use muscle_share::{MuscleShare, MuscleShareError};
 pub use muscle_tables::RESTING_ACTIVATION;
+pub use muscle_work::{MissingTorque, MuscleWork, MuscleWorkError};
 pub use muscles::{JointMuscles, JointMusclesError, LEAST_MUSCLE_STRENGTH};
 
 use crate::contact::ContactForces;

@@ -150,6 +150,11 @@ impl JointMuscles {
         self.rest.iter().zip(&self.full).map(|(rest, full)| (full.tendon_force - rest.passive_force).max(0.0))
     }
 
+    /// Tension of the passive fibres of every muscle in the last update, N.
+    pub fn passive_forces(&self) -> impl Iterator<Item = f64> {
+        self.rest.iter().map(|rest| rest.passive_force)
+    }
+
     /// Computes passive torque and strength in `posture`, which `kinematics` hold. Does not allocate.
     ///
     /// # Errors

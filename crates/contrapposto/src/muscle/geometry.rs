@@ -154,6 +154,11 @@ impl PathGeometry {
         &self.objects[object]
     }
 
+    /// The frame of a tendon's surface in ground.
+    pub(super) fn geom_frame(&self, geom: usize) -> &FrameInGround {
+        &self.geoms[geom]
+    }
+
     /// The rule of the last update.
     pub(crate) fn rule(&self) -> PathRule {
         self.rule

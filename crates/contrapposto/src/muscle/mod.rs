@@ -7,6 +7,7 @@
 
 mod bushing;
 mod coupled_strength;
+mod drawn_line;
 mod fatigue;
 mod fiber;
 mod geometry;
@@ -24,6 +25,7 @@ mod wrap;
 
 pub use bushing::{Band, Bushing, bushing_torque};
 pub use coupled_strength::{CoupledStrength, coupled_strength};
+pub use drawn_line::DrawnPoint;
 pub use fatigue::{MuscleFatigue, SharingError};
 pub use fiber::{
     ActiveCurve, DeGrooteFregly2016, FiberLaw, FiberState, Millard2012, MujocoMuscle, Muscle, MuscleError, MuscleSpec,

@@ -170,12 +170,12 @@ impl MuscleCourse {
             })
         }));
         self.rested = Some((self.share.torques.clone(), self.share.forces.clone(), rested));
-        for (muscle, of) in state.muscles.iter_mut().enumerate() {
+        for ((muscle, of), passive) in state.muscles.iter_mut().enumerate().zip(muscles.passive_forces()) {
             of.load = fatigue.loads()[muscle];
-            of.force = of.load * self.share.forces[muscle];
+            of.tension = of.load * self.share.forces[muscle] + passive;
             of.fatigued = fatigue.states()[muscle].fatigued;
             if of.load > of.peak_load.0 {
-                of.peak_load = (of.load, time);
+                (of.peak_load, of.peak_tension) = ((of.load, time), of.tension);
             }
             if of.exhausted_at.is_none() && fatigue.is_exhausted(muscle) {
                 of.exhausted_at = Some(time);

@@ -27,8 +27,10 @@ pub struct MuscleSummary {
     pub load: f64,
     /// Greatest load, and when that was, s.
     pub peak_load: (f64, f64),
-    /// Active tension, N.
-    pub force: f64,
+    /// Tension, that of passive fibres included, N.
+    pub tension: f64,
+    /// The same at the greatest load, N.
+    pub peak_tension: f64,
     /// Share that is fatigued, 0 to 1.
     pub fatigued: f64,
     /// First time at which the muscle gave all that fatigue had left it, s.
@@ -68,9 +70,9 @@ impl MuscleOutcome {
             && self.failures[MEAN_PERSON].is_some_and(|failure| failure.who.is_some_and(|who| who != group))
     }
 
-    /// For how long a group could go on to hold its load after the time `end`, s, given that time by its own fatigue and load; `None` for ever. No group
-    /// goes on when the muscles fail.
-    pub(super) fn seconds_left(&self, (coordinate, side): (usize, Side), end: f64, own: Option<f64>) -> Option<f64> {
+    /// For how long a group could go on to hold its load after the time `end`, s, given that time by its own fatigue and load; `None` for ever. The group
+    /// that then limits the mean person fails with the muscles.
+    pub fn seconds_left(&self, (coordinate, side): (usize, Side), end: f64, own: Option<f64>) -> Option<f64> {
         let MuscleFailure { time, who } = self.failures[MEAN_PERSON]?;
         let left = (time - end).max(0.0);
         if who == Some((coordinate, side)) { Some(left) } else { Some(own?.max(left)) }

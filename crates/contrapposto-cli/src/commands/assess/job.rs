@@ -23,6 +23,8 @@ use crate::motion_file::{loads_of, note_values_out_of_range};
 use crate::moving::{Recorded, keep_overlap};
 use crate::output::print_note;
 use crate::view::answer::Answer;
+use crate::view::frame::Frame;
+use crate::view::muscle_work::{MusclesAtWork, muscles_at_work};
 use crate::view::text::assess::AssessText;
 
 /// A motion of a model and its loads, checked.
@@ -129,12 +131,29 @@ impl Job {
         self.ground.iter().for_each(|ground| ground.loads(time, &self.opened.model, kinematics, loads));
     }
 
+    /// Whether the muscles give joints their strength.
+    pub(crate) fn has_muscles(&self) -> bool {
+        self.settings.muscles.as_ref().is_some_and(|muscles| !muscles.strong().is_empty())
+    }
+
+    /// The muscles in some moments of the motion.
+    pub(crate) fn muscles_at_work(&self, frames: &[Frame]) -> Result<Option<MusclesAtWork<'_>>, Fail> {
+        muscles_at_work(&self.opened.model, self.settings.muscles.as_ref(), frames, |_| true)
+    }
+
     /// The words of `assess.json` about the motion `name`.
-    pub(crate) fn text(&self, name: &str, found: &Found, files: Vec<String>) -> AssessText {
+    pub(crate) fn text(
+        &self,
+        name: &str,
+        (found, muscles): (&Found, Option<&MusclesAtWork<'_>>),
+        files: Vec<String>,
+    ) -> AssessText {
         let warnings = found.warnings.clone();
         let times: Vec<f64> = self.motion.iter().map(|(time, _)| *time).collect();
         let numbers = (self.settings.angle_error, &found.assessment);
-        AssessText::new(&self.opened, name, &times, numbers, &found.answer, warnings, files)
+        let mut text = AssessText::new(&self.opened, name, &times, numbers, &found.answer, warnings, files);
+        text.muscle_work = muscles.map(MusclesAtWork::text);
+        text
     }
 
     /// Times of the first and the last posture, s.

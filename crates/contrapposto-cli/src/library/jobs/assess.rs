@@ -42,11 +42,16 @@ impl Assessed {
         with_notes(|| {
             let (args, name, job) = job(&model, &motion, &words)?;
             let mut frames = vec![];
+            let mut shown = AssessedFrames::new(&job.opened, job.motion.len());
             let found = job.carry_out(&args, &name, |instant| {
                 let frame = Frame::of_instant(instant.model, instant);
                 frames.push(Frame { fatigue: Some(instant.fatigue.to_vec()), ..frame });
+                if job.has_muscles() {
+                    shown.record(instant, |_| {});
+                }
             })?;
-            let json = json_text("assess.json", &job.text(&name, &found, vec![]))?;
+            let muscles = job.muscles_at_work(shown.frames())?;
+            let json = json_text("assess.json", &job.text(&name, (&found, muscles.as_ref()), vec![]))?;
             let frames = Frames::of(&job.opened.model, &frames);
             Ok(Self { source: (model, motion, words), json, frames })
         })
@@ -80,7 +85,8 @@ impl Assessed {
                 }
                 MotionSource::Rows(..) => name,
             };
-            page(&title, &job, &found, &shown)
+            let muscles = job.muscles_at_work(shown.frames())?;
+            page(&title, &job, &found, (&shown, muscles.as_ref()))
         });
         page.map(|(page, _)| page)
     }

@@ -16,7 +16,7 @@ use crate::output::print_note;
 use crate::view::answer::{Answer, text_without_posture};
 use crate::view::frame::Frame;
 use crate::view::recording::Recording;
-use crate::view::report::run::report_of_run;
+use crate::view::report::run::{muscles_of_run, report_of_run};
 
 /// A run; without samples of a body that cannot stand.
 pub struct Simulated {
@@ -72,7 +72,8 @@ impl Simulated {
             let job = (&summary, under_way.solver_steps());
             answer.advice = advice_of_run(&answer.verdict, scenario, job, trials, &go_on);
         }
-        let json = summary_json(scenario, &summary, &answer, vec![])?;
+        let muscles = muscles_of_run(scenario, &recording, &summary)?;
+        let json = summary_json(scenario, (&summary, muscles.as_ref()), &answer, vec![])?;
         let frames: Vec<Frame> = recording.rows().map(|row| Frame::of_row(&scenario.model, row)).collect();
         let frames = Frames::of(&scenario.model, &frames);
         Ok(Self { course: Some((recording, summary, answer)), json, frames, run })
@@ -96,7 +97,8 @@ impl Simulated {
         let RunScenario { scenario, things, .. } = &self.run;
         match &self.course {
             Some((recording, summary, answer)) => {
-                Ok(report_of_run((scenario, things.as_slice()), recording, summary, answer)?)
+                let muscles = muscles_of_run(scenario, recording, summary)?;
+                Ok(report_of_run((scenario, things.as_slice()), (recording, muscles.as_ref()), summary, answer)?)
             }
             None => Err(Failure::failed("the body cannot stand: there is no run to show")),
         }

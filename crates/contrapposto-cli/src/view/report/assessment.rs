@@ -18,6 +18,7 @@ use crate::view::answer::{Answer, group_of_title};
 use crate::view::decision::answer;
 use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
+use crate::view::muscle_work::MusclesAtWork;
 use crate::view::scene::Scene;
 use crate::view::scene::hazard::hazards;
 use crate::view::selection::shown;
@@ -105,7 +106,7 @@ impl<'a> AssessedFrames<'a> {
 /// The page of an assessment, with the sentence that says that inertia counts, if it does. `held`: the loads at all times.
 pub(crate) fn report_of_assessment(
     title: &str,
-    assessed_frames: &AssessedFrames<'_>,
+    (assessed_frames, muscles): (&AssessedFrames<'_>, Option<&MusclesAtWork<'_>>),
     (found, inertia): (&Assessment, Option<&str>),
     Answer { verdict, advice, .. }: &Answer,
     supports: &[Support],
@@ -121,7 +122,8 @@ pub(crate) fn report_of_assessment(
     let moved = |i: &&usize| frames.iter().any(|frame| (frame.posture[**i] - first.posture[**i]).abs() > 1e-6);
     let alone = supports.is_empty() && assessed_frames.pushed.is_empty() && shown.iter().filter(moved).count() <= 1;
     let stage = Stage::still(supports, &[], held);
-    let mut scene = Scene { held: alone.then_some(held), ..Scene::of(title, model, &first.posture, frames, stage) };
+    let mut scene =
+        Scene { held: alone.then_some(held), muscles, ..Scene::of(title, model, &first.posture, frames, stage) };
     scene.carried.extend(&assessed_frames.pushed);
     let times = frames.iter().map(|frame| frame.time).collect();
     let main = group_of_title(verdict).map(|group| group.coordinate).or(working.first().map(|group| group.coordinate));

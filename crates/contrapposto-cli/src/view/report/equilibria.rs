@@ -14,6 +14,7 @@ use crate::fail::Fail;
 use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
 use crate::view::frame::{Frame, frame_of_posture};
+use crate::view::muscle_work::muscles_at_work;
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
 use crate::view::scene::hazard::hazards;
@@ -48,7 +49,9 @@ pub(crate) fn report_of_equilibria(
     let model = &scenario.model;
     let frames = frames_of_postures(model, &found.postures)?;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
-    let scene = Scene::of(&scenario.title, model, scenario.start.values(), &frames, stage);
+    let muscles = muscles_at_work(model, scenario.muscles.as_ref(), &frames, |_| true)?;
+    let still = Scene::of(&scenario.title, model, scenario.start.values(), &frames, stage);
+    let scene = Scene { muscles: muscles.as_ref(), ..still };
     let shown = shown(model);
     let first = found.postures.first().map_or(0, main_coordinate_of);
     let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;

@@ -1,10 +1,11 @@
 //! The page of a run over time.
 
 use contrapposto::hybrid::Strategy;
-use contrapposto::simulation::{FootStep, Scenario, Summary};
+use contrapposto::model::Side;
+use contrapposto::simulation::{FootStep, MuscleOutcome, Scenario, Summary};
 use contrapposto::verdict::{Verdict, VerdictKind};
 use contrapposto_formats::Thing;
-use contrapposto_report::{Entry, List, Moments};
+use contrapposto_report::{Entry, List, Moments, Report};
 
 use super::{narrative, page};
 use crate::fail::Fail;
@@ -12,6 +13,7 @@ use crate::view::answer::{Answer, group_of_title};
 use crate::view::decision::{alike, merged};
 use crate::view::excerpt::{Event, RunExcerpt};
 use crate::view::frame::Frame;
+use crate::view::muscle_work::{MusclesAtWork, muscles_at_work};
 use crate::view::recording::Recording;
 use crate::view::scene::Scene;
 use crate::view::selection::{main_coordinate, shown};
@@ -19,10 +21,25 @@ use crate::view::stage::{Stage, load_in_words};
 use crate::view::targets::missed_targets;
 use crate::view::words::{how_long, list, plain};
 
-/// The page of a run.
+/// The muscles of a run in the moments that its page shows. Nothing is judged while a support is put elsewhere.
+pub(crate) fn muscles_of_run<'a>(
+    scenario: &'a Scenario,
+    recording: &Recording,
+    summary: &'a Summary,
+) -> Result<Option<MusclesAtWork<'a>>, Fail> {
+    if scenario.muscles.is_none() {
+        return Ok(None);
+    }
+    let excerpt = RunExcerpt::new(scenario, recording, summary);
+    let steps = |time: f64| summary.foot_steps.iter().any(|step| time > step.time.0 && time < step.time.1);
+    let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), &excerpt.frames, |time| !steps(time))?;
+    Ok(muscles.map(|muscles| muscles.tiring(summary.muscles.as_ref())))
+}
+
+/// The page of a run, with the muscles of [`muscles_of_run`].
 pub(crate) fn report_of_run(
     (scenario, things): (&Scenario, &[Thing]),
-    recording: &Recording,
+    (recording, muscles): (&Recording, Option<&MusclesAtWork<'_>>),
     summary: &Summary,
     answer: &Answer,
 ) -> Result<String, Fail> {
@@ -31,12 +48,14 @@ pub(crate) fn report_of_run(
     let start = excerpt.frames.first().map_or(scenario.start.values(), |frame| &frame.posture);
     let scene = Scene {
         held: (!scenario.has_supports_or_tasks()).then_some(scenario.loads.as_slice()),
+        muscles,
         ..Scene::of(&scenario.title, &scenario.model, start, &excerpt.frames, Stage::of_run(scenario, things))
     };
     let times = excerpt.frames.iter().map(|frame| frame.time).collect();
     let main =
         group_of_title(&answer.verdict).map_or_else(|| main_coordinate(scenario, summary), |group| group.coordinate);
     let mut report = scene.report(Moments::Times(times), main)?;
+    summary.muscles.iter().for_each(|muscles| tell_time_left(&mut report, &shown, muscles, &excerpt.frames));
     report.targets = missed_targets(scenario, &excerpt.frames)?;
     report.open = excerpt.nearest(moment(&answer.verdict, summary));
     report.levels = Some([scenario.hysteresis.critical_level, scenario.hysteresis.recovery_level]);
@@ -47,6 +66,18 @@ pub(crate) fn report_of_run(
     };
     narrative::write((scenario, &scene.names_of_supports()), &excerpt, summary, answer, &mut report);
     Ok(page(&scenario.model, report))
+}
+
+/// Gives groups whose muscles tire one by one the time that these leave them.
+fn tell_time_left(report: &mut Report, shown: &[usize], muscles: &MuscleOutcome, frames: &[Frame]) {
+    for (joint, &coordinate) in report.joints.iter_mut().zip(shown).filter(|(_, i)| muscles.coordinates.contains(i)) {
+        for (group, side) in joint.groups.iter_mut().flatten().zip(Side::BOTH) {
+            for (left, frame) in group.left.iter_mut().zip(frames) {
+                let own = left.is_finite().then_some(*left);
+                *left = muscles.seconds_left((coordinate, side), frame.time, own).unwrap_or(f64::INFINITY);
+            }
+        }
+    }
 }
 
 /// The time that the verdict is about, s: of a job that holds the end, from which its minutes are counted, and not the hardest moment, which

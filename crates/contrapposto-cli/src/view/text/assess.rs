@@ -7,7 +7,7 @@ use contrapposto::fatigue::Repetition;
 use contrapposto::hybrid::Strategy;
 use contrapposto::model::CoordinateKind;
 use contrapposto_formats::tissue::SourcedModel;
-use contrapposto_formats::{AdviceText, VerdictText};
+use contrapposto_formats::{AdviceText, MuscleWorkText, VerdictText};
 use serde::Serialize;
 
 use super::group::GroupName;
@@ -39,6 +39,9 @@ pub(crate) struct AssessText {
     angle_error_deg: f64,
     /// Every group of known strength, the worst first.
     groups: Vec<AssessedGroupText>,
+    /// The muscles of a body whose strength they give.
+    #[serde(flatten)]
+    pub(crate) muscle_work: Option<MuscleWorkText>,
     /// Largest residual of the root, which neither loads nor supports give.
     residual_force_n: PeakText,
     residual_moment_nm: PeakText,
@@ -166,6 +169,7 @@ impl AssessText {
             repeats: found.repetition.map(|repetition| RepeatsText::new(repetition, times)),
             angle_error_deg: angle_error.to_degrees(),
             groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group, found.dynamics)).collect(),
+            muscle_work: None,
             residual_force_n: found.residual_force.into(),
             residual_moment_nm: found.residual_moment.into(),
             unheld_frames: found.unheld,

@@ -20,7 +20,7 @@ type Along = (V, V, [f64; 4]);
 
 impl WrapShape {
     /// Outward unit normal at a place on the surface.
-    pub(super) fn normal(&self, place: &V) -> V {
+    pub(in crate::muscle) fn normal(&self, place: &V) -> V {
         match self {
             Self::Cylinder { .. } => V::new(place.x, place.y, 0.0).normalize(),
             Self::Sphere { .. } => place.normalize(),
@@ -41,6 +41,15 @@ impl WrapShape {
                 [[cos, radius * sin], [-sin / radius, cos]]
             }
             Self::Ellipsoid { .. } | Self::Torus { .. } => self.integrated(place, direction, length),
+        }
+    }
+
+    /// Normal curvature at a place of the surface in a unit direction, 1/m.
+    pub(in crate::muscle) fn normal_curvature(&self, place: &V, direction: &V) -> f64 {
+        match self {
+            Self::Cylinder { radius, .. } => direction.xy().norm_squared() / radius,
+            Self::Sphere { radius } => 1.0 / radius,
+            Self::Ellipsoid { .. } | Self::Torus { .. } => self.curvatures(place, direction).0,
         }
     }
 

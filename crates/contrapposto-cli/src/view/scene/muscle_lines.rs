@@ -1,0 +1,101 @@
+//! Turns the muscles of a body into lines of a page: points fixed in segments, and the order in which they follow one another in every frame.
+
+use contrapposto::kinematics::Kinematics;
+use contrapposto::muscle::Path;
+use contrapposto_report::{Carrier, Muscle, Muscles, PathPoint};
+use nalgebra::Isometry3;
+
+use super::Scene;
+use crate::fail::Fail;
+use crate::view::axes::Turn;
+use crate::view::muscle_work::MusclesAtWork;
+
+/// Radius of a drawn muscle by the square root of its greatest force, m per root of N: 0.3 of that of fibres of 61 N/cm2 (assumed).
+const RADIUS: f64 = 2.2e-4;
+/// Least and greatest radius, m.
+const RADII: [f64; 2] = [0.0025, 0.009];
+
+/// Radius of a drawn muscle by its greatest force (N), m.
+pub(crate) fn radius(force: f64) -> f64 {
+    (RADIUS * force.sqrt()).clamp(RADII[0], RADII[1])
+}
+
+/// The muscles of a scene. `shown`: the coordinates of the page.
+pub(super) fn muscle_lines(
+    scene: &Scene<'_>,
+    muscles: &MusclesAtWork<'_>,
+    shown: &[usize],
+    turn: &Turn,
+) -> Result<Muscles, Fail> {
+    let musculature = muscles.musculature();
+    let kinematics: Vec<Kinematics> =
+        scene.frames.iter().map(|frame| scene.kinematics(frame)).collect::<Result<_, _>>()?;
+    let mut carriers: Vec<Option<usize>> = vec![];
+    let mut drawn = vec![];
+    for (m, muscle) in musculature.muscles.iter().enumerate() {
+        let spec = muscle.spec();
+        let path = &musculature.paths.paths[spec.path];
+        let line = line(muscles, m, path, &mut carriers);
+        let over = |value: &dyn Fn(usize) -> f64| (0..muscles.moments.len()).map(value).collect::<Vec<f64>>();
+        drawn.push(Muscle {
+            name: spec.name.clone(),
+            works_for: muscles.works_for(m),
+            joint: muscles.joint(m).and_then(|i| shown.iter().position(|&of| of == i)),
+            radius: radius(spec.max_isometric_force),
+            activation: over(&|frame| muscles.moments[frame].activations[m]),
+            tension: over(&|frame| muscles.moments[frame].tensions[m]),
+            ..line
+        });
+    }
+    let places = |carrier: &Option<usize>| {
+        let place = |kinematics: &Kinematics| match carrier {
+            Some(segment) => turn.place(&kinematics.placement(scene.model, *segment)),
+            None => turn.place(&Isometry3::identity()),
+        };
+        Carrier { places: kinematics.iter().map(place).collect() }
+    };
+    let lack = |missing: &Option<contrapposto::joint_torques::MissingTorque>| {
+        missing.map(|missing| (shown.iter().position(|&i| i == missing.coordinate), missing.torque))
+    };
+    Ok(Muscles {
+        carriers: carriers.iter().map(places).collect(),
+        lines: drawn,
+        lacks: muscles.moments.iter().map(|moment| lack(&moment.missing)).collect(),
+    })
+}
+
+/// The points of a muscle, and their orders.
+fn line(muscles: &MusclesAtWork<'_>, m: usize, path: &Path, carriers: &mut Vec<Option<usize>>) -> Muscle {
+    let mut points: Vec<PathPoint> = vec![];
+    let mut numbers: Vec<Option<usize>> = vec![None; path.drawn_points()];
+    let mut line = Muscle::default();
+    for (frame, moment) in muscles.moments.iter().enumerate() {
+        let mut order = vec![];
+        for point in &moment.lines[m] {
+            let place = point.place.into();
+            let at = *numbers[point.number].get_or_insert_with(|| {
+                let carrier = carriers.iter().position(|carrier| *carrier == point.segment).unwrap_or_else(|| {
+                    carriers.push(point.segment);
+                    carriers.len() - 1
+                });
+                points.push(PathPoint { carrier, at: vec![place; frame] });
+                points.len() - 1
+            });
+            points[at].at.push(place);
+            if point.begins {
+                order.push(None);
+            }
+            order.push(Some(at));
+        }
+        // A point that this posture has not stays where it was.
+        for point in points.iter_mut().filter(|point| point.at.len() == frame) {
+            point.at.extend(point.at.last().copied());
+        }
+        let known = line.orders.iter().position(|of| *of == order);
+        line.order.push(known.unwrap_or(line.orders.len()));
+        if known.is_none() {
+            line.orders.push(order);
+        }
+    }
+    Muscle { points, ..line }
+}
