@@ -88,7 +88,7 @@ def row(posture):
 def main():
     program, models = sys.argv[1], sys.argv[2:]
     print("One leg rests (15 % of the weight at most, where it likes). `tissue`: the band beside the muscles.\n")
-    print("| model | tissue | posture | effort | pelvis list, deg | right hip adduction, deg | passive torque that carries it, N m | greatest load | settled |")
+    print("| model | tissue | posture | effort | pelvis list, deg | right hip adduction, deg | passive torque that carries it, N m | greatest load | all settled |")
     print("|---|---|---|---|---|---|---|---|---|")
     for model in models:
         for tissue in TISSUES:
