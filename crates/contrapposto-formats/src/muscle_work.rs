@@ -50,7 +50,7 @@ pub struct WorkedMuscleText {
     pub force_n: f64,
     /// The group that the muscle works for; `null` of one that turns no joint.
     pub works_for: Option<WorksForText>,
-    /// Its fatigue, where muscles tire one by one.
+    /// Fatigue of a muscle that tires by itself.
     #[serde(flatten)]
     pub tired: Option<TiredMuscleText>,
 }
