@@ -21,7 +21,7 @@ const ROUNDING: f64 = 2e-6;
 
 fn clip<'a>(model: &'a Model, times: &'a [f64], postures: &'a [&'a [f64]]) -> Clip<'a> {
     let directions = [-Vector3::z(), Vector3::y(), Vector3::x()];
-    Clip { model, title: "any", directions, times, postures, steps: false }
+    Clip { model, title: "any", directions, times, postures, steps: false, things: &[], arrows: &[] }
 }
 
 fn drawn(p: Vector3<f64>) -> Vector3<f64> {

@@ -35,6 +35,8 @@ pub(in crate::scenario) struct World {
     pub(super) strides: Vec<(&'static str, f64)>,
     /// Whether the body sits.
     pub(super) sits: bool,
+    /// Segments that rest on a part of the seat: a backrest, armrests.
+    pub(super) rests: Vec<&'static str>,
     /// Things for drawings.
     pub(super) drawn: Vec<Thing>,
     /// The tables of the file that entries of supports and obstacles come from.
