@@ -6,13 +6,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
+use contrapposto::suggestions::Advice;
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 use indicatif::ProgressBar;
 
 use self::snapshot::{SNAPSHOT, go_on, save};
-use super::trials::{advice_of_run, advice_without_posture};
+use super::trials::{advice_of_run, advice_without_posture, largest_load};
 use crate::args::{DemoArgs, SimulateArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::interruption;
@@ -59,8 +60,8 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     let run = read(ScenarioFile::read_from(&args.scenario, args.start_from.as_deref())?)?;
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
-    let SimulateArgs { resume, figures, json, suggest, wooden, .. } = *args;
-    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest, wooden })
+    let SimulateArgs { resume, figures, json, suggest, wooden, largest_load, .. } = *args;
+    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest, wooden, largest_load })
 }
 
 /// The run of a file, with the muscles of its model.
@@ -94,11 +95,12 @@ struct How {
     json: bool,
     suggest: SuggestArgs,
     wooden: bool,
+    largest_load: bool,
 }
 
 /// Runs a scenario; without `out` nothing is recorded, drawn and written.
 fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail> {
-    let (RunScenario { scenario, things, .. }, How { resume, json, suggest, .. }) = (run, how);
+    let (RunScenario { scenario, things, .. }, How { resume, json, suggest, largest_load: largest, .. }) = (run, how);
     let folder = out.map(|out| ResultSet::open(out, &RUN_FILES)).transpose()?;
     interruption::watch();
     let goes_on = || !interruption::is_requested();
@@ -114,7 +116,10 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
                 progress.finish();
                 let body = (&scenario.model, scenario.loads.as_slice());
-                let advice = |verdict: &Verdict| advice_without_posture(verdict, scenario, suggest, goes_on);
+                let advice = |verdict: &Verdict| {
+                    let advice = advice_without_posture(verdict, scenario, suggest, goes_on);
+                    Advice { largest: largest_load(scenario, largest, goes_on), ..advice }
+                };
                 return without_posture(
                     "summary.json",
                     &scenario.title,
@@ -135,6 +140,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     if summary.reason != StopReason::Interrupted {
         let trying = spinner(TRYING_CHANGES);
         answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
+        answer.advice.largest = largest_load(scenario, largest, goes_on);
         trying.finish();
     }
     let text = match &files {

@@ -4,11 +4,13 @@ use contrapposto::equilibria::Search;
 use contrapposto::posture_solver::Options;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::suggestions::{
-    Advice, Budget, Job, Worked, by_promise, by_promise_of_search, changes, try_run, try_search, with_breaks,
+    Advice, Budget, Job, LargestLoad, Worked, by_promise, by_promise_of_search, changes, try_run, try_search,
+    with_breaks,
 };
 use contrapposto::verdict::Verdict;
 
 use crate::args::SuggestArgs;
+use crate::output::print_note;
 
 /// Number of cores of the machine, as far as it is known.
 pub(super) fn cores() -> usize {
@@ -56,6 +58,18 @@ pub(crate) fn advice_without_posture(
     let job = Job::from(scenario);
     let trial = |change: &_| try_run(scenario, change, &go_on);
     Advice::new(verdict, &job, || changes(&job, &verdict.hazards), || None, budget, trial)
+}
+
+/// The largest loads of a scenario, where they are `asked` for, its body has some, and `go_on` lets the search end.
+pub(crate) fn largest_load(scenario: &Scenario, asked: bool, go_on: impl Fn() -> bool + Sync) -> Option<LargestLoad> {
+    if !asked {
+        return None;
+    }
+    let found = LargestLoad::find(&Job::from(scenario), cores(), |change| try_run(scenario, change, &go_on));
+    if found.is_none() {
+        print_note("note", "the job has no load, so that there is no largest one");
+    }
+    found.filter(|_| go_on())
 }
 
 /// The changes of a search for postures of least effort, whose best posture is `search.start`, and which took so many solver steps.

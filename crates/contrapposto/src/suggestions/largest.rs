@@ -1,0 +1,182 @@
+//! Finds the largest load with which a job can be done for the time asked.
+//!
+//! All loads of the job, weights and forces, change in one proportion. Tried are loads of two digits in steps of 5 % at most: 10, 10.5, 11,
+//! ... 19.5, 20, 21, ... 99. The search divides the interval between a load that holds and one that does not in three; both loads that
+//! it ends with were tried like any other change (`trial.rs`), so that the promised one holds when it is run on its own, and the next one
+//! does not. Two loads are tried at a time, on one thread or two, with the same answer.
+
+use super::budget::Trial;
+use super::change::{Change, Job};
+use crate::verdict::{Amount, MOST_AMOUNTS, Verdict, VerdictKind, amounts, amounts_in_words, has_motors, how_long};
+
+/// Loads of one decade: 1.00, 1.05, ... 1.95, then 2.0, 2.1, ... 9.9.
+const DECADE: i64 = 100;
+/// Loads of a decade below 2.
+const BELOW_TWO: i64 = 20;
+/// The least load that is tried, in steps below the given one: a hundredth.
+const LEAST: i64 = -2 * DECADE;
+/// The greatest one, in steps above it: the tenfold.
+const GREATEST: i64 = DECADE;
+/// Distances of the first two trials from the given load, in steps: about the half or double of it, and four times that.
+const FIRST_TRIALS: [i64; 2] = [35, 80];
+
+/// The largest loads of a job, as shares of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LargestLoad {
+    /// The time that is asked for, s.
+    pub asked: f64,
+    /// The share that a person of mean strength holds for that time; `None` where a hundredth of the loads is too much.
+    pub mean: Option<f64>,
+    /// The share that weaker people hold for that time, one standard deviation below the mean, and by every published law.
+    pub weaker: Option<f64>,
+    /// Whether the tenfold load, the greatest one tried, holds for a person of mean strength.
+    pub is_open: bool,
+    /// Whether motors move the body, of which none is weaker.
+    motors: bool,
+    /// The loads of the job.
+    amounts: Vec<Amount>,
+}
+
+/// Number of the greatest load of the grid that is not above `load`.
+fn index(load: f64) -> i64 {
+    let decade = load.log10().floor();
+    let mantissa = load / 10f64.powf(decade);
+    let within = if mantissa < 2.0 { 20.0 * (mantissa - 1.0) } else { 10.0 * mantissa };
+    DECADE * decade as i64 + (within + 1e-6).floor() as i64
+}
+
+/// The load of a number.
+fn load(index: i64) -> f64 {
+    let (decade, within) = (index.div_euclid(DECADE), index.rem_euclid(DECADE));
+    let mantissa = if within < BELOW_TWO { 1.0 + within as f64 / 20.0 } else { within as f64 / 10.0 };
+    mantissa * 10f64.powi(decade as i32)
+}
+
+/// The loads that were tried, and how people get on with them.
+struct Trials<'a> {
+    trial: &'a (dyn Fn(&Change) -> Trial + Sync),
+    threads: usize,
+    asked: f64,
+    /// The amount of the job by which its loads are told.
+    amount: f64,
+    /// Number of the load, and whether people of mean strength and weaker ones hold it.
+    known: Vec<(i64, [bool; 2])>,
+}
+
+impl Trials<'_> {
+    /// Tries loads, two at a time.
+    fn take(&mut self, indices: [i64; 2]) {
+        let is_new = |i: &i64| self.known.iter().all(|(known, _)| known != i);
+        let mut new: Vec<i64> = indices.into_iter().filter(is_new).collect();
+        new.dedup();
+        let (trial, amount) = (self.trial, self.amount);
+        let outcome = |index: i64| trial(&Change::Loads(load(index) / amount)).verdict;
+        let outcomes: Vec<Option<Verdict>> = if self.threads > 1 && new.len() > 1 {
+            std::thread::scope(|scope| {
+                let runs: Vec<_> = new.iter().map(|&index| scope.spawn(move || outcome(index))).collect();
+                // A load whose trial ends in a panic is none that holds.
+                runs.into_iter().map(|run| run.join().unwrap_or_default()).collect()
+            })
+        } else {
+            new.iter().map(|&index| outcome(index)).collect()
+        };
+        let held = |verdict: Option<Verdict>| {
+            let holding = verdict.filter(|verdict| verdict.kind == VerdictKind::Holds);
+            let weaker = holding.as_ref().and_then(|verdict| verdict.least).is_some_and(|least| least >= self.asked);
+            [holding.is_some(), weaker]
+        };
+        let found: Vec<_> = new.iter().copied().zip(outcomes.into_iter().map(held)).collect();
+        self.known.extend(found);
+    }
+
+    /// The greatest load with which these people hold, and which is below all with which they do not; `None` where the least one is too much.
+    fn largest(&mut self, who: usize, start: i64) -> Option<i64> {
+        self.take([start, start]);
+        loop {
+            let fails = self.known.iter().filter(|(_, holds)| !holds[who]).map(|(index, _)| *index).min();
+            let below = |index: i64| fails.is_none_or(|fails| index < fails);
+            let holds = self.known.iter().filter(|(index, holds)| holds[who] && below(*index));
+            match (holds.map(|(index, _)| *index).max(), fails) {
+                (Some(holds), Some(fails)) if holds + 1 >= fails => return Some(holds),
+                (Some(holds), Some(fails)) => {
+                    let third = ((fails - holds) / 3).max(1);
+                    self.take([holds + third, (fails - third).max(holds + 1)]);
+                }
+                (Some(holds), None) if holds >= start + GREATEST => return Some(holds),
+                (Some(holds), None) => self.take(FIRST_TRIALS.map(|by| (holds + by).min(start + GREATEST))),
+                (None, Some(fails)) if fails <= start + LEAST => return None,
+                (None, Some(fails)) => self.take(FIRST_TRIALS.map(|by| (fails - by).max(start + LEAST))),
+                (None, None) => return None,
+            }
+        }
+    }
+}
+
+impl LargestLoad {
+    /// Of a job whose changed loads `trial` runs; `None` of a job without loads, and where it asks for no time.
+    pub fn find(job: &Job<'_>, threads: usize, trial: impl Fn(&Change) -> Trial + Sync) -> Option<Self> {
+        let amounts = job.loads.iter().find(|loads| !loads.is_empty()).map(|loads| amounts(loads))?;
+        let (asked, amount) = (job.asked?, amounts.first()?.0);
+        if !(amount.is_finite() && amount > 0.0) {
+            return None;
+        }
+        let start = index(amount);
+        let mut trials = Trials { trial: &trial, threads, asked, amount, known: vec![] };
+        let [mean, weaker] = [0, 1].map(|who| trials.largest(who, start));
+        let share = |index: i64| load(index) / amount;
+        Some(Self {
+            asked,
+            mean: mean.map(share),
+            weaker: weaker.map(share),
+            is_open: mean.is_some_and(|mean| mean >= start + GREATEST),
+            motors: has_motors(job.model),
+            amounts,
+        })
+    }
+
+    /// `12 kg (the job has 15 kg) can be held for the 60 s asked by a person of mean strength, 9.5 kg by weaker people (one in six)`, by
+    /// muscles and grip.
+    pub fn in_words(&self) -> String {
+        let amounts = &self.amounts[..self.amounts.len().min(MOST_AMOUNTS)];
+        let of = |share: f64| amounts_in_words(amounts, share);
+        let (given, asked) = (of(1.0), how_long(self.asked));
+        let Some(mean) = self.mean else {
+            return format!("even a hundredth of {given} cannot be held for the {asked} asked");
+        };
+        let more = if self.is_open { " or more" } else { "" };
+        let head = format!("{}{more} (the job has {given}) can be held for the {asked} asked", of(mean));
+        let weaker = match self.weaker {
+            _ if self.motors => return head,
+            Some(weaker) => of(weaker),
+            None => "not even a hundredth of it".to_owned(),
+        };
+        let people = "by a person of mean strength";
+        format!(
+            "{head} {people}, {weaker} by weaker people (one in six); hazards for ligaments and discs are not counted"
+        )
+    }
+
+    /// Name of the finding.
+    pub const NAME: &'static str = "Largest load";
+
+    /// The amounts of a share of the loads, in kg, N or N m, with their units.
+    pub fn amounts(&self, share: f64) -> Vec<(f64, &'static str)> {
+        self.amounts.iter().map(|(amount, unit)| (share * amount, *unit)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn loads_have_two_digits_and_steps_of_five_percent_at_most() {
+        for i in -250..250 {
+            let (this, next) = (load(i), load(i + 1));
+            assert!(next > this && next <= 1.05 * this + 1e-9, "{this} {next}");
+            assert_eq!(index(this), i, "{this}");
+            assert_eq!(index(0.5 * (this + next)), i, "between {this} and {next}");
+        }
+        assert_eq!([index(15.0), index(200.0)].map(load), [15.0, 200.0]);
+    }
+}
