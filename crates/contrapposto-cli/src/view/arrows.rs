@@ -15,7 +15,7 @@ const OF_WEIGHT: f64 = 0.6;
 /// Least length of the arrow of a load, m, as on pages.
 const SHORTEST_LOAD: f64 = 0.25;
 /// Share of the body's weight below which a force is none.
-const NOTHING: f64 = 0.005;
+const NO_FORCE: f64 = 0.005;
 
 /// An arrow for every contact and every load, with an entry for every frame.
 pub(crate) fn arrows(
@@ -26,7 +26,7 @@ pub(crate) fn arrows(
     let (weight, all) = ((model.mass() * model.gravity().norm()).max(1.0), stage.all_loads());
     let along = |force: Vector3<f64>, shortest: f64| {
         let share = force.norm() / weight;
-        if share < NOTHING { Vector3::zeros() } else { force.normalize() * (OF_WEIGHT * share).max(shortest) }
+        if share < NO_FORCE { Vector3::zeros() } else { force.normalize() * (OF_WEIGHT * share).max(shortest) }
     };
     let mut contacts: Vec<Arrow> = vec![];
     let mut loads: Vec<Arrow> =

@@ -15,7 +15,7 @@ pub struct Arrow {
     pub name: String,
     /// Whether a support gives it; else it is a load.
     pub contact: bool,
-    /// Where the arrow begins in every posture of the clip, ground, m.
+    /// The point at which the arrow begins in every posture of the clip, ground, m.
     pub at: Vec<Vector3<f64>>,
     /// Direction and length of the arrow in every posture, ground, m; none where it is zero.
     pub along: Vec<Vector3<f64>>,
@@ -29,13 +29,13 @@ const MATERIALS: [(&str, [f64; 4]); 3] = [
 ];
 /// Radii of shaft and head of an arrow, and the length of the head, m.
 const SHAFT: f64 = 0.012;
-const HEAD: (f64, f64) = (0.034, 0.09);
+const ARROW_HEAD: (f64, f64) = (0.034, 0.09);
 /// Least share of an arrow's own size: readers do not like a scale of nothing.
 const NO_ARROW: f64 = 1e-6;
 /// An arrow of its own size has this length, m; others are scaled as a whole.
-const UNIT: f64 = 0.3;
+const ARROW_LENGTH: f64 = 0.3;
 /// Points and lengths of arrows are rounded to this, m, so that what hardly changes needs no keys.
-const GRAIN: f64 = 2e-3;
+const ARROW_GRAIN: f64 = 2e-3;
 
 /// Number of nodes of the scenery.
 pub(super) fn count(clip: &Clip<'_>) -> usize {
@@ -46,13 +46,13 @@ pub(super) fn count(clip: &Clip<'_>) -> usize {
 pub(super) fn places(clip: &Clip<'_>, index: usize, frames: &[Placement]) -> Vec<(Placement, f64)> {
     let segment = |s: usize| carrier(clip.model, s, &frames[s]);
     let things = clip.things.iter().map(|thing| (thing.place_by(segment), 1.0));
-    let rounded = |v: Vector3<f64>| v.map(|x| (x / GRAIN).round() * GRAIN);
+    let rounded = |v: Vector3<f64>| v.map(|x| (x / ARROW_GRAIN).round() * ARROW_GRAIN);
     let arrows = clip.arrows.iter().map(|arrow| {
         let of = |list: &[Vector3<f64>]| rounded(list.get(index).or(list.last()).copied().unwrap_or_default());
         let (at, along) = (of(&arrow.at), of(&arrow.along));
         let turn = UnitQuaternion::rotation_between(&Vector3::y(), &along);
         let turn = turn.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-        (Isometry3::from_parts(at.into(), turn), (along.norm() / UNIT).max(NO_ARROW))
+        (Isometry3::from_parts(at.into(), turn), (along.norm() / ARROW_LENGTH).max(NO_ARROW))
     });
     things.chain(arrows).collect()
 }
@@ -133,9 +133,9 @@ fn cuboid(size: &Vector3<f64>, buffer: &mut Buffer) -> Vec<[usize; 3]> {
 /// An arrow from the origin along y: shaft and head.
 fn arrow(buffer: &mut Buffer) -> Vec<[usize; 3]> {
     let indices = buffer.triangles(&hull::triangles());
-    let neck = UNIT - HEAD.1;
+    let neck = ARROW_LENGTH - ARROW_HEAD.1;
     let shaft = [[0.0, SHAFT, 0.0, SHAFT], [0.0, neck, 0.0, SHAFT]];
-    let head = [[0.0, neck, 0.0, HEAD.0], [0.0, UNIT - 0.002, 0.0, 0.002]];
+    let head = [[0.0, neck, 0.0, ARROW_HEAD.0], [0.0, ARROW_LENGTH - 0.002, 0.0, 0.002]];
     [shaft, head]
         .map(|balls| {
             let [position, normal] = buffer.vertices(&hull::corners(&balls, [0.0; 3]));

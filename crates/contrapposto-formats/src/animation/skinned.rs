@@ -34,11 +34,7 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
             skeleton.nodes[node].parent.map_or_else(|| *place, |parent| places[parent].inv_mul(place))
         };
         let body = places.iter().enumerate().map(in_parent).map(|local| (local, 1.0));
-        let around = scenery::places(clip, index, frames).into_iter();
-        let around = around.map(|(place, size)| {
-            let at = drawn * place.translation.vector;
-            (Placement::from_parts(at.into(), turn * place.rotation), size)
-        });
+        let around = scenery::places(clip, index, frames).into_iter().map(|place| around_in_file(place, &drawn));
         body.chain(around).collect()
     })?;
     let (courses, around) = courses.split_at(skeleton.nodes.len());
@@ -62,8 +58,6 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
     let animation = animation(clip, &channels, &times, &mut buffer);
     let roots: Vec<usize> = std::iter::once(0).chain(skinned..nodes.len()).collect();
     let joints: Vec<usize> = (1..=skeleton.bones().len()).collect();
-    let look = json!({ "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.75 });
-    let body = json!({ "name": "body", "pbrMetallicRoughness": look });
     let mut file = json!({
         "asset": {
             "version": "2.0",
@@ -73,7 +67,7 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
         "scene": 0,
         "scenes": [{ "nodes": roots }],
         "nodes": nodes,
-        "materials": std::iter::once(body).chain(around.materials).collect::<Vec<_>>(),
+        "materials": std::iter::once(material()).chain(around.materials).collect::<Vec<_>>(),
         "meshes": std::iter::once(mesh).chain(around.meshes).collect::<Vec<_>>(),
         "skins": [{ "inverseBindMatrices": bind, "skeleton": 0, "joints": joints }],
     });
@@ -81,6 +75,18 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
         file["animations"] = json!([animation]);
     }
     Ok(packed(file, buffer))
+}
+
+/// Placement and size of a node of the scenery in the axes of the file.
+fn around_in_file((place, size): (Placement, f64), drawn: &Rotation3<f64>) -> (Placement, f64) {
+    let turn = UnitQuaternion::from_rotation_matrix(drawn);
+    (Placement::from_parts((drawn * place.translation.vector).into(), turn * place.rotation), size)
+}
+
+/// The material of the body, whose colours are those of its vertices.
+fn material() -> Value {
+    let look = json!({ "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.75 });
+    json!({ "name": "body", "pbrMetallicRoughness": look })
 }
 
 fn floats(v: Vector3<f64>) -> [f32; 3] {

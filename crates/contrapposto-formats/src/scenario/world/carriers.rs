@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::drawn;
 use super::held::in_segment;
-use super::plan::World;
+use super::plan::{World, forearm};
 use super::text::{CarriedText, FeetText, FloorText, FootText, SeatText, TableText, WallText};
 use super::word::Word;
 use crate::input_error::InputError;
@@ -139,13 +139,6 @@ fn read_seat(world: &mut World, word: &Word<'_>, text: &SeatText, model: &Model)
         }
     }
     Ok(())
-}
-
-/// Height of the bone of a forearm above the armrest under it, m: the radius of the forearm's shape.
-pub(super) fn forearm(model: &Model) -> f64 {
-    let segment = model.segment("radius_r");
-    let shape = model.shapes().iter().find(|shape| Some(shape.capsule.segment) == segment);
-    shape.map_or(0.0, |shape| shape.capsule.radius)
 }
 
 /// Heights of the bones of level forearms of an upright sitter, m: with the arms hanging down, and with the elbows at the shoulders.

@@ -9,8 +9,7 @@ use contrapposto::statics::{Load, LoadKind};
 use contrapposto::tasks::Task;
 use nalgebra::{Isometry3, Rotation3, Vector3};
 
-use super::carriers::forearm;
-use super::plan::{HandTask, grip, points};
+use super::plan::{HandTask, forearm, grip, points};
 use crate::scenario::stage::Stage;
 use crate::scenario::task_text::SupportText;
 use crate::thing::{Swing, Thing};
@@ -26,7 +25,7 @@ const CARRIED_BAR: [f64; 3] = [0.26, 0.035, 0.035];
 const TOOL_BODY: ([f64; 3], f64) = ([0.05, 0.20, 0.05], 0.03);
 const TOOL_TIP: ([f64; 3], f64) = ([0.016, 0.10, 0.016], 0.18);
 /// Strap or handle of a bag in a hand.
-const STRAP: [f64; 2] = [0.16, 0.02];
+const HAND_STRAP: [f64; 2] = [0.16, 0.02];
 /// Thickness of a handle, m.
 pub(super) const BAR: f64 = 0.03;
 /// Distance of a bag's middle below the hand or the shoulder that carries it, m.
@@ -42,7 +41,7 @@ const ARMREST: [f64; 3] = [0.28, 0.03, 0.07];
 /// Thickness of the legs of tables and seats, m.
 const LEG: f64 = 0.04;
 /// Density of a weight of the longhand, kg/m3: a cube of water.
-const WATER: f64 = 1000.0;
+const CUBE_DENSITY: f64 = 1000.0;
 
 fn thing(name: &str, size: [f64; 3], middle: Vector3<f64>, segment: Option<usize>) -> Thing {
     Thing::new(name, size, Isometry3::translation(middle.x, middle.y, middle.z), segment)
@@ -83,7 +82,7 @@ pub(super) fn bag_in_hand(model: &Model, hand: usize) -> Vec<Thing> {
     let at = grip(model, hand);
     let swing = Some(Swing { at, up: Vector3::y() });
     let bag = thing("bag", BAG, at - Vector3::new(0.0, BELOW_HAND, 0.0), Some(hand));
-    let [length, thickness] = STRAP;
+    let [length, thickness] = HAND_STRAP;
     let reach = BELOW_HAND - 0.5 * BAG[1];
     let strap = thing("bag", [length, reach, thickness], at - Vector3::new(0.0, 0.5 * reach, 0.0), Some(hand));
     [bag, strap].map(|part| Thing { swing, ..part }).into()
@@ -94,7 +93,7 @@ pub(in crate::scenario) fn weights<'a>(model: &'a Model, loads: &'a [Load]) -> i
     loads.iter().filter_map(|load| {
         let LoadKind::Weight(mass) = load.kind else { return None };
         let hand = matches!(model.segments()[load.segment].name.as_str(), "hand_r" | "hand_l");
-        let edge = (mass / WATER).cbrt();
+        let edge = (mass / CUBE_DENSITY).cbrt();
         let swing = Some(Swing { at: load.point, up: Vector3::y() });
         (hand && mass > 0.0).then(|| Thing { swing, ..thing("weight", [edge; 3], load.point, Some(load.segment)) })
     })

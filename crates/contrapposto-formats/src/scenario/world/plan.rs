@@ -124,3 +124,10 @@ pub(super) fn grip(model: &Model, hand: usize) -> Vector3<f64> {
     let middle = segment.patch.iter().sum::<Vector3<f64>>() / segment.patch.len() as f64;
     Vector3::new(0.0, KNUCKLES * middle.y, 0.0)
 }
+
+/// Height of the bone of a forearm above the armrest under it, m: the radius of the forearm's shape.
+pub(super) fn forearm(model: &Model) -> f64 {
+    let segment = model.segment("radius_r");
+    let shape = model.shapes().iter().find(|shape| Some(shape.capsule.segment) == segment);
+    shape.map_or(0.0, |shape| shape.capsule.radius)
+}
