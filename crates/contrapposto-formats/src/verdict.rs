@@ -176,6 +176,8 @@ pub struct LargestLoadText {
     pub share: Option<f64>,
     /// The same of weaker people, one in six.
     pub share_weaker: Option<f64>,
+    /// Whether both searches ended within the solver steps; else the shares are lower bounds.
+    pub complete: bool,
     /// Both in words.
     pub sentence: String,
 }
@@ -186,6 +188,7 @@ impl From<&LargestLoad> for LargestLoadText {
             asked_minutes: largest.asked / 60.0,
             share: largest.mean,
             share_weaker: largest.weaker,
+            complete: largest.is_cut == [false; 2],
             sentence: largest.in_words(),
         }
     }

@@ -118,7 +118,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
                 let body = (&scenario.model, scenario.loads.as_slice());
                 let advice = |verdict: &Verdict| {
                     let advice = advice_without_posture(verdict, scenario, suggest, goes_on);
-                    Advice { largest: largest_load(scenario, largest, goes_on), ..advice }
+                    Advice { largest: largest_load(scenario, (largest, 0), suggest, goes_on), ..advice }
                 };
                 return without_posture(
                     "summary.json",
@@ -140,7 +140,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     if summary.reason != StopReason::Interrupted {
         let trying = spinner(TRYING_CHANGES);
         answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
-        answer.advice.largest = largest_load(scenario, largest, goes_on);
+        answer.advice.largest = largest_load(scenario, (largest, run.solver_steps()), suggest, goes_on);
         trying.finish();
     }
     let text = match &files {

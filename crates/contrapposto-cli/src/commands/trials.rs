@@ -61,13 +61,20 @@ pub(crate) fn advice_without_posture(
 }
 
 /// The largest loads of a scenario, where they are `asked` for, its body has some, and `go_on` lets the search end.
-pub(crate) fn largest_load(scenario: &Scenario, asked: bool, go_on: impl Fn() -> bool + Sync) -> Option<LargestLoad> {
+pub(crate) fn largest_load(
+    scenario: &Scenario,
+    (asked, steps): (bool, usize),
+    suggest: SuggestArgs,
+    go_on: impl Fn() -> bool + Sync,
+) -> Option<LargestLoad> {
     if !asked {
         return None;
     }
-    let found = LargestLoad::find(&Job::from(scenario), cores(), |change| try_run(scenario, change, &go_on));
+    let budget = SuggestArgs { no_suggest: false, ..suggest }.budget(steps)?;
+    let found = LargestLoad::find(&Job::from(scenario), budget, |change| try_run(scenario, change, &go_on));
     if found.is_none() {
-        print_note("note", "the job has no load, so that there is no largest one");
+        let why = if scenario.loads.is_empty() { "the job has no load" } else { "none held within the solver steps" };
+        print_note("note", &format!("there is no largest load: {why}"));
     }
     found.filter(|_| go_on())
 }

@@ -3,20 +3,21 @@
 //! All loads of the job, weights and forces, change in one proportion. Tried are loads of two digits in steps of 5 % at most: 10, 10.5, 11,
 //! ... 19.5, 20, 21, ... 99. The search divides the interval between a load that holds and one that does not in three; both loads that
 //! it ends with were tried like any other change (`trial.rs`), so that the promised one holds when it is run on its own, and the next one
-//! does not. Two loads are tried at a time, on one thread or two, with the same answer.
+//! does not. Two loads are tried at a time, on one thread or two, with the same answer. No pair begins after the solver steps of the budget;
+//! then the greatest load that held is told as a lower bound.
 
-use super::budget::Trial;
+use super::budget::{Budget, Trial};
 use super::change::{Change, Job};
-use crate::verdict::{Amount, MOST_AMOUNTS, Verdict, VerdictKind, amounts, amounts_in_words, has_motors, how_long};
+use crate::verdict::{Amount, MOST_AMOUNTS, VerdictKind, amounts, amounts_in_words, has_motors, how_long};
 
 /// Loads of one decade: 1.00, 1.05, ... 1.95, then 2.0, 2.1, ... 9.9.
 const DECADE: i64 = 100;
 /// Loads of a decade below 2.
 const BELOW_TWO: i64 = 20;
 /// The least load that is tried, in steps below the given one: a hundredth.
-const LEAST: i64 = -2 * DECADE;
+const HUNDREDTH: i64 = -2 * DECADE;
 /// The greatest one, in steps above it: the tenfold.
-const GREATEST: i64 = DECADE;
+const TENFOLD: i64 = DECADE;
 /// Distances of the first two trials from the given load, in steps: about the half or double of it, and four times that.
 const FIRST_TRIALS: [i64; 2] = [35, 80];
 
@@ -31,6 +32,8 @@ pub struct LargestLoad {
     pub weaker: Option<f64>,
     /// Whether the tenfold load, the greatest one tried, holds for a person of mean strength.
     pub is_open: bool,
+    /// Whether the budget ended the search before the greatest load was known, of the mean person and of weaker people.
+    pub is_cut: [bool; 2],
     /// Whether motors move the body, of which none is weaker.
     motors: bool,
     /// The loads of the job.
@@ -55,7 +58,9 @@ fn load(index: i64) -> f64 {
 /// The loads that were tried, and how people get on with them.
 struct Trials<'a> {
     trial: &'a (dyn Fn(&Change) -> Trial + Sync),
-    threads: usize,
+    budget: Budget,
+    /// Solver steps of all trials so far.
+    used: usize,
     asked: f64,
     /// The amount of the job by which its loads are told.
     amount: f64,
@@ -70,8 +75,8 @@ impl Trials<'_> {
         let mut new: Vec<i64> = indices.into_iter().filter(is_new).collect();
         new.dedup();
         let (trial, amount) = (self.trial, self.amount);
-        let outcome = |index: i64| trial(&Change::Loads(load(index) / amount)).verdict;
-        let outcomes: Vec<Option<Verdict>> = if self.threads > 1 && new.len() > 1 {
+        let outcome = |index: i64| trial(&Change::Loads(load(index) / amount));
+        let outcomes: Vec<Trial> = if self.budget.threads > 1 && new.len() > 1 {
             std::thread::scope(|scope| {
                 let runs: Vec<_> = new.iter().map(|&index| scope.spawn(move || outcome(index))).collect();
                 // A load whose trial ends in a panic is none that holds.
@@ -80,8 +85,9 @@ impl Trials<'_> {
         } else {
             new.iter().map(|&index| outcome(index)).collect()
         };
-        let held = |verdict: Option<Verdict>| {
-            let holding = verdict.filter(|verdict| verdict.kind == VerdictKind::Holds);
+        self.used += outcomes.iter().map(|outcome| outcome.steps).sum::<usize>();
+        let held = |outcome: Trial| {
+            let holding = outcome.verdict.filter(|verdict| verdict.kind == VerdictKind::Holds);
             let weaker = holding.as_ref().and_then(|verdict| verdict.least).is_some_and(|least| least >= self.asked);
             [holding.is_some(), weaker]
         };
@@ -89,46 +95,62 @@ impl Trials<'_> {
         self.known.extend(found);
     }
 
-    /// The greatest load with which these people hold, and which is below all with which they do not; `None` where the least one is too much.
-    fn largest(&mut self, who: usize, start: i64) -> Option<i64> {
-        self.take([start, start]);
+    /// The greatest load with which these people hold, and which is below all with which they do not, `None` where the least one is too much;
+    /// and whether the budget ended the search before.
+    fn largest(&mut self, who: usize, start: i64) -> (Option<i64>, bool) {
+        let mut next = [start, start];
         loop {
-            let fails = self.known.iter().filter(|(_, holds)| !holds[who]).map(|(index, _)| *index).min();
-            let below = |index: i64| fails.is_none_or(|fails| index < fails);
-            let holds = self.known.iter().filter(|(index, holds)| holds[who] && below(*index));
-            match (holds.map(|(index, _)| *index).max(), fails) {
-                (Some(holds), Some(fails)) if holds + 1 >= fails => return Some(holds),
+            let is_new = |i: &i64| self.known.iter().all(|(known, _)| known != i);
+            if next.iter().any(is_new) && self.used >= self.budget.steps {
+                return (self.bounds(who).0, true);
+            }
+            self.take(next);
+            next = match self.bounds(who) {
+                (Some(holds), Some(fails)) if holds + 1 >= fails => return (Some(holds), false),
                 (Some(holds), Some(fails)) => {
                     let third = ((fails - holds) / 3).max(1);
-                    self.take([holds + third, (fails - third).max(holds + 1)]);
+                    [holds + third, (fails - third).max(holds + 1)]
                 }
-                (Some(holds), None) if holds >= start + GREATEST => return Some(holds),
-                (Some(holds), None) => self.take(FIRST_TRIALS.map(|by| (holds + by).min(start + GREATEST))),
-                (None, Some(fails)) if fails <= start + LEAST => return None,
-                (None, Some(fails)) => self.take(FIRST_TRIALS.map(|by| (fails - by).max(start + LEAST))),
-                (None, None) => return None,
+                (Some(holds), None) if holds >= start + TENFOLD => return (Some(holds), false),
+                (Some(holds), None) => FIRST_TRIALS.map(|by| (holds + by).min(start + TENFOLD)),
+                (None, Some(fails)) if fails <= start + HUNDREDTH => return (None, false),
+                (None, Some(fails)) => FIRST_TRIALS.map(|by| (fails - by).max(start + HUNDREDTH)),
+                (None, None) => return (None, false),
             }
         }
+    }
+
+    /// The greatest load known to hold below all known to fail, and the least known to fail.
+    fn bounds(&self, who: usize) -> (Option<i64>, Option<i64>) {
+        let fails = self.known.iter().filter(|(_, holds)| !holds[who]).map(|(index, _)| *index).min();
+        let below = |index: i64| fails.is_none_or(|fails| index < fails);
+        let holds = self.known.iter().filter(|(index, holds)| holds[who] && below(*index));
+        (holds.map(|(index, _)| *index).max(), fails)
     }
 }
 
 impl LargestLoad {
-    /// Of a job whose changed loads `trial` runs; `None` of a job without loads, and where it asks for no time.
-    pub fn find(job: &Job<'_>, threads: usize, trial: impl Fn(&Change) -> Trial + Sync) -> Option<Self> {
+    /// Of a job whose changed loads `trial` runs; `None` of a job without loads, where it asks for no time, and where no load was found to
+    /// hold before the solver steps of the budget were used up.
+    pub fn find(job: &Job<'_>, budget: Budget, trial: impl Fn(&Change) -> Trial + Sync) -> Option<Self> {
         let amounts = job.loads.iter().find(|loads| !loads.is_empty()).map(|loads| amounts(loads))?;
         let (asked, amount) = (job.asked?, amounts.first()?.0);
         if !(amount.is_finite() && amount > 0.0) {
             return None;
         }
         let start = index(amount);
-        let mut trials = Trials { trial: &trial, threads, asked, amount, known: vec![] };
-        let [mean, weaker] = [0, 1].map(|who| trials.largest(who, start));
+        let mut trials = Trials { trial: &trial, budget, used: 0, asked, amount, known: vec![] };
+        let [(mean, mean_is_cut), (weaker, weaker_is_cut)] = [0, 1].map(|who| trials.largest(who, start));
+        if mean.is_none() && mean_is_cut {
+            return None;
+        }
         let share = |index: i64| load(index) / amount;
         Some(Self {
             asked,
             mean: mean.map(share),
             weaker: weaker.map(share),
-            is_open: mean.is_some_and(|mean| mean >= start + GREATEST),
+            is_open: mean.is_some_and(|mean| mean >= start + TENFOLD),
+            is_cut: [mean_is_cut, weaker_is_cut],
             motors: has_motors(job.model),
             amounts,
         })
@@ -144,10 +166,16 @@ impl LargestLoad {
             return format!("even a hundredth of {given} cannot be held for the {asked} asked");
         };
         let more = if self.is_open { " or more" } else { "" };
-        let head = format!("{}{more} (the job has {given}) can be held for the {asked} asked", of(mean));
+        let least = |cut: bool| if cut { "at least " } else { "" };
+        let head = format!(
+            "{}{}{more} (the job has {given}) can be held for the {asked} asked",
+            least(self.is_cut[0]),
+            of(mean)
+        );
         let weaker = match self.weaker {
             _ if self.motors => return head,
-            Some(weaker) => of(weaker),
+            Some(weaker) => format!("{}{}", least(self.is_cut[1]), of(weaker)),
+            None if self.is_cut[1] => "an amount that was not found within the solver steps".to_owned(),
             None => "not even a hundredth of it".to_owned(),
         };
         let people = "by a person of mean strength";
