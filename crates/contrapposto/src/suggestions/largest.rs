@@ -175,7 +175,7 @@ impl LargestLoad {
         let weaker = match self.weaker {
             _ if self.motors => return head,
             Some(weaker) => format!("{}{}", least(self.is_cut[1]), of(weaker)),
-            None if self.is_cut[1] => "an amount that was not found within the solver steps".to_owned(),
+            None if self.is_cut[1] => "a load that the solver steps did not suffice to find".to_owned(),
             None => "not even a hundredth of it".to_owned(),
         };
         let people = "by a person of mean strength";
