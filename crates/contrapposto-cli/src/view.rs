@@ -2,6 +2,7 @@
 
 pub(crate) mod animation;
 pub(crate) mod answer;
+mod arrows;
 pub(crate) mod axes;
 pub(crate) mod body;
 pub(crate) mod body_map;

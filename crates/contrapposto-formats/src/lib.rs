@@ -54,6 +54,6 @@ pub use scenario::{
 };
 pub use summary::{CoordinateText, GroupText, SlipText, SummaryText, iterations};
 pub use sweep::{Design, Distribution, Parameter, Plan, Template, Value, read_plan};
-pub use thing::Thing;
+pub use thing::{Swing, Thing};
 pub use trajectory_csv::{TableRow, csv_header, csv_row};
-pub use verdict::{AdviceText, MissedText, SuggestionText, VerdictText};
+pub use verdict::{AdviceText, LargestLoadText, MissedText, SuggestionText, VerdictText};

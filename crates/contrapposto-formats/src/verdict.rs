@@ -2,7 +2,7 @@
 
 use contrapposto::joint_torques::Hazard;
 use contrapposto::model::Model;
-use contrapposto::suggestions::{Advice, Suggestion};
+use contrapposto::suggestions::{Advice, LargestLoad, Suggestion};
 use contrapposto::tasks::Unit;
 use contrapposto::verdict::{HandLoad, Line, Missed, Verdict};
 use serde::Serialize;
@@ -162,6 +162,36 @@ pub struct AdviceText {
     /// Changes that were not tried because the budget of solver steps was used up, in words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_tried: Vec<String>,
+    /// The largest loads, where they were searched for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_load: Option<LargestLoadText>,
+}
+
+/// The largest loads with which a job can be done for the time asked.
+#[derive(Clone, Debug, Serialize)]
+pub struct LargestLoadText {
+    /// The time asked, min.
+    pub asked_minutes: f64,
+    /// Share of the loads of the job that a person of mean strength holds for it; `null`: not even a hundredth.
+    pub share: Option<f64>,
+    /// The same of weaker people, one in six.
+    pub share_weaker: Option<f64>,
+    /// Whether both searches ended within the solver steps; else the shares are lower bounds.
+    pub complete: bool,
+    /// Both in words.
+    pub sentence: String,
+}
+
+impl From<&LargestLoad> for LargestLoadText {
+    fn from(largest: &LargestLoad) -> Self {
+        Self {
+            asked_minutes: largest.asked / 60.0,
+            share: largest.mean,
+            share_weaker: largest.weaker,
+            complete: largest.is_cut == [false; 2],
+            sentence: largest.in_words(),
+        }
+    }
 }
 
 impl From<&Advice> for AdviceText {
@@ -169,6 +199,7 @@ impl From<&Advice> for AdviceText {
         Self {
             suggestions: advice.helping.iter().map(SuggestionText::from).collect(),
             not_tried: advice.not_tried.clone(),
+            largest_load: advice.largest.as_ref().map(LargestLoadText::from),
         }
     }
 }

@@ -37,7 +37,16 @@ fn own_file(model: &Model, motion: &[Posture]) -> Vec<u8> {
     let times: Vec<f64> = (0..motion.len()).map(|k| k as f64 * 0.05).collect();
     let postures: Vec<&[f64]> = motion.iter().map(Posture::values).collect();
     let directions = [-Vector3::z(), Vector3::y(), Vector3::x()];
-    let clip = Clip { model, title: "t", directions, times: &times, postures: &postures, steps: false };
+    let clip = Clip {
+        model,
+        title: "t",
+        directions,
+        times: &times,
+        postures: &postures,
+        steps: false,
+        things: &[],
+        arrows: &[],
+    };
     glb(&clip, &vec![vec![]; model.segments().len()]).unwrap()
 }
 

@@ -84,7 +84,16 @@ fn a_motion_of_the_adult_comes_back_from_its_own_bvh() {
         let times: Vec<f64> = (0..motion.len()).map(|k| k as f64 * 0.05).collect();
         let postures: Vec<&[f64]> = motion.iter().map(Posture::values).collect();
         let directions = [-Vector3::z(), Vector3::y(), Vector3::x()];
-        let clip = Clip { model: &model, title: "t", directions, times: &times, postures: &postures, steps: false };
+        let clip = Clip {
+            model: &model,
+            title: "t",
+            directions,
+            times: &times,
+            postures: &postures,
+            steps: false,
+            things: &[],
+            arrows: &[],
+        };
         let text = bvh(&clip).unwrap();
         for sizing in [Sizing::Given(size.clone()), Sizing::ToRig(Sex::Male)] {
             let (fitted, found) = tracked(&text, &sizing);

@@ -234,3 +234,56 @@ fn a_place_of_a_hand_in_centimetres_gets_a_note_and_one_in_metres_none() {
     assert!(notes("195").iter().any(|note| note.contains("m away from the body")));
     assert!(!notes("1.95").iter().any(|note| note.contains("m away")));
 }
+
+fn drawn(text: &str) -> (Scenario, Vec<contrapposto_formats::Thing>) {
+    let text = format!("{HEAD}{text}");
+    let run = read_run("world.toml", text.as_bytes(), None).unwrap_or_else(|e| panic!("{:?}", miette::Report::new(e)));
+    (run.scenario, run.things)
+}
+
+/// Heights of the lowest and the highest corner of a thing where the body starts, m.
+fn low_and_high(scenario: &Scenario, thing: &contrapposto_formats::Thing) -> [f64; 2] {
+    let mut kinematics = Kinematics::new(&scenario.model);
+    kinematics.update(&scenario.model, &scenario.start).unwrap();
+    let place = thing.place_by(|segment| kinematics.placement(&scenario.model, segment));
+    let corners = (0..8).map(|i| {
+        let half = Vector3::from_fn(|k, _| if i >> k & 1 == 0 { -0.5 } else { 0.5 } * thing.size[k]);
+        (place * nalgebra::Point3::from(half)).y
+    });
+    corners.fold([f64::MAX, f64::MIN], |[low, high], y| [low.min(y), high.max(y)])
+}
+
+#[test]
+fn things_are_drawn_where_they_carry_and_where_they_are_held() {
+    let seat =
+        "[seat]\nheight_m = 0.43\nbackrest = true\narmrests_m = 0.72\n[[table]]\nheight_m = 0.74\nedge_m = 0.3\n";
+    let (scenario, things) = drawn(seat);
+    let of = |name: &str| things.iter().filter(|thing| thing.name == name).collect::<Vec<_>>();
+    assert_eq!(["seat", "backrest", "armrest", "table"].map(|name| of(name).len()), [2, 1, 2, 5]);
+    let near = |found: f64, wanted: f64| assert!((found - wanted).abs() < 0.006, "{found} for {wanted}");
+    for rest in of("armrest") {
+        near(low_and_high(&scenario, rest)[1], 0.72);
+    }
+    near(low_and_high(&scenario, of("seat")[0])[1], 0.43);
+    for leg in of("table").into_iter().chain(of("seat")).filter(|thing| thing.size.x < 0.05) {
+        near(low_and_high(&scenario, leg)[0], 0.0);
+    }
+    // The corners of the back's patch are on the face of the backrest.
+    let mut kinematics = Kinematics::new(&scenario.model);
+    kinematics.update(&scenario.model, &scenario.start).unwrap();
+    let back = scenario.supports.iter().find(|s| scenario.model.segments()[s.segment].name == "torso").unwrap();
+    let backrest = of("backrest")[0];
+    for corner in &back.corners {
+        let at = kinematics.station(&scenario.model, back.segment, *corner);
+        let inside = backrest.place.inverse_transform_point(&at.into());
+        assert!((inside.x - 0.5 * backrest.size.x).abs() < 0.02 && inside.y.abs() < 0.5 * backrest.size.y, "{inside}");
+    }
+    // A tool that is pressed upwards has its tip above the fist; a bag hangs below it.
+    let (scenario, things) = drawn("[[tool]]\nhand = \"right\"\nforce_n = [0, -40, 0]\nat_m = [0.35, 1.8, 0.2]\n");
+    let tip = low_and_high(&scenario, &things[1]);
+    assert!(things.len() == 2 && tip[1] > 1.95 && tip[1] < 2.1, "{tip:?}");
+    let (scenario, things) = drawn("[[bag]]\nmass_kg = 6\non = \"right_hand\"\n");
+    let [bag, strap] = [0, 1].map(|i| low_and_high(&scenario, &things[i]));
+    near(bag[1] - bag[0], 0.26);
+    near(strap[0], bag[1]);
+}

@@ -4,6 +4,8 @@ use crate::axes::drawable;
 
 /// Greatest number of surfaces and of things that are drawn.
 const MOST_BOXES: usize = 24;
+/// Least length of the arrow of a load, m, as on pages.
+const SHORTEST_LOAD: f64 = 0.25;
 /// Thickness of a surface, m.
 const SLAB_THICKNESS: f64 = 0.025;
 
@@ -85,6 +87,13 @@ impl BodyForce {
     /// Tip of the force's arrow, m; `length_per_newton` in m/N.
     pub(crate) fn tip(&self, length_per_newton: f64) -> [f64; 3] {
         [0, 1, 2].map(|k| self.at[k] + length_per_newton * self.force[k])
+    }
+
+    /// The same of a load, which is never too short to be seen.
+    pub(crate) fn tip_of_load(&self, length_per_newton: f64) -> [f64; 3] {
+        let size = self.size();
+        let is_short = size > 0.0 && length_per_newton * size < SHORTEST_LOAD;
+        self.tip(if is_short { SHORTEST_LOAD / size } else { length_per_newton })
     }
 
     /// Size of the force, N; 0 if it cannot be drawn.

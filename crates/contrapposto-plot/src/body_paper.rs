@@ -1,7 +1,7 @@
 //! Draws one body in one view: its parts from the farthest to the nearest, then the marks on them.
 
 use crate::axes::drawable;
-use crate::body::{BodyForce, BodyPart, BodyPosture, Corners};
+use crate::body::{BodyPart, BodyPosture, Corners};
 use crate::body_view::{Bounds, MOST_PARTS, View, balls};
 use crate::canvas::Canvas;
 use crate::depth::{Solid, order};
@@ -62,8 +62,11 @@ impl Paper<'_> {
                 gaze.iter().filter(|p| within(bounds, self.view, **p)).filter_map(|p| self.point(*p)).collect();
             canvas.line(&points, GAZE_PEN);
         }
-        for (forces, ink) in [(&posture.forces, FORCE), (&posture.loads, HELD)] {
-            forces.iter().take(MOST_PARTS).for_each(|force| self.force(canvas, force, ink));
+        for force in posture.forces.iter().take(MOST_PARTS) {
+            self.force(canvas, (force.at, force.tip(self.length_per_newton)), FORCE);
+        }
+        for load in posture.loads.iter().take(MOST_PARTS) {
+            self.force(canvas, (load.at, load.tip_of_load(self.length_per_newton)), HELD);
         }
         if let Some((center, at)) = posture.center_of_mass.and_then(|center| Some((center, self.point(center)?))) {
             if let Some(foot) = posture.ground.and_then(|ground| self.point([center[0], ground, center[2]])) {
@@ -141,8 +144,8 @@ impl Paper<'_> {
         }
     }
 
-    fn force(&self, canvas: &mut Canvas, force: &BodyForce, ink: Ink) {
-        if let (Some(foot), Some(tip)) = (self.point(force.at), self.point(force.tip(self.length_per_newton))) {
+    fn force(&self, canvas: &mut Canvas, (foot, tip): ([f64; 3], [f64; 3]), ink: Ink) {
+        if let (Some(foot), Some(tip)) = (self.point(foot), self.point(tip)) {
             arrow(canvas, foot, tip, ink);
         }
     }

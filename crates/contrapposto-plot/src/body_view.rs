@@ -66,9 +66,10 @@ impl Bounds {
             bounds.take([x - r, y - r]);
             bounds.take([x + r, y + r]);
         }
-        let forces = posture.forces.iter().take(MOST_PARTS).chain(posture.loads.iter().take(MOST_PARTS));
-        let tips = forces.map(|force| force.tip(length_per_newton));
-        let marks = tips.chain(posture.center_of_mass).chain(posture.ground_square().into_iter().flatten());
+        let tips = posture.forces.iter().take(MOST_PARTS).map(|force| force.tip(length_per_newton));
+        let of_loads = posture.loads.iter().take(MOST_PARTS).map(|load| load.tip_of_load(length_per_newton));
+        let marks =
+            tips.chain(of_loads).chain(posture.center_of_mass).chain(posture.ground_square().into_iter().flatten());
         marks.for_each(|mark| bounds.take_point(view, mark));
         // A target farther from the body than the body's size stays outside, so that the body is not drawn small.
         let size = bounds.size().into_iter().fold(0.0, f64::max);

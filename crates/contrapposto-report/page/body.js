@@ -1,8 +1,9 @@
 // The body in three dimensions: every segment is the hull of a few balls, coloured by a measure; with contact forces, loads, centre
 // of mass, targets, surfaces, things, and the start as a ghost.
+const BEFORE_BODY = 0.16, EDGES = 0.8, PALE = 0.5; // opacities; share of the colour of the scene
 const NEAR_TARGET = 0.005, FAR_TARGET = 1.2, FAR_ARROW = 0.6; // m
 const BONE = 0.2, THICKEST_BONE = 0.011, GLASS = 0.17; // share of a segment's thickness; m; opacity of the body about muscles
-const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.16, ARROW_HEAD = 0.09, LEAST_DRAG = 4; // m; px
+const ARROW_OF_WEIGHT = 0.6, SHORTEST_ARROW = 0.012, SHORTEST_LOAD = 0.25, ARROW_HEAD = 0.09, LEAST_DRAG = 4; // m; px
 
 // Largest sum of contact forces in any frame, N; of a body without supports, of loads.
 function largestWeight() {
@@ -49,8 +50,8 @@ class Body {
     this.slabs = report.surfaces.flatMap(({ corners }) => {
       const { faces, edges } = slabPoints(corners);
       return [
-        { mesh: painter.listMesh(gl.TRIANGLES, faces), alpha: 0.45 },
-        { mesh: painter.listMesh(gl.LINES, edges), alpha: 0.85 },
+        { mesh: painter.listMesh(gl.TRIANGLES, faces), before: BEFORE_BODY },
+        { mesh: painter.listMesh(gl.LINES, edges), before: EDGES },
       ];
     });
     this.limits = report.solid ? limitPoints(report.solid).map((points) => painter.listMesh(gl.TRIANGLES, points)) : [];
@@ -69,16 +70,17 @@ class Body {
     painter.clear(width, height, styleColor("--scene"), this.camera);
     painter.flatness(1);
     if (this.grid) painter.list(this.grid, styleColor("--ground"), 1);
+    this.drawBehind(frame);
     if (this.showsMuscles) this.drawMuscles(frame, measure);
     else this.drawSegments(frame, measure);
     painter.flatness(0.35);
     this.drawMarks(frame, 1);
-    // Surfaces and things are transparent: the body behind them stays visible.
+    // What of surfaces and things is before the body lets it be seen.
     painter.flatness(0.6);
     gl.enable(gl.BLEND);
     gl.depthMask(false);
-    for (const { mesh, alpha } of this.slabs) painter.list(mesh, styleColor("--surface"), alpha);
-    this.drawThings(frame);
+    for (const { mesh, before } of this.slabs) painter.list(mesh, styleColor("--surface"), before);
+    this.drawThings(frame, styleColor("--thing"), BEFORE_BODY);
     this.limits.forEach((mesh, limit) => painter.list(mesh, styleColor(`--limit-${limit}`), 0.5));
     gl.depthMask(true);
     if (this.showsMuscles) this.drawGlass(frame, measure);
@@ -149,13 +151,22 @@ class Body {
     report.segments.forEach((segment, i) => this.painter.hull(this.parts[i], placement(segment.places, frame), color(segment)));
   }
 
-  drawThings(frame) {
-    const color = styleColor("--thing");
+  drawThings(frame, color, alpha) {
     for (const { places, size } of report.things) {
       const place = stretched(placement(places, frame), size);
-      this.painter.list(this.boxFaces, color, 0.38, place);
-      this.painter.list(this.boxEdges, color, 0.9, place);
+      this.painter.list(this.boxFaces, color, alpha, place);
+      if (alpha < 1) this.painter.list(this.boxEdges, color, EDGES, place);
     }
+  }
+
+  // Surfaces and things as solid pale pieces, in order of their depth; the body is drawn over all of them.
+  drawBehind(frame) {
+    const { gl, painter } = this, scene = styleColor("--scene");
+    const pale = (name) => styleColor(name).map((c, k) => c + (scene[k] - c) * PALE);
+    painter.flatness(0.25);
+    for (const { mesh } of this.slabs) painter.list(mesh, pale("--surface"), 1);
+    this.drawThings(frame, pale("--thing"), 1);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
   }
 
   // The start as a ghost: first its depth, then its nearest surface only, so that overlapping parts are not darker.
@@ -182,7 +193,8 @@ class Body {
     const at = (columns) => columns.map((column) => column[frame]);
     const dot = (point, size, height, color) => this.painter.hull(this.ball, scaledAt(point, size, height), color, alpha);
     for (const support of report.supports) this.drawForce(at(support.at), at(support.force), "--force", alpha);
-    for (const load of report.loads) this.drawForce(at(load.at), at(load.force), "--load", alpha, SHORTEST_LOAD);
+    // Nothing hides a load.
+    for (const load of report.loads) this.drawForce(at(load.at), at(load.force), "--load", 1, SHORTEST_LOAD);
     if (report.center) {
       const [x, y, z] = at(report.center), color = styleColor("--center"), ground = report.ground;
       dot([x, y, z], 0.03, 0.03, color);

@@ -116,13 +116,13 @@ class Charts {
   // Active torque where the body is: its path over time, or in every posture the span from minus passive to external torque.
   activeTraces() {
     const joint = this.joint, angles = Array.from(joint.angle), line = chartLine("--path", 7);
-    if (this.times) return [{ name: "active, this run", x: angles, y: joint.active, line, hoverinfo: "skip" }];
+    if (this.times) return [{ name: `${MUSCLES}, in this run`, x: angles, y: joint.active, line, hoverinfo: "skip" }];
     const x = angles.flatMap((angle) => [angle, angle, null]);
     const y = angles.flatMap((_, i) => [-joint.passive[i], joint.external[i], null]);
-    const marker = { size: 9, color: styleValue("--active") }, hovertemplate = this.hover("active");
+    const marker = { size: 9, color: styleValue("--active") }, hovertemplate = this.hover(MUSCLES);
     return [
       { name: `${MUSCLES} hold`, x, y, line, hoverinfo: "skip" },
-      { name: "active", x: angles, y: joint.active, mode: "markers", marker, hovertemplate },
+      { name: MUSCLES, x: angles, y: joint.active, mode: "markers", marker, hovertemplate },
     ];
   }
 
@@ -131,17 +131,17 @@ class Charts {
     const joint = this.joint, none = { angle: [], minus_passive: [], external: [] };
     const { angle, minus_passive, external } = joint.balance[Math.min(this.frame, joint.balance.length - 1)] || none;
     const swept = external.length > 0, traces = [{
-      name: "external", x: swept ? angle : Array.from(joint.angle), y: swept ? external : Array.from(joint.external),
+      name: "weight and contact", x: swept ? angle : Array.from(joint.angle), y: swept ? external : Array.from(joint.external),
       mode: swept || this.times ? "lines" : "markers", marker: { size: 9, color: styleValue("--external") },
-      line: chartLine("--external", 2.2), hovertemplate: this.hover("external"),
+      line: chartLine("--external", 2.2), hovertemplate: this.hover("weight and contact"),
     }];
     if (angle.length) {
-      const line = chartLine("--passive", 2.2), hovertemplate = this.hover("minus passive");
-      traces.push({ name: "minus passive", x: angle, y: minus_passive, line, hovertemplate });
+      const line = chartLine("--passive", 2.2), hovertemplate = this.hover("what ligaments carry");
+      traces.push({ name: "what ligaments carry", x: angle, y: minus_passive, line, hovertemplate });
     }
     if (swept) {
       const y = external.map((torque, i) => minus_passive[i] - torque), line = chartLine("--active", 1.8, "dash");
-      traces.push({ name: "active", x: angle, y, line, hovertemplate: this.hover("active") });
+      traces.push({ name: MUSCLES, x: angle, y, line, hovertemplate: this.hover(MUSCLES) });
     }
     return traces;
   }
@@ -167,9 +167,9 @@ class Charts {
 
   courseTraces(tires) {
     const joint = this.joint, traces = [
-      { name: "external", y: Array.from(joint.external), yaxis: "y2", line: chartLine("--external", 2) },
-      { name: "passive", y: Array.from(joint.passive), yaxis: "y2", line: chartLine("--passive", 2) },
-      { name: "active", y: joint.active, yaxis: "y2", line: chartLine("--active", 2, "dash") },
+      { name: "weight and contact", y: Array.from(joint.external), yaxis: "y2", line: chartLine("--external", 2) },
+      { name: "ligaments", y: Array.from(joint.passive), yaxis: "y2", line: chartLine("--passive", 2) },
+      { name: MUSCLES, y: joint.active, yaxis: "y2", line: chartLine("--active", 2, "dash") },
       { name: "angle", y: Array.from(joint.angle), line: chartLine("--active", 2), showlegend: false },
     ];
     for (const [side, group] of (tires ? joint.groups : []).entries()) {

@@ -148,7 +148,7 @@ function hideUnknown() {
 
 function fillChooser() {
   report.joints.forEach((joint, i) => {
-    const option = make("option", joint.label === joint.name ? joint.name : `${joint.label} (${joint.name})`);
+    const option = make("option", joint.label);
     option.value = i;
     find("chooser").append(option);
   });
@@ -198,13 +198,13 @@ function balanceHint(joint) {
   const axis = joint && joint.about_axis ? about : "";
   const end = axis + (MOVES || SEVERAL ? " Large dots: now." : "");
   if (joint && joint.balance.some((balance) => balance.external.length)) {
-    return `Where the external torque equals minus the passive torque, ligaments carry the joint; ${MUSCLES} hold the difference.` + end;
+    return `Where the orange line (torque of weight and contact, “external” in the files) meets the blue one (what ligaments and relaxed tissue give against it, “minus passive”), ligaments carry the joint; ${MUSCLES} hold the difference.` + end;
   }
   const place = MOVES ? "where the body went" : SEVERAL ? "in each posture" : "in this posture";
   const passive = joint && joint.balance.length
-    ? `Where it equals minus the passive torque, ligaments carry the joint; ${MUSCLES} hold the difference.`
-    : "The passive torque of this joint is not known.";
-  return `External torque ${place}. ${passive}${end}`;
+    ? `Where it meets the blue line (what ligaments and relaxed tissue give against it, “minus passive”), ligaments carry the joint; ${MUSCLES} hold the difference.`
+    : "The torque of its ligaments is not known.";
+  return `Orange: torque of weight and contact ${place} (“external” in the files). ${passive}${end}`;
 }
 
 // --- The page.
@@ -298,7 +298,7 @@ class Page {
     const name = joint.label.charAt(0).toUpperCase() + joint.label.slice(1);
     const shown = (value) => value.toFixed(joint.slides ? 3 : 1).replace("-", "−") + (joint.slides ? " m" : "°");
     const value = shown(joint.angle[i]) + (joint.about_axis ? " about its axis" : ""), differs = joint.coordinate && Math.abs(joint.coordinate[i] - joint.angle[i]) >= 0.05;
-    find("in-files").textContent = differs ? `In the files: ${joint.name} = ${shown(joint.coordinate[i])}, the coordinate of the model, which differs from the angle about the axis where the other axes of the joint are turned, too.` : "";
+    find("in-files").textContent = differs ? `In the files: ${joint.name} = ${shown(joint.coordinate[i])}, the coordinate of the model, which differs from the angle about the axis where the other axes of the joint are turned, too.` : joint.label === joint.name ? "" : `In the files: ${joint.name}.`;
     const same = joint.external[i] * joint.passive[i] > 0;
     find("now").textContent = `${name}, ${value}: weight and contact pull with ${signed(joint.external[i])} ${joint.torque}, ` +
       `${same ? "ligaments pull the same way with" : "ligaments answer with"} ${signed(joint.passive[i])}, ${MUSCLES} ${same ? "answer " : ""}with ${signed(joint.active[i])}${share}.`;

@@ -405,6 +405,32 @@ fn on_too_steep_a_slope_friction_is_short_by_the_sine() {
     }
 }
 
+/// On a slope too steep for its friction, with the weight beyond its lower edge: by how far says the line of the weight, which meets the
+/// plane `h tan a` farther down than the foot of the centre of mass.
+#[test]
+fn a_body_that_slips_and_leans_is_told_how_far_it_leans_with_more_friction() {
+    for (slope, friction, height) in [(0.5f64, 0.3, 0.6f64), (0.3, 0.0, 0.9), (0.7, 0.1, 0.3)] {
+        let (normal, down) = (V::new(slope.sin(), slope.cos(), 0.0), V::new(slope.cos(), -slope.sin(), 0.0));
+        let mut stand = block(height * normal, vec![-0.1 * down, 0.1 * down], normal, friction);
+        let start = stand.model.default_posture();
+        assert!(matches!(stand.update(&start), Balance::Short { .. }));
+        let Condition::FrictionBeyond(lean) = stand.condition() else { panic!("it slips and leans") };
+        let wanted = height * slope.tan() - 0.1;
+        assert!((lean - wanted * down).norm() < 1e-9, "{lean} for {wanted} m");
+        let words = stand.contact.missing(&stand.model, stand.body.kinematics()).unwrap().to_string();
+        assert!(
+            words.contains(&format!(
+                "they slip, and with more friction weight and loads still act {wanted:.3} m beyond"
+            )),
+            "{words}"
+        );
+        // Without friction's part in it the same block only leans.
+        let mut held = block(height * normal, vec![-0.1 * down, 0.1 * down], normal, 10.0);
+        assert!(matches!(held.update(&start), Balance::Short { .. }));
+        assert!(matches!(held.condition(), Condition::Beyond(found) if (found - lean).norm() < 1e-9));
+    }
+}
+
 /// Weight and a push through the centre of mass act where their line meets the plane; the nearest point between the corners is
 /// found by trying: the point itself if it lies in a triangle of corners, else the nearest of all lines between two.
 #[test]

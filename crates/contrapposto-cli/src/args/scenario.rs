@@ -30,6 +30,10 @@ pub(crate) struct SimulateArgs {
     /// their torques over angle and their course, each as SVG and PNG.
     #[arg(long)]
     pub(crate) figures: bool,
+    /// Also search for the largest load, by runs of the job with other loads: the one that a person of mean strength holds for the time
+    /// asked, and the one of weaker people. No further run begins after as many solver steps as for changes (`--suggest-steps`), counted anew.
+    #[arg(long)]
+    pub(crate) largest_load: bool,
     /// Print the summary as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,

@@ -22,6 +22,7 @@ use crate::view::answer::{Answer, answered};
 use crate::view::held::{Held, held};
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
+use crate::view::stage::Stage;
 use crate::view::text::pose::{report, subtitle};
 
 const POSE_FILES: [&str; 8] =
@@ -95,8 +96,10 @@ fn write(
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
+    let frame = held.frame.clone();
     let page = report_of_pose(scenario, (pose, kept_balance), (text, answer), held)?;
-    let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], &scenario.model, title, &rows, wooden)?;
+    let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
+    let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], (&scenario.model, &stage), title, &[frame], wooden)?;
     let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
     let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));

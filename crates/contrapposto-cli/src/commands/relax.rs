@@ -135,7 +135,10 @@ fn write(
     let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let page = report_of_equilibria(scenario, found, answer)?;
-    let [gltf, bvh] = steps(["postures.glb", "postures.bvh"], &scenario.model, title, &rows, wooden)?;
+    let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
+    let frames = found.postures.iter().map(|posture| frame_of_posture(&scenario.model, posture));
+    let frames = frames.collect::<Result<Vec<_>, _>>()?;
+    let [gltf, bvh] = steps(["postures.glb", "postures.bvh"], (&scenario.model, &stage), title, &frames, wooden)?;
     let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
     let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));

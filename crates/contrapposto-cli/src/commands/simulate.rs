@@ -6,13 +6,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
+use contrapposto::suggestions::Advice;
 use contrapposto::verdict::Verdict;
 use contrapposto_formats::tissue::fatigue_notes;
 use contrapposto_formats::{RunScenario, SummaryText, Thing, decisions_csv, read_run};
 use indicatif::ProgressBar;
 
 use self::snapshot::{SNAPSHOT, go_on, save};
-use super::trials::{advice_of_run, advice_without_posture, cores};
+use super::trials::{advice_of_run, advice_without_posture, cores, largest_load};
 use crate::args::{DemoArgs, SimulateArgs, SuggestArgs};
 use crate::fail::Fail;
 use crate::interruption;
@@ -61,8 +62,8 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Fail> {
     run.scenario.run.threads = cores();
     run.notes.iter().for_each(|note| print_note("note", note));
     fatigue_notes(&run.scenario.model).iter().for_each(|note| print_note("note", note));
-    let SimulateArgs { resume, figures, json, suggest, wooden, .. } = *args;
-    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest, wooden })
+    let SimulateArgs { resume, figures, json, suggest, wooden, largest_load, .. } = *args;
+    carry_out(&run, args.out.as_deref(), How { resume, figures, json, suggest, wooden, largest_load })
 }
 
 /// The run of a file, with the muscles of its model.
@@ -97,11 +98,12 @@ struct How {
     json: bool,
     suggest: SuggestArgs,
     wooden: bool,
+    largest_load: bool,
 }
 
 /// Runs a scenario; without `out` nothing is recorded, drawn and written.
 fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail> {
-    let (RunScenario { scenario, things, .. }, How { resume, json, suggest, .. }) = (run, how);
+    let (RunScenario { scenario, things, .. }, How { resume, json, suggest, largest_load: largest, .. }) = (run, how);
     let folder = out.map(|out| ResultSet::open(out, &RUN_FILES)).transpose()?;
     interruption::watch();
     let goes_on = || !interruption::is_requested();
@@ -117,7 +119,10 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
                 progress.finish();
                 let body = (&scenario.model, scenario.loads.as_slice());
-                let advice = |verdict: &Verdict| advice_without_posture(verdict, scenario, suggest, goes_on);
+                let advice = |verdict: &Verdict| {
+                    let advice = advice_without_posture(verdict, scenario, suggest, goes_on);
+                    Advice { largest: largest_load(scenario, (largest, 0), suggest, goes_on), ..advice }
+                };
                 return without_posture(
                     "summary.json",
                     &scenario.title,
@@ -139,6 +144,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
     if summary.reason != StopReason::Interrupted {
         let trying = spinner(TRYING_CHANGES);
         answer.advice = advice_of_run(&answer.verdict, scenario, (&summary, run.solver_steps()), suggest, goes_on);
+        answer.advice.largest = largest_load(scenario, (largest, run.solver_steps()), suggest, goes_on);
         trying.finish();
     }
     let found = (&summary, muscles.as_ref());
@@ -232,7 +238,7 @@ impl Files {
             ("report.html", report_of_run((scenario, things), (recording, muscles), summary, answer)?.into_bytes()),
             ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
         ];
-        contents.extend(animation::bodies(scenario, recording, wooden)?);
+        contents.extend(animation::bodies((scenario, things), recording, wooden)?);
         if !scenario.supports.is_empty() {
             contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
         }

@@ -4,11 +4,13 @@ use contrapposto::equilibria::Search;
 use contrapposto::posture_solver::Options;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::suggestions::{
-    Advice, Budget, Job, Worked, by_promise, by_promise_of_search, changes, try_run, try_search, with_breaks,
+    Advice, Budget, Job, LargestLoad, Worked, by_promise, by_promise_of_search, changes, try_run, try_search,
+    with_breaks,
 };
 use contrapposto::verdict::Verdict;
 
 use crate::args::SuggestArgs;
+use crate::output::print_note;
 
 /// Number of cores of the machine, as far as it is known.
 pub(super) fn cores() -> usize {
@@ -60,6 +62,25 @@ pub(crate) fn advice_without_posture(
     let job = Job::from(scenario);
     let trial = |change: &_| try_run(scenario, change, &go_on);
     Advice::new(verdict, &job, || changes(&job, &verdict.hazards), || None, budget, trial)
+}
+
+/// The largest loads of a scenario, where they are `asked` for, its body has some, and `go_on` lets the search end.
+pub(crate) fn largest_load(
+    scenario: &Scenario,
+    (asked, steps): (bool, usize),
+    suggest: SuggestArgs,
+    go_on: impl Fn() -> bool + Sync,
+) -> Option<LargestLoad> {
+    if !asked {
+        return None;
+    }
+    let budget = SuggestArgs { no_suggest: false, ..suggest }.budget(steps)?;
+    let found = LargestLoad::find(&Job::from(scenario), budget, |change| try_run(scenario, change, &go_on));
+    if found.is_none() {
+        let why = if scenario.loads.is_empty() { "the job has no load" } else { "none held within the solver steps" };
+        print_note("note", &format!("there is no largest load: {why}"));
+    }
+    found.filter(|_| go_on())
 }
 
 /// The changes of a search for postures of least effort, whose best posture is `search.start`, and which took so many solver steps.

@@ -4,22 +4,27 @@ use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use contrapposto::simulation::Scenario;
 use contrapposto_formats::animation::{Clip, Skin, bvh, glb, skinned_glb, solids};
-use contrapposto_formats::write;
+use contrapposto_formats::{Thing, write};
 
+use super::arrows::arrows;
 use super::axes::directions;
+use super::frame::Frame;
 use super::recording::Recording;
+use super::stage::Stage;
 use crate::fail::Fail;
 use crate::output::print_note;
 
 /// Name and content of every file of a run; one that a body cannot be written as is missing, and standard error says why.
 pub(crate) fn bodies(
-    scenario: &Scenario,
+    (scenario, things): (&Scenario, &[Thing]),
     recording: &Recording,
     wooden: bool,
 ) -> Result<Vec<(&'static str, Vec<u8>)>, Fail> {
     let model = &scenario.model;
     let postures: Vec<&[f64]> = recording.rows().map(|row| row.posture).collect();
-    let clip = clip(model, &scenario.title, recording.times(), &postures);
+    let stage = Stage::of_run(scenario, things);
+    let arrows = arrows(model, &stage, recording.rows().map(|row| Frame::of_row(model, row)))?;
+    let clip = Clip { things, arrows: &arrows, ..clip(model, &scenario.title, recording.times(), &postures) };
     let mut files =
         vec![("motion.glb", gltf("motion.glb", &clip, wooden)?), ("motion.bvh", bvh_text("motion.bvh", &clip)?)];
     match write::osim(model) {
@@ -29,16 +34,18 @@ pub(crate) fn bodies(
     Ok(files)
 }
 
-/// Postures one after another, each for a second: glTF under the first name, BVH under the second.
+/// Postures among the things of a stage, one after another, each for a second: glTF under the first name, BVH under the second.
 pub(crate) fn steps(
     [gltf_name, bvh_name]: [&str; 2],
-    model: &Model,
+    (model, stage): (&Model, &Stage<'_>),
     title: &str,
-    postures: &[&[f64]],
+    frames: &[Frame],
     wooden: bool,
 ) -> Result<[Vec<u8>; 2], Fail> {
+    let postures: Vec<&[f64]> = frames.iter().map(|frame| frame.posture.as_slice()).collect();
     let times: Vec<f64> = (0..postures.len()).map(|i| i as f64).collect();
-    let clip = Clip { steps: true, ..clip(model, title, &times, postures) };
+    let arrows = arrows(model, stage, frames.iter().cloned())?;
+    let clip = Clip { steps: true, things: stage.things, arrows: &arrows, ..clip(model, title, &times, &postures) };
     Ok([gltf(gltf_name, &clip, wooden)?, bvh_text(bvh_name, &clip)?])
 }
 
@@ -59,7 +66,7 @@ pub(crate) fn motion(
 
 fn clip<'a>(model: &'a Model, title: &'a str, times: &'a [f64], postures: &'a [&'a [f64]]) -> Clip<'a> {
     let [right, ahead, up] = directions(model);
-    Clip { model, title, directions: [-right, up, ahead], times, postures, steps: false }
+    Clip { model, title, directions: [-right, up, ahead], times, postures, steps: false, things: &[], arrows: &[] }
 }
 
 /// With a skin, where the body has one and none of wood is asked for.

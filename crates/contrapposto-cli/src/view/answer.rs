@@ -4,7 +4,7 @@ use contrapposto::contact::Missing;
 use contrapposto::model::Model;
 use contrapposto::simulation::{Scenario, Summary};
 use contrapposto::statics::Load;
-use contrapposto::suggestions::Advice;
+use contrapposto::suggestions::{Advice, LargestLoad};
 use contrapposto::verdict::{Verdict, VerdictKind, Who, muscles_or_motors};
 use contrapposto_formats::{AdviceText, VerdictText};
 use serde::Serialize;
@@ -47,7 +47,13 @@ impl Answer {
     pub(crate) fn first_lines(&self) -> String {
         let notes: Vec<String> = self.also_cut().into_iter().chain(self.advice.notes.iter().cloned()).collect();
         let notes: String = notes.iter().map(|line| format!("{line}\n")).collect();
-        self.verdict.in_words() + &gains(&self.advice) + &notes
+        self.verdict.in_words() + &self.largest_load() + &gains(&self.advice) + &notes
+    }
+
+    /// The line about the largest load, where it was searched for.
+    fn largest_load(&self) -> String {
+        let largest = self.advice.largest.as_ref();
+        largest.map_or_else(String::new, |largest| format!("{}: {}.\n", LargestLoad::NAME, largest.in_words()))
     }
 
     /// The first lines of a body's job, its title, and the tables below them, with the word for what moves the body: muscles or motors. The

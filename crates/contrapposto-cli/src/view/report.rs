@@ -11,7 +11,7 @@ pub(crate) mod pose;
 pub(crate) mod run;
 
 use contrapposto::model::Model;
-use contrapposto::suggestions::Advice;
+use contrapposto::suggestions::{Advice, LargestLoad};
 use contrapposto::verdict::{Verdict, has_motors, muscles_or_motors};
 use contrapposto_report::{Fact, Report, Table};
 
@@ -19,6 +19,8 @@ use contrapposto_report::{Fact, Report, Table};
 fn answer(report: &mut Report, verdict: &Verdict, advice: &Advice) {
     report.headline.clone_from(&verdict.sentence);
     report.facts.extend(verdict.lines.iter().map(|line| Fact { name: line.name.to_owned(), text: line.text.clone() }));
+    let largest = |largest: &LargestLoad| Fact { name: LargestLoad::NAME.to_owned(), text: largest.in_words() };
+    report.facts.extend(advice.largest.as_ref().map(largest));
     let (columns, rows) = (advice.gains.columns.clone(), advice.gains.rows.clone());
     report.changes = Table { heading: String::new(), columns, rows };
     report.reasons.extend(advice.notes.iter().cloned());

@@ -16,6 +16,8 @@ pub(crate) const EVENT_TOLERANCE: f64 = 1e-9;
 
 /// Points so near to a box, m, are on it.
 const ON_BOX: f64 = 0.02;
+/// The same of the bones of a forearm, with flesh below them.
+const FOREARM_ON_BOX: f64 = 0.07;
 
 /// Supports, things and loads of a body.
 #[derive(Clone, Debug, Default)]
@@ -59,8 +61,8 @@ impl<'a> Stage<'a> {
         let carrier = |support: &Support| {
             let corners = support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner));
             let corners: Vec<Vector3<f64>> = corners.collect();
-            let on = |thing: &&Thing| 2 * corners.iter().filter(|at| is_on(thing, at)).count() >= corners.len();
             let name = &model.segments()[support.segment].name;
+            let on = |thing: &&Thing| carries(thing, name, &corners);
             self.things.iter().find(on).map(|thing| thing.name.clone()).or_else(|| rest(name).filter(|_| sits))
         };
         self.supports.iter().map(carrier).collect()
@@ -96,10 +98,14 @@ fn rest(segment: &str) -> Option<String> {
     }
 }
 
-/// Whether a point of ground is in or on a thing that stands in ground.
-pub(crate) fn is_on(thing: &Thing, point: &Vector3<f64>) -> bool {
-    let inside = thing.place.inverse_transform_point(&Point3::from(*point));
-    thing.segment.is_none() && (0..3).all(|k| inside[k].abs() <= 0.5 * thing.size[k] + ON_BOX)
+/// Whether a thing that stands in ground carries the patch of a segment: half of its corners or more, ground, m, are in it or on it.
+pub(crate) fn carries(thing: &Thing, segment: &str, corners: &[Vector3<f64>]) -> bool {
+    let near = if segment.starts_with("radius") { FOREARM_ON_BOX } else { ON_BOX };
+    let is_on = |point: &&Vector3<f64>| {
+        let inside = thing.place.inverse_transform_point(&Point3::from(**point));
+        (0..3).all(|k| inside[k].abs() <= 0.5 * thing.size[k] + near)
+    };
+    thing.segment.is_none() && 2 * corners.iter().filter(is_on).count() >= corners.len()
 }
 
 /// Point and force of a load in ground, m and N; `None` of a couple.
@@ -125,8 +131,5 @@ pub(crate) fn load_in_words(model: &Model, load: &Load) -> String {
 
 /// Placement of a thing in ground.
 pub(crate) fn place(model: &Model, kinematics: &Kinematics, thing: &Thing) -> Isometry3<f64> {
-    match thing.segment {
-        Some(segment) => kinematics.placement(model, segment) * thing.place,
-        None => thing.place,
-    }
+    thing.place_by(|segment| kinematics.placement(model, segment))
 }

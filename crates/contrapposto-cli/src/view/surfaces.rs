@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::axes::Turn;
 use super::frame::Frame;
-use super::stage::{Stage, is_on};
+use super::stage::{Stage, carries};
 use crate::fail::Fail;
 
 /// Planes that are nearer to each other, m, are one.
@@ -101,7 +101,8 @@ pub(super) fn surroundings(
         let patch = |(support, carrier): (&Support, &Option<String>)| {
             let corners = support.corners.iter().map(|corner| kinematics.station(model, support.segment, *corner));
             let corners: Vec<Vector3<f64>> = corners.collect();
-            let on_thing = stage.things.iter().any(|thing| corners.iter().all(|corner| is_on(thing, corner)));
+            let name = &model.segments()[support.segment].name;
+            let on_thing = stage.things.iter().any(|thing| carries(thing, name, &corners));
             let label = carrier.clone().unwrap_or_else(|| "surface".to_owned());
             let points = corners.iter().map(|corner| turn.0 * corner).collect();
             Patch { normal: turn.0 * support.normal, points, label, on_thing }

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::buffer::{Buffer, packed};
 use super::course::{Course, animation, courses};
+use super::scenery::{self, Scenery};
 use super::{AnimationError, Clip, Solid, hull};
 
 /// Writes a motion as `.glb`.
@@ -14,7 +15,7 @@ use super::{AnimationError, Clip, Solid, hull};
 /// a node of its name at the centre of its joint, with the segment's axes, and carries its `solids` (one list a segment, in its
 /// frame) as closed meshes of one grey material; none is fine. A segment that moves against its parent has keys with linear
 /// interpolation, one a posture; keys between equal neighbours are left out, and so is the animation where nothing moves at all. The
-/// nodes stand as in the first posture.
+/// nodes stand as in the first posture. Things and arrows of the clip are nodes below the first one, too, with boxes and arrows as meshes.
 ///
 /// Numbers are `f32`: joint centres of a body within some metres of the origin are right to about a micrometre.
 ///
@@ -22,16 +23,28 @@ use super::{AnimationError, Clip, Solid, hull};
 /// [`AnimationError`] says which time or posture does not fit.
 pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationError> {
     let segments = clip.model.segments();
-    let (times, courses) = courses(clip, segments.len(), |frames| {
+    let count = segments.len() + scenery::count(clip);
+    let (times, courses) = courses(clip, count, |index, frames| {
         let in_parent = |(segment, frame): (&contrapposto::model::Segment, &Placement)| {
             segment.parent.map_or_else(|| *frame, |parent| frames[parent].inv_mul(frame))
         };
-        segments.iter().zip(frames).map(in_parent).collect()
+        let body = segments.iter().zip(frames).map(in_parent).map(|local| (local, 1.0));
+        body.chain(scenery::places(clip, index, frames)).collect()
     })?;
+    let (courses, around) = courses.split_at(segments.len());
     let mut buffer = Buffer::default();
     let meshes = meshes(clip, solids, &mut buffer);
-    let nodes = nodes(clip, &courses, &meshes);
-    let channels: Vec<_> = courses.iter().enumerate().map(|(s, course)| (s + 1, course.moving())).collect();
+    let mut nodes = nodes(clip, courses, &meshes);
+    let mut meshes: Vec<Value> = meshes.into_iter().flatten().collect();
+    let mut channels: Vec<_> = courses.iter().enumerate().map(|(s, course)| (s + 1, course.moving())).collect();
+    let around = Scenery::new(clip, around, [nodes.len(), meshes.len(), 1], &mut buffer);
+    let in_ground: Vec<usize> = (nodes.len()..nodes.len() + around.nodes.len()).collect();
+    if let Some(children) = nodes[0]["children"].as_array_mut() {
+        children.extend(in_ground.into_iter().map(Value::from));
+    }
+    nodes.extend(around.nodes);
+    meshes.extend(around.meshes);
+    channels.extend(around.channels);
     let animation = animation(clip, &channels, &times, &mut buffer);
     let mut file = json!({
         "asset": { "version": "2.0", "generator": concat!("contrapposto ", env!("CARGO_PKG_VERSION")) },
@@ -39,11 +52,11 @@ pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationE
         "scenes": [{ "nodes": [0] }],
         "nodes": nodes,
     });
-    let meshes: Vec<Value> = meshes.into_iter().flatten().collect();
     if !meshes.is_empty() {
         let color = [0.5, 0.5, 0.52, 1.0];
         let look = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.7 });
-        file["materials"] = json!([{ "name": "body", "pbrMetallicRoughness": look }]);
+        let body = json!({ "name": "body", "pbrMetallicRoughness": look });
+        file["materials"] = std::iter::once(body).chain(around.materials).collect();
         file["meshes"] = meshes.into();
     }
     if let Some(animation) = animation {

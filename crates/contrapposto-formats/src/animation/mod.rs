@@ -10,6 +10,7 @@ mod course;
 mod euler;
 mod glb;
 mod hull;
+mod scenery;
 mod skin;
 mod skinned;
 mod solid;
@@ -20,6 +21,7 @@ pub use bvh::bvh;
 pub(crate) use euler::zyx;
 pub use glb::glb;
 pub use hull::Solid;
+pub use scenery::Arrow;
 pub use skin::{Bone, Skeleton, Skin};
 pub use skinned::skinned_glb;
 pub use solid::{joined_by, solids};
@@ -28,6 +30,8 @@ use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Placement};
 use contrapposto::posture::{Posture, PostureError};
 use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use crate::Thing;
 
 /// Right, ahead and up in ground: up is against gravity (y without any), ahead the ground's x axis, or z where x is upright.
 pub fn directions(model: &Model) -> [Vector3<f64>; 3] {
@@ -53,6 +57,10 @@ pub struct Clip<'a> {
     /// Whether the body stands in each posture until the next one, and in the last one for 1 s, instead of moving between them. BVH, which
     /// knows frames only, has one for each posture.
     pub steps: bool,
+    /// Things around the body and in its hands; for glTF.
+    pub things: &'a [Thing],
+    /// Forces, with a point and an arrow for every posture; for glTF.
+    pub arrows: &'a [Arrow],
 }
 
 /// The reason for which a motion was not written.

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::buffer::{Buffer, packed};
 use super::course::{animation, courses};
+use super::scenery::{self, Scenery};
 use super::{AnimationError, Clip, Skin};
 
 /// Writes a motion as `.glb` with a skin.
@@ -14,7 +15,7 @@ use super::{AnimationError, Clip, Skin};
 /// humanoid (`hips`, `leftUpperArm`, ...); `extras.segment` is the segment at whose joint's centre a node is. Nodes stand in the
 /// T-pose, the bind pose, in which no node is turned; everything else is in the animation, which is there unless all postures are the
 /// T-pose. Nodes named `Twist` and `Half` turn by a part of what the next bone turns, so that limbs do not look wrung. The mesh is
-/// coloured by its vertices (skin, suit, hair).
+/// coloured by its vertices (skin, suit, hair). Things and arrows of the clip are nodes of the scene beside the body.
 ///
 /// # Errors
 /// [`AnimationError`] says which time or posture does not fit.
@@ -22,7 +23,8 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
     let (drawn, skeleton) = (clip.drawn(), &skin.skeleton);
     let turn = UnitQuaternion::from_rotation_matrix(&drawn);
     let rests: Vec<Vector3<f64>> = (0..skeleton.nodes.len()).map(|node| drawn * skeleton.head(node)).collect();
-    let (times, courses) = courses(clip, skeleton.nodes.len(), |frames| {
+    let count = skeleton.nodes.len() + scenery::count(clip);
+    let (times, courses) = courses(clip, count, |index, frames| {
         let in_file = |place: Placement| {
             let at = drawn * place.translation.vector;
             Placement::from_parts(at.into(), turn * place.rotation * turn.inverse())
@@ -31,11 +33,14 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
         let in_parent = |(node, place): (usize, &Placement)| {
             skeleton.nodes[node].parent.map_or_else(|| *place, |parent| places[parent].inv_mul(place))
         };
-        places.iter().enumerate().map(in_parent).collect()
+        let body = places.iter().enumerate().map(in_parent).map(|local| (local, 1.0));
+        let around = scenery::places(clip, index, frames).into_iter().map(|place| around_in_file(place, &drawn));
+        body.chain(around).collect()
     })?;
+    let (courses, around) = courses.split_at(skeleton.nodes.len());
     let local_rest =
         |node: usize| rests[node] - skeleton.nodes[node].parent.map_or_else(Vector3::zeros, |parent| rests[parent]);
-    let channels: Vec<_> = courses
+    let mut channels: Vec<_> = courses
         .iter()
         .enumerate()
         .map(|(node, course)| (node + 1, course.off(floats(local_rest(node)), [0.0, 0.0, 0.0, 1.0])))
@@ -44,11 +49,15 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
     let mesh = mesh(skin, &drawn, &mut buffer);
     let bind: Vec<[f32; 16]> = rests[..skeleton.bones().len()].iter().map(back).collect();
     let bind = buffer.matrices(&bind);
-    let animation = animation(clip, &channels, &times, &mut buffer);
     let mut nodes = nodes(clip, skin, local_rest);
     nodes.push(json!({ "name": "skin", "mesh": 0, "skin": 0 }));
+    let skinned = nodes.len() - 1;
+    let around = Scenery::new(clip, around, [nodes.len(), 1, 1], &mut buffer);
+    nodes.extend(around.nodes);
+    channels.extend(around.channels);
+    let animation = animation(clip, &channels, &times, &mut buffer);
+    let roots: Vec<usize> = std::iter::once(0).chain(skinned..nodes.len()).collect();
     let joints: Vec<usize> = (1..=skeleton.bones().len()).collect();
-    let look = json!({ "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.75 });
     let mut file = json!({
         "asset": {
             "version": "2.0",
@@ -56,16 +65,28 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
             "copyright": "Mesh after MakeHuman hm08, CC0 1.0",
         },
         "scene": 0,
-        "scenes": [{ "nodes": [0, nodes.len() - 1] }],
+        "scenes": [{ "nodes": roots }],
         "nodes": nodes,
-        "materials": [{ "name": "body", "pbrMetallicRoughness": look }],
-        "meshes": [mesh],
+        "materials": std::iter::once(material()).chain(around.materials).collect::<Vec<_>>(),
+        "meshes": std::iter::once(mesh).chain(around.meshes).collect::<Vec<_>>(),
         "skins": [{ "inverseBindMatrices": bind, "skeleton": 0, "joints": joints }],
     });
     if let Some(animation) = animation {
         file["animations"] = json!([animation]);
     }
     Ok(packed(file, buffer))
+}
+
+/// Placement and size of a node of the scenery in the axes of the file.
+fn around_in_file((place, size): (Placement, f64), drawn: &Rotation3<f64>) -> (Placement, f64) {
+    let turn = UnitQuaternion::from_rotation_matrix(drawn);
+    (Placement::from_parts((drawn * place.translation.vector).into(), turn * place.rotation), size)
+}
+
+/// The material of the body, whose colours are those of its vertices.
+fn material() -> Value {
+    let look = json!({ "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.75 });
+    json!({ "name": "body", "pbrMetallicRoughness": look })
 }
 
 fn floats(v: Vector3<f64>) -> [f32; 3] {

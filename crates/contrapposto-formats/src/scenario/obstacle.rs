@@ -50,9 +50,7 @@ pub(super) fn limits(
 /// The obstacles that have a size, for drawings.
 pub(super) fn boxes(obstacles: &[(String, Thing)]) -> impl Iterator<Item = crate::Thing> {
     obstacles.iter().filter_map(|(name, thing)| match thing {
-        Thing::Block { placement, half } => {
-            Some(crate::Thing { name: name.clone(), size: 2.0 * half, place: *placement, segment: None })
-        }
+        Thing::Block { placement, half } => Some(crate::Thing::new(name, (2.0 * half).into(), *placement, None)),
         Thing::HalfSpace { .. } => None,
     })
 }

@@ -21,7 +21,7 @@ use super::support;
 use super::task_text::SupportText;
 use super::text::ScenarioText;
 use super::upright::add_upright;
-use super::world::{drawn_things, fit_things, read_world};
+use super::world::{drawn_things, fit_things, read_world, weights};
 use crate::input_error::InputError;
 use crate::thing::Thing;
 use crate::toml_file::{Located, shown};
@@ -90,7 +90,8 @@ impl Setup {
         let texts: Vec<&ObstacleText> = text.obstacle.iter().chain(&world.obstacles).collect();
         let obstacles = obstacles(at, &texts)?;
         let limits = limits(at, text, &obstacles, (&model, &standing), &kinematics)?;
-        let things = boxes(&obstacles).chain(drawn_things(&world, &stage)).collect();
+        let longhand = weights(&model, &loads[..text.load.len()]);
+        let things = boxes(&obstacles).chain(drawn_things(&world, &stage)).chain(longhand).collect();
         Ok(Self { obstacles, loads, standing, supports, limits, levels, things, notes, kinematics, start, model })
     }
 

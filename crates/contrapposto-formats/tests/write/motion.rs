@@ -100,7 +100,16 @@ fn directions(name: &str) -> [Vector3<f64>; 3] {
 }
 
 fn clip<'a>(name: &str, model: &'a Model, times: &'a [f64], rows: &'a [&'a [f64]]) -> Clip<'a> {
-    Clip { model, title: "swing", directions: directions(name), times, postures: rows, steps: false }
+    Clip {
+        model,
+        title: "swing",
+        directions: directions(name),
+        times,
+        postures: rows,
+        steps: false,
+        things: &[],
+        arrows: &[],
+    }
 }
 
 fn drawn(clip: &Clip<'_>, p: Vector3<f64>) -> Vector3<f64> {

@@ -84,21 +84,26 @@ impl Glb {
             let given = node.get(path).map(list);
             given.map_or(otherwise.to_vec(), |list| list.iter().map(|v| v.as_f64().unwrap()).collect())
         };
-        let mut parts: Vec<[Vec<f64>; 2]> = nodes
+        let mut parts: Vec<[Vec<f64>; 3]> = nodes
             .iter()
-            .map(|n| [own(n, "translation", &[0.0; 3]), own(n, "rotation", &[0.0, 0.0, 0.0, 1.0])])
+            .map(|n| {
+                let turn = own(n, "rotation", &[0.0, 0.0, 0.0, 1.0]);
+                [own(n, "translation", &[0.0; 3]), turn, own(n, "scale", &[1.0; 3])]
+            })
             .collect();
         let animation = self.json.get("animations").map_or(&Value::Null, |animations| &animations[0]);
         for channel in list(&animation["channels"]) {
             let sampler = &animation["samplers"][index(&channel["sampler"])];
-            let part = usize::from(channel["target"]["path"] == "rotation");
-            parts[index(&channel["target"]["node"])][part] = self.value(sampler, 3 + part, time);
+            let paths = ["translation", "rotation", "scale"];
+            let part = paths.iter().position(|path| channel["target"]["path"] == *path).unwrap();
+            let width = if part == 1 { 4 } else { 3 };
+            parts[index(&channel["target"]["node"])][part] = self.value(sampler, width, time);
         }
         let mut frames = BTreeMap::new();
         let mut open: Vec<(usize, Matrix4<f64>)> =
             list(&self.json["scenes"][0]["nodes"]).iter().map(|n| (index(n), Matrix4::identity())).collect();
         while let Some((n, parent)) = open.pop() {
-            let [t, q] = &parts[n];
+            let [t, q, scale] = &parts[n];
             let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
             #[rustfmt::skip]
             let local = Matrix4::new(
@@ -107,7 +112,8 @@ impl Glb {
                 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y), t[2],
                 0.0, 0.0, 0.0, 1.0,
             );
-            let frame = parent * local;
+            let size = Vector3::new(scale[0], scale[1], scale[2]);
+            let frame = parent * local * Matrix4::new_nonuniform_scaling(&size);
             frames.insert(nodes[n]["name"].as_str().unwrap().to_owned(), frame);
             open.extend(list(&nodes[n]["children"]).iter().map(|child| (index(child), frame)));
         }

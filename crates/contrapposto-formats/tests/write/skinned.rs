@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Adult, Model, adult};
 use contrapposto::posture::Posture;
-use contrapposto_formats::animation::{Clip, Skin, skinned_glb};
+use contrapposto_formats::animation::{Arrow, Clip, Skin, glb, skinned_glb};
+use contrapposto_formats::{Swing, Thing};
 use nalgebra::{Matrix4, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -21,7 +23,7 @@ const ROUNDING: f64 = 2e-6;
 
 fn clip<'a>(model: &'a Model, times: &'a [f64], postures: &'a [&'a [f64]]) -> Clip<'a> {
     let directions = [-Vector3::z(), Vector3::y(), Vector3::x()];
-    Clip { model, title: "any", directions, times, postures, steps: false }
+    Clip { model, title: "any", directions, times, postures, steps: false, things: &[], arrows: &[] }
 }
 
 fn drawn(p: Vector3<f64>) -> Vector3<f64> {
@@ -195,4 +197,54 @@ fn postures_in_steps_last_a_second_each() {
     let one = Glb::read(&skinned_glb(&Clip { steps: true, ..clip(&model, &[0.0], &rows[..1]) }, &skin).unwrap());
     let sampler = &one.json["animations"][0]["samplers"][0];
     assert_eq!(one.floats(&sampler["input"], 1), [[0.0], [1.0]]);
+}
+
+/// A table stays, a bag hangs straight down from the fist wherever the hand is, and arrows go from their points to their tips.
+#[test]
+fn things_and_forces_of_the_file_are_where_the_body_has_them() {
+    let model = adult(&Adult::default()).unwrap();
+    let postures = [0.0, 40.0, 80.0].map(|degrees| with(&model, &[("arm_flex_r", degrees), ("elbow_flex_r", 30.0)]));
+    let rows: Vec<&[f64]> = postures.iter().map(Posture::values).collect();
+    let (hand, fist) = (model.segment("hand_r").unwrap(), Vector3::new(0.0, -0.07, 0.0));
+    let table = Thing::new("table", [0.6, 0.04, 1.2], nalgebra::Isometry3::translation(0.6, 0.7, 0.1), None);
+    let bag = Thing::new("bag", [0.3, 0.26, 0.1], nalgebra::Isometry3::translation(0.0, -0.27, 0.0), Some(hand));
+    let things = [table, Thing { swing: Some(Swing { at: fist, up: Vector3::y() }), ..bag }];
+    let at = [Vector3::new(0.1, 0.0, 0.2), Vector3::new(0.1, 0.0, -0.2), Vector3::new(0.3, 0.1, 0.0)];
+    let along = [Vector3::new(0.0, 0.5, 0.0), Vector3::zeros(), Vector3::new(0.2, 0.3, -0.1)];
+    let arrow = Arrow { name: "right foot".to_owned(), contact: true, at: at.into(), along: along.into() };
+    let (times, arrows) = ([0.0, 1.0, 2.0], [arrow]);
+    let clip = Clip { things: &things, arrows: &arrows, ..clip(&model, &times, &rows) };
+    let skin = Skin::of(&model).unwrap();
+    let rigid = glb(&clip, &vec![vec![]; model.segments().len()]).unwrap();
+    for bytes in [skinned_glb(&clip, &skin).unwrap(), rigid] {
+        let file = Glb::read(&bytes);
+        check(&file);
+        let mut kinematics = Kinematics::new(&model);
+        for (k, posture) in postures.iter().enumerate() {
+            kinematics.update(&model, posture).unwrap();
+            let frames = file.frames(k as f64);
+            let near = |found: Vector3<f64>, wanted: Vector3<f64>, grain: f64| {
+                let wanted = drawn(wanted);
+                assert!((found - wanted).norm() < grain, "posture {k}: {found} for {wanted}");
+            };
+            near(place(&frames["table"]), Vector3::new(0.6, 0.7, 0.1), ROUNDING);
+            let fist = kinematics.station(&model, hand, fist);
+            near(place(&frames["bag"]), fist - Vector3::new(0.0, 0.2, 0.0), ROUNDING);
+            let up = frames["bag"].transform_vector(&Vector3::y());
+            assert!((up - Vector3::y()).norm() < ROUNDING, "the bag hangs aslant: {up}");
+            let tip = file.corners("right foot").into_iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
+            near(place(&frames["right foot"]), at[k], 2e-3);
+            // Points are rounded to 2 mm, and the tip is a ball of 2 mm.
+            near(frames["right foot"].transform_point(&tip.into()).coords, at[k] + along[k], 8e-3);
+        }
+        let size = |name: &str, k: usize| {
+            let corners = file.corners(name);
+            corners.iter().map(|c| c[k]).fold(f64::MIN, f64::max)
+                - corners.iter().map(|c| c[k]).fold(f64::MAX, f64::min)
+        };
+        // Ahead and aside of ground are z and x of the skinned file; the rigid one has its root node turned.
+        assert!(
+            (size("table", 1) - 0.04).abs() < ROUNDING && (size("table", 0) + size("table", 2) - 1.8).abs() < ROUNDING
+        );
+    }
 }

@@ -1,9 +1,9 @@
 //! Names the condition of equilibrium that a body without balance violates, and by how many newtons or metres.
 //!
-//! The answer comes from two more problems of contact forces. In the first one, supports on a common plane may also give a couple: about the
+//! The answer comes from up to three more problems of contact forces. In the first one, supports on a common plane may also give a couple: about the
 //! normal as it comes (friction does not matter here), about the axes of the plane as small as possible. Such a couple `M` beside
 //! a normal force `N` is that force acting farther out by `n x M / N` (`n` the normal): so if this holds the root, weight and
-//! loads act that far outside the hull of all corners. In the second one nothing slips.
+//! loads act that far outside the hull of all corners. In the second one nothing slips. Where neither holds, both together are tried.
 
 use std::fmt;
 
@@ -45,7 +45,9 @@ pub enum Condition {
     Beyond(Vector3<f64>),
     /// The supports would hold if nothing could slip.
     Friction,
-    /// Neither alone.
+    /// The supports slip, and even if nothing could slip, weight and loads would act so far outside, as in [`Condition::Beyond`].
+    FrictionBeyond(Vector3<f64>),
+    /// None of these.
     Other,
 }
 
@@ -53,15 +55,13 @@ impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { force, moment, condition } = self;
         match condition {
-            Condition::Beyond(lean) => {
-                write!(f, "weight and loads act {:.3} m beyond the supports, toward ", lean.norm())?;
-                let mut parts = vec![];
-                for (along, axis) in lean.iter().zip(["x", "y", "z"]) {
-                    if along.abs() > 0.02 * lean.norm() {
-                        parts.push(format!("{axis} {along:+.3}"));
-                    }
-                }
-                write!(f, "{} (ground axes, m); ", parts.join(", "))?;
+            Condition::Beyond(lean) => write!(f, "{}; ", beyond_in_words(lean))?,
+            Condition::FrictionBeyond(lean) => {
+                write!(
+                    f,
+                    "they slip, and with more friction {}; ",
+                    beyond_in_words(lean).replacen(" act", " still act", 1)
+                )?;
             }
             Condition::NoSupport => f.write_str("there are none, and its root is free to fall; ")?,
             Condition::Friction => f.write_str("they slip, and with more friction they would hold it; ")?,
@@ -77,22 +77,34 @@ impl fmt::Display for Missing {
     }
 }
 
+/// `weight and loads act 0.181 m beyond the supports, toward x +0.181 (ground axes, m)`.
+fn beyond_in_words(lean: &Vector3<f64>) -> String {
+    let mut parts = vec![];
+    for (along, axis) in lean.iter().zip(["x", "y", "z"]) {
+        if along.abs() > 0.02 * lean.norm() {
+            parts.push(format!("{axis} {along:+.3}"));
+        }
+    }
+    let toward = parts.join(", ");
+    format!("weight and loads act {:.3} m beyond the supports, toward {toward} (ground axes, m)", lean.norm())
+}
+
 impl ContactForces {
     /// Missing force and torque after an update in the posture of `kinematics`; `None` in equilibrium.
     pub fn missing(&self, model: &Model, kinematics: &Kinematics) -> Option<Missing> {
         let Balance::Short { force, moment } = self.balance() else { return None };
-        let condition = match self.beyond(model, kinematics) {
+        let condition = match self.beyond(model, kinematics, true) {
             _ if self.supports().is_empty() => Condition::NoSupport,
             Some(lean) => Condition::Beyond(lean),
             None if self.holds_without_slipping() => Condition::Friction,
-            None => Condition::Other,
+            None => self.beyond(model, kinematics, false).map_or(Condition::Other, Condition::FrictionBeyond),
         };
         Some(Missing { force, moment, condition })
     }
 
-    /// Distance and direction by which weight and loads act outside of the supports, ground axes, m; `None` where this is not the
-    /// fault, or the supports do not share a plane.
-    fn beyond(&self, model: &Model, kinematics: &Kinematics) -> Option<Vector3<f64>> {
+    /// Distance and direction by which weight and loads act outside of the supports, which may slip or not, ground axes, m; `None` where
+    /// this is not the fault, or the supports do not share a plane.
+    fn beyond(&self, model: &Model, kinematics: &Kinematics, slips: bool) -> Option<Vector3<f64>> {
         let axes = *self.axes().first()?;
         let one_way = self.supports().iter().all(|support| support.normal.dot(&axes[0]) >= 1.0 - PARALLEL);
         let heights = self.loads().iter();
@@ -109,7 +121,7 @@ impl ContactForces {
         problem.upper[..n].copy_from_slice(&self.problem().upper);
         let couples = turns.iter().map(|turn| axes.map(|axis| turn.dot(&axis)));
         problem.levels = vec![
-            wider(friction, n, std::iter::repeat([0.0; COUPLES])),
+            if slips { wider(friction, n, std::iter::repeat([0.0; COUPLES])) } else { Level::default() },
             wider(root, n, couples),
             wider(&Level::default(), n, std::iter::empty()),
         ];

@@ -3,6 +3,7 @@
 use super::budget::{Budget, Trial, within};
 use super::change::{Change, Job};
 use super::gain::Gains;
+use super::largest::LargestLoad;
 use super::trial::Suggestion;
 use crate::verdict::{Line, Verdict, has_motors};
 
@@ -17,6 +18,8 @@ pub struct Advice {
     pub not_tried: Vec<String>,
     /// The suggestions that help beside the job as it is; without rows where there are none.
     pub gains: Gains,
+    /// The largest loads of the job, where they were searched for.
+    pub largest: Option<LargestLoad>,
     /// Sentences about changes that do not help, or were not tried.
     pub notes: Vec<String>,
 }
@@ -58,7 +61,7 @@ impl Advice {
             Gains::new(job.model, heading(verdict, &helping), verdict, &helping)
         };
         let notes = notes(verdict, &helping, &tried, &not_tried);
-        Self { helping, not_tried, gains, notes }
+        Self { helping, not_tried, gains, largest: None, notes }
     }
 }
 

@@ -8,12 +8,15 @@
 //!
 //! Trials end with a budget of solver steps (`budget.rs`), which every machine and any number of threads use up alike; the changes of most
 //! promise come first (`promise.rs`), and those that were not tried are named ([`Advice`]).
+//!
+//! The largest load of a job is searched for on request ([`LargestLoad`]).
 
 mod advice;
 mod breaks;
 mod budget;
 mod change;
 mod gain;
+mod largest;
 mod promise;
 mod trial;
 mod words;
@@ -23,5 +26,6 @@ pub use breaks::{BREAK, BREAK_EVERY, Worked, with_breaks, with_breaks_in_repeats
 pub use budget::{BUDGET_FACTOR, Budget, LEAST_BUDGET, Trial};
 pub use change::{Change, Job, JointAngle, changes};
 pub use gain::Gains;
+pub use largest::LargestLoad;
 pub use promise::{by_promise, by_promise_of_search};
 pub use trial::{Suggestion, try_run, try_search};

@@ -55,7 +55,8 @@ impl Change {
     }
 }
 
-/// ` (height 1.85 m instead of 1.95 m)`, or ` (0.35 m instead of 0.45 m horizontally from the centre of mass)`.
+/// ` (height 1.85 m instead of 1.95 m)`, or ` (level distance from the middle of the body 0.35 m instead of 0.45 m)`, which is its centre of mass
+/// at the start.
 fn moved_in_words(job: &Job<'_>, by: &Vector3<f64>) -> Option<String> {
     let up = job.up()?;
     let is_level = by.dot(&up).abs() < 0.5 * by.norm();
@@ -84,7 +85,7 @@ fn moved_in_words(job: &Job<'_>, by: &Vector3<f64>) -> Option<String> {
     };
     let values = values.join(", ");
     Some(match is_level {
-        true => format!(" ({values} horizontally from the centre of mass)"),
+        true => format!(" (level distance from the middle of the body {values})"),
         false => format!(" (height {values})"),
     })
 }

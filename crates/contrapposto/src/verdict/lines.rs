@@ -146,10 +146,16 @@ impl Findings {
             let long = seconds.map_or_else(String::new, |seconds| format!(" for {}{over}", how_long(seconds)));
             let limit = hazard.row.seconds().zip(seconds).is_some_and(|(limit, seconds)| seconds > limit);
             let limit = if limit { "; that is longer than the study allowed" } else { "" };
+            let shorter = match hazard.row.seconds().zip(seconds) {
+                Some((limit, seconds)) if seconds < limit && !told.contains(&hazard.row.finding.as_str()) => {
+                    format!("; of {} the study says little", how_long(seconds))
+                }
+                _ => String::new(),
+            };
             let finding = hazard.row.finding.as_str();
             let finding = if told.contains(&finding) { String::new() } else { format!("; {finding}") };
             told.push(&hazard.row.finding);
-            format!("{}{long}{finding}{limit}", hazard.in_words(model))
+            format!("{}{long}{finding}{limit}{shorter}", hazard.in_words(model))
         };
         now.chain(over).map(in_words).collect()
     }

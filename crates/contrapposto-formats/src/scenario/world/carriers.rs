@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::drawn;
 use super::held::in_segment;
-use super::plan::World;
+use super::plan::{World, forearm};
 use super::text::{CarriedText, FeetText, FloorText, FootText, SeatText, TableText, WallText};
 use super::word::Word;
 use crate::input_error::InputError;
@@ -108,11 +108,13 @@ fn read_seat(world: &mut World, word: &Word<'_>, text: &SeatText, model: &Model)
     let width = shoulder.map_or(SEAT_WIDTH_ALONE, |(pelvis, arm)| SEAT_WIDTH * in_segment(model, pelvis, arm).z.abs());
     let middle = Vector3::new(0.0, height - 0.5 * thickness, 0.0);
     world.obstacle(word, block("seat", middle, [depth, thickness, width]));
+    world.drawn.extend(drawn::legs("seat", middle, [depth, thickness, width], true));
     let angle = word.number("backrest_deg", text.backrest_deg.unwrap_or(BACKREST_DEFAULT_DEG), BACKREST_DEG, "deg")?;
     if text.backrest {
         let recline = (angle - 90.0).to_radians();
         let plane = PlaneText { normal: [recline.cos(), recline.sin(), 0.0], point_m: None };
         let corners_m = Some(back(word, model, "backrest")?);
+        world.rests.push("torso");
         world.support(word, SupportText { corners_m, ..rests("torso", OnText::Plane(plane)) });
     } else if text.backrest_deg.is_some() {
         let help = Some("add `backrest = true`, or leave it out".to_owned());
@@ -132,17 +134,11 @@ fn read_seat(world: &mut World, word: &Word<'_>, text: &SeatText, model: &Model)
             return Err(word.error("armrests_m", message, None));
         }
         for segment in ["radius_r", "radius_l"] {
+            world.rests.push(segment);
             world.support(word, rests(segment, level(bones)));
         }
     }
     Ok(())
-}
-
-/// Height of the bone of a forearm above the armrest under it, m: the radius of the forearm's shape.
-pub(super) fn forearm(model: &Model) -> f64 {
-    let segment = model.segment("radius_r");
-    let shape = model.shapes().iter().find(|shape| Some(shape.capsule.segment) == segment);
-    shape.map_or(0.0, |shape| shape.capsule.radius)
 }
 
 /// Heights of the bones of level forearms of an upright sitter, m: with the arms hanging down, and with the elbows at the shoulders.
@@ -172,6 +168,7 @@ fn read_table(
     };
     let middle = Vector3::new(edge + 0.5 * size[0], height - 0.5 * size[1], 0.0);
     world.obstacle(word, block(name, middle, size));
+    world.drawn.extend(drawn::legs(name, middle, size, false));
     for carried in &text.carries {
         let (segment, named) = carried.segment_and_word();
         if *carried == CarriedText::Back {

@@ -76,7 +76,7 @@ fn read_tool(world: &mut World, word: &Word<'_>, text: &ToolText, model: &Model)
         world.loads.push(load(word, model, station, force)?);
     }
     if text.mass_kg != 0.0 || text.force_n.is_some() {
-        world.drawn.push(drawn::tool(model, hand));
+        world.drawn.extend(drawn::tool(model, hand, text.force_n.map(Vector3::from)));
     }
     if let Some(at) = text.at_m {
         let hands = vec![(hand, HandTarget::At(word.place(at)?))];
@@ -135,7 +135,7 @@ fn read_bag(world: &mut World, word: &Word<'_>, text: &BagText, model: &Model) -
             let hand = word.segment(model, "on", side.hand())?;
             let station = (hand, model.segments()[hand].center_of_mass);
             world.loads.push(load(word, model, station, LoadKind::Weight(text.mass_kg))?);
-            world.drawn.push(drawn::bag_in_hand(model, hand));
+            world.drawn.extend(drawn::bag_in_hand(model, hand));
             return Ok(());
         }
         BagOnText::RightShoulder => "humerus_r",

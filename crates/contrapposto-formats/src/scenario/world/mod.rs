@@ -21,6 +21,7 @@ use crate::input_error::InputError;
 use crate::thing::Thing;
 use crate::toml_file::Located;
 
+pub(super) use drawn::weights;
 pub(super) use plan::World;
 pub(super) use start::fit_things;
 
@@ -37,5 +38,6 @@ pub(super) fn read_world(at: &Located, text: &ScenarioText, model: &Model) -> Re
 pub(super) fn drawn_things(world: &World, stage: &Stage<'_>) -> Vec<Thing> {
     let between = world.tasks.iter().filter_map(|task| drawn::between_hands(task, stage));
     let steps = world.supports.iter().filter_map(|support| drawn::step(support, stage));
-    world.drawn.iter().cloned().chain(between).chain(steps).collect()
+    let rests = drawn::rests(stage, &world.rests);
+    world.drawn.iter().cloned().chain(between).chain(steps).chain(rests).collect()
 }

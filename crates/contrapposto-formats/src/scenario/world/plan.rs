@@ -35,6 +35,8 @@ pub(in crate::scenario) struct World {
     pub(super) strides: Vec<(&'static str, f64)>,
     /// Whether the body sits.
     pub(super) sits: bool,
+    /// Segments that rest on a part of the seat: a backrest, armrests.
+    pub(super) rests: Vec<&'static str>,
     /// Things for drawings.
     pub(super) drawn: Vec<Thing>,
     /// The tables of the file that entries of supports and obstacles come from.
@@ -121,4 +123,11 @@ pub(super) fn grip(model: &Model, hand: usize) -> Vector3<f64> {
     }
     let middle = segment.patch.iter().sum::<Vector3<f64>>() / segment.patch.len() as f64;
     Vector3::new(0.0, KNUCKLES * middle.y, 0.0)
+}
+
+/// Height of the bone of a forearm above the armrest under it, m: the radius of the forearm's shape.
+pub(super) fn forearm(model: &Model) -> f64 {
+    let segment = model.segment("radius_r");
+    let shape = model.shapes().iter().find(|shape| Some(shape.capsule.segment) == segment);
+    shape.map_or(0.0, |shape| shape.capsule.radius)
 }

@@ -10,8 +10,8 @@ use contrapposto::model::Model;
 use contrapposto::posture::Posture;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::carriers::{BACKREST_DEFAULT_DEG, forearm};
-use super::plan::{HandTarget, World};
+use super::carriers::BACKREST_DEFAULT_DEG;
+use super::plan::{HandTarget, World, forearm};
 use super::text::{CarriedText, SeatText};
 use crate::scenario::text::ScenarioText;
 
