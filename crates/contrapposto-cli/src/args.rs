@@ -29,7 +29,7 @@ pub(crate) use model::{
 pub(crate) use muscles::use_muscles;
 pub(crate) use musculature::{MusclesArgs, OneMuscleArgs, RuleChoice};
 pub(crate) use population::PopulationArgs;
-pub(crate) use repeat::RepeatArgs;
+pub(crate) use repeat::{CyclesChoice, RepeatArgs};
 pub(crate) use scale::ScaleArgs;
 pub(crate) use scenario::{CompareArgs, DemoArgs, JobChoice, NewArgs, PoseArgs, RelaxArgs, SimulateArgs, SuggestArgs};
 pub(crate) use studio::StudioArgs;

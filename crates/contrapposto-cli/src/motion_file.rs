@@ -242,6 +242,10 @@ fn first_of(names: &[String]) -> String {
 /// A hinge that lies so far beyond its range, rad, is an error of the file: a quarter of a turn (assumed).
 const FAR: f64 = std::f64::consts::FRAC_PI_2;
 
+/// Share of the frames outside of its range from which on a coordinate whose opposite lies inside has a wrong sign: a knee that walks is nearly
+/// straight in half of them. Assumed.
+const OFTEN: f64 = 0.25;
+
 /// Notes the coordinates that leave their range, and those that leave the range of their built-in curve. Gives a warning for each whose
 /// values lie outside its range in nearly all frames: a wrong sign, unit or zero.
 pub(crate) fn note_values_out_of_range(
@@ -258,7 +262,8 @@ pub(crate) fn note_values_out_of_range(
         }
         let values: Vec<f64> = frames.iter().map(|(_, posture)| posture.values()[index]).collect();
         let outside = share_outside(values.iter().copied(), coordinate.range);
-        if outside >= NEARLY_ALL {
+        let turned = || share_outside(values.iter().map(|value| -value), coordinate.range) <= 1.0 - NEARLY_ALL;
+        if outside >= NEARLY_ALL || (outside >= OFTEN && turned()) {
             warnings.push(out_of_range(coordinate, &values, outside));
         } else if let Some(far) = far_outside(coordinate, frames, index) {
             warnings.push(far);

@@ -8,6 +8,7 @@ pub(crate) mod body;
 pub(crate) mod body_map;
 pub(crate) mod capacity;
 pub(crate) mod charts;
+pub(crate) mod cycles;
 pub(crate) mod decision;
 pub(crate) mod excerpt;
 pub(crate) mod figures;

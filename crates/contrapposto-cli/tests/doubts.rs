@@ -44,6 +44,23 @@ fn a_model_without_mass_or_in_millimetres_is_told_by_name_and_number() {
     assert!(!run(&["inspect", "adult"]).stderr.contains("warning"));
 }
 
+/// A knee of the wrong sign that is nearly straight for half of a stride lies inside its range then, and is named nevertheless; the right one is not.
+#[test]
+fn a_walking_knee_with_the_opposite_sign_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for (sign, named) in [(-1.0, true), (1.0, false)] {
+        let mut text = "time,knee_angle_r_deg\n".to_owned();
+        for i in 0..=100 {
+            let phase = std::f64::consts::TAU * f64::from(i) / 50.0;
+            text += &format!("{},{}\n", 0.02 * f64::from(i), sign * 60.0 * phase.sin().max(0.0));
+        }
+        let motion = write(folder.path(), "stride.csv", &text);
+        let said = run(&["assess", "adult", &motion, "--support", "calcn_r,calcn_l", "--static"]).stderr;
+        let warned = said.contains("`knee_angle_r` lies outside its range") && said.contains("opposite sign?");
+        assert_eq!(warned, named, "{said}");
+    }
+}
+
 #[test]
 fn a_motion_with_the_opposite_sign_is_warned_of_first_and_in_the_json() {
     let folder = tempfile::tempdir().unwrap();

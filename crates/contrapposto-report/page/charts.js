@@ -88,6 +88,7 @@ class Charts {
     this.drawCourse();
     this.drawCursor();
     if (isNew) this.course.on("plotly_afterplot", () => this.drawCursor());
+    drawCycle(index);
   }
 
   drawFrame(frame) {
@@ -99,7 +100,7 @@ class Charts {
   }
 
   resize() {
-    for (const chart of [this.balance, this.course]) if (chart._fullLayout) Plotly.Plots.resize(chart);
+    for (const chart of [this.balance, this.course, document.getElementById("cycle")]) if (chart._fullLayout) Plotly.Plots.resize(chart);
   }
 
   // Torques over the angle.

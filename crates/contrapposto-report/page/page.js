@@ -124,13 +124,14 @@ function nameMotors() {
 function hideUnknown() {
   const known = {
     "key-force": report.supports.length, "key-center": report.center, "key-surface": report.surfaces.length,
-    "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-solid": report.solid, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES,
+    "key-hazard": report.joints.some((joint) => joint.hazard), "key-load": report.loads.length, "key-thing": report.things.length, "key-target": report.targets.length, "key-solid": report.solid, "key-ghost": MOVES || report.names, time: MOVES, "over-time": MOVES, "over-cycle": report.cycles,
     "by-muscle": report.muscles, "key-muscle": report.muscles, single: report.muscles, "single-muscles": report.muscles,
     figure: report.skin, postures: SEVERAL && report.names, joint: report.joints.length, list: report.list.entries.length || report.list.none,
     answer: report.facts.length || report.changes.rows.length || report.reasons.length, scene: report.segments.length, overview: report.table.rows.length, muscles: report.joints.some((joint) => joint.groups),
   };
   for (const [id, isKnown] of Object.entries(known)) find(id).hidden = !isKnown;
   if (report.solid) fillLimits(report.solid);
+  if (report.cycles) find("cycle-text").textContent = report.cycles.text;
   find("things").textContent = [...new Set(report.things.map((thing) => thing.label))].join(", ");
   find("surfaces").textContent = [...new Set(report.surfaces.map((surface) => surface.label))].join(", ");
   const loads = report.loads.map((load) => load.label);

@@ -2,6 +2,16 @@
 
 use serde_json::{Value, json};
 
+/// Steps to which numbers are rounded: the smallest visible differences.
+pub(crate) const METRES: f64 = 1e-4;
+pub(crate) const DEGREES: f64 = 0.02;
+pub(crate) const TORQUE: f64 = 0.01;
+pub(crate) const TURN: f64 = 2e-4;
+pub(crate) const SHARE: f64 = 1e-3;
+pub(crate) const NEWTONS: f64 = 0.5;
+/// Of loads: small enough that a share rounds to the same percentage as before.
+pub(crate) const LOAD: f64 = 1e-5;
+
 /// Largest multiple: beyond it a browser loses digits.
 const LARGEST: f64 = 1e12;
 

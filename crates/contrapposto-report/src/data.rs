@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::column::{column, columns};
+use crate::column::{DEGREES, LOAD, METRES, NEWTONS, SHARE, TORQUE, TURN, column, columns};
+use crate::cycles;
 use crate::muscles::muscles;
 use crate::skin::mesh;
 use crate::{
@@ -12,14 +13,6 @@ use crate::{
 
 /// Steps to which numbers are rounded: the smallest visible differences.
 const SECONDS: f64 = 1e-3;
-const METRES: f64 = 1e-4;
-const TURN: f64 = 2e-4;
-const DEGREES: f64 = 0.02;
-const TORQUE: f64 = 0.01;
-const SHARE: f64 = 1e-3;
-/// Of loads: small enough that a share rounds to the same percentage as before.
-const LOAD: f64 = 1e-5;
-const NEWTONS: f64 = 0.5;
 /// Endurance times from this on, s, count as unlimited.
 const UNLIMITED: f64 = 1e5;
 
@@ -46,6 +39,7 @@ pub(crate) fn data(report: &Report) -> String {
         "segments": report.segments.iter().map(|s| segment(s, n)).collect::<Value>(),
         "skin": report.skin.as_ref().map(|s| skin(s, report, n)),
         "joints": report.joints.iter().map(|j| joint(j, n)).collect::<Value>(),
+        "cycles": report.cycles.as_ref().map(|c| cycles::data(c, report.joints.iter().map(|j| j.slides))),
         "main": report.main,
         "levels": report.levels,
         "supports": report.supports.iter().map(|s| support(s, n)).collect::<Value>(),

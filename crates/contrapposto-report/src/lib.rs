@@ -2,18 +2,20 @@
 //! over time or in a few postures, charts of every joint, and decisions in plain words. The page needs no network, and its content
 //! security policy allows none. Parts of the page about which nothing is known are hidden.
 //!
-//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `skin` (its mesh), `muscles` (lines of muscles), `data` (the input of the page's script), `page` (the file), `document` (a page of words, pictures and tables alone). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
+//! Inside, a file uses only those above it in this list: `column` (numbers over time, short), `cycles` (mean and spread over cycles), `skin` (its mesh), `muscles` (lines of muscles), `data` (the input of the page's script), `page` (the file), `document` (a page of words, pictures and tables alone). The page's own scripts and style stand in `page/`, plotly.js in `vendor/`.
 //!
 //! Every function takes any input without panicking: numbers that are not finite count as 0, lists that are too short as if
 //! their last number went on. The same input gives the same bytes. Texts may come from strangers: they reach the page as text.
 
 mod column;
+mod cycles;
 mod data;
 mod document;
 mod muscles;
 mod page;
 mod skin;
 
+pub use cycles::{Band, CycleCurves, Cycles};
 pub use document::{Document, Picture, write_document};
 pub use page::write;
 
@@ -48,6 +50,8 @@ pub struct Report {
     pub joints: Vec<Joint>,
     /// Index in `joints` of the joint to show first.
     pub main: usize,
+    /// Mean and spread of the joints over the cycles of a motion; `None` of a motion without cycles.
+    pub cycles: Option<Cycles>,
     /// Fatigue at which relief begins and ends, 0..=1; `None` without relief.
     pub levels: Option<[f64; 2]>,
     /// Supports of the body; empty if the root is fixed.

@@ -2,15 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::column::{column, columns};
+use crate::column::{METRES, NEWTONS, SHARE, TORQUE, TURN, column, columns};
 use crate::{Carrier, Muscle, Muscles, PathPoint, Report};
-
-/// Steps to which numbers are rounded: the smallest visible differences.
-const METRES: f64 = 1e-4;
-const TURN: f64 = 2e-4;
-const SHARE: f64 = 1e-3;
-const NEWTONS: f64 = 1.0;
-const TORQUE: f64 = 0.1;
 
 /// A carrier that is a drawn segment, too, names that part instead of its places.
 pub(crate) fn muscles(muscles: &Muscles, report: &Report, n: usize) -> Value {

@@ -10,7 +10,7 @@ use crate::data::data;
 const PAGE: &str = include_str!("../page/page.html");
 pub(crate) const STYLE: &str = include_str!("../page/style.css");
 /// In this order they form one script.
-const SCRIPTS: [&str; 9] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("../page/data.js"),
     include_str!("../page/meshes.js"),
     include_str!("../page/camera.js"),
@@ -19,6 +19,7 @@ const SCRIPTS: [&str; 9] = [
     include_str!("../page/muscles.js"),
     include_str!("../page/body.js"),
     include_str!("../page/charts.js"),
+    include_str!("../page/cycles.js"),
     include_str!("../page/page.js"),
 ];
 

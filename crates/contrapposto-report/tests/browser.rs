@@ -70,6 +70,7 @@ fn report() -> Report {
         skin: None,
         joints: vec![joint(HOSTILE, 1.0), joint("second", 2.0)],
         main: 0,
+        cycles: None,
         open: 49,
         levels: Some([0.6, 0.3]),
         supports: vec![Support {

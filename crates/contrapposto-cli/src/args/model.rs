@@ -191,6 +191,11 @@ pub(crate) struct AssessArgs {
     pub(crate) dynamics: DynamicsArgs,
     #[command(flatten)]
     pub(crate) repeat: super::RepeatArgs,
+    /// Cycles of the motion: the length of each from the start on, s (1.12); or the starts of all and the end of the last one (0.62,1.74,2.85);
+    /// or `find` (none found is an error); or `none`. Report and JSON have the mean and the standard deviation of angles, torques and loads over
+    /// them. Without it a cycle goes from a landing of a foot to its next one, or else from where the angles come back to where they do again.
+    #[arg(long, value_name = "S", value_parser = super::repeat::cycles, allow_hyphen_values = true)]
+    pub(crate) cycles: Option<super::CyclesChoice>,
     #[command(flatten)]
     pub(crate) carried: SupportArgs,
     /// Error of the given angles: muscles that work against the ligaments of their own joint are judged at the angle within it where they work

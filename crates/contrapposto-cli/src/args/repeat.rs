@@ -1,5 +1,6 @@
-//! Arguments of a motion that is repeated.
+//! Arguments of a motion that is repeated, or that has cycles.
 
+use contrapposto::assessment::Cycles;
 use contrapposto::fatigue::{Breaks, Repetition};
 
 use super::time::time;
@@ -48,5 +49,55 @@ impl RepeatArgs {
             }
         }
         Ok(Some(Repetition { seconds, every, breaks }))
+    }
+}
+
+/// The cycles of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum CyclesChoice {
+    /// No curves over cycles.
+    None,
+    /// Those that are found; none is an error.
+    Find,
+    /// Length of every cycle from the start of the motion on, s; above 0.
+    Length(f64),
+    /// The start of every cycle, and the end of the last one, s; rising.
+    Bounds(Vec<f64>),
+}
+
+/// The cycles that a text names.
+pub(super) fn cycles(text: &str) -> Result<CyclesChoice, String> {
+    match text {
+        "none" => return Ok(CyclesChoice::None),
+        "find" => return Ok(CyclesChoice::Find),
+        _ => (),
+    }
+    let numbers: Vec<f64> = text.split(',').map(|time| time.trim().parse().unwrap_or(f64::NAN)).collect();
+    let rising = numbers.windows(2).all(|pair| pair[0] < pair[1]) && numbers.iter().all(|s| s.is_finite());
+    match numbers[..] {
+        [length] if rising && length > 0.0 => Ok(CyclesChoice::Length(length)),
+        [_, _, ..] if rising => Ok(CyclesChoice::Bounds(numbers)),
+        _ => Err("`find`, `none`, the length of a cycle in s, such as 1.12, or two or more rising times in s, such as 0.62,1.74,2.85, are accepted".to_owned()),
+    }
+}
+
+impl CyclesChoice {
+    /// Checks that all cycles lie within a motion from `first` to `last`, s.
+    ///
+    /// # Errors
+    /// The sentence that names the time outside of it, or the length that is longer than the motion.
+    pub(crate) fn check(&self, (first, last): (f64, f64)) -> Result<(), String> {
+        match self {
+            Self::None | Self::Find => Ok(()),
+            Self::Length(length) => Cycles::of_length(*length, (first, last)).map(|_| ()).ok_or_else(|| {
+                format!("--cycles: {length} s is no length of a cycle of a motion from {first} s to {last} s; one to a million cycles are accepted")
+            }),
+            Self::Bounds(bounds) => {
+                let outside = bounds.iter().find(|time| !(first..=last).contains(*time));
+                outside.map_or(Ok(()), |time| {
+                    Err(format!("--cycles: {time} s lies outside of the motion, which goes from {first} s to {last} s"))
+                })
+            }
+        }
     }
 }

@@ -89,8 +89,11 @@ pub(crate) fn page(
     found: &Found,
     frames: (&AssessedFrames<'_>, Option<&MusclesAtWork<'_>>),
 ) -> Result<String, Fail> {
-    let Found { assessment, answer, warnings } = found;
-    let (numbers, supports) = ((assessment, job.said.as_deref()), &job.settings.supports);
+    let Found { assessment, cycles, answer, warnings } = found;
+    let (numbers, supports) = (
+        (assessment, job.said.as_deref(), cycles.as_ref().and_then(|cycles| cycles.as_ref().ok())),
+        &job.settings.supports,
+    );
     report_of_assessment(title, frames, numbers, answer, supports, &job.held, warnings)
 }
 

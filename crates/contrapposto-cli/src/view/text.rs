@@ -3,6 +3,7 @@
 pub(crate) mod assess;
 pub(crate) mod capacity;
 pub(crate) mod compare;
+mod cycles;
 mod group;
 pub(crate) mod inspect;
 mod joint;

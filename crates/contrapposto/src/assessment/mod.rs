@@ -13,6 +13,8 @@
 //! load comes from the external torque are not concerned.
 
 mod acceleration;
+mod cycle_search;
+mod cycles;
 mod error;
 mod evaluation;
 mod groups;
@@ -30,6 +32,8 @@ use crate::model::{CoordinateKind, Model};
 use crate::posture::Posture;
 use crate::statics::Load;
 pub use acceleration::{FAST_SHARE, acceleration};
+pub use cycle_search::{ALIKE, NoCycles};
+pub use cycles::{Curve, CycleGrid, CycleOrigin, Cycles, PERCENTS};
 pub use error::AssessError;
 use evaluation::Evaluation;
 use groups::Groups;

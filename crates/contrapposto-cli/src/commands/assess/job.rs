@@ -1,7 +1,9 @@
 //! Assesses a recorded motion of an opened model: the motion and its loads, checked, and the answer.
 
 use contrapposto::assessment::assess as assessed;
-use contrapposto::assessment::{ANGLE_ERROR, AssessSettings, Assessment, FAST_SHARE, Instant};
+use contrapposto::assessment::{
+    ANGLE_ERROR, AssessSettings, Assessment, CycleOrigin, Cycles, FAST_SHARE, Instant, NoCycles,
+};
 use contrapposto::joint_torques::JointMuscles;
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::Model;
@@ -17,12 +19,13 @@ use contrapposto_formats::tissue::{SourcedModel, fatigue_notes};
 use super::repeats::ends_apart;
 use super::support_doubts::support_doubts;
 use super::warnings::{WHAT_CARRIES, warnings};
-use crate::args::{AssessArgs, SuggestArgs};
+use crate::args::{AssessArgs, CyclesChoice, SuggestArgs};
 use crate::fail::Fail;
 use crate::motion_file::{loads_of, note_values_out_of_range};
 use crate::moving::{Recorded, keep_overlap};
 use crate::output::print_note;
 use crate::view::answer::Answer;
+use crate::view::cycles::{CycleCurves, CycleRecord, no_cycles};
 use crate::view::frame::Frame;
 use crate::view::muscle_work::{MusclesAtWork, muscles_at_work};
 use crate::view::text::assess::AssessText;
@@ -46,6 +49,8 @@ pub(crate) struct Job {
 /// The answer to a motion.
 pub(crate) struct Found {
     pub(crate) assessment: Assessment,
+    /// Curves over the cycles of the motion, if it has any; `Err` with the reason if none are found.
+    pub(crate) cycles: Option<Result<CycleCurves, String>>,
     pub(crate) answer: Answer,
     /// Reasons to doubt the numbers.
     pub(crate) warnings: Vec<String>,
@@ -95,6 +100,10 @@ impl Job {
             angle_error,
             ..AssessSettings::default()
         };
+        if let Some(choice) = &args.cycles {
+            let ends = motion.first().zip(motion.last()).map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
+            choice.check(ends).map_err(Fail::Refused)?;
+        }
         let of_motion = [doubts, note_values_out_of_range(&opened, &motion, &mut notes)].concat();
         of_motion.iter().for_each(|warning| print_note("warning", warning));
         said.iter().chain(&notes).for_each(|note| print_note("note", note));
@@ -103,14 +112,30 @@ impl Job {
     }
 
     /// Assesses all postures and shows each to `visit`. Warnings about the numbers go to standard error.
-    pub(crate) fn carry_out(&self, args: &AssessArgs, name: &str, visit: impl FnMut(&Instant)) -> Result<Found, Fail> {
+    pub(crate) fn carry_out(
+        &self,
+        args: &AssessArgs,
+        name: &str,
+        mut visit: impl FnMut(&Instant),
+    ) -> Result<Found, Fail> {
         let model = &self.opened.model;
         let loads = |time: f64, kinematics: &Kinematics, loads: &mut Vec<Load>| {
             loads.extend_from_slice(&self.held);
             self.measured(time, kinematics, loads);
         };
+        let mut record = CycleRecord::new(model);
+        let mut ground = vec![];
+        let visit = |instant: &Instant| {
+            ground.clear();
+            self.measured(instant.time, instant.torques.kinematics(), &mut ground);
+            record.take(instant, &ground);
+            visit(instant);
+        };
         let assessment = assessed(model, &self.motion, loads, &self.settings, visit)
             .map_err(|error| Fail::Refused(format!("{name}: {error}")))?;
+        let found = self.cycles(args.cycles.as_ref(), &record);
+        let cycles = found.map_err(|why| Fail::Refused(format!("{name}: {why}")))?;
+        let cycles = cycles.map(|cycles| cycles.map(|cycles| record.curves(cycles)));
         let apart = self.settings.repetition.and_then(|_| ends_apart(model, &self.motion));
         let new = [
             apart.into_iter().collect(),
@@ -123,7 +148,35 @@ impl Job {
         let (begin, end) = self.ends();
         let verdict = Verdict::of_motion_with(model, &assessment, end - begin, &self.held);
         let advice = self.advice(&assessment, &verdict, args.suggest);
-        Ok(Found { assessment, answer: Answer::new(verdict, advice), warnings })
+        Ok(Found { assessment, cycles, answer: Answer::new(verdict, advice), warnings })
+    }
+
+    /// The cycles of the motion: those that are asked for, else those that it has, else the motion that is repeated; or the reason why a motion
+    /// that moves has none.
+    ///
+    /// # Errors
+    /// The reason why there are none, if they are asked for.
+    fn cycles(
+        &self,
+        asked: Option<&CyclesChoice>,
+        record: &CycleRecord<'_>,
+    ) -> Result<Option<Result<Cycles, String>>, String> {
+        let ends = self.ends();
+        let whole =
+            || self.settings.repetition.map(|_| Cycles { bounds: vec![ends.0, ends.1], origin: CycleOrigin::Whole });
+        Ok(match asked {
+            Some(CyclesChoice::None) => None,
+            Some(CyclesChoice::Length(length)) => Cycles::of_length(*length, ends).map(Ok),
+            Some(CyclesChoice::Bounds(bounds)) => {
+                Some(Ok(Cycles { bounds: bounds.clone(), origin: CycleOrigin::Given }))
+            }
+            Some(CyclesChoice::Find) => Some(Ok(record.find().map_err(no_cycles)?)),
+            None => match (record.find(), whole()) {
+                (Ok(cycles), _) | (Err(_), Some(cycles)) => Some(Ok(cycles)),
+                (Err(why @ NoCycles::NotBack(_)), None) => Some(Err(no_cycles(why))),
+                (Err(NoCycles::Still | NoCycles::TooShort), None) => None,
+            },
+        })
     }
 
     /// Adds the measured forces of the ground at a time.
@@ -150,7 +203,7 @@ impl Job {
     ) -> AssessText {
         let warnings = found.warnings.clone();
         let times: Vec<f64> = self.motion.iter().map(|(time, _)| *time).collect();
-        let numbers = (self.settings.angle_error, &found.assessment);
+        let numbers = (self.settings.angle_error, &found.assessment, found.cycles.as_ref());
         let mut text = AssessText::new(&self.opened, name, &times, numbers, &found.answer, warnings, files);
         text.muscle_work = muscles.map(MusclesAtWork::text);
         text

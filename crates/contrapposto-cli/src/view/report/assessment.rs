@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 use super::page;
 use crate::fail::Fail;
 use crate::view::answer::{Answer, group_of_title};
+use crate::view::cycles::CycleCurves;
 use crate::view::decision::answer;
 use crate::view::excerpt::MOST_FRAMES;
 use crate::view::frame::Frame;
@@ -107,7 +108,7 @@ impl<'a> AssessedFrames<'a> {
 pub(crate) fn report_of_assessment(
     title: &str,
     (assessed_frames, muscles): (&AssessedFrames<'_>, Option<&MusclesAtWork<'_>>),
-    (found, inertia): (&Assessment, Option<&str>),
+    (found, inertia, cycles): (&Assessment, Option<&str>, Option<&CycleCurves>),
     Answer { verdict, advice, .. }: &Answer,
     supports: &[Support],
     held: &[Load],
@@ -136,6 +137,7 @@ pub(crate) fn report_of_assessment(
             groups[group.side.index()].fails = group.exhausted_at.filter(|_| group.repeated.is_none());
         }
     }
+    report.cycles = cycles.map(|cycles| cycles.on_page(model));
     report.open = assessed_frames.nearest(moment(found, verdict));
     let span = last.time - first.time;
     super::answer(&mut report, verdict, advice);

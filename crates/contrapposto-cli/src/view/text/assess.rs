@@ -10,10 +10,12 @@ use contrapposto_formats::tissue::SourcedModel;
 use contrapposto_formats::{AdviceText, MuscleWorkText, VerdictText};
 use serde::Serialize;
 
+use super::cycles::CyclesText;
 use super::group::GroupName;
 use super::plain_table;
 use super::sources::StrengthAtText;
 use crate::view::answer::Answer;
+use crate::view::cycles::CycleCurves;
 use crate::view::words::{A_DAY, MOST_ROWS, how_long, moment_in_words, percent};
 
 /// Most groups whose relief is listed.
@@ -35,6 +37,12 @@ pub(crate) struct AssessText {
     /// Times of a motion that is repeated; left out of another one.
     #[serde(skip_serializing_if = "Option::is_none")]
     repeats: Option<RepeatsText>,
+    /// Curves over the cycles of the motion; left out of a motion without cycles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cycles: Option<CyclesText>,
+    /// The reason why a motion that moves has no cycles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    no_cycles: Option<String>,
     /// Error of the angles within which groups that work against passive torque are judged.
     angle_error_deg: f64,
     /// Every group of known strength, the worst first.
@@ -152,7 +160,7 @@ impl AssessText {
         opened: &SourcedModel,
         motion: &str,
         times: &[f64],
-        (angle_error, found): (f64, &Assessment),
+        (angle_error, found, cycles): (f64, &Assessment, Option<&Result<CycleCurves, String>>),
         answer: &Answer,
         warnings: Vec<String>,
         files: Vec<String>,
@@ -167,6 +175,8 @@ impl AssessText {
             start_s: times.first().copied().unwrap_or_default(),
             end_s: times.last().copied().unwrap_or_default(),
             repeats: found.repetition.map(|repetition| RepeatsText::new(repetition, times)),
+            cycles: cycles.and_then(|cycles| Some(CyclesText::new(model, cycles.as_ref().ok()?))),
+            no_cycles: cycles.and_then(|cycles| cycles.as_ref().err().cloned()),
             angle_error_deg: angle_error.to_degrees(),
             groups: found.groups.iter().map(|group| AssessedGroupText::new(opened, group, found.dynamics)).collect(),
             muscle_work: None,
@@ -284,6 +294,12 @@ pub(crate) fn report(text: &AssessText) -> String {
     }
     if working.len() > MOST_ROWS {
         let _ = writeln!(out, "and {} groups with lower loads, which --json lists", working.len() - MOST_ROWS);
+    }
+    if let Some(cycles) = &text.cycles {
+        let _ = writeln!(out, "{}; --out DIR draws them, --json lists them", cycles.sentence());
+    }
+    if let Some(why) = &text.no_cycles {
+        let _ = writeln!(out, "{why}");
     }
     out.push_str("\nrelief, if that joint alone moved:\n");
     for group in working.iter().take(RELIEVED) {
