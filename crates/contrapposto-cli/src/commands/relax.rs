@@ -22,6 +22,7 @@ use crate::view::animation::steps;
 use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::body;
 use crate::view::frame::frame_of_posture;
+use crate::view::muscle_work::muscles_at_work;
 use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibria};
 use crate::view::stage::Stage;
 use crate::view::text::relax::{RelaxText, percent, report};
@@ -162,8 +163,12 @@ fn write(
     let csv = table(scenario, found);
     let picture = body_figure(&drawing(scenario, found, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
+    let frames = found.postures.iter().map(|posture| frame_of_posture(&scenario.model, posture));
+    let frames = frames.collect::<Result<Vec<_>, _>>()?;
+    let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), &frames, |_| true)?;
     let page = report_of_equilibria(scenario, found, answer)?;
-    let [gltf, bvh] = steps(["postures.glb", "postures.bvh"], &scenario.model, title, &rows, wooden)?;
+    let [gltf, bvh] =
+        steps(["postures.glb", "postures.bvh"], &scenario.model, title, (&rows, muscles.as_ref()), wooden)?;
     let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
     let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
