@@ -24,6 +24,8 @@ mod players;
 mod skin;
 #[path = "write/skinned.rs"]
 mod skinned;
+#[path = "write/tubes.rs"]
+mod tubes;
 
 use std::collections::BTreeMap;
 

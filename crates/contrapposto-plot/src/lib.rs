@@ -59,6 +59,7 @@ pub use force_figure::{ForceFigure, Spoke, force_figure};
 pub use force_length::{ForceLength, force_length};
 pub use holding_curve::{HoldingCurve, holding_curve};
 pub use passive_chart::{PassiveChart, passive_curve};
+pub use style::load_color;
 pub use tags::{PostureSketch, SketchRole};
 pub use time_line::{TimeLine, time_line};
 pub use torque_balance::{TorqueBalance, torque_balance};

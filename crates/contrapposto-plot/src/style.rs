@@ -64,6 +64,12 @@ pub(crate) const LIMITS: [Ink; 8] = [
     Ink(0x88, 0x88, 0x88),
 ];
 
+/// Red, green and blue of a load, a share of strength, on the fixed scale of all pictures.
+pub fn load_color(load: f64) -> [u8; 3] {
+    let Ink(red, green, blue) = load_ink(load);
+    [red, green, blue]
+}
+
 /// The colour of a load, a share of strength; below 0 it counts as 0.
 pub(crate) fn load_ink(load: f64) -> Ink {
     let band = LOAD_BANDS.iter().rposition(|(from, ..)| *from <= load + SHARE_TOLERANCE).unwrap_or(0);

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use contrapposto_report::{
-    Balance, Entry, Fact, Figure, ForceSolid, Group, Joint, List, Moments, Push, Report, Segment, Support, Surface,
-    Table, Target, Thing, write,
+    Balance, Carrier, Entry, Fact, Figure, ForceSolid, Group, Joint, List, Moments, Muscle, Muscles, PathPoint, Push,
+    Report, Segment, Support, Surface, Table, Target, Thing, write,
 };
 use serde_json::json;
 use support::chromium::Chromium;
@@ -86,6 +86,7 @@ fn report() -> Report {
         things: vec![],
         loads: vec![],
         solid: None,
+        muscles: None,
         list: List {
             heading: HOSTILE.to_owned(),
             entries: vec![entry(0, 0, HOSTILE), entry(30, 1, "the second joint is relieved")],
@@ -272,6 +273,78 @@ fn a_thing_and_a_load_change_the_picture_and_have_a_key() {
     page.open(&file("load.html", &write(&report)));
     assert_ne!(page.evaluate(PICTURE), with_thing);
     assert_eq!(page.evaluate("document.getElementById('key-load').hidden"), false);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+/// A muscle along the bar from ground, with a point that is there in the first half of the time only, and another one at rest beside it.
+fn muscles(report: &Report) -> Muscles {
+    let carriers = vec![
+        Carrier { places: vec![[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]; 50] },
+        Carrier { places: report.segments[0].places.clone() },
+    ];
+    let point = |carrier, at| PathPoint { carrier, at: vec![at; 50] };
+    let points = vec![point(0, [0.0, 1.05, 0.05]), point(1, [0.03, -0.2, 0.0]), point(1, [0.02, -0.7, 0.0])];
+    let line = Muscle {
+        name: HOSTILE.to_owned(),
+        works_for: HOSTILE.to_owned(),
+        joint: Some(1),
+        radius: 0.01,
+        activation: (0..50).map(|frame| 0.02 * f64::from(frame)).collect(),
+        tension: vec![321.0; 50],
+        points,
+        orders: vec![vec![Some(0), Some(1), Some(2)], vec![Some(0), None, Some(2), Some(1)]],
+        order: (0..50).map(|frame| frame / 25).collect(),
+    };
+    let points = [0.06, 0.08, 0.1].map(|z| point(1, [0.05, -4.0 * z, z])).to_vec();
+    let still = Muscle { name: "rests".to_owned(), activation: vec![0.0; 50], points, ..line.clone() };
+    let lacks = (0..50).map(|frame| (frame > 40).then_some((Some(1), 7.25))).collect();
+    Muscles { carriers, lines: vec![line, still], lacks }
+}
+
+#[test]
+#[ignore = "needs a browser: a Chromium, also by CONTRAPPOSTO_CHROMIUM"]
+fn muscles_are_drawn_named_listed_and_switched_off() {
+    let mut report = report();
+    let mut page = open_page("without-muscles.html", &report);
+    let without = page.evaluate(PICTURE);
+    for id in ["by-muscle", "key-muscle", "single-muscles"] {
+        assert_eq!(page.evaluate(&format!("document.getElementById('{id}').hidden")), true, "{id}");
+    }
+    report.muscles = Some(muscles(&report));
+    page.open(&file("muscles.html", &write(&report)));
+    let with = page.evaluate(PICTURE);
+    assert!(with != without, "no muscles in the picture");
+    let row = "[...document.querySelectorAll('#single tbody td')].map((cell) => cell.textContent)";
+    assert_eq!(page.evaluate(row), json!([HOSTILE, "98\u{a0}%", "321\u{a0}N", HOSTILE]), "one rests");
+    let lacks = "document.getElementById('lacks').textContent";
+    assert!(
+        page.evaluate(lacks).as_str().unwrap().contains("7.3 N m are missing at second"),
+        "{}",
+        page.evaluate(lacks)
+    );
+    page.evaluate("document.querySelector('#single tbody tr').click()");
+    let named = format!("{HOSTILE}: activation 98\u{a0}%, 321\u{a0}N, works for {HOSTILE}");
+    assert_eq!(page.evaluate("document.getElementById('muscle-now').textContent"), named);
+    assert_eq!(page.evaluate("document.getElementById('chooser').selectedOptions[0].textContent"), "second");
+    let marked = page.evaluate(PICTURE);
+    assert!(marked != with, "the muscle is not marked");
+    // The pointer finds it, too, and the line of an earlier frame is another one.
+    page.press("Home");
+    assert_eq!(page.evaluate(lacks), "");
+    let found = "(() => { const c = document.getElementById('body'), r = c.getBoundingClientRect();
+      for (let y = 0; y < 1; y += 0.02) for (let x = 0; x < 1; x += 0.005) {
+        c.dispatchEvent(new PointerEvent('pointermove', { clientX: r.left + x * r.width, clientY: r.top + y * r.height }));
+        if (document.getElementById('muscle-now').textContent.startsWith('rests')) return 'rests';
+      }
+      return document.getElementById('muscle-now').textContent; })()";
+    let found = page.evaluate(found);
+    assert!(found.as_str().unwrap().contains("activation 0\u{a0}%"), "{found}");
+    page.press("End");
+    page.evaluate("document.getElementById('show-muscles').click()");
+    assert!(page.evaluate(PICTURE) == without, "the body is not as before");
+    page.evaluate("document.getElementById('show-muscles').click()");
+    assert!(page.evaluate(PICTURE) == with, "the muscles are not back");
+    page.evaluate("document.getElementById('by-passive').click()");
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
 

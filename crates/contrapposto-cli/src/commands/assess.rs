@@ -70,7 +70,7 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let json = json_text(ASSESS_FILES[0], &text)?;
     if let (Some(folder), Some(page)) = (folder, page) {
         let fatigue = tables.fatigue()?;
-        let gltf = animation::motion("motion.glb", model, &title, &job.motion, args.wooden)?;
+        let gltf = animation::motion("motion.glb", model, &title, (&job.motion, muscles.as_ref()), args.wooden)?;
         let contents = [&json, &tables.torques, &fatigue, &page].map(String::as_bytes).into_iter().chain([&gltf[..]]);
         let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
         folder.write(&ASSESS_FILES.into_iter().zip(contents).chain(figures).collect::<Vec<_>>())?;

@@ -1,5 +1,7 @@
 //! `contrapposto pose`: one posture from tasks in order of priority.
 
+use std::slice::from_ref;
+
 use contrapposto::contact::{Balance, Slip};
 use contrapposto::equilibria::{Search, equilibria};
 use contrapposto::posture_solver::{Engine, EngineError, Options, Reason, SolvedPosture};
@@ -20,6 +22,7 @@ use crate::scenario_file::ScenarioFile;
 use crate::view::animation::steps;
 use crate::view::answer::{Answer, answered};
 use crate::view::held::{Held, held};
+use crate::view::muscle_work::muscles_at_work;
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
 use crate::view::stage::Stage;
@@ -97,9 +100,11 @@ fn write(
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let frame = held.frame.clone();
+    let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), from_ref(&held.frame), |_| true)?;
     let page = report_of_pose(scenario, (pose, kept_balance), (text, answer), held)?;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
-    let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], (&scenario.model, &stage), title, &[frame], wooden)?;
+    let shown = (from_ref(&frame), muscles.as_ref());
+    let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], (&scenario.model, &stage), title, shown, wooden)?;
     let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
     let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
     let figures = figures.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));

@@ -238,7 +238,7 @@ impl Files {
             ("report.html", report_of_run((scenario, things), (recording, muscles), summary, answer)?.into_bytes()),
             ("decisions.csv", decisions_csv(&scenario.model, &summary.reliefs).into_bytes()),
         ];
-        contents.extend(animation::bodies((scenario, things), recording, wooden)?);
+        contents.extend(animation::bodies((scenario, things), (recording, muscles), wooden)?);
         if !scenario.supports.is_empty() {
             contents.push(("ground_reaction.mot", tables::ground_reaction(scenario, recording)?.into_bytes()));
         }

@@ -2,14 +2,18 @@
 
 use contrapposto::joint_torques::{JointMuscles, MissingTorque, MuscleWork};
 use contrapposto::model::{Model, Side};
-use contrapposto::muscle::DrawnPoint;
+use contrapposto::muscle::{DrawnPoint, Muscle, Musculature};
 use contrapposto::posture::Posture;
 use contrapposto::simulation::{MuscleOutcome, MuscleSummary};
+use contrapposto_formats::animation::Tube;
 use contrapposto_formats::{
     LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText,
 };
 
+use contrapposto_plot::load_color;
+
 use super::frame::Frame;
+use super::scene::muscle_lines::radius;
 use super::text::plain_table;
 use super::words::{group, moment_in_words, percent, plain};
 use crate::fail::Fail;
@@ -20,6 +24,8 @@ const MOST_MUSCLES: usize = 5;
 const ALIKE: f64 = 1e-6;
 /// Activations below this are said as none.
 const AT_REST: f64 = 0.005;
+/// Colour of a muscle at rest, as on the page.
+const RESTING_COLOR: [u8; 3] = [0xb9, 0x92, 0x8c];
 
 /// Muscles that give joints their strength, in some moments.
 pub(crate) struct MusclesAtWork<'a> {
@@ -96,7 +102,7 @@ impl<'a> MusclesAtWork<'a> {
     }
 
     /// The muscles.
-    pub(crate) fn musculature(&self) -> &contrapposto::muscle::Musculature {
+    pub(crate) fn musculature(&self) -> &Musculature {
         self.work.muscles().musculature()
     }
 
@@ -108,6 +114,19 @@ impl<'a> MusclesAtWork<'a> {
     /// Index of the coordinate of that group.
     pub(crate) fn joint(&self, muscle: usize) -> Option<usize> {
         self.work.works_for()[muscle].map(|(coordinate, _)| coordinate)
+    }
+
+    /// The muscles as they lie in the first moment, coloured by their greatest activation.
+    pub(crate) fn tubes(&self) -> Vec<Tube> {
+        let Some(first) = self.moments.first() else { return vec![] };
+        let all = self.musculature().muscles.iter().zip(&first.lines).zip(self.all_peaks());
+        let tube = |((muscle, line), peak): ((&Muscle, &Vec<DrawnPoint>), Peak<'_>)| {
+            let point = |point: &DrawnPoint| (point.segment, point.place.into());
+            let branches = line.chunk_by(|_, next| !next.begins).map(|branch| branch.iter().map(point).collect());
+            let color = if peak.activation < AT_REST { RESTING_COLOR } else { load_color(peak.activation) };
+            Tube { lines: branches.collect(), radius: radius(muscle.spec().max_isometric_force), color }
+        };
+        all.map(tube).collect()
     }
 
     fn all_peaks(&self) -> impl Iterator<Item = Peak<'_>> {

@@ -7,7 +7,11 @@ use serde_json::{Value, json};
 use super::buffer::{Buffer, packed};
 use super::course::{Course, animation, courses};
 use super::scenery::{self, Scenery};
+use super::tubes::{Tube, tube_mesh};
 use super::{AnimationError, Clip, Solid, hull};
+
+/// Opacity of solids about tubes.
+const GLASS: f64 = 0.25;
 
 /// Writes a motion as `.glb`.
 ///
@@ -22,9 +26,20 @@ use super::{AnimationError, Clip, Solid, hull};
 /// # Errors
 /// [`AnimationError`] says which time or posture does not fit.
 pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationError> {
+    glb_with_tubes(clip, solids, &[])
+}
+
+/// Writes a motion as [`glb`] does, with tubes along lines that segments carry, such as muscles: one mesh, which a skin fixes to the nodes of
+/// the segments, beside the body's node. The solids about them are transparent.
+///
+/// # Errors
+/// As [`glb`].
+pub fn glb_with_tubes(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: &[Tube]) -> Result<Vec<u8>, AnimationError> {
     let segments = clip.model.segments();
     let count = segments.len() + scenery::count(clip);
+    let mut first: Option<Vec<Placement>> = None;
     let (times, courses) = courses(clip, count, |index, frames| {
+        first.get_or_insert_with(|| frames.to_vec());
         let in_parent = |(segment, frame): (&contrapposto::model::Segment, &Placement)| {
             segment.parent.map_or_else(|| *frame, |parent| frames[parent].inv_mul(frame))
         };
@@ -34,35 +49,65 @@ pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationE
     let (courses, around) = courses.split_at(segments.len());
     let mut buffer = Buffer::default();
     let meshes = meshes(clip, solids, &mut buffer);
+    let has_body = meshes.iter().any(Option::is_some);
     let mut nodes = nodes(clip, courses, &meshes);
     let mut meshes: Vec<Value> = meshes.into_iter().flatten().collect();
     let mut channels: Vec<_> = courses.iter().enumerate().map(|(s, course)| (s + 1, course.moving())).collect();
-    let around = Scenery::new(clip, around, [nodes.len(), meshes.len(), 1], &mut buffer);
+    let tubes = first.filter(|_| !tubes.is_empty()).and_then(|frames| {
+        let own = |(frame, segment): (&Placement, &contrapposto::model::Segment)| {
+            frame * Placement::from_parts(segment.in_segment.translation, UnitQuaternion::identity()).inverse()
+        };
+        let own: Vec<Placement> = frames.iter().zip(segments).map(own).collect();
+        tube_mesh(tubes, (&frames, &own), &clip.drawn(), usize::from(has_body), &mut buffer)
+    });
+    let mut materials = vec![];
+    if has_body {
+        materials.push(material("body", [0.5, 0.5, 0.52, if tubes.is_some() { GLASS } else { 1.0 }]));
+    }
+    if tubes.is_some() {
+        materials.push(material("muscles", [1.0; 4]));
+    }
+    let around = Scenery::new(clip, around, [nodes.len(), meshes.len(), materials.len()], &mut buffer);
     let in_ground: Vec<usize> = (nodes.len()..nodes.len() + around.nodes.len()).collect();
-    if let Some(children) = nodes[0]["children"].as_array_mut() {
-        children.extend(in_ground.into_iter().map(Value::from));
+    if !in_ground.is_empty() {
+        let known = nodes[0]["children"].as_array().cloned().unwrap_or_default();
+        nodes[0]["children"] = known.into_iter().chain(in_ground.into_iter().map(Value::from)).collect();
     }
     nodes.extend(around.nodes);
     meshes.extend(around.meshes);
     channels.extend(around.channels);
+    materials.extend(around.materials);
     let animation = animation(clip, &channels, &times, &mut buffer);
     let mut file = json!({
         "asset": { "version": "2.0", "generator": concat!("contrapposto ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": nodes,
     });
+    if let Some(tubes) = tubes {
+        file["scenes"] = json!([{ "nodes": [0, nodes.len()] }]);
+        nodes.push(json!({ "name": "muscles", "mesh": meshes.len(), "skin": 0 }));
+        file["skins"] = json!([tubes.skin]);
+        meshes.push(tubes.mesh);
+    }
     if !meshes.is_empty() {
-        let color = [0.5, 0.5, 0.52, 1.0];
-        let look = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.7 });
-        let body = json!({ "name": "body", "pbrMetallicRoughness": look });
-        file["materials"] = std::iter::once(body).chain(around.materials).collect();
+        file["materials"] = materials.into();
         file["meshes"] = meshes.into();
     }
+    file["nodes"] = nodes.into();
     if let Some(animation) = animation {
         file["animations"] = json!([animation]);
     }
     Ok(packed(file, buffer))
+}
+
+/// A look without metal; one that is not opaque is drawn as glass.
+fn material(name: &str, color: [f64; 4]) -> Value {
+    let look = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.7 });
+    let mut material = json!({ "name": name, "pbrMetallicRoughness": look });
+    if color[3] < 1.0 {
+        material["alphaMode"] = json!("BLEND");
+    }
+    material
 }
 
 /// Of each segment its mesh, if it has solids.

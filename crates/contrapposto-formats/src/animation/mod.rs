@@ -16,15 +16,17 @@ mod skinned;
 mod solid;
 mod thickness;
 mod track;
+mod tubes;
 
 pub use bvh::bvh;
 pub(crate) use euler::zyx;
-pub use glb::glb;
+pub use glb::{glb, glb_with_tubes};
 pub use hull::Solid;
 pub use scenery::Arrow;
 pub use skin::{Bone, Skeleton, Skin};
 pub use skinned::skinned_glb;
 pub use solid::{joined_by, solids};
+pub use tubes::Tube;
 
 use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Placement};

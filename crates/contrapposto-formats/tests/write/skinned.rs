@@ -40,7 +40,7 @@ fn bytes(file: &Glb, accessor: &Value) -> Vec<[u8; 4]> {
 }
 
 /// Everything of the file is within its bounds, and is as wide as the file says.
-fn check(file: &Glb) {
+pub(super) fn check(file: &Glb) {
     let size = |kind: u64| match kind {
         5121 => 1,
         5123 => 2,
@@ -62,9 +62,9 @@ fn check(file: &Glb) {
     }
 }
 
-/// Vertices of the file, moved by its skeleton as glTF says.
-fn moved(file: &Glb, frames: &BTreeMap<String, Matrix4<f64>>) -> Vec<Vector3<f64>> {
-    let attributes = &file.json["meshes"][0]["primitives"][0]["attributes"];
+/// Vertices of a mesh of the file, moved by its skeleton as glTF says.
+pub(super) fn moved(file: &Glb, mesh: usize, frames: &BTreeMap<String, Matrix4<f64>>) -> Vec<Vector3<f64>> {
+    let attributes = &file.json["meshes"][mesh]["primitives"][0]["attributes"];
     let (bones, weights) = (bytes(file, &attributes["JOINTS_0"]), bytes(file, &attributes["WEIGHTS_0"]));
     let skin = &file.json["skins"][0];
     let accessor = &file.json["accessors"][index(&skin["inverseBindMatrices"])];
@@ -122,7 +122,7 @@ fn bones_and_skin_of_the_file_are_where_kinematics_is() {
             }
             let places = skin.skeleton.place_in(&model, posture).unwrap();
             let wanted: Vec<Vector3<f64>> = skin.moved(&places).into_iter().map(drawn).collect();
-            worst[1] = worst[1].max(farthest(&moved(&file, &frames), &wanted));
+            worst[1] = worst[1].max(farthest(&moved(&file, 0, &frames), &wanted));
         }
         println!("{} m: bones {:.1e} m, skin {:.1e} m", size.stature, worst[0], worst[1]);
         assert!(worst[0] < NEAR && worst[1] < 10.0 * ROUNDING, "{worst:?}");
@@ -140,7 +140,7 @@ fn the_t_pose_leaves_the_mesh_as_it_is_and_needs_no_animation() {
     let frames = file.frames(0.0);
     let positions = file.floats(&file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"], 3);
     let positions: Vec<Vector3<f64>> = positions.iter().map(|p| Vector3::new(p[0], p[1], p[2])).collect();
-    assert!(farthest(&moved(&file, &frames), &positions) < ROUNDING);
+    assert!(farthest(&moved(&file, 0, &frames), &positions) < ROUNDING);
     let at = |name: &str| place(&frames[name]);
     let (left, right) = (at("leftHand") - at("leftUpperArm"), at("rightHand") - at("rightUpperArm"));
     assert!(left.x > 0.4 && left.yz().norm() < 1e-6, "the left arm is out to the left: {left}");

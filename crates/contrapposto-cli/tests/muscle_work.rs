@@ -1,0 +1,109 @@
+//! Single muscles in the answers of `assess` and `simulate`, in their pages and glTF files, through the real program.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
+mod support;
+
+use serde_json::Value;
+use support::{run, write};
+
+/// A body on a hinge about z, pulled forward by two muscles 0.04 m in front of the hinge, and backward by one behind it.
+fn model() -> String {
+    let muscle = |(name, x, force): (&str, f64, f64)| {
+        format!(
+            "<Thelen2003Muscle name=\"{name}\"><GeometryPath><PathPointSet><objects>
+             <PathPoint name=\"p\"><socket_parent_frame>/ground</socket_parent_frame><location>{x} 0.2 0</location></PathPoint>
+             <PathPoint name=\"o\"><socket_parent_frame>/bodyset/b</socket_parent_frame><location>{x} -0.3 0</location></PathPoint>
+             </objects></PathPointSet></GeometryPath><max_isometric_force>{force}</max_isometric_force>
+             <optimal_fiber_length>0.1</optimal_fiber_length><tendon_slack_length>0.4</tendon_slack_length></Thelen2003Muscle>"
+        )
+    };
+    let muscles: String =
+        [("weak", 0.04, 200.0), ("strong", 0.04, 600.0), ("behind", -0.04, 500.0)].map(muscle).concat();
+    format!(
+        "<OpenSimDocument Version=\"40500\"><Model name=\"m\">
+         <BodySet><objects><Body name=\"b\"><mass>1</mass></Body></objects></BodySet>
+         <JointSet><objects><PinJoint name=\"j\"><socket_parent_frame>/ground</socket_parent_frame>
+           <socket_child_frame>/bodyset/b</socket_child_frame>
+           <coordinates><Coordinate name=\"q\"/></coordinates></PinJoint></objects></JointSet>
+         <ForceSet><objects>{muscles}</objects></ForceSet></Model></OpenSimDocument>"
+    )
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
+}
+
+#[test]
+fn assess_names_the_muscles_that_share_a_torque_in_proportion_to_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(folder.path(), "m.osim", &model());
+    let motion = write(folder.path(), "still.csv", "time,q_deg\n0,0\n20,0\n");
+    let out = folder.path().join("out");
+    let force = "b -20,0,0 at 0,-0.3,0 world";
+    let arguments = ["assess", &file, &motion, "--force", force, "--fixed-root"];
+    let words = run(&arguments);
+    let found = |text: &str| -> Value { serde_json::from_str(text).unwrap_or_else(|why| panic!("{why}: {text}")) };
+    let json = run(&[&arguments[..], &["--json"]].concat());
+    let all = found(&json.stdout);
+    let [weak, strong, behind] = ["weak", "strong", "behind"].map(|name| &all["muscles"][name]);
+    // Least squares: activations are in proportion to the torques of the muscles, here to their forces.
+    let ratio = number(&strong["peak_activation"]) / number(&weak["peak_activation"]);
+    assert!((ratio - 3.0).abs() < 1e-6, "{ratio}");
+    assert_eq!((number(&behind["peak_activation"]), number(&strong["at_s"])), (0.0, 0.0));
+    assert_eq!(strong["works_for"]["coordinate"], "q");
+    assert_ne!(strong["works_for"]["side"], behind["works_for"]["side"]);
+    // Tensions beyond those of the one behind, which only its passive fibres hold, balance the force about the hinge: 0.3 m of 20 N.
+    let tension = |of: &Value| number(&of["force_n"]);
+    let torque = 0.04 * (tension(weak) + tension(strong) - tension(behind));
+    assert!((torque - 6.0).abs() < 1e-3, "{torque}");
+    assert_eq!(all["muscles_lack"], Value::Null);
+    let table = words.stdout.split("hardest-worked muscle").nth(1).unwrap_or_else(|| panic!("{}", words.stdout));
+    let rows: Vec<&str> = table.lines().skip(1).filter(|line| !line.trim().is_empty()).collect();
+    assert!(rows.len() == 2 && rows[0].contains("strong") && rows[1].contains("weak"), "{table}");
+    // The same numbers beside files, and the muscles in page and glTF.
+    let written = run(&[&arguments[..], &["--json", "--out", &out.display().to_string()]].concat());
+    let same = found(&written.stdout);
+    assert_eq!(same["muscles"], all["muscles"]);
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("\"works_for\"") && page.contains("\"name\":\"behind\""));
+    let gltf = std::fs::read(out.join("motion.glb")).unwrap();
+    assert!(gltf.windows(9).any(|text| text == b"\"muscles\""), "no muscles in motion.glb");
+    // Without muscles nothing is said of them.
+    let without = run(&[&arguments[..], &["--json", "--muscles", "off"]].concat());
+    assert!(!without.stdout.contains("\"muscles\""), "{}", without.stdout);
+}
+
+#[test]
+fn assess_says_what_the_muscles_together_cannot_give() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(folder.path(), "m.osim", &model());
+    let motion = write(folder.path(), "still.csv", "time,q_deg\n0,0\n20,0\n");
+    let force = "b -400,0,0 at 0,-0.3,0 world";
+    let arguments = ["assess", &file, &motion, "--force", force, "--fixed-root"];
+    let json: Value = serde_json::from_str(&run(&[&arguments[..], &["--json"]].concat()).stdout).unwrap();
+    let lack = &json["muscles_lack"];
+    assert!(lack["coordinate"] == "q" && number(&lack["torque_nm"]) > 80.0, "{lack}");
+    let text = run(&arguments).stdout;
+    assert!(text.contains("The muscles together cannot give all torques: "), "{text}");
+}
+
+#[test]
+fn simulate_says_the_same_of_muscles_with_and_without_files() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "m.osim", &model());
+    let scenario = "format = 1\n[model]\nfile = \"m.osim\"\n[run]\nduration_s = 2.0\nstep_s = 0.1\n\
+                    [[load]]\nsegment = \"b\"\nat_m = [0.0, -0.3, 0.0]\nforce_n = [-20.0, 0.0, 0.0]\n[strategy]\nkind = \"active\"\n";
+    let file = write(folder.path(), "run.toml", scenario);
+    let found = |arguments: &[&str]| -> Value {
+        let result = run(&[&["simulate", &file, "--json"], arguments].concat());
+        serde_json::from_str(&result.stdout).unwrap_or_else(|why| panic!("{why}: {}", result.stderr))
+    };
+    let bare = found(&["--no-report"]);
+    let out = folder.path().join("out").display().to_string();
+    let written = found(&["--out", &out]);
+    assert!(number(&bare["muscles"]["strong"]["peak_activation"]) > 0.05, "{}", bare["muscles"]);
+    assert_eq!(bare["muscles"], written["muscles"]);
+    let words = run(&["simulate", &file, "--no-report"]).stdout;
+    assert!(words.contains("hardest-worked muscle") && words.contains("strong"), "{words}");
+}
