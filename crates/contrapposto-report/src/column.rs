@@ -4,6 +4,10 @@ use serde_json::{Value, json};
 
 /// Largest multiple: beyond it a browser loses digits.
 const LARGEST: f64 = 1e12;
+/// Steps to which lengths, turns (parts of a quaternion) and shares are rounded: the smallest visible differences.
+pub(crate) const METRES: f64 = 1e-4;
+pub(crate) const TURN: f64 = 2e-4;
+pub(crate) const SHARE: f64 = 1e-3;
 
 /// `count` numbers, rounded to multiples of `step`; trailing zero differences are left out.
 pub(crate) fn column(values: impl IntoIterator<Item = f64>, count: usize, step: f64) -> Value {

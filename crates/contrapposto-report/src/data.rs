@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::column::{column, columns};
+use crate::column::{METRES, SHARE, TURN, column, columns};
 use crate::muscles::muscles;
 use crate::skin::mesh;
 use crate::{
@@ -12,11 +12,8 @@ use crate::{
 
 /// Steps to which numbers are rounded: the smallest visible differences.
 const SECONDS: f64 = 1e-3;
-const METRES: f64 = 1e-4;
-const TURN: f64 = 2e-4;
 const DEGREES: f64 = 0.02;
 const TORQUE: f64 = 0.01;
-const SHARE: f64 = 1e-3;
 /// Of loads: small enough that a share rounds to the same percentage as before.
 const LOAD: f64 = 1e-5;
 const NEWTONS: f64 = 0.5;

@@ -66,13 +66,13 @@ pub(super) fn tube_mesh(
             parts.push((vec![], vec![]));
         }
         let Some((corners, triangles)) = parts.last_mut() else { continue };
-        for k in 0..places.len() {
+        for (k, (segment, _)) in line.iter().enumerate() {
             if k > 0 {
                 triangles.extend(between(corners.len() - SIDES));
             }
             let ring = ring(&places, k, tube.radius);
             let color = [linear(tube.color[0]), linear(tube.color[1]), linear(tube.color[2]), 255];
-            corners.extend(ring.map(|corner| (corner, color, [joint(&line[k].0), 0, 0, 0])));
+            corners.extend(ring.map(|corner| (corner, color, [joint(segment), 0, 0, 0])));
         }
     }
     parts.retain(|(_, triangles)| !triangles.is_empty());
