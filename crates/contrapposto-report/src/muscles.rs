@@ -2,8 +2,12 @@
 
 use serde_json::{Value, json};
 
-use crate::column::{METRES, NEWTONS, SHARE, TORQUE, TURN, column, columns};
+use crate::column::{METRES, SHARE, TURN, column, columns};
 use crate::{Carrier, Muscle, Muscles, PathPoint, Report};
+
+/// Steps to which tensions (N) and missing torques (N m) are rounded.
+const TENSION: f64 = 1.0;
+const LACK: f64 = 0.1;
 
 /// A carrier that is a drawn segment, too, names that part instead of its places.
 pub(crate) fn muscles(muscles: &Muscles, report: &Report, n: usize) -> Value {
@@ -14,7 +18,7 @@ pub(crate) fn muscles(muscles: &Muscles, report: &Report, n: usize) -> Value {
     };
     let known = |lack: &Option<(Option<usize>, f64)>| lack.unwrap_or_default();
     let lacks = muscles.lacks.iter().any(Option::is_some).then(|| {
-        let torque = column(muscles.lacks.iter().map(|lack| known(lack).1), n, TORQUE);
+        let torque = column(muscles.lacks.iter().map(|lack| known(lack).1), n, LACK);
         // One more than the index; 0 where the joint is not shown.
         let joint = |lack| known(lack).0.map_or(0.0, |joint| joint as f64 + 1.0);
         json!({ "torque": torque, "joint": column(muscles.lacks.iter().map(joint), n, 1.0) })
@@ -41,7 +45,7 @@ fn muscle(muscle: &Muscle, carriers: usize, n: usize) -> Value {
         "joint": muscle.joint,
         "radius": if muscle.radius.is_finite() { (muscle.radius * 1e5).round() / 1e5 } else { 0.0 },
         "activation": column(muscle.activation.iter().copied(), n, SHARE),
-        "tension": column(muscle.tension.iter().copied(), n, NEWTONS),
+        "tension": column(muscle.tension.iter().copied(), n, TENSION),
         "points": points.iter().map(point).collect::<Value>(),
         "orders": muscle.orders.iter().map(order).collect::<Vec<_>>(),
         "order": column(muscle.order.iter().map(|order| *order as f64), n, 1.0),

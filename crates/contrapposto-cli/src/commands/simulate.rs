@@ -5,6 +5,7 @@ mod snapshot;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use contrapposto::contact::Missing;
 use contrapposto::simulation::{Fall, Run, Scenario, ScenarioError, StopReason, Summary};
 use contrapposto::suggestions::Advice;
 use contrapposto::verdict::Verdict;
@@ -118,19 +119,7 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
             Ok(run) => (run, Recording::new(scenario)),
             Err(ScenarioError::CannotStand(missing) | ScenarioError::Falls(Fall { missing, .. })) => {
                 progress.finish();
-                let body = (&scenario.model, scenario.loads.as_slice());
-                let advice = |verdict: &Verdict| {
-                    let advice = advice_without_posture(verdict, scenario, suggest, goes_on);
-                    Advice { largest: largest_load(scenario, (largest, 0), suggest, goes_on), ..advice }
-                };
-                return without_posture(
-                    "summary.json",
-                    &scenario.title,
-                    body,
-                    (missing, advice),
-                    folder.as_ref(),
-                    json,
-                );
+                return not_standing(scenario, missing, folder.as_ref(), how);
             }
             Err(error) => return Err(failed(error)),
         },
@@ -163,6 +152,18 @@ fn carry_out(run: &RunScenario, out: Option<&Path>, how: How) -> Result<(), Fail
         true => Err(Fail::Job(interrupted(&summary, scenario.run.duration, out))),
         false => answered(&answer.verdict),
     }
+}
+
+/// Answers a scenario whose body cannot stand at the start.
+fn not_standing(scenario: &Scenario, missing: Missing, folder: Option<&ResultSet>, how: How) -> Result<(), Fail> {
+    let How { json, suggest, largest_load: largest, .. } = how;
+    let goes_on = || !interruption::is_requested();
+    let body = (&scenario.model, scenario.loads.as_slice());
+    let advice = |verdict: &Verdict| {
+        let advice = advice_without_posture(verdict, scenario, suggest, goes_on);
+        Advice { largest: largest_load(scenario, (largest, 0), suggest, goes_on), ..advice }
+    };
+    without_posture("summary.json", &scenario.title, body, (missing, advice), folder, json)
 }
 
 /// Computes and records all samples up to the end of a run, or until it is interrupted. A run without files is recorded for its muscles only.

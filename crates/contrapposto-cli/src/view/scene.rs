@@ -1,7 +1,7 @@
 //! The numbers that all pages share: the body, its joints and its supports in every moment.
 
 pub(crate) mod hazard;
-pub(crate) mod muscle_lines;
+mod muscle_lines;
 mod skin;
 
 use contrapposto::kinematics::Kinematics;
@@ -9,7 +9,7 @@ use contrapposto::model::{CoordinateKind, Model, Side};
 use contrapposto::posture::Posture;
 use contrapposto::statics::Load;
 use contrapposto_formats::animation::{joined_by, solids};
-use contrapposto_report::{Balance, Group, Joint, Moments, Push, Report, Segment, Thing};
+use contrapposto_report::{Balance, Group, Joint, Moments, Muscles, Push, Report, Segment, Thing};
 use nalgebra::Vector3;
 
 use self::hazard::hazard;
@@ -81,7 +81,7 @@ impl<'a> Scene<'a> {
             surfaces: surroundings.surfaces,
             things: self.things(&turn)?,
             loads: self.loads(&turn)?,
-            muscles: self.muscles.map(|muscles| muscle_lines(self, muscles, &shown, &turn)).transpose()?,
+            muscles: self.muscles.map(|muscles| self.muscles(muscles, &shown, &turn)).transpose()?,
             center_of_mass: if centers.len() == self.frames.len() { centers } else { vec![] },
             ..Report::default()
         })
@@ -117,6 +117,11 @@ impl<'a> Scene<'a> {
         let mut kinematics = Kinematics::new(self.model);
         let updated = kinematics.update(self.model, &Posture::new(frame.posture.clone()));
         updated.map_err(|error| Fail::job("report", error)).map(|()| kinematics)
+    }
+
+    fn muscles(&self, muscles: &MusclesAtWork<'_>, shown: &[usize], turn: &Turn) -> Result<Muscles, Fail> {
+        let kinematics = self.frames.iter().map(|frame| self.kinematics(frame)).collect::<Result<Vec<_>, _>>()?;
+        Ok(muscle_lines((self.model, &kinematics), muscles, shown, turn))
     }
 
     /// Things in every frame; those in ground once.

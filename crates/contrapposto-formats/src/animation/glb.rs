@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::buffer::{Buffer, packed};
 use super::course::{Course, animation, courses};
 use super::scenery::{self, Scenery};
-use super::tubes::{Tube, tube_mesh};
+use super::tubes::{Tube, TubeMesh, tube_mesh};
 use super::{AnimationError, Clip, Solid, hull};
 
 /// Opacity of solids about tubes.
@@ -53,13 +53,8 @@ pub fn glb_with_tubes(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: &[Tube]) ->
     let mut nodes = nodes(clip, courses, &meshes);
     let mut meshes: Vec<Value> = meshes.into_iter().flatten().collect();
     let mut channels: Vec<_> = courses.iter().enumerate().map(|(s, course)| (s + 1, course.moving())).collect();
-    let tubes = first.filter(|_| !tubes.is_empty()).and_then(|frames| {
-        let own = |(frame, segment): (&Placement, &contrapposto::model::Segment)| {
-            frame * Placement::from_parts(segment.in_segment.translation, UnitQuaternion::identity()).inverse()
-        };
-        let own: Vec<Placement> = frames.iter().zip(segments).map(own).collect();
-        tube_mesh(tubes, (&frames, &own), &clip.drawn(), usize::from(has_body), &mut buffer)
-    });
+    let material_of_tubes = usize::from(has_body);
+    let tubes = first.and_then(|frames| tubes_in(clip, &frames, tubes, material_of_tubes, &mut buffer));
     let mut materials = vec![];
     if has_body {
         materials.push(material("body", [0.5, 0.5, 0.52, if tubes.is_some() { GLASS } else { 1.0 }]));
@@ -68,12 +63,7 @@ pub fn glb_with_tubes(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: &[Tube]) ->
         materials.push(material("muscles", [1.0; 4]));
     }
     let around = Scenery::new(clip, around, [nodes.len(), meshes.len(), materials.len()], &mut buffer);
-    let in_ground: Vec<usize> = (nodes.len()..nodes.len() + around.nodes.len()).collect();
-    if !in_ground.is_empty() {
-        let known = nodes[0]["children"].as_array().cloned().unwrap_or_default();
-        nodes[0]["children"] = known.into_iter().chain(in_ground.into_iter().map(Value::from)).collect();
-    }
-    nodes.extend(around.nodes);
+    add_to_ground(&mut nodes, around.nodes);
     meshes.extend(around.meshes);
     channels.extend(around.channels);
     materials.extend(around.materials);
@@ -98,6 +88,31 @@ pub fn glb_with_tubes(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: &[Tube]) ->
         file["animations"] = json!([animation]);
     }
     Ok(packed(file, buffer))
+}
+
+/// Adds nodes below the first one.
+fn add_to_ground(nodes: &mut Vec<Value>, more: Vec<Value>) {
+    let numbers = (nodes.len()..nodes.len() + more.len()).map(Value::from);
+    if !more.is_empty() {
+        let known = nodes[0]["children"].as_array().cloned().unwrap_or_default();
+        nodes[0]["children"] = known.into_iter().chain(numbers).collect();
+    }
+    nodes.extend(more);
+}
+
+/// The mesh of tubes, if there are some, in the posture of these joint frames.
+fn tubes_in(
+    clip: &Clip<'_>,
+    frames: &[Placement],
+    tubes: &[Tube],
+    material: usize,
+    buffer: &mut Buffer,
+) -> Option<TubeMesh> {
+    let own = |(frame, segment): (&Placement, &contrapposto::model::Segment)| {
+        frame * Placement::from_parts(segment.in_segment.translation, UnitQuaternion::identity()).inverse()
+    };
+    let own: Vec<Placement> = frames.iter().zip(clip.model.segments()).map(own).collect();
+    tube_mesh(tubes, (frames, &own), &clip.drawn(), material, buffer)
 }
 
 /// A look without metal; one that is not opaque is drawn as glass.

@@ -39,7 +39,16 @@ fn rings_of_tubes_stay_about_their_points_in_every_posture() {
     let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.0);
     let directions = [-Vector3::z(), Vector3::y(), Vector3::x()].map(|d| turn * d);
     let times = [0.0, 1.0, 2.0];
-    let clip = Clip { model: &model, title: "any", directions, times: &times, postures: &rows, steps: false };
+    let clip = Clip {
+        model: &model,
+        title: "any",
+        directions,
+        times: &times,
+        postures: &rows,
+        steps: false,
+        things: &[],
+        arrows: &[],
+    };
     let solids = vec![vec![vec![[0.0, 0.0, 0.0, 0.05]]]; model.segments().len()];
     let bytes = glb_with_tubes(&clip, &solids, &tubes).unwrap();
     assert_eq!(bytes, glb_with_tubes(&clip, &solids, &tubes).unwrap());

@@ -28,7 +28,7 @@ pub struct DrawnPoint {
 }
 
 impl Path {
-    /// How many points its drawn line has at most: [`DrawnPoint::number`] is less.
+    /// Greatest number of points of its drawn line: [`DrawnPoint::number`] is less.
     pub fn drawn_points(&self) -> usize {
         self.points.len() + ARC_POINTS * self.surfaces()
     }

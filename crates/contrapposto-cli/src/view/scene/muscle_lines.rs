@@ -1,35 +1,22 @@
 //! Turns the muscles of a body into lines of a page: points fixed in segments, and the order in which they follow one another in every frame.
 
 use contrapposto::kinematics::Kinematics;
+use contrapposto::model::Model;
 use contrapposto::muscle::Path;
 use contrapposto_report::{Carrier, Muscle, Muscles, PathPoint};
 use nalgebra::Isometry3;
 
-use super::Scene;
-use crate::fail::Fail;
 use crate::view::axes::Turn;
-use crate::view::muscle_work::MusclesAtWork;
+use crate::view::muscle_work::{MusclesAtWork, radius};
 
-/// Radius of a drawn muscle by the square root of its greatest force, m per root of N: 0.3 of that of fibres of 61 N/cm2 (assumed).
-const RADIUS: f64 = 2.2e-4;
-/// Least and greatest radius, m.
-const RADII: [f64; 2] = [0.0025, 0.009];
-
-/// Radius of a drawn muscle by its greatest force (N), m.
-pub(crate) fn radius(force: f64) -> f64 {
-    (RADIUS * force.sqrt()).clamp(RADII[0], RADII[1])
-}
-
-/// The muscles of a scene. `shown`: the coordinates of the page.
+/// The muscles of a body in postures, whose `kinematics` are those of the moments of `muscles`. `shown`: the coordinates of the page.
 pub(super) fn muscle_lines(
-    scene: &Scene<'_>,
+    (model, kinematics): (&Model, &[Kinematics]),
     muscles: &MusclesAtWork<'_>,
     shown: &[usize],
     turn: &Turn,
-) -> Result<Muscles, Fail> {
+) -> Muscles {
     let musculature = muscles.musculature();
-    let kinematics: Vec<Kinematics> =
-        scene.frames.iter().map(|frame| scene.kinematics(frame)).collect::<Result<_, _>>()?;
     let mut carriers: Vec<Option<usize>> = vec![];
     let mut drawn = vec![];
     for (m, muscle) in musculature.muscles.iter().enumerate() {
@@ -49,7 +36,7 @@ pub(super) fn muscle_lines(
     }
     let places = |carrier: &Option<usize>| {
         let place = |kinematics: &Kinematics| match carrier {
-            Some(segment) => turn.place(&kinematics.placement(scene.model, *segment)),
+            Some(segment) => turn.place(&kinematics.placement(model, *segment)),
             None => turn.place(&Isometry3::identity()),
         };
         Carrier { places: kinematics.iter().map(place).collect() }
@@ -57,11 +44,11 @@ pub(super) fn muscle_lines(
     let lack = |missing: &Option<contrapposto::joint_torques::MissingTorque>| {
         missing.map(|missing| (shown.iter().position(|&i| i == missing.coordinate), missing.torque))
     };
-    Ok(Muscles {
+    Muscles {
         carriers: carriers.iter().map(places).collect(),
         lines: drawn,
         lacks: muscles.moments.iter().map(|moment| lack(&moment.missing)).collect(),
-    })
+    }
 }
 
 /// The points of a muscle, and their orders.
