@@ -1,4 +1,4 @@
-//! Single muscles in the answers of `assess` and `simulate`, in their pages and glTF files, through the real program.
+//! Single muscles in the answers of `assess`, `simulate` and `pose`, in their pages and glTF files, through the real program.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says where")]
 
@@ -105,5 +105,21 @@ fn simulate_says_the_same_of_muscles_with_and_without_files() {
     assert!(number(&bare["muscles"]["strong"]["peak_activation"]) > 0.05, "{}", bare["muscles"]);
     assert_eq!(bare["muscles"], written["muscles"]);
     let words = run(&["simulate", &file, "--no-report"]).stdout;
+    assert!(words.contains("hardest-worked muscle") && words.contains("strong"), "{words}");
+}
+
+#[test]
+fn pose_says_which_muscles_hold_the_posture() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "m.osim", &model());
+    let scenario = "format = 1\n[model]\nfile = \"m.osim\"\n[[load]]\nsegment = \"b\"\nat_m = [0.0, -0.3, 0.0]\n\
+                    force_n = [-20.0, 0.0, 0.0]\n[[task]]\nkind = \"posture\"\n";
+    let file = write(folder.path(), "pose.toml", scenario);
+    let answer = run(&["pose", &file, "--json", "--no-report"]);
+    let json: Value = serde_json::from_str(&answer.stdout).unwrap_or_else(|why| panic!("{why}: {}", answer.stderr));
+    let ratio =
+        number(&json["muscles"]["strong"]["peak_activation"]) / number(&json["muscles"]["weak"]["peak_activation"]);
+    assert!((ratio - 3.0).abs() < 1e-6, "{ratio}");
+    let words = run(&["pose", &file, "--no-report"]).stdout;
     assert!(words.contains("hardest-worked muscle") && words.contains("strong"), "{words}");
 }

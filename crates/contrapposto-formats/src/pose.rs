@@ -9,7 +9,7 @@ use contrapposto::verdict::Verdict;
 use serde::Serialize;
 
 use crate::scenario::PoseScenario;
-use crate::{AdviceText, VerdictText};
+use crate::{AdviceText, MuscleWorkText, VerdictText};
 
 /// The whole file.
 #[derive(Clone, Debug, Serialize)]
@@ -38,6 +38,9 @@ pub struct PoseText {
     pub center_of_mass_m: Option<[f64; 3]>,
     /// The remaining error of every task, in order of priority; a task of two units (placement, posture) has an entry for each.
     pub levels: Vec<PoseLevelText>,
+    /// The muscles of a body whose strength they give.
+    #[serde(flatten)]
+    pub muscle_work: Option<MuscleWorkText>,
     /// Files beside this one.
     pub files: Vec<String>,
 }
@@ -103,6 +106,7 @@ impl PoseText {
             coordinates: names().zip(pose.posture.values().iter().copied()).collect(),
             center_of_mass_m: center.map(Into::into),
             levels,
+            muscle_work: None,
             files,
         }
     }

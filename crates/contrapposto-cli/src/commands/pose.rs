@@ -22,7 +22,7 @@ use crate::scenario_file::ScenarioFile;
 use crate::view::animation::steps;
 use crate::view::answer::{Answer, answered};
 use crate::view::held::{Held, held};
-use crate::view::muscle_work::muscles_at_work;
+use crate::view::muscle_work::{MusclesAtWork, muscles_at_work};
 use crate::view::pose_picture::pose_picture;
 use crate::view::report::pose::{figures_of_pose, report_of_pose};
 use crate::view::stage::Stage;
@@ -55,15 +55,19 @@ pub(crate) fn pose(args: &PoseArgs) -> Result<(), Fail> {
     let trying = spinner(TRYING_CHANGES);
     let answer = answer(&scenario, &pose, &held, args.suggest);
     trying.finish();
+    let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), from_ref(&held.frame), |_| true)?;
     let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), files);
+    let text = PoseText { muscle_work: muscles.as_ref().map(MusclesAtWork::text), ..text };
     let json = json_text("pose.json", &text)?;
     if let Some(folder) = &folder {
+        let held = (held, muscles.as_ref());
         write(&scenario, (&pose, kept_balance), (&text, &json, &answer), &figures, held, (folder, args.wooden))?;
     }
     print(&if args.json {
         json
     } else {
-        let tables = report(&scenario, (&pose, kept_balance), &text, &answer.verdict);
+        let tables = report(&scenario, (&pose, kept_balance), &text, &answer.verdict)
+            + &muscles.map_or_else(String::new, |muscles| muscles.table());
         answer.in_words(&scenario.model, &scenario.title, &tables) + &report_line(folder.as_ref())
     })?;
     exit(&pose, kept_balance, &answer.verdict)
@@ -89,7 +93,7 @@ fn write(
     (pose, kept_balance): (&SolvedPosture, bool),
     (text, json, answer): (&PoseText, &str, &Answer),
     figures: &[(String, Vec<u8>)],
-    held: Held,
+    (held, muscles): (Held, Option<&MusclesAtWork<'_>>),
     (folder, wooden): (&ResultSet, bool),
 ) -> Result<(), Fail> {
     let columns: Vec<_> = scenario.model.coordinates().iter().map(|c| (c.name.as_str(), c.kind)).collect();
@@ -100,10 +104,9 @@ fn write(
     let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let frame = held.frame.clone();
-    let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), from_ref(&held.frame), |_| true)?;
     let page = report_of_pose(scenario, (pose, kept_balance), (text, answer), held)?;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
-    let shown = (from_ref(&frame), muscles.as_ref());
+    let shown = (from_ref(&frame), muscles);
     let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], (&scenario.model, &stage), title, shown, wooden)?;
     let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
     let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);

@@ -1,5 +1,7 @@
 //! Solves one posture from tasks in order of priority.
 
+use std::slice::from_ref;
+
 use contrapposto::posture_solver::SolvedPosture;
 use contrapposto_formats::{PoseScenario, PoseText};
 
@@ -12,6 +14,7 @@ use crate::library::frames::Frames;
 use crate::output::json_text;
 use crate::view::answer::Answer;
 use crate::view::held::held;
+use crate::view::muscle_work::{MusclesAtWork, muscles_at_work};
 use crate::view::report::pose::report_of_pose;
 
 /// A solved posture.
@@ -36,7 +39,9 @@ impl Posed {
             let mut scenario = read(file)?;
             let crate::commands::pose::Posed { pose, held, kept_balance, .. } = solve(&name, &mut scenario)?;
             let answer = answer(&scenario, &pose, &held, SuggestArgs::default());
+            let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), from_ref(&held.frame), |_| true)?;
             let text = PoseText::new(&scenario, &pose, (&answer.verdict, &answer.advice), vec![]);
+            let text = PoseText { muscle_work: muscles.as_ref().map(MusclesAtWork::text), ..text };
             let json = json_text("pose.json", &text)?;
             let frames = Frames::of(&scenario.model, &[held.frame]);
             Ok(Self { scenario, pose, kept_balance, answer, json, frames })
