@@ -25,5 +25,14 @@ pub(crate) fn text(model: &Model, title: &str, motion: &Motion<'_>) -> Result<St
 
 fn clip<'a>(model: &'a Model, title: &'a str, (times, postures): &'a Motion<'a>) -> Clip<'a> {
     let [right, ahead, up] = directions(model);
-    Clip { model, title, directions: [-right, up, ahead], times, postures, steps: times.len() == 1, things: &[], arrows: &[] }
+    Clip {
+        model,
+        title,
+        directions: [-right, up, ahead],
+        times,
+        postures,
+        steps: times.len() == 1,
+        things: &[],
+        arrows: &[],
+    }
 }
