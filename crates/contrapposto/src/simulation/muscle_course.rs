@@ -21,6 +21,8 @@ use crate::model::data::library;
 use crate::model::{Model, Side};
 use crate::muscle::{CoupledStrength, MuscleFatigue, SharedTorques, TorqueLimit, hold_on};
 
+/// Muscles tire one by one but in the module for the web: its page has no muscles, and would load a fortieth more for them.
+const MUSCLES_TIRE: bool = cfg!(not(target_family = "wasm"));
 /// Length of a piece of work, s, where time steps are shorter (assumed: muscles tire by at most 1 % of their force in that time).
 const MUSCLE_PIECE: f64 = 0.5;
 /// Longest time for which the posture of the end is held on, s: a day.
@@ -69,6 +71,9 @@ struct Person {
 impl MuscleCourse {
     /// Of muscles in time steps of `step`, s.
     pub(super) fn new(model: &Model, muscles: &JointMuscles, step: f64) -> Result<Self, MuscleShareError> {
+        if !MUSCLES_TIRE {
+            return Err(MuscleShareError::Web);
+        }
         let share = MuscleShare::new(model, muscles, |_| 0.0)?;
         let coordinate = |&rate: &usize| model.rates()[rate].coordinate.ok_or(MuscleShareError::NoMuscles);
         let coordinates = share.rates.iter().map(coordinate).collect::<Result<_, _>>()?;
@@ -107,6 +112,9 @@ impl MuscleCourse {
         active: &[f64],
         levels: &[[f64; 2]],
     ) -> Result<MuscleState, ScenarioError> {
+        if !MUSCLES_TIRE {
+            return Ok(MuscleState::default());
+        }
         self.ask(muscles, active);
         let works_for = muscles.works_for_now(model);
         let of_group = |of: Option<(usize, Side)>| of.map_or(0.0, |(i, side)| levels[i][side.index()]);
@@ -139,7 +147,7 @@ impl MuscleCourse {
         active: &[f64],
         state: &mut MuscleState,
     ) -> Result<(), ScenarioError> {
-        if !(step + 1).is_multiple_of(self.every) {
+        if !MUSCLES_TIRE || !(step + 1).is_multiple_of(self.every) {
             return Ok(());
         }
         self.ask(muscles, active);
@@ -205,8 +213,8 @@ impl MuscleCourse {
         let failure = |person: usize| {
             let Person { forces, fatigue, .. } = &self.people[person];
             let asked = SharedTorques { forces, ..self.share.asked(muscles) };
-            if let Some(failed) = state.failed[person] {
-                return Some(failed);
+            if state.failed[person].is_some() || !MUSCLES_TIRE {
+                return state.failed[person];
             }
             let mut fatigue = fatigue.clone();
             let held = hold_on(&mut fatigue, &asked, LONGEST_HOLD, |_, _| {}).ok()?;
