@@ -26,7 +26,7 @@ const GLASS: f64 = 0.25;
 /// # Errors
 /// [`AnimationError`] says which time or posture does not fit.
 pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationError> {
-    glb_with_tubes(clip, solids, &[])
+    written(clip, solids, None)
 }
 
 /// Writes a motion as [`glb`] does, with tubes along lines that segments carry, such as muscles: one mesh, which a skin fixes to the nodes of
@@ -35,6 +35,16 @@ pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationE
 /// # Errors
 /// As [`glb`].
 pub fn glb_with_tubes(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: &[Tube]) -> Result<Vec<u8>, AnimationError> {
+    let mesh =
+        |frames: &[Placement], material: usize, buffer: &mut Buffer| tubes_in(clip, frames, tubes, material, buffer);
+    written(clip, solids, Some(&mesh))
+}
+
+/// Makes the mesh of tubes from joint frames and the index of its look.
+type MeshOfTubes<'a> = &'a dyn Fn(&[Placement], usize, &mut Buffer) -> Option<TubeMesh>;
+
+/// The file. The function that makes tubes is given, so that a program without them is the smaller.
+fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>>) -> Result<Vec<u8>, AnimationError> {
     let segments = clip.model.segments();
     let count = segments.len() + scenery::count(clip);
     let mut first: Option<Vec<Placement>> = None;
@@ -54,7 +64,7 @@ pub fn glb_with_tubes(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: &[Tube]) ->
     let mut meshes: Vec<Value> = meshes.into_iter().flatten().collect();
     let mut channels: Vec<_> = courses.iter().enumerate().map(|(s, course)| (s + 1, course.moving())).collect();
     let material_of_tubes = usize::from(has_body);
-    let tubes = first.and_then(|frames| tubes_in(clip, &frames, tubes, material_of_tubes, &mut buffer));
+    let tubes = tubes.zip(first).and_then(|(mesh, frames)| mesh(&frames, material_of_tubes, &mut buffer));
     let mut materials = vec![];
     if has_body {
         materials.push(material("body", [0.5, 0.5, 0.52, if tubes.is_some() { GLASS } else { 1.0 }]));

@@ -37,13 +37,19 @@ const ARROW_LENGTH: f64 = 0.3;
 /// Points and lengths of arrows are rounded to this, m, so that what hardly changes needs no keys.
 const ARROW_GRAIN: f64 = 2e-3;
 
+/// Things and arrows are written but in the module for the web, whose page has none to write and would load more for them.
+const WRITTEN: bool = cfg!(not(target_family = "wasm"));
+
 /// Number of nodes of the scenery.
 pub(super) fn count(clip: &Clip<'_>) -> usize {
-    clip.things.len() + clip.arrows.len()
+    if WRITTEN { clip.things.len() + clip.arrows.len() } else { 0 }
 }
 
 /// Placement and size of every node of the scenery in posture number `index`, ground.
 pub(super) fn places(clip: &Clip<'_>, index: usize, frames: &[Placement]) -> Vec<(Placement, f64)> {
+    if !WRITTEN {
+        return vec![];
+    }
     let segment = |s: usize| carrier(clip.model, s, &frames[s]);
     let things = clip.things.iter().map(|thing| (thing.place_by(segment), 1.0));
     let rounded = |v: Vector3<f64>| v.map(|x| (x / ARROW_GRAIN).round() * ARROW_GRAIN);
@@ -75,7 +81,7 @@ impl Scenery {
     pub(super) fn new(clip: &Clip<'_>, courses: &[Course], first: [usize; 3], buffer: &mut Buffer) -> Self {
         let [first_node, first_mesh, first_material] = first;
         let mut scenery = Self { nodes: vec![], meshes: vec![], materials: vec![], channels: vec![] };
-        if courses.is_empty() {
+        if !WRITTEN || courses.is_empty() {
             return scenery;
         }
         let look = |(name, color): (&str, [f64; 4])| {

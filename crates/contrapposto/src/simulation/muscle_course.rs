@@ -14,15 +14,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::ScenarioError;
-use super::muscle_outcome::{MEAN_PERSON, MuscleFailure, MuscleOutcome, MuscleSummary};
+use super::muscle_outcome::{MEAN_PERSON, MUSCLES_TIRE, MuscleFailure, MuscleOutcome, MuscleSummary};
 use crate::fatigue::{Compartments, FatigueState};
 use crate::joint_torques::{JointMuscles, LEAST_MUSCLE_STRENGTH, MuscleShare, MuscleShareError};
 use crate::model::data::library;
 use crate::model::{Model, Side};
 use crate::muscle::{CoupledStrength, MuscleFatigue, SharedTorques, TorqueLimit, hold_on};
 
-/// Muscles tire one by one but in the module for the web: its page has no muscles, and would load a fortieth more for them.
-const MUSCLES_TIRE: bool = cfg!(not(target_family = "wasm"));
 /// Length of a piece of work, s, where time steps are shorter (assumed: muscles tire by at most 1 % of their force in that time).
 const MUSCLE_PIECE: f64 = 0.5;
 /// Longest time for which the posture of the end is held on, s: a day.
@@ -133,6 +131,9 @@ impl MuscleCourse {
 
     /// Goes on from the state of another run.
     pub(super) fn resume(&mut self, state: &MuscleState) {
+        if !MUSCLES_TIRE {
+            return;
+        }
         for (person, states) in self.people.iter_mut().zip(&state.people) {
             person.fatigue.resume(states);
         }
@@ -199,7 +200,7 @@ impl MuscleCourse {
         coordinate: usize,
         active: f64,
     ) -> Option<[(FatigueState, f64); 2]> {
-        let place = self.coordinates.iter().position(|&other| other == coordinate)?;
+        let place = self.coordinates.iter().position(|&other| MUSCLES_TIRE && other == coordinate)?;
         let [positive, negative] = *state.groups.get(place)?;
         let group = |[rested, fatigued]: [f64; 2], asked: f64| {
             let load = asked.max(0.0) / rested.max(LEAST_MUSCLE_STRENGTH);
@@ -249,6 +250,9 @@ impl MuscleState {
 
     /// Whether there is an entry for each of so many muscles and rates, and every number is finite.
     pub(super) fn fits(&self, course: &MuscleCourse) -> bool {
+        if !MUSCLES_TIRE {
+            return false;
+        }
         let (muscles, rates) = (course.share.laws.len(), course.coordinates.len());
         let shares =
             |c: &Compartments| [c.active, c.resting, c.fatigued].iter().all(|share| (0.0..=1.0).contains(share));

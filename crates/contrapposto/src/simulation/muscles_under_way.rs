@@ -1,7 +1,7 @@
 //! Lets the muscles of a simulation work where they tire one by one.
 
 use super::ScenarioError;
-use super::muscle_outcome::MuscleOutcome;
+use super::muscle_outcome::{MUSCLES_TIRE, MuscleOutcome};
 use super::state::State;
 use super::step::Simulation;
 use crate::fatigue::FatigueState;
@@ -23,7 +23,7 @@ impl Simulation<'_> {
 
     /// The muscles that tire one by one, at the end of the run so far.
     pub(super) fn muscle_outcome(&self, time: f64) -> Option<MuscleOutcome> {
-        let (course, strength) = (self.course.as_ref()?, self.strength.as_ref()?);
+        let (course, strength) = (self.course.as_ref().filter(|_| MUSCLES_TIRE)?, self.strength.as_ref()?);
         Some(course.outcome(strength.muscles(), time, self.state.muscles.as_ref()?))
     }
 
