@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::buffer::{Buffer, packed};
 use super::course::{Course, animation, courses};
-use super::scenery::{self, Scenery};
+use super::scenery::{Around, Scenery};
 use super::tubes::{Tube, TubeMesh, tube_mesh};
 use super::{AnimationError, Clip, Solid, hull};
 
@@ -46,7 +46,8 @@ type MeshOfTubes<'a> = &'a dyn Fn(&[Placement], usize, &mut Buffer) -> Option<Tu
 /// The file. The function that makes tubes is given, so that a program without them is the smaller.
 fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>>) -> Result<Vec<u8>, AnimationError> {
     let segments = clip.model.segments();
-    let count = segments.len() + scenery::count(clip);
+    let around = Around::of(clip)?;
+    let count = segments.len() + around.map_or(0, Around::count);
     let mut first: Option<Vec<Placement>> = None;
     let (times, courses) = courses(clip, count, |index, frames| {
         first.get_or_insert_with(|| frames.to_vec());
@@ -54,9 +55,9 @@ fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>
             segment.parent.map_or_else(|| *frame, |parent| frames[parent].inv_mul(frame))
         };
         let body = segments.iter().zip(frames).map(in_parent).map(|local| (local, 1.0));
-        body.chain(scenery::places(clip, index, frames)).collect()
+        body.chain(around.map_or_else(Vec::new, |around| around.places(index, frames))).collect()
     })?;
-    let (courses, around) = courses.split_at(segments.len());
+    let (courses, beside) = courses.split_at(segments.len());
     let mut buffer = Buffer::default();
     let meshes = meshes(clip, solids, &mut buffer);
     let has_body = meshes.iter().any(Option::is_some);
@@ -72,7 +73,8 @@ fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>
     if tubes.is_some() {
         materials.push(material("muscles", [1.0; 4]));
     }
-    let around = Scenery::new(clip, around, [nodes.len(), meshes.len(), materials.len()], &mut buffer);
+    let first = [nodes.len(), meshes.len(), materials.len()];
+    let around = around.map_or_else(Scenery::default, |around| around.written(beside, first, &mut buffer));
     add_to_ground(&mut nodes, around.nodes);
     meshes.extend(around.meshes);
     channels.extend(around.channels);

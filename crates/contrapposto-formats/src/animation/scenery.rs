@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use super::buffer::Buffer;
 use super::course::{Course, Moving};
-use super::{Clip, hull};
+use super::{AnimationError, Clip, hull};
+use crate::Thing;
 
 /// A force at a point over time, drawn as an arrow.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,48 +41,56 @@ const ARROW_GRAIN: f64 = 2e-3;
 /// Things and arrows are written but in the module for the web, whose page has none to write and would load more for them.
 const WRITTEN: bool = cfg!(not(target_family = "wasm"));
 
-/// Number of nodes of the scenery.
-pub(super) fn count(clip: &Clip<'_>) -> usize {
-    if WRITTEN { clip.things.len() + clip.arrows.len() } else { 0 }
+/// The things and the arrows of a clip.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    model: &'a Model,
+    things: &'a [Thing],
+    arrows: &'a [Arrow],
 }
 
-/// Placement and size of every node of the scenery in posture number `index`, ground.
-pub(super) fn places(clip: &Clip<'_>, index: usize, frames: &[Placement]) -> Vec<(Placement, f64)> {
-    if !WRITTEN {
-        return vec![];
+impl<'a> Around<'a> {
+    /// Of a clip, if it has some.
+    ///
+    /// # Errors
+    /// [`AnimationError::Web`] of a clip that has some in the module for the web.
+    pub(super) fn of(clip: &Clip<'a>) -> Result<Option<Self>, AnimationError> {
+        let &Clip { model, things, arrows, .. } = clip;
+        if things.is_empty() && arrows.is_empty() {
+            return Ok(None);
+        }
+        if WRITTEN { Ok(Some(Self { model, things, arrows })) } else { Err(AnimationError::Web) }
     }
-    let segment = |s: usize| carrier(clip.model, s, &frames[s]);
-    let things = clip.things.iter().map(|thing| (thing.place_by(segment), 1.0));
-    let rounded = |v: Vector3<f64>| v.map(|x| (x / ARROW_GRAIN).round() * ARROW_GRAIN);
-    let arrows = clip.arrows.iter().map(|arrow| {
-        let of = |list: &[Vector3<f64>]| rounded(list.get(index).or(list.last()).copied().unwrap_or_default());
-        let (at, along) = (of(&arrow.at), of(&arrow.along));
-        let turn = UnitQuaternion::rotation_between(&Vector3::y(), &along);
-        let turn = turn.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-        (Isometry3::from_parts(at.into(), turn), (along.norm() / ARROW_LENGTH).max(NO_ARROW))
-    });
-    things.chain(arrows).collect()
-}
 
-/// The placement of a segment, given its joint frame.
-fn carrier(model: &Model, s: usize, frame: &Placement) -> Placement {
-    frame * Isometry3::from(-model.segments()[s].in_segment.translation.vector)
-}
+    /// Number of nodes.
+    pub(super) fn count(self) -> usize {
+        self.things.len() + self.arrows.len()
+    }
 
-/// Nodes, meshes and materials of the scenery in a file of which so many are there already, and the channels of its nodes.
-pub(super) struct Scenery {
-    pub(super) nodes: Vec<Value>,
-    pub(super) meshes: Vec<Value>,
-    pub(super) materials: Vec<Value>,
-    pub(super) channels: Vec<(usize, Moving)>,
-}
+    /// Placement and size of every node in posture number `index`, ground.
+    pub(super) fn places(self, index: usize, frames: &[Placement]) -> Vec<(Placement, f64)> {
+        if !WRITTEN {
+            return vec![];
+        }
+        let segment = |s: usize| carrier(self.model, s, &frames[s]);
+        let things = self.things.iter().map(|thing| (thing.place_by(segment), 1.0));
+        let rounded = |v: Vector3<f64>| v.map(|x| (x / ARROW_GRAIN).round() * ARROW_GRAIN);
+        let arrows = self.arrows.iter().map(|arrow| {
+            let of = |list: &[Vector3<f64>]| rounded(list.get(index).or(list.last()).copied().unwrap_or_default());
+            let (at, along) = (of(&arrow.at), of(&arrow.along));
+            let turn = UnitQuaternion::rotation_between(&Vector3::y(), &along);
+            let turn =
+                turn.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+            (Isometry3::from_parts(at.into(), turn), (along.norm() / ARROW_LENGTH).max(NO_ARROW))
+        });
+        things.chain(arrows).collect()
+    }
 
-impl Scenery {
-    /// `courses`: those of the scenery; `first`: numbers of its first node, mesh and material.
-    pub(super) fn new(clip: &Clip<'_>, courses: &[Course], first: [usize; 3], buffer: &mut Buffer) -> Self {
+    /// Nodes and meshes with these courses; `first`: numbers of the first node, mesh and material.
+    pub(super) fn written(self, courses: &[Course], first: [usize; 3], buffer: &mut Buffer) -> Scenery {
         let [first_node, first_mesh, first_material] = first;
-        let mut scenery = Self { nodes: vec![], meshes: vec![], materials: vec![], channels: vec![] };
-        if !WRITTEN || courses.is_empty() {
+        let mut scenery = Scenery::default();
+        if !WRITTEN {
             return scenery;
         }
         let look = |(name, color): (&str, [f64; 4])| {
@@ -90,10 +99,10 @@ impl Scenery {
             json!({ "name": name, "pbrMetallicRoughness": look, "alphaMode": mode })
         };
         scenery.materials = MATERIALS.into_iter().map(look).collect();
-        let things = clip.things.iter().map(|thing| (thing.name.as_str(), 0, cuboid(&thing.size, buffer)));
+        let things = self.things.iter().map(|thing| (thing.name.as_str(), 0, cuboid(&thing.size, buffer)));
         let things: Vec<_> = things.collect();
-        let arrow = (!clip.arrows.is_empty()).then(|| arrow(buffer));
-        let arrows = clip.arrows.iter().zip(arrow.iter().cycle());
+        let arrow = (!self.arrows.is_empty()).then(|| arrow(buffer));
+        let arrows = self.arrows.iter().zip(arrow.iter().cycle());
         let arrows =
             arrows.map(|(arrow, parts)| (arrow.name.as_str(), if arrow.contact { 2 } else { 1 }, parts.clone()));
         for ((name, material, parts), (i, course)) in things.into_iter().chain(arrows).zip(courses.iter().enumerate()) {
@@ -113,6 +122,20 @@ impl Scenery {
         }
         scenery
     }
+}
+
+/// The placement of a segment, given its joint frame.
+fn carrier(model: &Model, s: usize, frame: &Placement) -> Placement {
+    frame * Isometry3::from(-model.segments()[s].in_segment.translation.vector)
+}
+
+/// Nodes, meshes and materials of the scenery in a file of which so many are there already, and the channels of its nodes.
+#[derive(Default)]
+pub(super) struct Scenery {
+    pub(super) nodes: Vec<Value>,
+    pub(super) meshes: Vec<Value>,
+    pub(super) materials: Vec<Value>,
+    pub(super) channels: Vec<(usize, Moving)>,
 }
 
 /// A box about the origin: positions, normals, corners of triangles.

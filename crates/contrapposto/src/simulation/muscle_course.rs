@@ -13,8 +13,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::ScenarioError;
-use super::muscle_outcome::{MEAN_PERSON, MUSCLES_TIRE, MuscleFailure, MuscleOutcome, MuscleSummary};
+use super::muscle_outcome::{MEAN_PERSON, MuscleFailure, MuscleOutcome, MuscleSummary};
+use super::{Scenario, ScenarioError};
 use crate::fatigue::{Compartments, FatigueState};
 use crate::joint_torques::{JointMuscles, LEAST_MUSCLE_STRENGTH, MuscleShare, MuscleShareError};
 use crate::model::data::library;
@@ -29,7 +29,34 @@ const LONGEST_HOLD: f64 = 86_400.0;
 const LEAST_SHARE_IN_LIMIT: f64 = 1e-6;
 
 /// People whose muscles work: weaker by a standard deviation of strength, mean, stronger.
-pub(super) const PEOPLE: [f64; 3] = [-1.0, 0.0, 1.0];
+const PEOPLE: [f64; 3] = [-1.0, 0.0, 1.0];
+/// Muscles tire one by one but in the module for the web: its page has no muscles, and would load a fortieth more for them. Where this is false the
+/// linker finds nothing that calls the code, which is reached through [`TiringMuscles`] alone.
+const MUSCLES_TIRE: bool = cfg!(not(target_family = "wasm"));
+
+/// The muscles of a run in which they tire one by one; nothing in another run.
+#[derive(Clone, Debug)]
+pub(super) struct TiringMuscles(Option<MuscleCourse>);
+
+impl TiringMuscles {
+    /// Of a scenario.
+    pub(super) fn of(scenario: &Scenario) -> Result<Self, MuscleShareError> {
+        match scenario.muscles.as_ref().filter(|_| scenario.muscles_tire) {
+            Some(_) if !MUSCLES_TIRE => Err(MuscleShareError::Web),
+            Some(muscles) => Ok(Self(Some(MuscleCourse::new(&scenario.model, muscles, scenario.run.step)?))),
+            None => Ok(Self(None)),
+        }
+    }
+
+    pub(super) fn get(&self) -> Option<&MuscleCourse> {
+        if MUSCLES_TIRE { self.0.as_ref() } else { None }
+    }
+
+    pub(super) fn get_mut(&mut self) -> Option<&mut MuscleCourse> {
+        if MUSCLES_TIRE { self.0.as_mut() } else { None }
+    }
+}
+
 /// State at the end of a piece of work, from which the next one goes on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct MuscleState {
@@ -68,10 +95,7 @@ struct Person {
 
 impl MuscleCourse {
     /// Of muscles in time steps of `step`, s.
-    pub(super) fn new(model: &Model, muscles: &JointMuscles, step: f64) -> Result<Self, MuscleShareError> {
-        if !MUSCLES_TIRE {
-            return Err(MuscleShareError::Web);
-        }
+    fn new(model: &Model, muscles: &JointMuscles, step: f64) -> Result<Self, MuscleShareError> {
         let share = MuscleShare::new(model, muscles, |_| 0.0)?;
         let coordinate = |&rate: &usize| model.rates()[rate].coordinate.ok_or(MuscleShareError::NoMuscles);
         let coordinates = share.rates.iter().map(coordinate).collect::<Result<_, _>>()?;
@@ -110,9 +134,6 @@ impl MuscleCourse {
         active: &[f64],
         levels: &[[f64; 2]],
     ) -> Result<MuscleState, ScenarioError> {
-        if !MUSCLES_TIRE {
-            return Ok(MuscleState::default());
-        }
         self.ask(muscles, active);
         let works_for = muscles.works_for_now(model);
         let of_group = |of: Option<(usize, Side)>| of.map_or(0.0, |(i, side)| levels[i][side.index()]);
@@ -131,9 +152,6 @@ impl MuscleCourse {
 
     /// Goes on from the state of another run.
     pub(super) fn resume(&mut self, state: &MuscleState) {
-        if !MUSCLES_TIRE {
-            return;
-        }
         for (person, states) in self.people.iter_mut().zip(&state.people) {
             person.fatigue.resume(states);
         }
@@ -148,7 +166,7 @@ impl MuscleCourse {
         active: &[f64],
         state: &mut MuscleState,
     ) -> Result<(), ScenarioError> {
-        if !MUSCLES_TIRE || !(step + 1).is_multiple_of(self.every) {
+        if !(step + 1).is_multiple_of(self.every) {
             return Ok(());
         }
         self.ask(muscles, active);
@@ -200,7 +218,7 @@ impl MuscleCourse {
         coordinate: usize,
         active: f64,
     ) -> Option<[(FatigueState, f64); 2]> {
-        let place = self.coordinates.iter().position(|&other| MUSCLES_TIRE && other == coordinate)?;
+        let place = self.coordinates.iter().position(|&other| other == coordinate)?;
         let [positive, negative] = *state.groups.get(place)?;
         let group = |[rested, fatigued]: [f64; 2], asked: f64| {
             let load = asked.max(0.0) / rested.max(LEAST_MUSCLE_STRENGTH);
@@ -214,8 +232,8 @@ impl MuscleCourse {
         let failure = |person: usize| {
             let Person { forces, fatigue, .. } = &self.people[person];
             let asked = SharedTorques { forces, ..self.share.asked(muscles) };
-            if state.failed[person].is_some() || !MUSCLES_TIRE {
-                return state.failed[person];
+            if let Some(failed) = state.failed[person] {
+                return Some(failed);
             }
             let mut fatigue = fatigue.clone();
             let held = hold_on(&mut fatigue, &asked, LONGEST_HOLD, |_, _| {}).ok()?;
@@ -250,9 +268,6 @@ impl MuscleState {
 
     /// Whether there is an entry for each of so many muscles and rates, and every number is finite.
     pub(super) fn fits(&self, course: &MuscleCourse) -> bool {
-        if !MUSCLES_TIRE {
-            return false;
-        }
         let (muscles, rates) = (course.share.laws.len(), course.coordinates.len());
         let shares =
             |c: &Compartments| [c.active, c.resting, c.fatigued].iter().all(|share| (0.0..=1.0).contains(share));

@@ -4,8 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::Side;
 
-/// Muscles tire one by one but in the module for the web: its page has no muscles, and would load a fortieth more for them.
-pub(super) const MUSCLES_TIRE: bool = cfg!(not(target_family = "wasm"));
 /// Place of the person whose strength is a standard deviation below the mean.
 const WEAKER_PERSON: usize = 0;
 /// Place of the person of mean strength.
@@ -55,9 +53,6 @@ impl MuscleOutcome {
     /// Least and greatest time (s) at which the muscles of people of different strength fail: for the group that then limits the mean person; for that of
     /// the weaker person the least one only; never for others. `None` of a group that tires by a law of its own.
     pub fn spread_of(&self, group: (usize, Side)) -> Option<(f64, f64)> {
-        if !MUSCLES_TIRE {
-            return None;
-        }
         let times = self.failures.map(|failure| failure.map_or(f64::INFINITY, |failure| failure.time));
         let limits = |person: usize| self.failures[person].is_some_and(|failure| failure.who == Some(group));
         let (least, greatest) = times.iter().fold((f64::INFINITY, 0f64), |(l, g), time| (time.min(l), time.max(g)));
@@ -71,8 +66,7 @@ impl MuscleOutcome {
 
     /// Whether the muscles that give a group its strength fail, and limit the mean person at another group.
     pub(crate) fn fails_beside(&self, group: (usize, Side)) -> bool {
-        MUSCLES_TIRE
-            && self.coordinates.contains(&group.0)
+        self.coordinates.contains(&group.0)
             && self.failures[MEAN_PERSON].is_some_and(|failure| failure.who.is_some_and(|who| who != group))
     }
 

@@ -2,7 +2,7 @@
 
 use super::easiest::{Eased, Searched};
 use super::motion::Motion;
-use super::muscle_course::MuscleCourse;
+use super::muscle_course::TiringMuscles;
 use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
 use super::state::State;
@@ -29,8 +29,7 @@ pub struct Simulation<'a> {
     pub(super) model: SharedModel<'a>,
     /// For a body with muscles.
     pub(super) strength: Option<PosedStrength>,
-    /// The muscles of a run in which they tire one by one.
-    pub(super) course: Option<MuscleCourse>,
+    pub(super) tiring: TiringMuscles,
     pub(super) record: Record,
     /// Values of the posture and active torque before the last motion.
     values_before: Vec<f64>,
@@ -90,7 +89,7 @@ impl<'a> Simulation<'a> {
             simulation.apply(event)?;
         }
         simulation.state = state;
-        match (&mut simulation.course, &simulation.state.muscles) {
+        match (simulation.tiring.get_mut(), &simulation.state.muscles) {
             (Some(course), Some(muscles)) if muscles.fits(course) => course.resume(muscles),
             (None, None) => {}
             _ => return Err(ScenarioError::Snapshot),
@@ -106,10 +105,6 @@ impl<'a> Simulation<'a> {
             None => None,
         };
         let model = model.unwrap_or(SharedModel::Borrowed(&scenario.model));
-        let course = match scenario.muscles.as_ref().filter(|_| scenario.muscles_tire) {
-            Some(muscles) => Some(MuscleCourse::new(&scenario.model, muscles, scenario.run.step)?),
-            None => None,
-        };
         let placed_at = state.placed_at.as_ref().unwrap_or(&scenario.start);
         Ok(Self {
             motion: Motion::new(scenario, model.clone(), placed_at)?,
@@ -117,7 +112,7 @@ impl<'a> Simulation<'a> {
             state,
             model,
             strength,
-            course,
+            tiring: TiringMuscles::of(scenario)?,
             record: Record::new(n),
             values_before: vec![0.0; n],
             active_before: vec![0.0; n],
@@ -134,7 +129,7 @@ impl<'a> Simulation<'a> {
     /// are forgotten.
     pub(super) fn state(&mut self) -> State {
         self.motion.forget();
-        if let (Some(course), Some(muscles)) = (&mut self.course, &self.state.muscles) {
+        if let (Some(course), Some(muscles)) = (self.tiring.get_mut(), &self.state.muscles) {
             course.resume(muscles);
         }
         self.state.clone()
