@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use contrapposto::model::{Model, Side};
 use serde::Serialize;
 
+/// Activations below this are said as none.
+const AT_REST: f64 = 0.005;
+
 /// The muscles of a job; entries of the file that holds them.
 #[derive(Clone, Debug, Serialize)]
 pub struct MuscleWorkText {
@@ -75,6 +78,17 @@ pub struct LackText {
     pub torque_nm: f64,
     /// Time of it, s.
     pub at_s: f64,
+}
+
+impl MuscleWorkText {
+    /// The muscles with the greatest activations, at most `most` of them, without those at rest.
+    pub fn hardest(&self, most: usize) -> Vec<(&str, &WorkedMuscleText)> {
+        let working = self.muscles.iter().filter(|(_, muscle)| muscle.peak_activation >= AT_REST);
+        let mut all: Vec<_> = working.map(|(name, muscle)| (name.as_str(), muscle)).collect();
+        all.sort_by(|a, b| b.1.peak_activation.total_cmp(&a.1.peak_activation));
+        all.truncate(most);
+        all
+    }
 }
 
 impl WorksForText {

@@ -31,6 +31,8 @@ pub struct BodyPosture {
     pub notes: Vec<String>,
     /// Parts of the body.
     pub parts: Vec<BodyPart>,
+    /// Muscles, drawn over the parts, which are pale then.
+    pub muscles: Vec<BodyMuscle>,
     /// The parts at the start, drawn pale; may be empty. Their loads are not shown.
     pub start: Vec<BodyPart>,
     /// Contact forces on the body.
@@ -60,6 +62,17 @@ pub struct BodyPart {
     pub load: Option<f64>,
     /// Whether ligaments carry it where that is a hazard: it then has a colour of its own.
     pub hazard: bool,
+}
+
+/// A muscle, drawn as a line in the colour of its activation.
+#[derive(Clone, Debug, Default)]
+pub struct BodyMuscle {
+    /// Points of its path, from attachment to attachment; one line a branch.
+    pub lines: Vec<Vec<[f64; 3]>>,
+    /// Radius of the muscle.
+    pub radius: f64,
+    /// Activation, 0 to 1.
+    pub activation: f64,
 }
 
 /// A thing, drawn as a box.

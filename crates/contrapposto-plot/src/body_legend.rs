@@ -125,13 +125,15 @@ fn box_entries(row: &mut Row<'_>, postures: &[BodyPosture]) {
 /// Draws the bands of muscle load with their bounds, the same in every figure, and the colour of parts whose load is not known.
 fn load_entries(row: &mut Row<'_>, postures: &[BodyPosture]) {
     let any = |test: &dyn Fn(&BodyPosture) -> bool| postures.iter().any(test);
-    if !any(&|posture| posture.parts.iter().any(|part| part.load.is_some())) {
+    let muscles = any(&|posture| !posture.muscles.is_empty());
+    if !muscles && !any(&|posture| posture.parts.iter().any(|part| part.load.is_some())) {
         return;
     }
     let bounds: Vec<String> = LOAD_BANDS[1..].iter().map(|(from, ..)| format!("{:.0}", 100.0 * from)).collect();
     let widths: Vec<f64> = bounds.iter().map(|bound| text_width(bound, SMALL_SIZE) + 2.0 * BOUND_GAP).collect();
     let width = BAND * LOAD_BANDS.len() as f64 + widths.iter().sum::<f64>();
-    row.entry("muscle load:", width, "% of strength", |canvas, (mut x, y)| {
+    let (name, unit) = if muscles { ("activation of muscles:", "%") } else { ("muscle load:", "% of strength") };
+    row.entry(name, width, unit, |canvas, (mut x, y)| {
         for (k, (from, ..)) in LOAD_BANDS.iter().enumerate() {
             let to = LOAD_BANDS.get(k + 1).map_or(from + 1.0, |(to, ..)| *to);
             shades(canvas, (x, y), [*from, to]);
@@ -142,7 +144,7 @@ fn load_entries(row: &mut Row<'_>, postures: &[BodyPosture]) {
             }
         }
     });
-    if any(&|posture| posture.parts.iter().any(|part| part.load.is_none())) {
+    if !muscles && any(&|posture| posture.parts.iter().any(|part| part.load.is_none())) {
         row.entry("", SAMPLE_HEIGHT, "load not known", |canvas, (x, y)| swatch(canvas, x, y, UNKNOWN, OUTLINE_PEN));
     }
     if any(&|posture| posture.parts.iter().any(|part| part.hazard)) {

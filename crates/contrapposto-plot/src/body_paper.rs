@@ -1,8 +1,8 @@
 //! Draws one body in one view: its parts from the farthest to the nearest, then the marks on them.
 
 use crate::axes::drawable;
-use crate::body::{BodyPart, BodyPosture, Corners};
-use crate::body_view::{Bounds, MOST_PARTS, View, balls};
+use crate::body::{BodyMuscle, BodyPart, BodyPosture, Corners};
+use crate::body_view::{Bounds, MOST_MUSCLES, MOST_PARTS, View, balls};
 use crate::canvas::Canvas;
 use crate::depth::{Solid, order};
 use crate::geometry::{Point, Rect, clip, clip_polygon};
@@ -18,6 +18,9 @@ const CROSS: f64 = 5.0;
 const HEAD: (f64, f64) = (9.0, 4.0);
 /// Shorter arrows are not drawn, px.
 const SHORTEST_ARROW: f64 = 2.0;
+/// Least width of a muscle, and width of its rim on both sides together, px.
+const THINNEST_MUSCLE: f64 = 0.8;
+const MUSCLE_RIM: f64 = 0.6;
 /// Opacity of surfaces and things.
 pub(crate) const GLASS: f64 = 0.3;
 /// A target farther than this beyond the bounds, m, is outside.
@@ -57,6 +60,7 @@ impl Paper<'_> {
         }
         self.ghost(canvas, &posture.start);
         self.solids_in_order(canvas, posture, bounds);
+        self.muscles(canvas, &posture.muscles);
         for gaze in posture.gazes.iter().take(MOST_PARTS) {
             let points: Vec<Point> =
                 gaze.iter().filter(|p| within(bounds, self.view, **p)).filter_map(|p| self.point(*p)).collect();
@@ -86,6 +90,24 @@ impl Paper<'_> {
         outside
     }
 
+    /// Muscles from the farthest to the nearest, each with a thin dark rim.
+    fn muscles(&self, canvas: &mut Canvas, muscles: &[BodyMuscle]) {
+        let depth = |muscle: &BodyMuscle| {
+            let points = muscle.lines.iter().flatten();
+            points.clone().map(|point| self.place(*point)[2]).sum::<f64>() / points.count().max(1) as f64
+        };
+        let mut order: Vec<(f64, &BodyMuscle)> = muscles.iter().take(MOST_MUSCLES).map(|m| (depth(m), m)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, muscle) in order {
+            let width = (2.0 * self.scale * muscle.radius).max(THINNEST_MUSCLE);
+            let lines = muscle.lines.iter().map(|line| line.iter().filter_map(|p| self.point(*p)).collect());
+            for line in lines.collect::<Vec<Vec<Point>>>() {
+                canvas.line(&line, Pen::solid(OUTLINE_PEN.ink, width + MUSCLE_RIM));
+                canvas.line(&line, Pen::solid(load_ink(muscle.activation), width));
+            }
+        }
+    }
+
     /// Parts that are seen, each with its colour.
     fn solids(&self, parts: &[BodyPart]) -> Vec<(Solid, Ink)> {
         let ball = |[x, y, z, r]: [f64; 4]| {
@@ -107,7 +129,12 @@ impl Paper<'_> {
 
     /// Parts of the body, which hide what is behind them, and surfaces and things, which do not.
     fn solids_in_order(&self, canvas: &mut Canvas, posture: &BodyPosture, bounds: &Bounds) {
-        let (mut solids, inks): (Vec<Solid>, Vec<Ink>) = self.solids(&posture.parts).into_iter().unzip();
+        let (mut solids, mut inks): (Vec<Solid>, Vec<Ink>) = self.solids(&posture.parts).into_iter().unzip();
+        let is_pale = !posture.muscles.is_empty();
+        let pen = if is_pale { Pen::solid(GHOST_EDGE, OUTLINE_PEN.width) } else { OUTLINE_PEN };
+        if is_pale {
+            inks.iter_mut().filter(|ink| **ink != HAZARD).for_each(|ink| *ink = GHOST);
+        }
         let boxes: Vec<(Corners, bool)> = posture.boxes().collect();
         for (corners, _) in &boxes {
             let points = corners.map(|corner| self.place(corner)).map(|[x, y, z]| [x, y, z, 0.0]);
@@ -115,7 +142,7 @@ impl Paper<'_> {
         }
         for i in order(&solids) {
             match inks.get(i) {
-                Some(ink) => canvas.shape(solids[i].outline.path(), *ink, OUTLINE_PEN),
+                Some(ink) => canvas.shape(solids[i].outline.path(), *ink, pen),
                 None => {
                     let (corners, is_thing) = &boxes[i - inks.len()];
                     let pen = if *is_thing { THING_PEN } else { SURFACE_PEN };

@@ -9,6 +9,9 @@ use crate::outline::MOST_CIRCLES;
 /// Greatest number of parts of a body that are drawn, and of forces, targets and lines of sight.
 pub(crate) const MOST_PARTS: usize = 120;
 
+/// Greatest number of muscles that are drawn.
+pub(crate) const MOST_MUSCLES: usize = 1000;
+
 /// Surfaces and things farther than this beyond the rest, m, are cut off.
 const FARTHEST_BOX: f64 = 0.35;
 

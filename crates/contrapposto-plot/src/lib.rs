@@ -51,7 +51,7 @@ mod time_line;
 mod torque_balance;
 
 pub use bar_chart::{BarChart, bar_chart};
-pub use body::{BodyFigure, BodyForce, BodyPart, BodyPosture, BodyThing};
+pub use body::{BodyFigure, BodyForce, BodyMuscle, BodyPart, BodyPosture, BodyThing};
 pub use body_figure::body_figure;
 pub use body_map::{BodyMap, MapFrame, MapJoint, body_map};
 pub use figure::{Figure, PlotError};

@@ -59,7 +59,8 @@ pub(crate) fn assess(args: &AssessArgs) -> Result<(), Fail> {
     let figures = assessed_frames.as_ref().filter(|_| args.figures).map(|assessed_frames| {
         let stage = Stage::still(&job.settings.supports, &[], &job.held);
         let worst = found.assessment.groups.iter().map(|group| group.coordinate);
-        figures_of_assessment((&title, found.assessment.dynamics), model, &stage, assessed_frames.frames(), worst)
+        let shown = (assessed_frames.frames(), muscles.as_ref());
+        figures_of_assessment((&title, found.assessment.dynamics), model, &stage, shown, worst)
     });
     let figures = figures.transpose()?.unwrap_or_default();
     let shown = assessed_frames.as_ref().filter(|_| folder.is_some());

@@ -101,10 +101,10 @@ fn write(
     let title = if scenario.title.is_empty() { "pose" } else { &scenario.title };
     let mot = write_sto(title, &columns, true, &[0.0], &rows).map_err(|error| Fail::job("pose.mot", error))?;
     let csv = write_csv(&columns, &[0.0], &rows).map_err(|error| Fail::job("pose.csv", error))?;
-    let picture = body_figure(&pose_picture(scenario, pose, &subtitle(text))?);
+    let picture = body_figure(&pose_picture(scenario, (pose, muscles), &subtitle(text))?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
     let frame = held.frame.clone();
-    let page = report_of_pose(scenario, (pose, kept_balance), (text, answer), held)?;
+    let page = report_of_pose(scenario, (pose, kept_balance), (text, answer), (held, muscles))?;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
     let shown = (from_ref(&frame), muscles);
     let [gltf, bvh] = steps(["pose.glb", "pose.bvh"], (&scenario.model, &stage), title, shown, wooden)?;

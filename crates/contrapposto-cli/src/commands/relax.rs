@@ -25,8 +25,8 @@ use crate::scenario_file::ScenarioFile;
 use crate::view::animation::steps;
 use crate::view::answer::{Answer, answered, without_posture};
 use crate::view::body;
-use crate::view::frame::frame_of_posture;
-use crate::view::muscle_work::muscles_at_work;
+use crate::view::frame::{Frame, frame_of_posture};
+use crate::view::muscle_work::{MusclesAtWork, muscles_at_work};
 use crate::view::report::equilibria::{figures_of_equilibria, report_of_equilibria};
 use crate::view::stage::Stage;
 use crate::view::text::relax::{RelaxText, percent, report};
@@ -64,13 +64,15 @@ pub(crate) fn relax(args: &RelaxArgs) -> Result<(), Fail> {
     spinner.set_message(TRYING_CHANGES);
     let answer = answer(&scenario, &found, args.suggest);
     spinner.finish();
-    let figures = if args.figures { figures_of_equilibria(&scenario, &found)? } else { vec![] };
+    let (frames, muscles) = frames_and_muscles(&scenario, &found)?;
+    let figures = if args.figures { figures_of_equilibria(&scenario, &frames)? } else { vec![] };
     let names = RELAX_FILES.into_iter().chain(figures.iter().map(|(name, _)| name.as_str()));
     let files = if args.out.is_some() { names.map(str::to_owned).collect() } else { vec![] };
-    let text = RelaxText::new(&scenario, &found, &answer, files);
+    let text = RelaxText::new(&scenario, (&found, muscles.as_ref()), &answer, files);
     let json = json_text("relax.json", &text)?;
     if let Some(folder) = &folder {
-        write(&scenario, &found, &answer, (&text, &json), &figures, (folder, args.wooden))?;
+        let shown = (frames.as_slice(), muscles.as_ref());
+        write((&scenario, shown), &found, &answer, (&text, &json), &figures, (folder, args.wooden))?;
     }
     print(&if args.json {
         json
@@ -118,9 +120,20 @@ pub(crate) fn advice_without(scenario: &RelaxScenario, verdict: &Verdict, sugges
     advice_of_search(verdict, (&search, &search), (RelaxScenario::OPTIONS, 0), suggest)
 }
 
+/// The frames of the postures, and how hard every muscle works in them.
+pub(crate) fn frames_and_muscles<'a>(
+    scenario: &'a RelaxScenario,
+    found: &Equilibria,
+) -> Result<(Vec<Frame>, Option<MusclesAtWork<'a>>), Fail> {
+    let frames = found.postures.iter().map(|posture| frame_of_posture(&scenario.model, posture));
+    let frames = frames.collect::<Result<Vec<_>, _>>()?;
+    let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), &frames, |_| true)?;
+    Ok((frames, muscles))
+}
+
 /// Writes all files.
 fn write(
-    scenario: &RelaxScenario,
+    (scenario, shown): (&RelaxScenario, (&[Frame], Option<&MusclesAtWork<'_>>)),
     found: &Equilibria,
     answer: &Answer,
     (text, json): (&RelaxText, &str),
@@ -133,14 +146,10 @@ fn write(
     let title = if scenario.title.is_empty() { "postures of least effort" } else { &scenario.title };
     let mot = write_sto(title, &columns, true, &times, &rows).map_err(|error| Fail::job("postures.mot", error))?;
     let csv = table(scenario, found);
-    let picture = body_figure(&drawing(scenario, found, text)?);
+    let picture = body_figure(&drawing(scenario, found, shown, text)?);
     let (svg, png) = (picture.svg(), picture.png().map_err(|error| Fail::job("PNG", error))?);
-    let frames = found.postures.iter().map(|posture| frame_of_posture(&scenario.model, posture));
-    let frames = frames.collect::<Result<Vec<_>, _>>()?;
-    let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), &frames, |_| true)?;
-    let page = report_of_equilibria(scenario, found, answer)?;
+    let page = report_of_equilibria(scenario, found, shown, answer)?;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
-    let shown = (frames.as_slice(), muscles.as_ref());
     let [gltf, bvh] = steps(["postures.glb", "postures.bvh"], (&scenario.model, &stage), title, shown, wooden)?;
     let texts = [json, &page, &mot, &csv, &svg].map(str::as_bytes);
     let contents = texts.into_iter().chain([png.as_slice(), &gltf, &bvh]);
@@ -175,16 +184,21 @@ fn table(scenario: &RelaxScenario, found: &Equilibria) -> String {
 }
 
 /// All postures side by side.
-fn drawing(scenario: &RelaxScenario, found: &Equilibria, text: &RelaxText) -> Result<BodyFigure, Fail> {
+fn drawing(
+    scenario: &RelaxScenario,
+    found: &Equilibria,
+    (frames, muscles): (&[Frame], Option<&MusclesAtWork<'_>>),
+    text: &RelaxText,
+) -> Result<BodyFigure, Fail> {
     let model = &scenario.model;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
     let mut postures = vec![];
-    for (i, (posture, text)) in found.postures.iter().zip(&text.postures).enumerate() {
-        let frame = frame_of_posture(model, posture)?;
-        let mut drawn = body::body(model, &stage, &frame)?;
+    for (i, (frame, text)) in frames.iter().zip(&text.postures).enumerate() {
+        let mut drawn = body::body(model, &stage, frame)?;
+        drawn.muscles = muscles.map_or(Ok(vec![]), |muscles| muscles.drawn(i, &frame.posture))?;
         drawn.title = format!("{}: effort {:.4}", i + 1, text.effort);
         // The first number is the effort of all muscles, not that of the task.
-        drawn.notes = body::key_numbers(model, &scenario.supports, &frame).split_off(1);
+        drawn.notes = body::key_numbers(model, &scenario.supports, frame).split_off(1);
         postures.push(drawn);
     }
     let subtitle = match found.postures.len() {

@@ -230,7 +230,7 @@ impl Files {
         How { figures, wooden, .. }: How,
     ) -> Result<String, Fail> {
         let recording = &self.recording;
-        let figures = if figures { figures_of_run(scenario, things, recording, summary)? } else { vec![] };
+        let figures = if figures { figures_of_run(scenario, things, (recording, muscles), summary)? } else { vec![] };
         let mut contents = vec![
             ("trajectory.csv", tables::trajectory(scenario, recording).into_bytes()),
             ("motion.mot", tables::motion(scenario, recording)?.into_bytes()),
@@ -248,7 +248,7 @@ impl Files {
         } else {
             ["torque-balance.svg", "torque-balance.png"]
         };
-        let [first, second] = pictures_of_run(scenario, things, summary, recording)?;
+        let [first, second] = pictures_of_run(scenario, things, summary, (recording, muscles))?;
         for (names, figure) in [(names, first), (["time-line.svg", "time-line.png"], second)] {
             contents.push((names[0], figure.svg().into_bytes()));
             contents.push((names[1], figure.png().map_err(|error| Fail::job("PNG", error))?));

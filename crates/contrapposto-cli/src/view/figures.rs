@@ -12,6 +12,7 @@ use super::axes::visible;
 use super::charts::{Sweep, angle_label, course};
 use super::excerpt::RunExcerpt;
 use super::frame::Frame;
+use super::muscle_work::MusclesAtWork;
 use super::recording::Recording;
 use super::scene::ANGLES;
 use super::selection::{main_coordinate, shown};
@@ -36,13 +37,15 @@ const STILL: f64 = 1e-3;
 pub(crate) fn figures_of_run(
     scenario: &Scenario,
     things: &[Thing],
-    recording: &Recording,
+    (recording, muscles): (&Recording, Option<&MusclesAtWork<'_>>),
     summary: &Summary,
 ) -> Result<Vec<(String, Vec<u8>)>, Fail> {
     let model = &scenario.model;
     let excerpt = RunExcerpt::new(scenario, recording, summary);
-    let mut figures =
-        vec![("body".to_owned(), moments(&scenario.title, model, &Stage::of_run(scenario, things), &excerpt.frames)?)];
+    let mut figures = vec![(
+        "body".to_owned(),
+        moments(&scenario.title, model, &Stage::of_run(scenario, things), (&excerpt.frames, muscles))?,
+    )];
     for (number, i) in joints(scenario, summary).into_iter().enumerate() {
         let mut line = course(model, recording, &summary.reliefs, i);
         line.subtitle = strategy_in_words(scenario, &summary.coordinates[i]);
@@ -63,10 +66,10 @@ pub(crate) fn figures_of_assessment(
     (title, moving): (&str, bool),
     model: &Model,
     stage: &Stage<'_>,
-    frames: &[Frame],
+    (frames, muscles): (&[Frame], Option<&MusclesAtWork<'_>>),
     worst: impl Iterator<Item = usize>,
 ) -> Result<Vec<(String, Vec<u8>)>, Fail> {
-    let mut figures = vec![("body".to_owned(), moments(title, model, stage, frames)?)];
+    let mut figures = vec![("body".to_owned(), moments(title, model, stage, (frames, muscles))?)];
     let mut shown: Vec<usize> = vec![];
     for i in worst.filter(|&i| model.coordinates()[i].kind == CoordinateKind::Rotation) {
         if !shown.contains(&i) && shown.len() < MOST_JOINTS {
@@ -160,7 +163,7 @@ pub(crate) fn both(name: &str, figure: &Figure) -> Result<[(String, Vec<u8>); 2]
 fn before_and_after(
     scenario: &Scenario,
     things: &[Thing],
-    recording: &Recording,
+    (recording, muscles): (&Recording, Option<&MusclesAtWork<'_>>),
     subtitle: &str,
 ) -> Result<BodyFigure, Fail> {
     let rows = recording.times().len();
@@ -168,6 +171,9 @@ fn before_and_after(
     let mut posture = body::body(&scenario.model, &Stage::of_run(scenario, things), &last)?;
     posture.start = body::parts(&scenario.model, &first.posture, None)?;
     posture.notes = vec![body::key_numbers(&scenario.model, &scenario.supports, &last).join("; ")];
+    if let Some(muscles) = muscles {
+        posture.muscles = muscles.drawn(muscles.moments.len().saturating_sub(1), &last.posture)?;
+    }
     Ok(BodyFigure {
         title: scenario.title.clone(),
         subtitle: subtitle.to_owned(),
@@ -181,7 +187,7 @@ pub(crate) fn pictures_of_run(
     scenario: &Scenario,
     things: &[Thing],
     summary: &Summary,
-    recording: &Recording,
+    (recording, muscles): (&Recording, Option<&MusclesAtWork<'_>>),
 ) -> Result<[Figure; 2], Fail> {
     let main = main_coordinate(scenario, summary);
     let coordinate = &scenario.model.coordinates()[main];
@@ -193,7 +199,10 @@ pub(crate) fn pictures_of_run(
     line.critical_level = scenario.hysteresis.critical_level;
     line.recovery_level = scenario.hysteresis.recovery_level;
     if scenario.has_supports_or_tasks() {
-        return Ok([body_figure(&before_and_after(scenario, things, recording, &subtitle)?), time_line(&line)]);
+        return Ok([
+            body_figure(&before_and_after(scenario, things, (recording, muscles), &subtitle)?),
+            time_line(&line),
+        ]);
     }
     let posture: Vec<f64> = summary.coordinates.iter().map(|c| c.final_value).collect();
     let mut sweep = Sweep::new(&scenario.model, &scenario.loads, main, &posture)?;
@@ -209,10 +218,17 @@ pub(crate) fn pictures_of_run(
 }
 
 /// The body at the start, at its hardest if that is another moment, and at the end.
-fn moments(title: &str, model: &Model, stage: &Stage<'_>, frames: &[Frame]) -> Result<Figure, Fail> {
+fn moments(
+    title: &str,
+    model: &Model,
+    stage: &Stage<'_>,
+    (frames, muscles): (&[Frame], Option<&MusclesAtWork<'_>>),
+) -> Result<Figure, Fail> {
     let mut postures: Vec<BodyPosture> = vec![];
-    let mut show = |title: String, frame: &Frame| -> Result<(), Fail> {
+    let mut show = |title: String, number: usize| -> Result<(), Fail> {
+        let frame = &frames[number];
         let mut posture = body::body(model, stage, frame)?;
+        posture.muscles = muscles.map_or(Ok(vec![]), |muscles| muscles.drawn(number, &frame.posture))?;
         posture.title = title;
         posture.notes = body::key_numbers(model, stage.supports, frame);
         postures.push(posture);
@@ -221,13 +237,14 @@ fn moments(title: &str, model: &Model, stage: &Stage<'_>, frames: &[Frame]) -> R
     if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
         let still = |frame: &Frame| frame.posture.iter().zip(&first.posture).all(|(a, b)| (a - b).abs() < STILL);
         let throughout = last.time > first.time && frames.iter().all(still);
-        show(if throughout { format!("throughout, {}", how_long(last.time)) } else { "start".to_owned() }, first)?;
-        let hardest = frames.iter().max_by(|a, b| a.effort().total_cmp(&b.effort()));
-        if let Some(hardest) = hardest.filter(|h| h.effort() > HARDER * first.effort().max(last.effort())) {
-            show(format!("hardest moment, {}", how_long(hardest.time)), hardest)?;
+        show(if throughout { format!("throughout, {}", how_long(last.time)) } else { "start".to_owned() }, 0)?;
+        let hardest = (0..frames.len()).max_by(|&a, &b| frames[a].effort().total_cmp(&frames[b].effort()));
+        let harder = HARDER * first.effort().max(last.effort());
+        if let Some(hardest) = hardest.filter(|&number| frames[number].effort() > harder) {
+            show(format!("hardest moment, {}", how_long(frames[hardest].time)), hardest)?;
         }
         if last.time > first.time && !throughout {
-            show(format!("end, {}", how_long(last.time)), last)?;
+            show(format!("end, {}", how_long(last.time)), frames.len() - 1)?;
         }
     }
     Ok(body_figure(&BodyFigure { title: title.to_owned(), postures, ..BodyFigure::default() }))

@@ -30,6 +30,8 @@ pub(crate) struct Frame {
     pub(crate) load: Vec<f64>,
     /// Fatigue of both groups of each coordinate, where the source of the frame knows fatigue.
     pub(crate) fatigue: Option<Vec<[f64; 2]>>,
+    /// Load and tension (N) of every muscle that tires by itself.
+    pub(crate) muscles: Vec<[f64; 2]>,
     pub(crate) standing: Option<Standing>,
 }
 
@@ -53,6 +55,7 @@ impl Frame {
             passive: row.passive.to_vec(),
             load: row.load.to_vec(),
             fatigue: Some(row.fatigue.to_vec()),
+            muscles: row.muscles.to_vec(),
             standing,
         }
     }
@@ -67,6 +70,7 @@ impl Frame {
             passive: sample.passive.to_vec(),
             load: sample.load.to_vec(),
             fatigue: Some(sample.fatigue.to_vec()),
+            muscles: vec![],
             standing: sample.standing.cloned(),
         }
     }
@@ -80,7 +84,8 @@ impl Frame {
         let angles = angles(model, posture);
         let load = |(i, coordinate)| relative_load(coordinate, angles[i], active_torque(external[i], passive[i]));
         let load = model.coordinates().iter().enumerate().map(load).collect();
-        Self { time, posture: posture.to_vec(), angles, external, passive, load, fatigue: None, standing: None }
+        let (posture, muscles) = (posture.to_vec(), vec![]);
+        Self { time, posture, angles, external, passive, load, fatigue: None, muscles, standing: None }
     }
 
     /// A posture that was given, held at rest.
@@ -144,5 +149,8 @@ pub(crate) fn frame_of_posture(model: &Model, found: &RelaxedPosture) -> Result<
         ..Standing::default()
     });
     let [external, passive] = &found.torques;
-    Ok(Frame { standing, ..Frame::at(model, 0.0, found.relaxed.posture.values(), [external, passive]) })
+    let mut frame = Frame::at(model, 0.0, found.relaxed.posture.values(), [external, passive]);
+    // By the strength that muscles had in this posture, not in that of the model.
+    found.work.iter().for_each(|work| frame.load[work.coordinate] = work.relative_load());
+    Ok(Frame { standing, ..frame })
 }

@@ -1,6 +1,7 @@
 //! Computes how hard every muscle works in the moments that a page shows, and where it lies.
 
 use contrapposto::joint_torques::{JointMuscles, MissingTorque, MuscleWork};
+use contrapposto::kinematics::Kinematics;
 use contrapposto::model::{Model, Side};
 use contrapposto::muscle::{DrawnPoint, Muscle, Musculature};
 use contrapposto::posture::Posture;
@@ -10,8 +11,10 @@ use contrapposto_formats::{
     LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText,
 };
 
-use contrapposto_plot::load_color;
+use contrapposto_plot::{BodyMuscle, load_color};
+use nalgebra::Point3;
 
+use super::axes::turn;
 use super::frame::Frame;
 use super::text::plain_table;
 use super::words::{group, moment_in_words, percent, plain};
@@ -86,11 +89,16 @@ pub(crate) fn muscles_at_work<'a>(
             point
         };
         let count = work.tensions().len();
+        // Muscles that have tired one by one share the torques in another way than rested ones.
+        let [activations, tensions] = match frame.muscles.is_empty() {
+            true => [work.activations().to_vec(), work.tensions().to_vec()],
+            false => [0, 1].map(|k| frame.muscles.iter().map(|muscle| muscle[k]).collect()),
+        };
         moments.push(WorkingMoment {
             time: frame.time,
             judged: judged(frame.time),
-            activations: work.activations().to_vec(),
-            tensions: work.tensions().to_vec(),
+            activations,
+            tensions,
             missing: work.missing(model),
             lines: (0..count).map(|muscle| work.line(muscle).into_iter().map(local).collect()).collect(),
         });
@@ -132,9 +140,33 @@ impl<'a> MusclesAtWork<'a> {
         all.map(tube).collect()
     }
 
+    /// The muscles of the moment of this number as a figure shows them.
+    pub(crate) fn drawn(&self, moment: usize, posture: &[f64]) -> Result<Vec<BodyMuscle>, Fail> {
+        let Some(moment) = self.moments.get(moment) else { return Ok(vec![]) };
+        let (turn, mut kinematics) = (turn(self.model), Kinematics::new(self.model));
+        let updated = kinematics.update(self.model, &Posture::new(posture.to_vec()));
+        updated.map_err(|error| Fail::job("picture", error))?;
+        let point = |point: &DrawnPoint| match point.segment {
+            Some(segment) => turn.point((kinematics.placement(self.model, segment) * Point3::from(point.place)).coords),
+            None => turn.point(point.place),
+        };
+        let lines = self.musculature().muscles.iter().zip(&moment.lines).zip(&moment.activations);
+        let muscle = |((muscle, line), &activation): ((&Muscle, &Vec<DrawnPoint>), &f64)| {
+            let branches = line.chunk_by(|_, next| !next.begins);
+            let lines = branches.map(|branch| branch.iter().map(point).collect()).collect();
+            BodyMuscle { lines, radius: radius(muscle.spec().max_isometric_force), activation }
+        };
+        Ok(lines.map(muscle).collect())
+    }
+
     fn all_peaks(&self) -> impl Iterator<Item = Peak<'_>> {
+        self.peaks_in(&self.moments)
+    }
+
+    /// Every muscle at its greatest activation in some moments.
+    fn peaks_in<'b>(&'b self, moments: &'b [WorkingMoment]) -> impl Iterator<Item = Peak<'b>> {
         self.musculature().muscles.iter().enumerate().filter_map(|(m, muscle)| {
-            let mut judged = self.moments.iter().filter(|moment| moment.judged);
+            let mut judged = moments.iter().filter(|moment| moment.judged);
             let (name, works_for) = (muscle.spec().name.as_str(), self.work.works_for()[m]);
             if let Some(of) = self.tired.map(|outcome| &outcome.muscles[m]) {
                 let (activation, time) = of.peak_load;
@@ -156,13 +188,26 @@ impl<'a> MusclesAtWork<'a> {
 
     /// The greatest torque that the muscles cannot give, and its time, s.
     fn lack(&self) -> Option<(MissingTorque, f64)> {
-        let judged = self.moments.iter().filter(|moment| moment.judged);
+        Self::lack_in(&self.moments)
+    }
+
+    fn lack_in(moments: &[WorkingMoment]) -> Option<(MissingTorque, f64)> {
+        let judged = moments.iter().filter(|moment| moment.judged);
         let all = judged.filter_map(|moment| Some((moment.missing?, moment.time)));
         all.rev().max_by(|a, b| a.0.torque.total_cmp(&b.0.torque))
     }
 
     /// The entries of a JSON file.
     pub(crate) fn text(&self) -> MuscleWorkText {
+        self.text_in(&self.moments)
+    }
+
+    /// The same for the moment of this number alone.
+    pub(crate) fn text_of_moment(&self, number: usize) -> MuscleWorkText {
+        self.text_in(&self.moments[number..=number])
+    }
+
+    fn text_in(&self, moments: &[WorkingMoment]) -> MuscleWorkText {
         let of_muscle = |peak: Peak<'_>| {
             let works_for = peak.works_for.map(|(coordinate, side)| WorksForText::new(self.model, coordinate, side));
             let Peak { activation: peak_activation, time: at_s, tension: force_n, .. } = peak;
@@ -181,8 +226,8 @@ impl<'a> MusclesAtWork<'a> {
             LackText { coordinate, torque_nm: missing.torque, at_s }
         };
         MuscleWorkText {
-            muscles: self.all_peaks().map(of_muscle).collect(),
-            muscles_lack: self.lack().map(lack),
+            muscles: self.peaks_in(moments).map(of_muscle).collect(),
+            muscles_lack: Self::lack_in(moments).map(lack),
             muscles_fail: self.tired.map(fail),
         }
     }

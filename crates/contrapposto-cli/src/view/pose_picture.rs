@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use super::axes::turn;
 use super::body;
 use super::held::held;
+use super::muscle_work::MusclesAtWork;
 use super::stage::Stage;
 use crate::fail::Fail;
 
@@ -24,8 +25,13 @@ struct Marks {
 }
 
 /// The picture of a solved pose.
-pub(crate) fn pose_picture(scenario: &PoseScenario, pose: &SolvedPosture, subtitle: &str) -> Result<BodyFigure, Fail> {
+pub(crate) fn pose_picture(
+    scenario: &PoseScenario,
+    (pose, muscles): (&SolvedPosture, Option<&MusclesAtWork<'_>>),
+    subtitle: &str,
+) -> Result<BodyFigure, Fail> {
     let mut posture = pose_posture(scenario, pose)?;
+    posture.muscles = muscles.map_or(Ok(vec![]), |muscles| muscles.drawn(0, pose.posture.values()))?;
     posture.start = body::parts(&scenario.model, scenario.start.values(), None)?;
     Ok(BodyFigure {
         title: scenario.title.clone(),

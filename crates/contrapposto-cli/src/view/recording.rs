@@ -23,6 +23,8 @@ pub(crate) struct Recording {
     passive: Vec<f64>,
     load: Vec<f64>,
     fatigue: Vec<[f64; 2]>,
+    /// Of muscles that tire one by one: load and tension, N.
+    muscles: Vec<[f64; 2]>,
     asked: Vec<Option<(Case, Option<f64>)>>,
     /// By support: share of weight, force, where it acts, couple about that point.
     contacts: Vec<[f64; 10]>,
@@ -40,6 +42,8 @@ pub(crate) struct Row<'a> {
     pub(crate) passive: &'a [f64],
     pub(crate) load: &'a [f64],
     pub(crate) fatigue: &'a [[f64; 2]],
+    /// Load and tension (N) of every muscle that tires by itself.
+    pub(crate) muscles: &'a [[f64; 2]],
     pub(crate) asked: &'a [Option<(Case, Option<f64>)>],
     pub(crate) contacts: &'a [[f64; 10]],
     /// Of a body with supports or tasks.
@@ -61,6 +65,7 @@ impl Recording {
             passive: vec![],
             load: vec![],
             fatigue: vec![],
+            muscles: vec![],
             asked: vec![],
             contacts: vec![],
             centers: vec![],
@@ -94,6 +99,7 @@ impl Recording {
         self.passive.extend_from_slice(sample.passive);
         self.load.extend_from_slice(sample.load);
         self.fatigue.extend_from_slice(sample.fatigue);
+        self.muscles.extend(sample.muscles.iter().map(|muscle| [muscle.load, muscle.tension]));
         self.asked.extend(sample.decisions.iter().map(|d| d.as_ref().map(|decision| (decision.case, decision.goal))));
         if let Some(standing) = sample.standing {
             self.contacts.extend(standing.contacts.iter().map(numbers));
@@ -118,13 +124,19 @@ impl Recording {
         (self.fits(scenario, rows) && self.hardest.as_ref().is_none_or(one)).then_some(self)
     }
 
+    /// Number of muscles that tire one by one.
+    fn muscles_of_a_row(&self) -> usize {
+        self.muscles.len() / self.times.len().max(1)
+    }
+
     /// Forgets all rows but the first `rows`.
     fn truncate(&mut self, rows: usize) {
-        let n = self.coordinates;
+        let (n, muscles) = (self.coordinates, self.muscles_of_a_row());
         self.times.truncate(rows);
         for column in [&mut self.posture, &mut self.external, &mut self.passive, &mut self.load] {
             column.truncate(rows * n);
         }
+        self.muscles.truncate(rows * muscles);
         self.fatigue.truncate(rows * n);
         self.asked.truncate(rows * n);
         self.contacts.truncate(rows * self.supports);
@@ -139,6 +151,7 @@ impl Recording {
         self.times.len() == rows
             && by_coordinate.iter().all(|column| column.len() == rows * n)
             && self.fatigue.len() == rows * n
+            && self.muscles.len() == rows * scenario.tiring_muscles()
             && self.asked.len() == rows * n
             && self.contacts.len() == standing * self.supports
             && self.centers.len() == standing
@@ -148,6 +161,7 @@ impl Recording {
                 .fatigue
                 .iter()
                 .flatten()
+                .chain(self.muscles.iter().flatten())
                 .chain(self.contacts.iter().flatten())
                 .chain(self.centers.iter().flatten())
                 .all(|v| v.is_finite())
@@ -168,6 +182,7 @@ impl Recording {
 
     pub(crate) fn row(&self, row: usize) -> Row<'_> {
         let columns = row * self.coordinates..(row + 1) * self.coordinates;
+        let count = self.muscles_of_a_row();
         let supports = if self.contacts.is_empty() { 0..0 } else { row * self.supports..(row + 1) * self.supports };
         Row {
             time: self.times[row],
@@ -176,6 +191,7 @@ impl Recording {
             passive: &self.passive[columns.clone()],
             load: &self.load[columns.clone()],
             fatigue: &self.fatigue[columns.clone()],
+            muscles: &self.muscles[row * count..(row + 1) * count],
             asked: &self.asked[columns],
             contacts: &self.contacts[supports],
             center_of_mass: self.centers.get(row).copied(),

@@ -42,6 +42,7 @@ mod solvers;
 mod stability;
 mod ways_to_stand;
 
+pub use description::described_anew;
 pub use finder::equilibria_watched;
 pub use mirror::Mirror;
 pub use outcome::{Carried, Equilibria, Hanging, RelaxedPosture, Work};

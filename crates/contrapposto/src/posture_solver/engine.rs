@@ -321,7 +321,16 @@ impl<'a> Engine<'a> {
         self.describe(posture, converged, steps)
     }
 
-    fn describe(&mut self, posture: Posture, converged: bool, steps: usize) -> Result<SolvedPosture, EngineError> {
+    /// Describes a posture in which solving has ended after so many steps.
+    ///
+    /// # Errors
+    /// As [`Engine::evaluate`].
+    pub(crate) fn describe(
+        &mut self,
+        posture: Posture,
+        converged: bool,
+        steps: usize,
+    ) -> Result<SolvedPosture, EngineError> {
         let levels = self.report(&posture)?;
         let reached = levels.iter().all(|level| level.length <= self.settings.options.level_tolerance);
         let reason = match (reached, converged) {

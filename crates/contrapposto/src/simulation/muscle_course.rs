@@ -249,6 +249,11 @@ impl MuscleCourse {
 }
 
 impl MuscleState {
+    /// Every muscle of the mean person so far.
+    pub(super) fn muscles(&self) -> &[MuscleSummary] {
+        &self.muscles
+    }
+
     /// Takes in the muscles of a person; `missed`: the torques that they could not give, and the coordinate of each.
     fn take(
         &mut self,

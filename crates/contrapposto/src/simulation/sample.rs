@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::muscle_outcome::MuscleSummary;
 use crate::contact::Slip;
 use crate::hybrid::{Decision, Strategy};
 use crate::model::Side;
@@ -30,6 +31,8 @@ pub struct Sample<'a> {
     pub group_load: &'a [[f64; 2]],
     /// Fatigue of the positive and negative group of every coordinate, 0..=1. Depends on the load so far.
     pub fatigue: &'a [[f64; 2]],
+    /// Every muscle of a body whose muscles tire one by one; none of another body. Depends on the load so far.
+    pub muscles: &'a [MuscleSummary],
     /// Whether the positive and negative group of every coordinate can no longer hold their load.
     pub exhausted: &'a [[bool; 2]],
     /// For how long the positive and negative group of every coordinate could go on to hold their present load, s; infinite for ever.

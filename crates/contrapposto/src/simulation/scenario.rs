@@ -287,6 +287,12 @@ impl Scenario {
         !self.supports.is_empty() || !self.tasks.is_empty()
     }
 
+    /// Number of muscles that tire one by one.
+    pub fn tiring_muscles(&self) -> usize {
+        let muscles = self.muscles.as_ref().filter(|_| self.muscles_tire);
+        muscles.map_or(0, |muscles| muscles.musculature().muscles.len())
+    }
+
     /// Checks that all parts fit the model and each other.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use super::easiest::{Eased, Searched};
 use super::motion::Motion;
-use super::muscle_course::TiringMuscles;
+use super::muscle_course::{MuscleState, TiringMuscles};
 use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
 use super::state::State;
@@ -162,6 +162,7 @@ impl<'a> Simulation<'a> {
             load: &self.record.load,
             group_load: &self.record.group_load,
             fatigue: &self.state.fatigue,
+            muscles: self.state.muscles.as_ref().map_or(&[], MuscleState::muscles),
             exhausted: &self.record.exhausted,
             seconds_left: &self.record.seconds_left,
             stepping: self.record.stepping,

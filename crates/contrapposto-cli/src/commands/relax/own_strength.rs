@@ -4,7 +4,7 @@
 //! posture that a search finds is first settled: sought again from itself, by the muscles that it has then, until these stay. A settled
 //! posture counts by its own muscles, and the search is done again from the muscles of the best settled posture until it shows no better one.
 
-use contrapposto::equilibria::{Equilibria, RelaxedPosture, Search, SearchError, equilibria};
+use contrapposto::equilibria::{Equilibria, RelaxedPosture, Search, SearchError, described_anew, equilibria};
 use contrapposto::joint_torques::relative_load;
 use contrapposto::kinematics::Kinematics;
 use contrapposto_formats::RelaxScenario;
@@ -21,8 +21,10 @@ pub(crate) const SAME_STRENGTH: f64 = 1e-6;
 const UNSAID: f64 = 5e-3;
 /// Most searches over all starts.
 const MOST_SEARCHES: usize = 6;
-/// Rounds in which a posture is sought by the muscles of the one before, not of one between.
-const UNDAMPED: usize = 3;
+/// Most times that a posture is sought again here.
+const MOST_ROUNDS: usize = 60;
+/// The last of so many postures that are no better ends the rounds.
+const MOST_IN_VAIN: usize = 6;
 /// Postures that need more effort are no answers: a factor of the least, and an addition, as in a search.
 const MOST_EFFORT: (f64, f64) = (2.0, 0.05);
 /// Postures count as one if at no joint a torque differs by more than this share of strength, as in a search.
@@ -35,8 +37,10 @@ const BETTER: f64 = 0.999;
 /// A posture sought again until its muscles stay.
 struct Settled {
     posture: RelaxedPosture,
-    /// Change of a strength that is left.
+    /// Change of a strength between its own muscles and those by which it was sought.
     change: f64,
+    /// Its effort still fell when the rounds ended.
+    falls: bool,
 }
 
 /// The postures of least effort, each by its own muscles.
@@ -65,45 +69,79 @@ pub(crate) fn find(scenario: &mut RelaxScenario) -> Result<Equilibria, SearchErr
         if searches == MOST_SEARCHES || before.is_some_and(|before| best.effort() >= BETTER * before) {
             let most = MOST_EFFORT.0 * best.effort() + MOST_EFFORT.1;
             all.retain(|one| one.effort() <= most);
-            for (number, one) in (1..).zip(&all).filter(|(_, one)| one.change > UNSAID) {
-                print_note("warning", &unsettled(&format!("posture {number}"), one.change));
-            }
+            (1..).zip(&all).for_each(|(number, one)| one.say(number));
             let postures = all.into_iter().map(|one| one.posture);
             return Ok(Equilibria { postures: postures.collect(), ..found });
         }
     }
 }
 
-/// Seeks a posture again from itself, by the muscles that it has each time, until these stay.
+/// Seeks a posture again from itself, by the muscles of a posture `at` that follows it. Of all that are found this is the one of least effort, each by its
+/// own muscles. `at` follows by a shorter part of the way after a posture that is no better, and the end is where none was for a while.
 fn settle(scenario: &mut RelaxScenario, mut posture: RelaxedPosture) -> Result<Settled, SearchError> {
-    let mut change = scenario.take_strength(&posture.relaxed.posture);
-    for round in 0..MOST_STRENGTH_ROUNDS {
+    let change = scenario.take_strength(&posture.relaxed.posture);
+    let mut best = Settled::by_own_muscles(scenario, &posture, change)?;
+    let mut at = posture.relaxed.posture.clone();
+    let (mut share, mut in_vain) = (1.0, 0);
+    for round in 0..MOST_ROUNDS {
         // After the least work that there is the one start is the posture itself.
         let nearby = Search { start: &posture.relaxed.posture, scattered: 0, most_work: 1, ..scenario.search() };
         let found = equilibria(&nearby, RelaxScenario::OPTIONS)?;
         let Some(first) = found.postures.into_iter().next() else { break };
-        let before = std::mem::replace(&mut posture, first);
-        change = scenario.take_strength(&posture.relaxed.posture);
-        if change <= SAME_STRENGTH {
+        let starts = std::mem::replace(&mut posture, first).starts;
+        posture.starts = starts;
+        let change = scenario.take_strength(&posture.relaxed.posture);
+        let settled = Settled::by_own_muscles(scenario, &posture, change)?;
+        let is_better = settled.effort() < BETTER * best.effort();
+        (share, in_vain) = if is_better { (f64::min(2.0 * share, 1.0), 0) } else { (0.5 * share, in_vain + 1) };
+        let at_rest = change <= SAME_STRENGTH;
+        if settled.effort() < best.effort() || at_rest && BETTER * settled.effort() < best.effort() {
+            best = settled;
+        }
+        if at_rest || in_vain == MOST_IN_VAIN {
             break;
         }
-        if round >= UNDAMPED {
-            // Two postures that lead to each other have one between them that leads to itself.
-            let mut middle = before.relaxed.posture.clone();
-            let mut way = vec![0.0; scenario.model.rates().len()];
-            middle.difference(&scenario.model, &posture.relaxed.posture, &mut way);
-            way.iter_mut().for_each(|by| *by *= 0.5);
-            middle.displace(&scenario.model, &way);
-            scenario.take_strength(&middle);
-        }
-        posture.starts = before.starts;
+        best.falls = round + 1 == MOST_ROUNDS;
+        let mut way = vec![0.0; scenario.model.rates().len()];
+        at.difference(&scenario.model, &posture.relaxed.posture, &mut way);
+        way.iter_mut().for_each(|by| *by *= share);
+        at.displace(&scenario.model, &way);
+        scenario.take_strength(&at);
     }
-    Ok(Settled { posture, change })
+    Ok(best)
 }
 
 impl Settled {
+    /// A posture by the muscles that the body has now; `change`: of a strength since it was sought.
+    fn by_own_muscles(scenario: &RelaxScenario, posture: &RelaxedPosture, change: f64) -> Result<Self, SearchError> {
+        let at_posture = Search { start: &posture.relaxed.posture, ..scenario.search() };
+        Ok(Self { posture: described_anew(&at_posture, RelaxScenario::OPTIONS, posture)?, change, falls: false })
+    }
+
     fn effort(&self) -> f64 {
         self.posture.relaxed.effort
+    }
+
+    /// Says of the posture of this number what its muscles leave in doubt.
+    fn say(&self, number: usize) {
+        if self.falls {
+            print_note(
+                "warning",
+                &format!(
+                    "posture {number}: its effort still fell when it had been sought again {MOST_ROUNDS} times by the muscles of the posture before; \
+                     one nearby may need less"
+                ),
+            );
+        } else if self.change > UNSAID {
+            print_note(
+                "note",
+                &format!(
+                    "posture {number} was sought with strengths and passive torques of which one differs by {} of a strength from those of its own \
+                     muscles, by which all its numbers are; none that was found nearby needs less effort",
+                    percent(self.change)
+                ),
+            );
+        }
     }
 
     /// Whether another posture is the same, as a search sees it: no torque differs by more than a share of strength, and no segment is far away.

@@ -67,7 +67,8 @@ impl Posed {
             let Self { scenario, pose, kept_balance, answer, .. } = self;
             let held = held(&scenario.model, &pose.posture, &scenario.loads, &scenario.supports)?;
             let text = PoseText::new(scenario, pose, (&answer.verdict, &answer.advice), vec![]);
-            report_of_pose(scenario, (pose, *kept_balance), (&text, answer), held)
+            let muscles = muscles_at_work(&scenario.model, scenario.muscles.as_ref(), from_ref(&held.frame), |_| true)?;
+            report_of_pose(scenario, (pose, *kept_balance), (&text, answer), (held, muscles.as_ref()))
         };
         page().map_err(Failure::from)
     }

@@ -6,13 +6,12 @@ use contrapposto_formats::RelaxScenario;
 
 use super::source::ScenarioSource;
 use crate::args::SuggestArgs;
-use crate::commands::relax::{advice_without, answer, find, read};
+use crate::commands::relax::{advice_without, answer, find, frames_and_muscles, read};
 use crate::fail::Fail;
 use crate::library::failure::{Failure, Note, with_notes};
 use crate::library::frames::Frames;
 use crate::output::json_text;
 use crate::view::answer::{Answer, text_without_posture};
-use crate::view::frame::frame_of_posture;
 use crate::view::report::equilibria::report_of_equilibria;
 use crate::view::text::relax::RelaxText;
 
@@ -52,9 +51,10 @@ impl Relaxed {
 
     fn of(scenario: RelaxScenario, found: Equilibria) -> Result<Self, Fail> {
         let answer = answer(&scenario, &found, SuggestArgs::default());
-        let json = json_text("relax.json", &RelaxText::new(&scenario, &found, &answer, vec![]))?;
-        let frames = found.postures.iter().map(|posture| frame_of_posture(&scenario.model, posture));
-        let frames = Frames::of(&scenario.model, &frames.collect::<Result<Vec<_>, _>>()?);
+        let (frames, muscles) = frames_and_muscles(&scenario, &found)?;
+        let text = RelaxText::new(&scenario, (&found, muscles.as_ref()), &answer, vec![]);
+        let json = json_text("relax.json", &text)?;
+        let frames = Frames::of(&scenario.model, &frames);
         Ok(Self { scenario, found: Some((found, answer)), json, frames })
     }
 
@@ -74,7 +74,10 @@ impl Relaxed {
     /// [`Failure`] where the page cannot be drawn, or the body cannot stand.
     pub fn report(&self) -> Result<String, Failure> {
         match &self.found {
-            Some((found, answer)) => Ok(report_of_equilibria(&self.scenario, found, answer)?),
+            Some((found, answer)) => {
+                let (frames, muscles) = frames_and_muscles(&self.scenario, found)?;
+                Ok(report_of_equilibria(&self.scenario, found, (&frames, muscles.as_ref()), answer)?)
+            }
             None => Err(Failure::failed("the body cannot stand: there is no posture to show")),
         }
     }

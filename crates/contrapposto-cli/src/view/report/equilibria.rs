@@ -13,8 +13,8 @@ use super::page;
 use crate::fail::Fail;
 use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
-use crate::view::frame::{Frame, frame_of_posture};
-use crate::view::muscle_work::muscles_at_work;
+use crate::view::frame::Frame;
+use crate::view::muscle_work::MusclesAtWork;
 use crate::view::muscles::{fails_first, hardest};
 use crate::view::scene::Scene;
 use crate::view::scene::hazard::hazards;
@@ -25,14 +25,9 @@ use crate::view::words::{MOST_JOINTS_SHOWN, how_long, list, percent, plain, valu
 /// `--figures` of all postures of least effort.
 pub(crate) fn figures_of_equilibria(
     scenario: &RelaxScenario,
-    found: &Equilibria,
+    frames: &[Frame],
 ) -> Result<Vec<(String, Vec<u8>)>, Fail> {
-    let frames = frames_of_postures(&scenario.model, &found.postures)?;
-    figures_of_postures(&scenario.title, &scenario.model, &frames, &numbered(frames.len()))
-}
-
-fn frames_of_postures(model: &Model, postures: &[RelaxedPosture]) -> Result<Vec<Frame>, Fail> {
-    postures.iter().map(|posture| frame_of_posture(model, posture)).collect()
+    figures_of_postures(&scenario.title, &scenario.model, frames, &numbered(frames.len()))
 }
 
 /// `posture 1`, `posture 2`, ...
@@ -44,14 +39,12 @@ fn numbered(count: usize) -> Vec<String> {
 pub(crate) fn report_of_equilibria(
     scenario: &RelaxScenario,
     found: &Equilibria,
+    (frames, muscles): (&[Frame], Option<&MusclesAtWork<'_>>),
     Answer { verdict, advice, .. }: &Answer,
 ) -> Result<String, Fail> {
     let model = &scenario.model;
-    let frames = frames_of_postures(model, &found.postures)?;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
-    let muscles = muscles_at_work(model, scenario.muscles.as_ref(), &frames, |_| true)?;
-    let still = Scene::of(&scenario.title, model, scenario.start.values(), &frames, stage);
-    let scene = Scene { muscles: muscles.as_ref(), ..still };
+    let scene = Scene { muscles, ..Scene::of(&scenario.title, model, scenario.start.values(), frames, stage) };
     let shown = shown(model);
     let first = found.postures.first().map_or(0, main_coordinate_of);
     let mut report = scene.report(Moments::Postures(numbered(frames.len())), first)?;
@@ -95,7 +88,7 @@ pub(crate) fn report_of_equilibria(
     report.table = Table {
         heading: "Side by side".to_owned(),
         columns: ["Posture", "Effort", "Weight on", "Held by", "Highest load"].map(str::to_owned).to_vec(),
-        rows: found.postures.iter().zip(&frames).enumerate().map(row).collect(),
+        rows: found.postures.iter().zip(frames).enumerate().map(row).collect(),
     };
     let others = hazards(model, &frames[1..], false);
     report.facts.extend(others.into_iter().map(|text| Fact { name: "Hazard in others".to_owned(), text }));

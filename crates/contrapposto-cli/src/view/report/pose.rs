@@ -11,7 +11,7 @@ use crate::fail::Fail;
 use crate::view::answer::Answer;
 use crate::view::figures::figures_of_postures;
 use crate::view::held::{Held, held};
-use crate::view::muscle_work::muscles_at_work;
+use crate::view::muscle_work::MusclesAtWork;
 use crate::view::scene::Scene;
 use crate::view::stage::Stage;
 use crate::view::targets::targets;
@@ -23,17 +23,16 @@ pub(crate) fn report_of_pose(
     scenario: &PoseScenario,
     (pose, kept_balance): (&SolvedPosture, bool),
     (text, answer): (&PoseText, &Answer),
-    held: Held,
+    (held, muscles): (Held, Option<&MusclesAtWork<'_>>),
 ) -> Result<String, Fail> {
     let model = &scenario.model;
     let Held { frame, missing: unheld, .. } = held;
     let frames = [frame];
-    let muscles = muscles_at_work(model, scenario.muscles.as_ref(), &frames, |_| true)?;
     let stage = Stage::still(&scenario.supports, &scenario.things, &scenario.loads);
     let supported = scenario.goals.iter().any(|goal| goal.hard);
     let scene = Scene {
         held: (!supported).then_some(scenario.loads.as_slice()),
-        muscles: muscles.as_ref(),
+        muscles,
         ..Scene::of(&scenario.title, model, scenario.start.values(), &frames, stage)
     };
     let [frame] = &frames;

@@ -11,12 +11,13 @@ use contrapposto::model::Model;
 use contrapposto::posture_solver::Reason;
 use contrapposto::tasks::PriorityLevel;
 use contrapposto::tasks::Task;
-use contrapposto_formats::{AdviceText, RelaxScenario, SlipText, VerdictText};
+use contrapposto_formats::{AdviceText, MuscleWorkText, RelaxScenario, SlipText, VerdictText};
 use serde::Serialize;
 
 use super::group::GroupName;
 use super::plain_table;
 use crate::view::answer::Answer;
+use crate::view::muscle_work::MusclesAtWork;
 use crate::view::three_axis::angles;
 use crate::view::words::how_long;
 use crate::view::words::shares_of_all;
@@ -77,6 +78,9 @@ pub(crate) struct RelaxedPostureText {
     coordinates: BTreeMap<String, f64>,
     /// Starts that led here.
     starts: Vec<String>,
+    /// The muscles of a body whose strength they give.
+    #[serde(flatten)]
+    muscle_work: Option<MuscleWorkText>,
 }
 
 #[derive(Serialize)]
@@ -135,7 +139,16 @@ struct WorkText {
 }
 
 impl RelaxText {
-    pub(crate) fn new(scenario: &RelaxScenario, found: &Equilibria, answer: &Answer, files: Vec<String>) -> Self {
+    pub(crate) fn new(
+        scenario: &RelaxScenario,
+        (found, muscles): (&Equilibria, Option<&MusclesAtWork<'_>>),
+        answer: &Answer,
+        files: Vec<String>,
+    ) -> Self {
+        let posture = |(i, posture): (usize, &RelaxedPosture)| {
+            let muscles = muscles.map(|muscles| muscles.text_of_moment(i));
+            RelaxedPostureText::new(scenario, posture, muscles)
+        };
         let names = scenario.model.coordinates().iter().map(|c| c.name.clone());
         Self {
             title: scenario.title.clone(),
@@ -148,14 +161,14 @@ impl RelaxText {
             alike: found.alike,
             steps: found.steps,
             coordinate_order: names.collect(),
-            postures: found.postures.iter().map(|posture| RelaxedPostureText::new(scenario, posture)).collect(),
+            postures: found.postures.iter().enumerate().map(posture).collect(),
             files,
         }
     }
 }
 
 impl RelaxedPostureText {
-    fn new(scenario: &RelaxScenario, found: &RelaxedPosture) -> Self {
+    fn new(scenario: &RelaxScenario, found: &RelaxedPosture, muscle_work: Option<MuscleWorkText>) -> Self {
         let model = &scenario.model;
         let name = |i: usize| model.coordinates()[i].name.clone();
         let supports = scenario.supports.iter().zip(&found.supports).map(|(support, carried)| CarriedText {
@@ -209,6 +222,7 @@ impl RelaxedPostureText {
             fails_first: found.fails_first().map(group),
             coordinates: (0..model.coordinates().len()).map(name).zip(values).collect(),
             starts: found.starts.clone(),
+            muscle_work,
         }
     }
 }
@@ -299,6 +313,17 @@ impl RelaxedPostureText {
             "highest loads",
             work.map(|group| format!("{} {:.1} N m, {}", group.name, group.active_nm, percent(group.relative_load)))
                 .collect(),
+        );
+        let work = self.muscle_work.iter().flat_map(|work| work.hardest(MOST_JOINTS_SHOWN));
+        line(
+            "hardest-worked muscles",
+            work.map(|(name, muscle)| format!("{name} {:.0} N, {}", muscle.force_n, percent(muscle.peak_activation)))
+                .collect(),
+        );
+        let lack = self.muscle_work.iter().filter_map(|work| work.muscles_lack.as_ref());
+        line(
+            "muscles together lack",
+            lack.map(|lack| format!("{:.1} N m at {}", lack.torque_nm, in_words(&lack.coordinate))).collect(),
         );
         line(
             "endurance",
