@@ -25,6 +25,8 @@ const MOST_SEARCHES: usize = 6;
 const MOST_ROUNDS: usize = 60;
 /// The last of so many postures that are no better ends the rounds.
 const MOST_IN_VAIN: usize = 6;
+/// Least share of the way.
+const LEAST_SHARE: f64 = 0.25;
 /// Postures that need more effort are no answers: a factor of the least, and an addition, as in a search.
 const MOST_EFFORT: (f64, f64) = (2.0, 0.05);
 /// Postures count as one if at no joint a torque differs by more than this share of strength, as in a search.
@@ -93,7 +95,8 @@ fn settle(scenario: &mut RelaxScenario, mut posture: RelaxedPosture) -> Result<S
         let change = scenario.take_strength(&posture.relaxed.posture);
         let settled = Settled::by_own_muscles(scenario, &posture, change)?;
         let is_better = settled.effort() < BETTER * best.effort();
-        (share, in_vain) = if is_better { (f64::min(2.0 * share, 1.0), 0) } else { (0.5 * share, in_vain + 1) };
+        (share, in_vain) =
+            if is_better { (f64::min(2.0 * share, 1.0), 0) } else { (f64::max(0.5 * share, LEAST_SHARE), in_vain + 1) };
         let at_rest = change <= SAME_STRENGTH;
         if settled.effort() < best.effort() || at_rest && BETTER * settled.effort() < best.effort() {
             best = settled;
