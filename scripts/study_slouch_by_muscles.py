@@ -70,7 +70,7 @@ def relaxed(program, model, tissue, rests, held=""):
         done = subprocess.run(command, capture_output=True, text=True)
     if not done.stdout:
         sys.exit(done.stderr)
-    settled = "have not settled" not in done.stderr
+    settled = "its effort still fell" not in done.stderr
     return json.loads(done.stdout), done.stderr, settled
 
 
