@@ -18,8 +18,9 @@ const CROSS: f64 = 5.0;
 const HEAD: (f64, f64) = (9.0, 4.0);
 /// Shorter arrows are not drawn, px.
 const SHORTEST_ARROW: f64 = 2.0;
-/// Least width of a muscle, and width of its rim on both sides together, px.
+/// Least and greatest width of a muscle, and width of its rim on both sides together, px.
 const THINNEST_MUSCLE: f64 = 0.8;
+const THICKEST_MUSCLE: f64 = 30.0;
 const MUSCLE_RIM: f64 = 0.6;
 /// Opacity of surfaces and things.
 pub(crate) const GLASS: f64 = 0.3;
@@ -99,7 +100,7 @@ impl Paper<'_> {
         let mut order: Vec<(f64, &BodyMuscle)> = muscles.iter().take(MOST_MUSCLES).map(|m| (depth(m), m)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, muscle) in order {
-            let width = (2.0 * self.scale * muscle.radius).max(THINNEST_MUSCLE);
+            let width = (2.0 * self.scale * muscle.radius).max(THINNEST_MUSCLE).min(THICKEST_MUSCLE);
             let lines = muscle.lines.iter().map(|line| line.iter().filter_map(|p| self.point(*p)).collect());
             for line in lines.collect::<Vec<Vec<Point>>>() {
                 canvas.line(&line, Pen::solid(OUTLINE_PEN.ink, width + MUSCLE_RIM));

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests: helpers outside #[test] functions too")]
 
-use contrapposto_plot::{BodyFigure, BodyForce, BodyPart, BodyPosture, BodyThing, body_figure};
+use contrapposto_plot::{BodyFigure, BodyForce, BodyMuscle, BodyPart, BodyPosture, BodyThing, body_figure};
 
 const HOSTILE_TEXT: &str = "</text><script>alert(\"&'\")</script> $x$ \u{0} \u{ffff} 関節 \u{202e}";
 
@@ -32,6 +32,7 @@ fn body(load: f64) -> BodyPosture {
             limb(0.1, 0.95, 0.05),
             limb(-0.1, 0.95, 0.05),
         ],
+        muscles: vec![],
         start: vec![part(&[[0.0, 1.0, 0.3, 0.2]], Some(1.0))],
         forces: vec![BodyForce { at: [0.0, 0.0, 0.1], force: [0.0, 500.0, 0.0] }],
         center_of_mass: Some([0.02, 0.95, 0.0]),
@@ -185,6 +186,35 @@ fn a_part_in_hazard_has_a_colour_of_its_own_and_a_key() {
 }
 
 #[test]
+fn muscles_have_the_colours_of_load_over_a_pale_body_the_nearer_over_the_farther() {
+    let loaded = body(0.3);
+    let muscle = |x: f64, activation: f64| BodyMuscle {
+        lines: vec![vec![[x, 0.9, 0.1], [x, 0.5, 0.1]]],
+        radius: 0.01,
+        activation,
+    };
+    let with = BodyPosture { muscles: vec![muscle(0.2, 0.3), muscle(0.0, 0.05)], ..loaded.clone() };
+    let [plain, drawn] = [loaded, with].map(|posture| body_figure(&figure(vec![posture], "t")).svg());
+    let color = |activation: f64| {
+        let [r, g, b] = contrapposto_plot::load_color(activation);
+        format!("#{r:02x}{g:02x}{b:02x}")
+    };
+    let lines = |svg: &str, activation: f64| {
+        let stroke = format!("stroke=\"{}\"", color(activation));
+        svg.match_indices(&stroke).map(|(at, _)| at).collect::<Vec<_>>()
+    };
+    assert_eq!(lines(&plain, 0.3).len(), 0);
+    // One line a view; from the front the first muscle is the nearer one, and comes later.
+    let (near, far) = (lines(&drawn, 0.3), lines(&drawn, 0.05));
+    assert_eq!((near.len(), far.len()), (3, 3), "{drawn}");
+    assert!(near[0] > far[0]);
+    let part = format!("fill=\"{}\"", color(0.3));
+    // The legend may have the colour, too; four limbs have it in three views.
+    assert_eq!(plain.matches(&part).count(), drawn.matches(&part).count() + 12, "parts are pale");
+    assert!(drawn.contains("activation of muscles:") && plain.contains("muscle load:"));
+}
+
+#[test]
 fn boxes_are_translucent_cut_off_far_from_the_body_and_named_in_the_legend() {
     let svg = body_figure(&figure(vec![body(0.1)], "")).svg();
     let glass: Vec<&str> = svg.lines().filter(|line| line.contains("fill-opacity")).collect();
@@ -248,6 +278,7 @@ fn extreme_numbers_and_texts_with_markup_give_well_formed_figures() {
                 notes: vec![HOSTILE_TEXT.repeat(50); 20],
                 start: parts.clone(),
                 parts,
+                muscles: vec![BodyMuscle { lines: vec![vec![[a, b, a], [b, a, b]], vec![]], radius: a, activation: b }],
                 forces: vec![BodyForce { at: [a, b, a], force: [b, a, b] }],
                 center_of_mass: Some([a, a, b]),
                 ground: Some(b),

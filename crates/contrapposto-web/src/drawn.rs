@@ -1,6 +1,7 @@
 //! Writes the posture that is shown, or the run so far, for programs that draw: glTF and BVH.
 
 use contrapposto::model::Model;
+use contrapposto_formats::Thing;
 use contrapposto_formats::animation::{Clip, Skin, bvh, directions, glb, skinned_glb, solids};
 
 use crate::error::Refusal;
@@ -8,9 +9,14 @@ use crate::error::Refusal;
 /// Times, s, and postures.
 pub(crate) type Motion<'a> = (Vec<f64>, Vec<&'a [f64]>);
 
-/// The motion as glTF: with a skin, where the body has one and its file is given.
-pub(crate) fn gltf(model: &Model, title: &str, motion: &Motion<'_>, skin: Option<&[u8]>) -> Result<Vec<u8>, Refusal> {
-    let clip = clip(model, title, motion);
+/// The motion as glTF, with the things of its scenario: with a skin, where the body has one and its file is given.
+pub(crate) fn gltf(
+    (model, things): (&Model, &[Thing]),
+    title: &str,
+    motion: &Motion<'_>,
+    skin: Option<&[u8]>,
+) -> Result<Vec<u8>, Refusal> {
+    let clip = Clip { things, ..clip(model, title, motion) };
     let written = match skin.and_then(|file| Skin::from_file(model, file)) {
         Some(skin) => skinned_glb(&clip, &skin),
         None => glb(&clip, &(0..model.segments().len()).map(|s| solids(model, s)).collect::<Vec<_>>()),

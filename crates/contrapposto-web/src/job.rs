@@ -54,7 +54,8 @@ impl Job {
 
     /// The posture that is shown, or the run so far, as glTF.
     pub(crate) fn gltf(&self, skin: Option<&[u8]>) -> Result<Answer, Refusal> {
-        Ok(Answer::Bytes { bytes: drawn::gltf(self.model(), self.title(), &self.motion(), skin)? })
+        let things = &self.figure.body.scenario.things;
+        Ok(Answer::Bytes { bytes: drawn::gltf((self.model(), things), self.title(), &self.motion(), skin)? })
     }
 
     fn title(&self) -> &str {

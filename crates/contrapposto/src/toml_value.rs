@@ -1,14 +1,15 @@
 //! Gives the values of a parsed TOML file to the types that stand for them.
 //!
 //! The reader of `toml` itself gives a struct the same keys in several ways (as a table, as a date, with places), each of which is a copy
-//! of the struct's code: a quarter of the studio's module. The project's files have no dates, so here is one way, with the same words.
+//! of the struct's code: a quarter of the studio's module. The project's files have no dates, so here is one way, with the same words. A type is shown
+//! only values of the kind that it takes: a struct a table, not an array of its fields.
 
 use std::fmt::Display;
 use std::ops::Range;
 
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{
-    DeserializeOwned, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
+    DeserializeOwned, DeserializeSeed, Deserializer, Error as _, Expected, MapAccess, SeqAccess, Unexpected, Visitor,
 };
 use serde::forward_to_deserialize_any;
 use toml::Spanned;
@@ -73,6 +74,17 @@ enum Kind<'a> {
     Other(&'a DeValue<'a>),
 }
 
+/// A value that holds no others, or the kind of one that does.
+enum Scalar<'a> {
+    Text(&'a str),
+    Whole(i128),
+    Real(f64),
+    Truth(bool),
+    Date,
+    Array,
+    Table,
+}
+
 impl<'a> From<&'a Spanned<DeValue<'a>>> for Value<'a> {
     fn from(value: &'a Spanned<DeValue<'a>>) -> Self {
         let kind = match value.get_ref() {
@@ -83,31 +95,121 @@ impl<'a> From<&'a Spanned<DeValue<'a>>> for Value<'a> {
     }
 }
 
+impl<'a> Value<'a> {
+    /// The entries of a table; a type that stands for a table takes nothing else.
+    fn table<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+        let table = match self.kind {
+            Kind::Table(table) | Kind::Other(DeValue::Table(table)) => table,
+            Kind::Other(_) => return Err(self.misfit(&visitor)),
+        };
+        visitor.visit_map(Entries::of(table)).map_err(|error| error.at(&self.span))
+    }
+
+    fn array<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+        let Kind::Other(DeValue::Array(list)) = self.kind else { return Err(self.misfit(&visitor)) };
+        visitor.visit_seq(Items(list.iter())).map_err(|error| error.at(&self.span))
+    }
+
+    fn number<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+        match self.scalar() {
+            Ok(Scalar::Whole(number)) => whole(number, visitor),
+            Ok(Scalar::Real(number)) => visitor.visit_f64(number),
+            Ok(_) => return Err(self.misfit(&visitor)),
+            Err(error) => Err(error),
+        }
+        .map_err(|error| error.at(&self.span))
+    }
+
+    fn text<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+        let Kind::Other(DeValue::String(text)) = self.kind else { return Err(self.misfit(&visitor)) };
+        visitor.visit_str(text).map_err(|error: Misfit| error.at(&self.span))
+    }
+
+    fn truth<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+        let Kind::Other(DeValue::Boolean(truth)) = self.kind else { return Err(self.misfit(&visitor)) };
+        visitor.visit_bool(*truth).map_err(|error: Misfit| error.at(&self.span))
+    }
+
+    /// The value without the type that it is read into, so that its code is there once.
+    fn scalar(&self) -> Result<Scalar<'a>, Misfit> {
+        let Kind::Other(value) = self.kind else { return Ok(Scalar::Table) };
+        Ok(match value {
+            DeValue::String(text) => Scalar::Text(text),
+            DeValue::Integer(number) => match i128::from_str_radix(number.as_str(), number.radix()) {
+                Ok(number) => Scalar::Whole(number),
+                Err(_) => return Err(Misfit::custom("integer number overflowed")),
+            },
+            DeValue::Float(number) => match number.as_str().parse() {
+                Ok(number) => Scalar::Real(number),
+                Err(_) => return Err(Misfit::custom("floating-point number overflowed")),
+            },
+            DeValue::Boolean(truth) => Scalar::Truth(*truth),
+            DeValue::Datetime(_) => Scalar::Date,
+            DeValue::Array(_) => Scalar::Array,
+            DeValue::Table(_) => Scalar::Table,
+        })
+    }
+
+    /// The error of a value of another kind than its key takes.
+    fn misfit(&self, expected: &dyn Expected) -> Misfit {
+        let kind = match self.scalar() {
+            Ok(Scalar::Text(text)) => Unexpected::Str(text),
+            Ok(Scalar::Whole(number)) => match i64::try_from(number) {
+                Ok(number) => Unexpected::Signed(number),
+                Err(_) => Unexpected::Other("integer"),
+            },
+            Ok(Scalar::Real(number)) => Unexpected::Float(number),
+            Ok(Scalar::Truth(truth)) => Unexpected::Bool(truth),
+            Ok(Scalar::Date) => Unexpected::Other("date"),
+            Ok(Scalar::Array) => Unexpected::Seq,
+            Ok(Scalar::Table) => Unexpected::Map,
+            Err(_) => Unexpected::Other("number out of range"),
+        };
+        Misfit::invalid_type(kind, expected).at(&self.span)
+    }
+}
+
+/// Methods that all read by the same one.
+macro_rules! read_by {
+    ($reader:ident: $($method:ident)*) => {
+        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
+            self.$reader(visitor)
+        })*
+    };
+}
+
 impl<'de> Deserializer<'de> for Value<'_> {
     type Error = Misfit;
 
+    read_by!(table: deserialize_map);
+    read_by!(array: deserialize_seq);
+    read_by!(text: deserialize_str deserialize_string);
+    read_by!(truth: deserialize_bool);
+    read_by!(number: deserialize_f32 deserialize_f64 deserialize_i8 deserialize_i16 deserialize_i32 deserialize_i64 deserialize_i128);
+    read_by!(number: deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64 deserialize_u128);
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Misfit> {
+        self.table(visitor)
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Misfit> {
+        self.array(visitor)
+    }
+
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
-        let Self { span, kind } = self;
-        let value = match kind {
-            Kind::Table(table) => return visitor.visit_map(Entries::of(table)).map_err(|error| error.at(&span)),
-            Kind::Other(value) => value,
-        };
-        match value {
-            DeValue::String(text) => visitor.visit_str(text),
-            DeValue::Integer(number) => match i128::from_str_radix(number.as_str(), number.radix()) {
-                Ok(number) => whole(number, visitor),
-                Err(_) => Err(Misfit::custom("integer number overflowed")),
-            },
-            DeValue::Float(number) => match number.as_str().parse() {
-                Ok(number) => visitor.visit_f64(number),
-                Err(_) => Err(Misfit::custom("floating-point number overflowed")),
-            },
-            DeValue::Boolean(truth) => visitor.visit_bool(*truth),
-            DeValue::Datetime(_) => Err(Misfit::invalid_type(Unexpected::Other("date"), &visitor)),
-            DeValue::Array(list) => visitor.visit_seq(Items(list.iter())),
-            DeValue::Table(table) => visitor.visit_map(Entries::of(table)),
+        match self.scalar().map_err(|error| error.at(&self.span))? {
+            Scalar::Text(_) => self.text(visitor),
+            Scalar::Whole(_) | Scalar::Real(_) => self.number(visitor),
+            Scalar::Truth(_) => self.truth(visitor),
+            Scalar::Date => Err(self.misfit(&visitor)),
+            Scalar::Array => self.array(visitor),
+            Scalar::Table => self.table(visitor),
         }
-        .map_err(|error| error.at(&span))
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
@@ -137,8 +239,7 @@ impl<'de> Deserializer<'de> for Value<'_> {
     }
 
     forward_to_deserialize_any! {
-        bool u8 u16 u32 u64 u128 i8 i16 i32 i64 i128 f32 f64 char str string seq bytes byte_buf map unit struct
-        ignored_any unit_struct tuple_struct tuple identifier
+        char bytes byte_buf unit ignored_any unit_struct tuple_struct identifier
     }
 }
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::buffer::{Buffer, packed};
 use super::course::{Course, animation, courses};
-use super::scenery::{Around, Scenery};
+use super::scenery::Around;
 use super::tubes::{Tube, TubeMesh, tube_mesh};
 use super::{AnimationError, Clip, Solid, hull};
 
@@ -26,7 +26,7 @@ const GLASS: f64 = 0.25;
 /// # Errors
 /// [`AnimationError`] says which time or posture does not fit.
 pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationError> {
-    written(clip, solids, None)
+    glb_with_tubes(clip, solids, &[])
 }
 
 /// Writes a motion as [`glb`] does, with tubes along lines that segments carry, such as muscles: one mesh, which a skin fixes to the nodes of
@@ -35,19 +35,9 @@ pub fn glb(clip: &Clip<'_>, solids: &[Vec<Solid>]) -> Result<Vec<u8>, AnimationE
 /// # Errors
 /// As [`glb`].
 pub fn glb_with_tubes(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: &[Tube]) -> Result<Vec<u8>, AnimationError> {
-    let mesh =
-        |frames: &[Placement], material: usize, buffer: &mut Buffer| tubes_in(clip, frames, tubes, material, buffer);
-    written(clip, solids, Some(&mesh))
-}
-
-/// Makes the mesh of tubes from joint frames and the index of its look.
-type MeshOfTubes<'a> = &'a dyn Fn(&[Placement], usize, &mut Buffer) -> Option<TubeMesh>;
-
-/// The file. The function that makes tubes is given, so that a program without them is the smaller.
-fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>>) -> Result<Vec<u8>, AnimationError> {
     let segments = clip.model.segments();
-    let around = Around::of(clip)?;
-    let count = segments.len() + around.map_or(0, Around::count);
+    let around = Around::of(clip);
+    let count = segments.len() + around.count();
     let mut first: Option<Vec<Placement>> = None;
     let (times, courses) = courses(clip, count, |index, frames| {
         first.get_or_insert_with(|| frames.to_vec());
@@ -55,7 +45,7 @@ fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>
             segment.parent.map_or_else(|| *frame, |parent| frames[parent].inv_mul(frame))
         };
         let body = segments.iter().zip(frames).map(in_parent).map(|local| (local, 1.0));
-        body.chain(around.map_or_else(Vec::new, |around| around.places(index, frames))).collect()
+        body.chain(around.places(index, frames)).collect()
     })?;
     let (courses, beside) = courses.split_at(segments.len());
     let mut buffer = Buffer::default();
@@ -65,7 +55,7 @@ fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>
     let mut meshes: Vec<Value> = meshes.into_iter().flatten().collect();
     let mut channels: Vec<_> = courses.iter().enumerate().map(|(s, course)| (s + 1, course.moving())).collect();
     let material_of_tubes = usize::from(has_body);
-    let tubes = tubes.zip(first).and_then(|(mesh, frames)| mesh(&frames, material_of_tubes, &mut buffer));
+    let tubes = first.and_then(|frames| tubes_in(clip, &frames, tubes, material_of_tubes, &mut buffer));
     let mut materials = vec![];
     if has_body {
         materials.push(material("body", [0.5, 0.5, 0.52, if tubes.is_some() { GLASS } else { 1.0 }]));
@@ -74,7 +64,7 @@ fn written(clip: &Clip<'_>, solids: &[Vec<Solid>], tubes: Option<MeshOfTubes<'_>
         materials.push(material("muscles", [1.0; 4]));
     }
     let first = [nodes.len(), meshes.len(), materials.len()];
-    let around = around.map_or_else(Scenery::default, |around| around.written(beside, first, &mut buffer));
+    let around = around.written(beside, first, &mut buffer);
     add_to_ground(&mut nodes, around.nodes);
     meshes.extend(around.meshes);
     channels.extend(around.channels);

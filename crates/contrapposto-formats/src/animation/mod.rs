@@ -69,9 +69,6 @@ pub struct Clip<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AnimationError {
-    /// The module for the web has no things and arrows to write.
-    #[error("things and arrows are not written in the module for the web")]
-    Web,
     /// Nothing to write.
     #[error("a motion needs a posture, and a body a segment")]
     Empty,

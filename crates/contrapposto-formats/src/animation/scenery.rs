@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::buffer::Buffer;
 use super::course::{Course, Moving};
-use super::{AnimationError, Clip, hull};
+use super::{Clip, hull};
 use crate::Thing;
 
 /// A force at a point over time, drawn as an arrow.
@@ -38,9 +38,6 @@ const ARROW_LENGTH: f64 = 0.3;
 /// Points and lengths of arrows are rounded to this, m, so that what hardly changes needs no keys.
 const ARROW_GRAIN: f64 = 2e-3;
 
-/// Things and arrows are written but in the module for the web, whose page has none to write and would load more for them.
-const WRITTEN: bool = cfg!(not(target_family = "wasm"));
-
 /// The things and the arrows of a clip.
 #[derive(Clone, Copy)]
 pub(super) struct Around<'a> {
@@ -50,16 +47,9 @@ pub(super) struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    /// Of a clip, if it has some.
-    ///
-    /// # Errors
-    /// [`AnimationError::Web`] of a clip that has some in the module for the web.
-    pub(super) fn of(clip: &Clip<'a>) -> Result<Option<Self>, AnimationError> {
-        let &Clip { model, things, arrows, .. } = clip;
-        if things.is_empty() && arrows.is_empty() {
-            return Ok(None);
-        }
-        if WRITTEN { Ok(Some(Self { model, things, arrows })) } else { Err(AnimationError::Web) }
+    /// Of a clip.
+    pub(super) fn of(&Clip { model, things, arrows, .. }: &Clip<'a>) -> Self {
+        Self { model, things, arrows }
     }
 
     /// Number of nodes.
@@ -69,9 +59,6 @@ impl<'a> Around<'a> {
 
     /// Placement and size of every node in posture number `index`, ground.
     pub(super) fn places(self, index: usize, frames: &[Placement]) -> Vec<(Placement, f64)> {
-        if !WRITTEN {
-            return vec![];
-        }
         let segment = |s: usize| carrier(self.model, s, &frames[s]);
         let things = self.things.iter().map(|thing| (thing.place_by(segment), 1.0));
         let rounded = |v: Vector3<f64>| v.map(|x| (x / ARROW_GRAIN).round() * ARROW_GRAIN);
@@ -90,14 +77,14 @@ impl<'a> Around<'a> {
     pub(super) fn written(self, courses: &[Course], first: [usize; 3], buffer: &mut Buffer) -> Scenery {
         let [first_node, first_mesh, first_material] = first;
         let mut scenery = Scenery::default();
-        if !WRITTEN {
-            return scenery;
-        }
         let look = |(name, color): (&str, [f64; 4])| {
             let look = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
             let mode = if color[3] < 1.0 { "BLEND" } else { "OPAQUE" };
             json!({ "name": name, "pbrMetallicRoughness": look, "alphaMode": mode })
         };
+        if courses.is_empty() {
+            return scenery;
+        }
         scenery.materials = MATERIALS.into_iter().map(look).collect();
         let things = self.things.iter().map(|thing| (thing.name.as_str(), 0, cuboid(&thing.size, buffer)));
         let things: Vec<_> = things.collect();

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::buffer::{Buffer, packed};
 use super::course::{animation, courses};
-use super::scenery::{Around, Scenery};
+use super::scenery::Around;
 use super::{AnimationError, Clip, Skin};
 
 /// Writes a motion as `.glb` with a skin.
@@ -23,8 +23,8 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
     let (drawn, skeleton) = (clip.drawn(), &skin.skeleton);
     let turn = UnitQuaternion::from_rotation_matrix(&drawn);
     let rests: Vec<Vector3<f64>> = (0..skeleton.nodes.len()).map(|node| drawn * skeleton.head(node)).collect();
-    let around = Around::of(clip)?;
-    let count = skeleton.nodes.len() + around.map_or(0, Around::count);
+    let around = Around::of(clip);
+    let count = skeleton.nodes.len() + around.count();
     let (times, courses) = courses(clip, count, |index, frames| {
         let in_file = |place: Placement| {
             let at = drawn * place.translation.vector;
@@ -35,8 +35,7 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
             skeleton.nodes[node].parent.map_or_else(|| *place, |parent| places[parent].inv_mul(place))
         };
         let body = places.iter().enumerate().map(in_parent).map(|local| (local, 1.0));
-        let beside = around.map_or_else(Vec::new, |around| around.places(index, frames));
-        body.chain(beside.into_iter().map(|place| around_in_file(place, &drawn))).collect()
+        body.chain(around.places(index, frames).into_iter().map(|place| around_in_file(place, &drawn))).collect()
     })?;
     let (courses, beside) = courses.split_at(skeleton.nodes.len());
     let local_rest =
@@ -54,7 +53,7 @@ pub fn skinned_glb(clip: &Clip<'_>, skin: &Skin) -> Result<Vec<u8>, AnimationErr
     nodes.push(json!({ "name": "skin", "mesh": 0, "skin": 0 }));
     let skinned = nodes.len() - 1;
     let first = [nodes.len(), 1, 1];
-    let around = around.map_or_else(Scenery::default, |around| around.written(beside, first, &mut buffer));
+    let around = around.written(beside, first, &mut buffer);
     nodes.extend(around.nodes);
     channels.extend(around.channels);
     let animation = animation(clip, &channels, &times, &mut buffer);

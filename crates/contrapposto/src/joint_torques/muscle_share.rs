@@ -37,9 +37,6 @@ pub enum MuscleShareError {
     /// No joint has its strength from muscles.
     #[error("no joint has its strength from the model's muscles")]
     NoMuscles,
-    /// The module for the web.
-    #[error("muscles do not tire one by one in the module for the web")]
-    Web,
     /// A group tires by another law.
     #[error("{group} tires by {law}; muscles need the three-compartment law (3CC-r)")]
     Law {

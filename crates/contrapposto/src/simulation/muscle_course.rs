@@ -30,32 +30,6 @@ const LEAST_SHARE_IN_LIMIT: f64 = 1e-6;
 
 /// People whose muscles work: weaker by a standard deviation of strength, mean, stronger.
 const PEOPLE: [f64; 3] = [-1.0, 0.0, 1.0];
-/// Muscles tire one by one but in the module for the web: its page has no muscles, and would load a fortieth more for them. Where this is false the
-/// linker finds nothing that calls the code, which is reached through [`TiringMuscles`] alone.
-const MUSCLES_TIRE: bool = cfg!(not(target_family = "wasm"));
-
-/// The muscles of a run in which they tire one by one; nothing in another run.
-#[derive(Clone, Debug)]
-pub(super) struct TiringMuscles(Option<MuscleCourse>);
-
-impl TiringMuscles {
-    /// Of a scenario.
-    pub(super) fn of(scenario: &Scenario) -> Result<Self, MuscleShareError> {
-        match scenario.muscles.as_ref().filter(|_| scenario.muscles_tire) {
-            Some(_) if !MUSCLES_TIRE => Err(MuscleShareError::Web),
-            Some(muscles) => Ok(Self(Some(MuscleCourse::new(&scenario.model, muscles, scenario.run.step)?))),
-            None => Ok(Self(None)),
-        }
-    }
-
-    pub(super) fn get(&self) -> Option<&MuscleCourse> {
-        if MUSCLES_TIRE { self.0.as_ref() } else { None }
-    }
-
-    pub(super) fn get_mut(&mut self) -> Option<&mut MuscleCourse> {
-        if MUSCLES_TIRE { self.0.as_mut() } else { None }
-    }
-}
 
 /// State at the end of a piece of work, from which the next one goes on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -94,6 +68,12 @@ struct Person {
 }
 
 impl MuscleCourse {
+    /// Of a scenario whose muscles tire one by one; `None` of another one.
+    pub(super) fn of(scenario: &Scenario) -> Result<Option<Self>, MuscleShareError> {
+        let muscles = scenario.muscles.as_ref().filter(|_| scenario.muscles_tire);
+        muscles.map(|muscles| Self::new(&scenario.model, muscles, scenario.run.step)).transpose()
+    }
+
     /// Of muscles in time steps of `step`, s.
     fn new(model: &Model, muscles: &JointMuscles, step: f64) -> Result<Self, MuscleShareError> {
         let share = MuscleShare::new(model, muscles, |_| 0.0)?;

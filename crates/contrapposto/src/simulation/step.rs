@@ -2,7 +2,7 @@
 
 use super::easiest::{Eased, Searched};
 use super::motion::Motion;
-use super::muscle_course::{MuscleState, TiringMuscles};
+use super::muscle_course::{MuscleCourse, MuscleState};
 use super::path::Path;
 use super::sample::{Attempt, Record, Relief, Sample};
 use super::state::State;
@@ -29,7 +29,7 @@ pub struct Simulation<'a> {
     pub(super) model: SharedModel<'a>,
     /// For a body with muscles.
     pub(super) strength: Option<PosedStrength>,
-    pub(super) tiring: TiringMuscles,
+    pub(super) tiring: Option<MuscleCourse>,
     pub(super) record: Record,
     /// Values of the posture and active torque before the last motion.
     values_before: Vec<f64>,
@@ -89,7 +89,7 @@ impl<'a> Simulation<'a> {
             simulation.apply(event)?;
         }
         simulation.state = state;
-        match (simulation.tiring.get_mut(), &simulation.state.muscles) {
+        match (&mut simulation.tiring, &simulation.state.muscles) {
             (Some(course), Some(muscles)) if muscles.fits(course) => course.resume(muscles),
             (None, None) => {}
             _ => return Err(ScenarioError::Snapshot),
@@ -112,7 +112,7 @@ impl<'a> Simulation<'a> {
             state,
             model,
             strength,
-            tiring: TiringMuscles::of(scenario)?,
+            tiring: MuscleCourse::of(scenario)?,
             record: Record::new(n),
             values_before: vec![0.0; n],
             active_before: vec![0.0; n],
@@ -129,7 +129,7 @@ impl<'a> Simulation<'a> {
     /// are forgotten.
     pub(super) fn state(&mut self) -> State {
         self.motion.forget();
-        if let (Some(course), Some(muscles)) = (self.tiring.get_mut(), &self.state.muscles) {
+        if let (Some(course), Some(muscles)) = (&mut self.tiring, &self.state.muscles) {
             course.resume(muscles);
         }
         self.state.clone()
