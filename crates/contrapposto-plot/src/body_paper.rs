@@ -97,10 +97,11 @@ impl Paper<'_> {
             let points = muscle.lines.iter().flatten();
             points.clone().map(|point| self.place(*point)[2]).sum::<f64>() / points.count().max(1) as f64
         };
-        let mut order: Vec<(f64, &BodyMuscle)> = muscles.iter().take(MOST_MUSCLES).map(|m| (depth(m), m)).collect();
+        let mut order: Vec<(f64, &BodyMuscle)> =
+            muscles.iter().filter(|muscle| drawable(muscle.radius)).take(MOST_MUSCLES).map(|m| (depth(m), m)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, muscle) in order {
-            let width = (2.0 * self.scale * muscle.radius).max(THINNEST_MUSCLE).min(THICKEST_MUSCLE);
+            let width = (2.0 * self.scale * muscle.radius).clamp(THINNEST_MUSCLE, THICKEST_MUSCLE);
             let lines = muscle.lines.iter().map(|line| line.iter().filter_map(|p| self.point(*p)).collect());
             for line in lines.collect::<Vec<Vec<Point>>>() {
                 canvas.line(&line, Pen::solid(OUTLINE_PEN.ink, width + MUSCLE_RIM));
