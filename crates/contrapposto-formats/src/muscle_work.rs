@@ -6,7 +6,7 @@ use contrapposto::model::{Model, Side};
 use serde::Serialize;
 
 /// Activations below this are said as none.
-const AT_REST: f64 = 0.005;
+const LEAST_ACTIVATION_SAID: f64 = 0.005;
 
 /// The muscles of a job; entries of the file that holds them.
 #[derive(Clone, Debug, Serialize)]
@@ -83,7 +83,7 @@ pub struct LackText {
 impl MuscleWorkText {
     /// The muscles with the greatest activations, at most `most` of them, without those at rest.
     pub fn hardest(&self, most: usize) -> Vec<(&str, &WorkedMuscleText)> {
-        let working = self.muscles.iter().filter(|(_, muscle)| muscle.peak_activation >= AT_REST);
+        let working = self.muscles.iter().filter(|(_, muscle)| muscle.peak_activation >= LEAST_ACTIVATION_SAID);
         let mut all: Vec<_> = working.map(|(name, muscle)| (name.as_str(), muscle)).collect();
         all.sort_by(|a, b| b.1.peak_activation.total_cmp(&a.1.peak_activation));
         all.truncate(most);

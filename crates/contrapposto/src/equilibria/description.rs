@@ -1,11 +1,10 @@
 //! Describes a posture of least effort: muscle work, loads of supports, joints on their ligaments, stability.
 
 use super::outcome::{Carried, Hanging, RelaxedPosture, Work};
-use super::search::{Search, SearchError, Stage};
-use super::solvers::Solvers;
+use super::search::{Search, SearchError};
 use super::stability::stability;
 use crate::model::{Model, Side};
-use crate::posture_solver::{Engine, Options, Reason, SolvedPosture};
+use crate::posture_solver::{Engine, SolvedPosture};
 
 /// Least external torque, N m, from which a joint can count as hanging on its ligaments.
 const LEAST_HANGING_TORQUE: f64 = 1.0;
@@ -47,25 +46,6 @@ pub(super) fn describe(
     let mut hanging: Vec<Hanging> = hanging.collect();
     hanging.sort_by(|a, b| b.passive.abs().total_cmp(&a.passive.abs()));
     Ok(RelaxedPosture { supports: supports.collect(), stability, torques, work, hanging, starts, relaxed })
-}
-
-/// Describes a posture that a search has found anew, on the body of another search: its strength or passive torque may have changed since. The body does
-/// not move; tasks and supports count from the start of `search`.
-///
-/// # Errors
-/// [`SearchError`] when something does not fit the model.
-pub fn described_anew(
-    search: &Search<'_>,
-    options: Options,
-    known: &RelaxedPosture,
-) -> Result<RelaxedPosture, SearchError> {
-    let mut solvers = Solvers::new(search, options)?;
-    let slot = solvers.slot;
-    let engine = &mut solvers.engines[Stage::Converged as usize];
-    let SolvedPosture { posture, reason, steps, .. } = &known.relaxed;
-    let mut relaxed = engine.describe(posture.clone(), *reason != Reason::StepLimit, *steps)?;
-    relaxed.levels.remove(slot);
-    describe(search, engine, relaxed, known.starts.clone())
 }
 
 /// Work of a coordinate's muscles in the posture that `engine` evaluated last.

@@ -27,6 +27,7 @@
 //! twice the least effort and 0.05 besides.
 
 mod candidate;
+mod described_anew;
 mod description;
 mod finder;
 mod goal_starts;
@@ -42,7 +43,7 @@ mod solvers;
 mod stability;
 mod ways_to_stand;
 
-pub use description::described_anew;
+pub use described_anew::described_anew;
 pub use finder::equilibria_watched;
 pub use mirror::Mirror;
 pub use outcome::{Carried, Equilibria, Hanging, RelaxedPosture, Work};

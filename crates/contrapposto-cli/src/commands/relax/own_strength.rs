@@ -41,7 +41,7 @@ struct Settled {
     posture: RelaxedPosture,
     /// Change of a strength between its own muscles and those by which it was sought.
     change: f64,
-    /// Its effort still fell when the rounds ended.
+    /// Whether the effort of the posture still fell when the rounds ended.
     falls: bool,
 }
 
