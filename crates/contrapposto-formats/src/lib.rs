@@ -43,7 +43,9 @@ pub use escaped::{escaped, escaped_lines};
 pub use input_error::{InputError, nearest};
 pub use minimize::{DecisionLine, MOST_LINE_BYTES, minimize_line};
 pub use model_file::{ModelFileError, ModelFormat, read_model};
-pub use muscle_work::{LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText};
+pub use muscle_work::{
+    LEAST_ACTIVATION_SAID, LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText,
+};
 pub use numbers::NumberError;
 pub use overlay::{Overlaid, OverlayChange, overlay};
 pub use pose::{PoseLevelText, PoseText};

@@ -6,7 +6,7 @@ use contrapposto::model::{Model, Side};
 use serde::Serialize;
 
 /// Activations below this are said as none.
-const LEAST_ACTIVATION_SAID: f64 = 0.005;
+pub const LEAST_ACTIVATION_SAID: f64 = 0.005;
 
 /// The muscles of a job; entries of the file that holds them.
 #[derive(Clone, Debug, Serialize)]

@@ -64,6 +64,7 @@ fn a_muscle_alone_on_its_side_of_a_joint_tires_by_the_law_of_the_joint() {
     let (mut run, mut worst, mut pieces) = (Run::new(&scenario).unwrap(), 0f64, 0);
     while let Some(sample) = run.next_sample().unwrap() {
         assert!((sample.group_load[0][0] - load).abs() < 1e-12 && sample.group_load[0][1] == 0.0);
+        assert!((sample.muscles[0].load - load).abs() < 1e-12 && sample.muscles[1].load == 0.0);
         // Muscles work in pieces of half a second.
         let time = (2.0 * sample.time + 1e-9).floor() / 2.0;
         let expected = law.advance(law.start(0.0, load), load, time).level(load);
@@ -143,7 +144,8 @@ fn a_run_of_muscles_that_is_resumed_gives_the_same_samples_and_the_same_end() {
     let samples = |run: &mut Run<'_>| {
         let mut all = vec![];
         while let Some(sample) = run.next_sample().unwrap() {
-            all.push((sample.fatigue.to_vec(), sample.group_load.to_vec(), sample.seconds_left.to_vec()));
+            let groups = (sample.fatigue.to_vec(), sample.group_load.to_vec(), sample.seconds_left.to_vec());
+            all.push((groups, sample.muscles.to_vec()));
         }
         all
     };

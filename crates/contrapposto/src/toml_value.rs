@@ -358,6 +358,12 @@ mod tests {
             "inner = [{ a = 1, list = [4294967296] }]",
             "inner = 3",
             "text = ['a']",
+            "text = 2.5",
+            "flag = { a = 1 }",
+            "by_name = [1]",
+            "inner = [{ a = [1] }]",
+            "inner = [{ a = 'x' }]",
+            "inner = { a = 1 }",
             "by_name = { x = 9223372036854775808 }",
             "by_name.x.y = 1",
             "other = 1",
@@ -375,7 +381,13 @@ mod tests {
                 (ours, theirs) => panic!("{text}: {ours:?} and {theirs:?}"),
             }
         }
-        assert_eq!(refused, 16);
+        assert_eq!(refused, 22);
         assert!(typed::<Outer>(DeTable::parse("text = 1979-05-27").unwrap().get_ref()).is_err());
+        // The reader of `toml` takes an array for the fields of a struct in their order; a file of ours has names.
+        let unnamed = "inner = [[1.0, [2]]]";
+        assert!(toml::from_str::<Outer>(unnamed).is_ok());
+        let refused = typed::<Outer>(DeTable::parse(unnamed).unwrap().get_ref()).unwrap_err();
+        let words = "invalid type: sequence, expected struct Inner";
+        assert_eq!((refused.message.as_str(), refused.span), (words, Some(9..19)));
     }
 }

@@ -9,7 +9,7 @@ use contrapposto::model::Model;
 use contrapposto::simulation::{Contact, Sample, Standing};
 use nalgebra::Vector3;
 
-use super::recording::Row;
+use super::recording::{Row, load_and_tension};
 use super::three_axis::angles;
 use super::words::shares_of_all;
 use crate::fail::Fail;
@@ -70,7 +70,7 @@ impl Frame {
             passive: sample.passive.to_vec(),
             load: sample.load.to_vec(),
             fatigue: Some(sample.fatigue.to_vec()),
-            muscles: vec![],
+            muscles: load_and_tension(sample).collect(),
             standing: sample.standing.cloned(),
         }
     }

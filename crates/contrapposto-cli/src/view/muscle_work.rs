@@ -8,7 +8,7 @@ use contrapposto::posture::Posture;
 use contrapposto::simulation::{MuscleOutcome, MuscleSummary};
 use contrapposto_formats::animation::Tube;
 use contrapposto_formats::{
-    LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText,
+    LEAST_ACTIVATION_SAID, LackText, MuscleWorkText, MusclesFailText, TiredMuscleText, WorkedMuscleText, WorksForText,
 };
 
 use contrapposto_plot::{BodyMuscle, load_color};
@@ -24,8 +24,6 @@ use crate::fail::Fail;
 const MOST_MUSCLES: usize = 5;
 /// Activations nearer than this are one: they come from different starts of the solver.
 const ALIKE: f64 = 1e-6;
-/// Activations below this are said as none.
-const AT_REST: f64 = 0.005;
 /// Colour of a muscle at rest, as on the page.
 const RESTING_COLOR: [u8; 3] = [0xb9, 0x92, 0x8c];
 /// Radius of a drawn muscle by the square root of its greatest force, m per root of N: 0.3 of that of fibres of 61 N/cm2 (assumed).
@@ -134,7 +132,8 @@ impl<'a> MusclesAtWork<'a> {
         let tube = |((muscle, line), peak): ((&Muscle, &Vec<DrawnPoint>), Peak<'_>)| {
             let point = |point: &DrawnPoint| (point.segment, point.place.into());
             let branches = line.chunk_by(|_, next| !next.begins).map(|branch| branch.iter().map(point).collect());
-            let color = if peak.activation < AT_REST { RESTING_COLOR } else { load_color(peak.activation) };
+            let color =
+                if peak.activation < LEAST_ACTIVATION_SAID { RESTING_COLOR } else { load_color(peak.activation) };
             Tube { lines: branches.collect(), radius: radius(muscle.spec().max_isometric_force), color }
         };
         all.map(tube).collect()
@@ -238,7 +237,8 @@ impl<'a> MusclesAtWork<'a> {
         let tired: &[&str] = if self.tired.is_some() { &["fatigued at the end", "exhausted after"] } else { &[] };
         let header = ["hardest-worked muscle", "works for", "activation", "force, N", "at"];
         table.set_header(header.iter().chain(tired));
-        let mut peaks: Vec<Peak<'_>> = self.all_peaks().filter(|peak| peak.activation >= AT_REST).collect();
+        let mut peaks: Vec<Peak<'_>> =
+            self.all_peaks().filter(|peak| peak.activation >= LEAST_ACTIVATION_SAID).collect();
         peaks.sort_by(|a, b| b.activation.total_cmp(&a.activation));
         for peak in peaks.iter().take(MOST_MUSCLES) {
             let mut row = vec![

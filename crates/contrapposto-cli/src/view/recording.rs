@@ -99,7 +99,7 @@ impl Recording {
         self.passive.extend_from_slice(sample.passive);
         self.load.extend_from_slice(sample.load);
         self.fatigue.extend_from_slice(sample.fatigue);
-        self.muscles.extend(sample.muscles.iter().map(|muscle| [muscle.load, muscle.tension]));
+        self.muscles.extend(load_and_tension(sample));
         self.asked.extend(sample.decisions.iter().map(|d| d.as_ref().map(|decision| (decision.case, decision.goal))));
         if let Some(standing) = sample.standing {
             self.contacts.extend(standing.contacts.iter().map(numbers));
@@ -210,4 +210,9 @@ fn numbers(contact: &Contact) -> [f64; 10] {
     let at = contact.center_of_pressure.unwrap_or_default();
     let [f, p, c] = [contact.force, at, contact.couple];
     [contact.share, f.x, f.y, f.z, p.x, p.y, p.z, c.x, c.y, c.z]
+}
+
+/// Load and tension (N) of every muscle that tires by itself.
+pub(crate) fn load_and_tension(sample: &Sample) -> impl Iterator<Item = [f64; 2]> {
+    sample.muscles.iter().map(|muscle| [muscle.load, muscle.tension])
 }

@@ -77,14 +77,14 @@ impl<'a> Around<'a> {
     pub(super) fn written(self, courses: &[Course], first: [usize; 3], buffer: &mut Buffer) -> Scenery {
         let [first_node, first_mesh, first_material] = first;
         let mut scenery = Scenery::default();
+        if courses.is_empty() {
+            return scenery;
+        }
         let look = |(name, color): (&str, [f64; 4])| {
             let look = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
             let mode = if color[3] < 1.0 { "BLEND" } else { "OPAQUE" };
             json!({ "name": name, "pbrMetallicRoughness": look, "alphaMode": mode })
         };
-        if courses.is_empty() {
-            return scenery;
-        }
         scenery.materials = MATERIALS.into_iter().map(look).collect();
         let things = self.things.iter().map(|thing| (thing.name.as_str(), 0, cuboid(&thing.size, buffer)));
         let things: Vec<_> = things.collect();

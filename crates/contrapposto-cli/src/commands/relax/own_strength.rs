@@ -1,8 +1,8 @@
 //! Seeks the postures of least effort of a body whose strength and passive torque are those that its muscles have in the posture sought.
 //!
-//! A search works with the muscles of one posture. From that of the posture before it may lead to another one, whose own muscles lead back. So each
-//! posture that a search finds is first settled: sought again from itself, by the muscles that it has then, until these stay. A settled
-//! posture counts by its own muscles, and the search is done again from the muscles of the best settled posture until it shows no better one.
+//! A search works with the muscles of one posture, and leads to another one, whose own muscles may lead back. So each posture that a search finds
+//! is sought again from itself, by muscles that follow it, until these stay or no posture is better than the best so far. Every posture
+//! counts by its own muscles, and the search is done again from the muscles of the best one until it shows no better one.
 
 use contrapposto::equilibria::{Equilibria, RelaxedPosture, Search, SearchError, described_anew, equilibria};
 use contrapposto::joint_torques::relative_load;
@@ -36,7 +36,7 @@ const SAME_PLACE: f64 = 0.3;
 /// A settled posture is better than another one if its effort is less than this share of the other's.
 const BETTER: f64 = 0.999;
 
-/// A posture sought again until its muscles stay.
+/// The best of the postures to which seeking again has led.
 struct Settled {
     posture: RelaxedPosture,
     /// Change of a strength between its own muscles and those by which it was sought.
