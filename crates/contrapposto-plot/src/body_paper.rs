@@ -9,7 +9,7 @@ use crate::geometry::{Point, Rect, clip, clip_polygon};
 use crate::path::Path;
 use crate::style::{
     CENTER, FORCE, GAZE_PEN, GHOST, GHOST_EDGE, GROUND, GROUND_PEN, HAZARD, HELD, Ink, OUTLINE_PEN, PAPER, PLUMB_PEN,
-    Pen, SURFACE_PEN, TARGET_PEN, THING_PEN, UNKNOWN, load_ink,
+    Pen, SURFACE_PEN, TARGET_PEN, THING_PEN, UNDER_MUSCLES, UNKNOWN, load_ink,
 };
 
 /// Half the width of a cross, px.
@@ -133,9 +133,9 @@ impl Paper<'_> {
     fn solids_in_order(&self, canvas: &mut Canvas, posture: &BodyPosture, bounds: &Bounds) {
         let (mut solids, mut inks): (Vec<Solid>, Vec<Ink>) = self.solids(&posture.parts).into_iter().unzip();
         let is_pale = !posture.muscles.is_empty();
-        let pen = if is_pale { Pen::solid(GHOST_EDGE, OUTLINE_PEN.width) } else { OUTLINE_PEN };
+        let pen = if is_pale { Pen::solid(UNKNOWN, OUTLINE_PEN.width) } else { OUTLINE_PEN };
         if is_pale {
-            inks.iter_mut().filter(|ink| **ink != HAZARD).for_each(|ink| *ink = GHOST);
+            inks.iter_mut().filter(|ink| **ink != HAZARD).for_each(|ink| *ink = UNDER_MUSCLES);
         }
         let boxes: Vec<(Corners, bool)> = posture.boxes().collect();
         for (corners, _) in &boxes {

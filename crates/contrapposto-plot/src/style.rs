@@ -50,6 +50,8 @@ pub(crate) const THING: Ink = Ink(0x5f, 0x76, 0x90);
 pub(crate) const CENTER: Ink = Ink(0x1b, 0x1f, 0x26);
 pub(crate) const GHOST: Ink = Ink(0xec, 0xee, 0xf1);
 pub(crate) const GHOST_EDGE: Ink = Ink(0xb4, 0xbb, 0xc6);
+/// Parts of a body under its muscles: darker than a body at the start.
+pub(crate) const UNDER_MUSCLES: Ink = Ink(0xd3, 0xd8, 0xdf);
 pub(crate) const GROUND: Ink = Ink(0xf5, 0xf6, 0xf8);
 
 /// Limits of a force, as on the report's page (Okabe & Ito's colours, recalled); the last stands for all others.
