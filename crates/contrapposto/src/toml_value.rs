@@ -1,8 +1,8 @@
 //! Gives the values of a parsed TOML file to the types that stand for them.
 //!
 //! The reader of `toml` itself gives a struct the same keys in several ways (as a table, as a date, with places), each of which is a copy
-//! of the struct's code: a quarter of the studio's module. The project's files have no dates, so here is one way, with the same words. A type is shown
-//! only values of the kind that it takes: a struct a table, not an array of its fields.
+//! of the struct's code: a quarter of the studio's module. The project's files have no dates, so here is one way, with the same words, but that a
+//! struct is called a table. A type is shown only values of the kind that it takes: a struct a table, not an array of its fields.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -99,7 +99,7 @@ impl<'a> Value<'a> {
     /// The entries of a table; a type that stands for a table takes nothing else.
     fn table<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misfit> {
         let table = match self.kind {
-            Kind::Table(table) | Kind::Other(DeValue::Table(table)) => table,
+            Kind::Table(table) => table,
             Kind::Other(_) => return Err(self.misfit(&visitor)),
         };
         visitor.visit_map(Entries::of(table)).map_err(|error| error.at(&self.span))
@@ -194,6 +194,10 @@ impl<'de> Deserializer<'de> for Value<'_> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Misfit> {
+        // The name of a struct says nothing to the author of a file.
+        if !matches!(self.kind, Kind::Table(_)) {
+            return Err(self.misfit(&"a table"));
+        }
         self.table(visitor)
     }
 
@@ -387,7 +391,7 @@ mod tests {
         let unnamed = "inner = [[1.0, [2]]]";
         assert!(toml::from_str::<Outer>(unnamed).is_ok());
         let refused = typed::<Outer>(DeTable::parse(unnamed).unwrap().get_ref()).unwrap_err();
-        let words = "invalid type: sequence, expected struct Inner";
+        let words = "invalid type: sequence, expected a table";
         assert_eq!((refused.message.as_str(), refused.span), (words, Some(9..19)));
     }
 }
