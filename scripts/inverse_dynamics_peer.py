@@ -30,6 +30,7 @@ PIPELINES = {  # folder, model, setup of inverse dynamics
     "Gait10dof18musc": ("OutputReference/subject01.osim", "ID/walk_Setup_ID.xml"),
 }
 opensim.Logger.setLevelString("off")
+opensim.Logger.removeFileSink()
 
 
 def sto(path):

@@ -42,7 +42,8 @@ pub(crate) fn torques(args: &TorquesArgs) -> Result<(), Fail> {
     let (loads, ground) = loads_of(&args.under, model, &recorded.frames, &mut notes)?;
     keep_overlap(&mut recorded, ground.as_ref())?;
     let warnings = note_values_out_of_range(&opened, &recorded.frames, &mut notes);
-    recorded.doubts.iter().chain(&warnings).for_each(|warning| print_note("warning", warning));
+    let of_forces: Vec<String> = ground.iter().flat_map(|ground| ground.doubts(model, &recorded.frames)).collect();
+    of_forces.iter().chain(&recorded.doubts).chain(&warnings).for_each(|warning| print_note("warning", warning));
     let job = Job { opened, muscles, recorded, loads, ground, gradient: args.gradient };
     job.check()?;
     job.recorded.said.iter().for_each(|said| print_note("note", said));
@@ -175,9 +176,10 @@ impl Job {
                 let given = (rates.speeds.as_slice(), rates.accelerations.as_slice());
                 let update = inertia.update(model, body.kinematics(), given, &loads);
                 update.map_err(|why| Fail::Refused(format!("frame {index}: {why}")))?;
-                loads.extend_from_slice(inertia.loads());
+                body.apply_moving(model, &loads, &inertia, quantities).map_err(failed)?;
+            } else {
+                body.apply(model, &loads, quantities).map_err(failed)?;
             }
-            body.apply(model, &loads, quantities).map_err(failed)?;
             if let Some(muscles) = body.muscles() {
                 muscles.write_strength(&mut posed.model);
             }

@@ -1,6 +1,6 @@
 //! `contrapposto track`: the motion of a model whose markers lie nearest to measured ones.
 
-mod doubts;
+pub(crate) mod doubts;
 pub(crate) mod matching;
 
 use contrapposto::model::{CoordinateKind, Model};

@@ -6,7 +6,7 @@ use super::acceleration::{Acceleration, SpeedError};
 use super::backward::{Wrench, WrenchTorques};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
-use crate::statics::{FixedIn, Load, LoadError, LoadKind};
+use crate::statics::{ExternalTorque, FixedIn, Load, LoadError, LoadKind};
 
 /// The reason for which the inertia of a body is not known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -127,6 +127,21 @@ impl Inertia {
     /// Dependent coordinates are folded into their independent ones.
     pub fn torques(&self) -> &[f64] {
         &self.torque.torques
+    }
+
+    /// Inverse dynamics: external torque of gravity, `loads` and the inertia of the last update, in the same posture. Gradient and slopes of
+    /// `external` are those of gravity and `loads` alone. Does not allocate.
+    ///
+    /// # Errors
+    /// [`LoadError`] when a load does not fit the model; nothing is changed then.
+    pub fn external_torque(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics,
+        loads: &[Load],
+        external: &mut ExternalTorque,
+    ) -> Result<(), LoadError> {
+        external.update_with(model, kinematics, loads, &self.torque.elements)
     }
 
     /// As [`Inertia::torques`], but as if no coordinate followed another one.
